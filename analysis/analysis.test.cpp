@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "analysis/signature.h"
+#include "analysis/tally.h"
+
+namespace graze {
+namespace {
+
+// 70 pairs, so that the second word is partly used; lane 0 is right, lane 1 wrong on pairs 3 and 65, declines 66.
+struct Example {
+  Bits truth{0xf0, 0x2}, right{0xf0, 0x2}, wrong{0xf8, 0x0}, none{0, 0}, declines{0, 0x4};
+  std::vector<Bucket> buckets = std::vector<Bucket>(70, make_bucket(1, 5));
+  std::vector<LaneVerdicts> verdicts{{right, none}, {wrong, declines}};
+  JudgedBlock block{70, truth, buckets, verdicts};
+  Example() { buckets[65] = 0; block.buckets = buckets; }
+};
+
+TEST(Tally, CountsErrorsByKindLaneAndBucket) {
+  const Example example;
+  Tally tally({-1, 0});
+  tally.add(example.block);
+  const Bucket far = make_bucket(1, 5);
+  EXPECT_EQ(tally.pairs(far), 69u);
+  EXPECT_EQ(tally.pairs(0), 1u);
+  EXPECT_EQ(tally.intersects(far), 4u);
+  EXPECT_EQ(tally.intersects(0), 1u);
+  EXPECT_FALSE(tally.lane(0, far).any());
+  EXPECT_EQ(tally.lane(1, far).false_positive, 1u);
+  EXPECT_EQ(tally.lane(1, far).declined, 1u);
+  EXPECT_EQ(tally.lane(1, 0).false_negative, 1u);
+  EXPECT_EQ(tally.lane(1, far).differs_from_cpu, 2u);
+  EXPECT_EQ(tally.lane(1, 0).differs_from_cpu, 1u);
+}
+
+TEST(Tally, SumsAreTheTallyOfTheUnion) {
+  const Example example;
+  Tally twice({-1, 0}), sum({-1, 0}), once({-1, 0});
+  twice.add(example.block);
+  twice.add(example.block);
+  once.add(example.block);
+  sum.add(once);
+  sum.add(once);
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    EXPECT_EQ(sum.pairs(static_cast<Bucket>(b)), twice.pairs(static_cast<Bucket>(b)));
+    EXPECT_EQ(sum.lane(1, static_cast<Bucket>(b)).false_positive, twice.lane(1, static_cast<Bucket>(b)).false_positive);
+  }
+}
+
+TEST(Disagreements, AreThePairsOnWhichSomeLaneIsNotRight) {
+  const Bits wrong = disagreements(Example().block);
+  ASSERT_EQ(wrong.size(), 2u);
+  EXPECT_EQ(wrong[0], 0x8u);
+  EXPECT_EQ(wrong[1], 0x6u);
+}
+
+TEST(CpuTwins, PointToTheCpuLaneOfTheSameAlgorithmAndScalar) {
+  std::vector<const Lane*> some;
+  for (const Lane& lane : lanes()) {
+    if (lane.target != Target::cuda_nofma) some.push_back(&lane);
+  }
+  const std::vector<int> twins = cpu_twins(some);
+  for (std::size_t l = 0; l < some.size(); ++l) {
+    ASSERT_GE(twins[l], 0);
+    const Lane& twin = *some[static_cast<std::size_t>(twins[l])];
+    EXPECT_EQ(twin.target, Target::cpu);
+    EXPECT_EQ(twin.info, some[l]->info);
+    EXPECT_EQ(twin.scalar, some[l]->scalar);
+  }
+  EXPECT_EQ(cpu_twins(std::vector<const Lane*>{some[1]}), std::vector<int>{-1});
+}
+
+TEST(Signature, NamesTheWrongLanesAndHowCloseTheCallWas) {
+  std::vector<const Lane*> run;
+  for (const Lane& lane : lanes()) {
+    if (lane.id == "moller_1997/f32/cpu" || lane.id == "moller_1997/f64/cpu-fma") run.push_back(&lane);
+  }
+  EXPECT_EQ(signature(Contact::none, {2, 1, true}, make_bucket(1, -3), Verdict::disjoint, run, std::vector{Verdict::intersects, Verdict::declined}),
+            "none/21/coplanar/+2^-3/moller_1997:+____?__");
+  EXPECT_EQ(signature(Contact::none, {}, make_bucket(1, -3), Verdict::disjoint, run, std::vector{Verdict::disjoint, Verdict::disjoint}), "");
+  EXPECT_EQ(mark(Verdict::disjoint, Verdict::intersects), '-');
+  EXPECT_EQ(mark(Verdict::intersects, Verdict::intersects), '.');
+}
+
+TEST(ForEachAlgorithm, VisitsRunsOfLanes) {
+  std::vector<const Lane*> some;
+  for (const Lane& lane : lanes()) {
+    if (lane.scalar == Scalar::f32) some.push_back(&lane);
+  }
+  std::size_t visits = 0;
+  for_each_algorithm(some, [&](std::size_t first, std::size_t count) {
+    EXPECT_EQ(first, 4 * visits++);
+    EXPECT_EQ(count, 4u);
+  });
+  EXPECT_EQ(visits, some.size() / 4);
+}
+
+}  // namespace
+}  // namespace graze

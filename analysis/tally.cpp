@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/tally.h"
+
+#include <bit>
+
+namespace graze {
+namespace {
+
+// Calls visit(i) for each set bit i of the word.
+template <class Visit>
+void for_each_bit(std::uint64_t word, Visit visit) {
+  for (; word != 0; word &= word - 1) visit(static_cast<std::size_t>(std::countr_zero(word)));
+}
+
+}  // namespace
+
+Tally::Tally(std::vector<int> cpu_twin)
+    : cpu_twin_(std::move(cpu_twin)), pairs_(kBucketCount), intersects_(kBucketCount), lanes_(cpu_twin_.size() * kBucketCount) {}
+
+void Tally::add(const JudgedBlock& block) {
+  for (std::size_t i = 0; i < block.count; ++i) {
+    ++pairs_[row(block.buckets[i])];
+    intersects_[row(block.buckets[i])] += test_bit(block.truth, i);
+  }
+  for (std::size_t l = 0; l < block.verdicts.size(); ++l) {
+    const LaneVerdicts& lane = block.verdicts[l];
+    LaneCounts* counts = &lanes_[l * kBucketCount];
+    for (std::size_t w = 0; w * 64 < block.count; ++w) {
+      const std::uint64_t yes = lane.intersects[w], none = lane.declined[w], truth = block.truth[w];
+      const auto at = [&](std::size_t i) -> LaneCounts& { return counts[row(block.buckets[w * 64 + i])]; };
+      for_each_bit(yes & ~truth & ~none, [&](std::size_t i) { ++at(i).false_positive; });
+      for_each_bit(~yes & truth & ~none, [&](std::size_t i) { ++at(i).false_negative; });
+      for_each_bit(none, [&](std::size_t i) { ++at(i).declined; });
+      if (cpu_twin_[l] >= 0) {
+        const LaneVerdicts& cpu = block.verdicts[static_cast<std::size_t>(cpu_twin_[l])];
+        for_each_bit((yes ^ cpu.intersects[w]) | (none ^ cpu.declined[w]), [&](std::size_t i) { ++at(i).differs_from_cpu; });
+      }
+    }
+  }
+}
+
+void Tally::add(const Tally& other) {
+  for (std::size_t b = 0; b < pairs_.size(); ++b) {
+    pairs_[b] += other.pairs_[b];
+    intersects_[b] += other.intersects_[b];
+  }
+  for (std::size_t i = 0; i < lanes_.size(); ++i) {
+    lanes_[i].false_positive += other.lanes_[i].false_positive;
+    lanes_[i].false_negative += other.lanes_[i].false_negative;
+    lanes_[i].declined += other.lanes_[i].declined;
+    lanes_[i].differs_from_cpu += other.lanes_[i].differs_from_cpu;
+  }
+}
+
+Bits disagreements(const JudgedBlock& block) {
+  Bits any((block.count + 63) / 64);
+  for (const LaneVerdicts& lane : block.verdicts) {
+    for (std::size_t w = 0; w < any.size(); ++w) any[w] |= (lane.intersects[w] ^ block.truth[w]) | lane.declined[w];
+  }
+  return any;
+}
+
+std::vector<int> cpu_twins(std::span<const Lane* const> lanes) {
+  std::vector<int> twins(lanes.size(), -1);
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    for (std::size_t c = 0; c < lanes.size(); ++c) {
+      if (lanes[c]->target == Target::cpu && lanes[c]->algorithm == lanes[l]->algorithm && lanes[c]->scalar == lanes[l]->scalar) twins[l] = static_cast<int>(c);
+    }
+  }
+  return twins;
+}
+
+}  // namespace graze

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Counting: a block of pairs with the truth's and every lane's verdicts as bits, and the tallies they add up to.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/bucket.h"
+#include "core/lanes.h"
+
+namespace graze {
+
+// Bit i % 64 of word i / 64 belongs to pair i; unused bits are zero.
+using Bits = std::vector<std::uint64_t>;
+
+inline bool test_bit(std::span<const std::uint64_t> bits, std::size_t i) { return bits[i / 64] >> (i % 64) & 1; }
+
+struct LaneVerdicts {
+  std::span<const std::uint64_t> intersects;
+  std::span<const std::uint64_t> declined;
+
+  Verdict at(std::size_t i) const {
+    return test_bit(declined, i) ? Verdict::declined : test_bit(intersects, i) ? Verdict::intersects : Verdict::disjoint;
+  }
+};
+
+struct JudgedBlock {
+  std::size_t count = 0;
+  std::span<const std::uint64_t> truth;     // intersects
+  std::span<const Bucket> buckets;          // of each pair's margin
+  std::span<const LaneVerdicts> verdicts;   // of each lane under test
+};
+
+struct LaneCounts {
+  std::uint64_t false_positive = 0;
+  std::uint64_t false_negative = 0;
+  std::uint64_t declined = 0;
+  std::uint64_t differs_from_cpu = 0;  // another verdict than the cpu lane of the same algorithm and scalar
+
+  bool any() const { return false_positive || false_negative || declined || differs_from_cpu; }
+};
+
+// Counts by margin bucket, of pairs and of each lane's errors. Tallies add; order never matters.
+class Tally {
+ public:
+  // cpu_twin[l]: which of the lanes is lane l's cpu lane of the same algorithm and scalar; -1 for none.
+  explicit Tally(std::vector<int> cpu_twin);
+
+  void add(const JudgedBlock& block);
+  void add(const Tally& other);
+
+  int lane_count() const { return static_cast<int>(cpu_twin_.size()); }
+  std::uint64_t pairs(Bucket b) const { return pairs_[row(b)]; }
+  std::uint64_t intersects(Bucket b) const { return intersects_[row(b)]; }
+  const LaneCounts& lane(int l, Bucket b) const { return lanes_[static_cast<std::size_t>(l) * kBucketCount + row(b)]; }
+
+ private:
+  static std::size_t row(Bucket b) { return static_cast<std::size_t>(b + kBucketMost); }
+
+  std::vector<int> cpu_twin_;
+  std::vector<std::uint64_t> pairs_, intersects_;
+  std::vector<LaneCounts> lanes_;
+};
+
+// The pairs on which some lane does not give the true verdict.
+Bits disagreements(const JudgedBlock& block);
+
+// For each of these lanes, the place among them of its cpu lane; see Tally.
+std::vector<int> cpu_twins(std::span<const Lane* const> lanes);
+
+}  // namespace graze

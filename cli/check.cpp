@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze check`: the truth and every lane's verdict of pairs from a file or a pipe.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "corpus/pair_format.h"
+#include "oracle/truth.h"
+#include "reports/terminal.h"
+
+namespace graze {
+namespace {
+
+struct CheckOptions {
+  std::string file;
+  std::vector<std::string> lanes;
+  bool json = false;
+  bool truth_only = false;
+};
+
+nlohmann::ordered_json number(double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr); }
+
+void check(const CheckOptions& options) {
+  const bool from_stdin = options.file == "-";
+  std::ifstream file;
+  if (!from_stdin) {
+    file.open(options.file);
+    if (!file) throw std::runtime_error(options.file + ": expected a file of pairs, found none that can be read");
+  }
+  Bench bench;
+  if (!options.truth_only) bench = make_bench(options.lanes);
+  PairReader reader(from_stdin ? std::cin : file, from_stdin ? "standard input" : options.file);
+  std::size_t number_of_pair = 0;
+  for (; const auto entry = reader.next(); ++number_of_pair) {
+    const Truth t = truth(entry->pair);
+    const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(bench, entry->pair);
+    if (options.json) {
+      nlohmann::ordered_json line = {{"pair", number_of_pair},
+                                     {"truth", {{"verdict", name(t.verdict)}, {"contact", name(t.contact)}, {"margin", number(t.margin)}, {"margin_ulps", number(t.margin_ulps)}}},
+                                     {"lanes", nlohmann::ordered_json::object()}};
+      for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][bench.lanes[l]->id] = name(verdicts[l]);
+      fmt::print("{}\n", line.dump());
+    } else {
+      const std::string* label = field(*entry, "name");
+      fmt::print("pair {}, line {}{}\n", number_of_pair, entry->line, label ? ": " + *label : "");
+      std::fflush(stdout);
+      print_pair(std::cout, entry->pair, t, bench.lanes, verdicts);
+      std::cout.flush();
+    }
+  }
+  if (number_of_pair == 0) throw std::runtime_error((from_stdin ? "standard input" : options.file) + ": expected at least one pair, found none");
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand("check", "Print the truth and every lane's verdict of the pairs in a file");
+  command->footer("Example: echo '0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1' | graze check -");
+  auto options = std::make_shared<CheckOptions>();
+  command->add_option("file", options->file, "File of pairs (18 numbers a line), or - for standard input")->required();
+  command->add_option("--lanes", options->lanes, "Only lanes that match a pattern: GLOB,…")->delimiter(',');
+  command->add_flag("--json", options->json, "One JSON object a line");
+  command->add_flag("--truth-only", options->truth_only, "Run just the oracle");
+  command->callback([options] { check(*options); });
+}
+
+}  // namespace graze

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The `graze` command. Exit status: 0 done, 1 a failed run or a failed check, 2 wrong use, 130 interrupted.
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "core/error.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Graze finds where a triangle-triangle intersection test stops being right, and proves it.", "graze"};
+  app.set_version_flag("--version", GRAZE_VERSION);
+  app.require_subcommand(1);
+  int status = 0;
+  graze::add_fuzz(app, status);
+  graze::add_check(app, status);
+  graze::add_repro(app, status);
+  graze::add_lanes(app, status);
+  graze::add_strata(app, status);
+  try {
+    app.parse(argc, argv);
+    std::fflush(stdout);
+    return std::ferror(stdout) ? 1 : status;
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "graze: {} (see `graze --help`)\n", error.what());
+    return 2;
+  } catch (const graze::UsageError& error) {
+    fmt::print(stderr, "graze: {}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "graze: {}\n", error.what());
+    return 1;
+  }
+}

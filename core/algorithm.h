@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every algorithm says of itself. An algorithm is a struct with `kInfo` and a static template `decide`.
+#pragma once
+
+#include <string_view>
+
+#include "core/policy.h"
+#include "core/vec3.h"
+#include "core/verdict.h"
+
+namespace graze {
+
+struct AlgorithmInfo {
+  std::string_view id;
+  std::string_view paper;
+  std::string_view coplanar;    // what its paper says of coplanar triangles
+  std::string_view degenerate;  // what its paper says of segments and points
+  std::string_view order;       // whether the verdict can depend on the order of triangles and vertices
+  bool rounding_free_on_lattice;  // neither divides nor takes roots
+};
+
+inline namespace GRAZE_FP {
+
+GRAZE_HD inline Verdict verdict_of(bool intersects) {
+  return intersects ? Verdict::intersects : Verdict::disjoint;
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hand examples and laws over the whole lane table; other scalars and policies through the same source.
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <boost/multiprecision/mpfr.hpp>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "core/algorithms.h"
+#include "core/bucket.h"
+#include "core/lanes.h"
+
+namespace graze {
+namespace {
+
+Verdict decide(const Lane& lane, const Pair& pair) {
+  std::uint64_t intersects = 0, declined = 0;
+  lane.decide(&pair, 1, &intersects, &declined);
+  return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
+}
+
+std::vector<const Lane*> host_lanes() {
+  std::vector<const Lane*> host;
+  for (const Lane& lane : lanes()) {
+    if (!lane.is_cuda() && runs_on_this_cpu(lane)) host.push_back(&lane);
+  }
+  return host;
+}
+
+struct Example {
+  const char* what;
+  Pair pair;
+  Verdict truth;
+  bool projection_overlaps = false;  // seen along some triangle's normal: projected_sat is wrong by logic
+};
+
+constexpr Verdict kYes = Verdict::intersects, kNo = Verdict::disjoint;
+
+// Small integers, non-degenerate: every algorithm must be right, whatever its arithmetic (but see projection_overlaps).
+const Example kExamples[] = {
+    {"apart, all of b above a", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 1}, {4, 0, 2}, {0, 4, 3}}}, kNo},
+    {"apart, all of a beside b's plane", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 0, -1}, {6, 0, 1}, {6, 4, 1}}}, kNo},
+    {"parallel planes", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 2}, {4, 0, 2}, {0, 4, 2}}}, kNo},
+    {"b pierces a", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {3, 3, 1}}}, kYes},
+    {"a pierces b", {{{1, 1, -1}, {1, 1, 1}, {3, 3, 1}}, {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}, kYes},
+    {"edges hook into each other", {{{0, 0, 0}, {4, 0, 0}, {2, 4, 0}}, {{2, -2, -2}, {2, 2, 2}, {2, -2, 4}}}, kYes},
+    {"a vertex touches the face", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}}, kYes},
+    {"a vertex touches a vertex", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 0}, {-1, -1, 4}, {-2, -1, 4}}}, kYes},
+    {"an edge lies in the face", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {2, 1, 0}, {1, 1, 4}}}, kYes},
+    {"an edge in the plane, beside", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{4, 4, 0}, {5, 4, 0}, {4, 4, 4}}}, kNo, true},
+    {"coplanar, overlapping", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {5, 1, 0}, {1, 5, 0}}}, kYes},
+    {"coplanar, b inside a", {{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{1, 1, 0}, {3, 1, 0}, {1, 3, 0}}}, kYes},
+    {"coplanar, a inside b", {{{1, 1, 0}, {3, 1, 0}, {1, 3, 0}}, {{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}}, kYes},
+    {"coplanar, apart", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 5, 0}, {9, 5, 0}, {5, 9, 0}}}, kNo},
+    {"coplanar, apart by the hypotenuse", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{3, 3, 0}, {4, 3, 0}, {3, 4, 0}}}, kNo},
+    {"coplanar, equal", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}, kYes},
+    {"coplanar in x = 1", {{{1, 0, 0}, {1, 4, 0}, {1, 0, 4}}, {{1, 1, 1}, {1, 5, 1}, {1, 1, 5}}}, kYes},
+    {"coplanar in y = 1, apart", {{{0, 1, 0}, {4, 1, 0}, {0, 1, 4}}, {{5, 1, 5}, {9, 1, 5}, {5, 1, 9}}}, kNo},
+};
+
+class EveryHostLane : public testing::TestWithParam<const Lane*> {};
+
+TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
+  for (const Example& example : kExamples) {
+    if (example.projection_overlaps && GetParam()->info->id == "projected_sat") continue;
+    for (int order = 0; order < 72; ++order) {
+      constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+      const int* p = kOrders[order % 6];
+      const int* q = kOrders[order / 6 % 6];
+      const auto& first = order < 36 ? example.pair.a : example.pair.b;
+      const auto& second = order < 36 ? example.pair.b : example.pair.a;
+      const Pair pair{{first[p[0]], first[p[1]], first[p[2]]}, {second[q[0]], second[q[1]], second[q[2]]}};
+      EXPECT_EQ(name(decide(*GetParam(), pair)), name(example.truth)) << example.what << ", order " << order;
+    }
+  }
+}
+
+// Multiplying by a power of two rounds nothing, so no verdict may change. (Short of over- and underflow.)
+TEST_P(EveryHostLane, DoesNotSeePowersOfTwo) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    Pair pair, scaled;
+    for (int c = 0; c < kCoordinates; ++c) {
+      coordinates(pair)[c] = uniform(random) * (c % 3 == 2 ? 0x1p-20f : 1.0f);
+      coordinates(scaled)[c] = coordinates(pair)[c] * 4;
+    }
+    EXPECT_EQ(decide(*GetParam(), pair), decide(*GetParam(), scaled)) << "pair " << i;
+  }
+}
+
+TEST_P(EveryHostLane, WritesOneBitAPairAndZeroesTheRest) {
+  const Pair yes = kExamples[3].pair, no = kExamples[0].pair;
+  std::vector<Pair> pairs(70, no);
+  pairs[2] = pairs[69] = yes;
+  std::uint64_t intersects[2] = {~0ull, ~0ull}, declined[2] = {~0ull, ~0ull};
+  GetParam()->decide(pairs.data(), pairs.size(), intersects, declined);
+  EXPECT_EQ(intersects[0], 4u);
+  EXPECT_EQ(intersects[1], 32u);
+  EXPECT_EQ(declined[0] | declined[1], 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Lanes, EveryHostLane, testing::ValuesIn(host_lanes()), [](const auto& row) {
+  std::string id = row.param->id;
+  for (char& c : id) c = c == '/' || c == '-' ? '_' : c;
+  return id;
+});
+
+TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndTargets) {
+  std::set<std::string> ids;
+  for (const Lane& lane : lanes()) {
+    ids.insert(lane.id);
+    EXPECT_EQ(&lanes()[static_cast<std::size_t>(lane.index)], &lane);
+    EXPECT_EQ(lane.decide == nullptr, lane.is_cuda()) << lane.id;
+  }
+  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount) * 2 * kTargetCount);
+  EXPECT_TRUE(ids.contains("moller_1997/f32/cuda-fma"));
+  EXPECT_TRUE(matches_any({"*/f32/*", "x"}, "moller_1997/f32/cpu"));
+  EXPECT_FALSE(matches_any({"*/f64/*"}, "moller_1997/f32/cpu"));
+}
+
+// Figure 3.4 of the thesis: both plane tests pass and the projections overlap, yet the triangles are apart.
+TEST(ProjectedSat, HasTheFalsePositiveOfTheThesis) {
+  const Pair pair{{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{1, 1, 4}, {6, 6, 4}, {6, 6, -1}}};
+  Vec3<double> a[3], b[3];
+  for (int i = 0; i < 3; ++i) {
+    a[i] = {pair.a[i].x, pair.a[i].y, pair.a[i].z};
+    b[i] = {pair.b[i].x, pair.b[i].y, pair.b[i].z};
+  }
+  EXPECT_EQ(ProjectedSat::decide(a, b), kYes);
+  EXPECT_EQ(IntervalOverlap::decide(a, b), kNo);
+  EXPECT_EQ(Moller1997::decide(a, b), kNo);
+}
+
+// One NaN coordinate: Moller's test intersects wherever it stands, for no comparison rejects.
+TEST(Moller1997, SaysIntersectsOfNaN) {
+  for (int c = 0; c < kCoordinates; ++c) {
+    Pair pair = kExamples[0].pair;
+    coordinates(pair)[c] = std::nanf("");
+    EXPECT_EQ((decide_widened<Moller1997, float>(pair)), kYes) << "coordinate " << c;
+  }
+}
+
+template <class Real, class Algorithm>
+void expect_right_in(const char* scalar) {
+  for (const Example& example : kExamples) {
+    Vec3<Real> a[3], b[3];
+    for (int i = 0; i < 3; ++i) {
+      a[i] = {Real(example.pair.a[i].x), Real(example.pair.a[i].y), Real(example.pair.a[i].z)};
+      b[i] = {Real(example.pair.b[i].x), Real(example.pair.b[i].y), Real(example.pair.b[i].z)};
+    }
+    EXPECT_EQ(Algorithm::decide(a, b), example.truth) << example.what << " in " << scalar << " by " << Algorithm::kInfo.id;
+  }
+}
+
+TEST(Scalars, TheSameSourceRunsOnRationalsAndMultiprecision) {
+  namespace mp = boost::multiprecision;
+  using Rational = mp::number<mp::cpp_rational_backend, mp::et_off>;
+  using Multiprecision = mp::number<mp::mpfr_float_backend<60>, mp::et_off>;
+  expect_right_in<Rational, Moller1997>("rationals");
+  expect_right_in<Rational, GuigueDevillers2003>("rationals");
+  expect_right_in<Rational, SeparatingAxes>("rationals");
+  expect_right_in<Multiprecision, ProjectedSat>("MPFR numbers");
+  expect_right_in<Multiprecision, IntervalOverlap>("MPFR numbers");
+  expect_right_in<Multiprecision, Moller1997>("MPFR numbers");
+}
+
+// Counts the comparisons of each site, and holds small plane distances for zero.
+struct CountingEpsilon {
+  double epsilon;
+  int* counts;
+
+  double snap(Site site, double x) const {
+    ++counts[static_cast<int>(site)];
+    return site == Site::plane_distance && std::abs(x) < epsilon ? 0 : x;
+  }
+  bool less(Site site, double l, double r) const {
+    ++counts[static_cast<int>(site)];
+    return l < r;
+  }
+  bool at_most(Site site, double l, double r) const {
+    ++counts[static_cast<int>(site)];
+    return l <= r;
+  }
+};
+
+template <class Algorithm>
+void expect_policy_decides(std::initializer_list<Site> sites) {
+  const Vec3<double> a[3] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, b[3] = {{1, 1, 1e-9}, {1, 2, 4}, {2, 1, 4}};
+  int counts[4] = {};
+  EXPECT_EQ(Algorithm::decide(a, b, CountingEpsilon{0, counts}), kNo) << Algorithm::kInfo.id;
+  EXPECT_EQ(Algorithm::decide(a, b, CountingEpsilon{1e-6, counts}), kYes) << Algorithm::kInfo.id;
+  for (const Site site : sites) EXPECT_GT(counts[static_cast<int>(site)], 0) << Algorithm::kInfo.id << ", site " << static_cast<int>(site);
+}
+
+TEST(Policy, AnEpsilonAtASiteChangesTheVerdict) {
+  expect_policy_decides<ProjectedSat>({Site::plane_distance, Site::separation});
+  expect_policy_decides<IntervalOverlap>({Site::plane_distance, Site::parallel, Site::separation});
+  expect_policy_decides<Moller1997>({Site::plane_distance, Site::separation});
+  expect_policy_decides<GuigueDevillers2003>({Site::plane_distance, Site::orientation});
+}
+
+TEST(Bucket, IsTheSignAndTheBinaryLogarithm) {
+  EXPECT_EQ(name_of_bucket(0), "0");
+  EXPECT_EQ(name_of_bucket(make_bucket(1, 5)), "+2^5");
+  EXPECT_EQ(name_of_bucket(make_bucket(-1, -3)), "-2^-3");
+  EXPECT_EQ(make_bucket(1, -400), make_bucket(1, kBucketLowest));
+  EXPECT_EQ(make_bucket(-1, 400), -kBucketMost);
+  Pair pair{};
+  EXPECT_EQ(log2_ulp(pair), -149);
+  pair.b[1].y = -1.5f;
+  EXPECT_EQ(log2_ulp(pair), -23);
+  pair.a[0].x = 0x1.fffffep127f;
+  EXPECT_EQ(log2_ulp(pair), 104);
+}
+
+}  // namespace
+}  // namespace graze

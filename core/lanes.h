@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lane table: one row for each way to decide a pair, `algorithm/scalar/target`.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/algorithm.h"
+#include "core/pair.h"
+
+namespace graze {
+
+enum class Scalar : std::uint8_t { f32, f64 };
+
+// cpu: no contraction. cpu_fma: the host compiler's contraction. cuda_nofma: -fmad=false. cuda_fma: nvcc's default.
+enum class Target : std::uint8_t { cpu, cpu_fma, cuda_nofma, cuda_fma };
+inline constexpr int kTargetCount = 4;
+
+std::string_view name(Scalar scalar);
+std::string_view name(Target target);
+
+// Decides pairs[0..count): bit i % 64 of word i / 64 says intersects, or declined. Unused bits become zero.
+// Requires: room for (count + 63) / 64 words in both.
+using DecideBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined);
+
+struct Lane {
+  int index;  // place in lanes()
+  std::string id;
+  const AlgorithmInfo* info;
+  int algorithm;  // place in Algorithms
+  Scalar scalar;
+  Target target;
+  DecideBlock decide;  // null for CUDA lanes; see cuda/device.h
+
+  bool is_cuda() const { return target == Target::cuda_nofma || target == Target::cuda_fma; }
+};
+
+// All lanes, ordered by algorithm, scalar, target.
+std::span<const Lane> lanes();
+
+// Whether this processor can run the host lane (cpu-fma needs FMA instructions).
+bool runs_on_this_cpu(const Lane& lane);
+
+// Whether any of the shell patterns (fnmatch) matches; an empty list matches everything.
+bool matches_any(const std::vector<std::string>& globs, std::string_view id);
+
+}  // namespace graze

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Epsilon policies: every comparison that a paper or a library guards with an epsilon passes through one.
+#pragma once
+
+#include "core/vec3.h"
+
+namespace graze {
+
+// Where an algorithm compares with an epsilon.
+enum class Site {
+  plane_distance,  // a vertex's (unnormalised) signed distance to the other triangle's plane
+  parallel,        // a component of the cross product of the two normals
+  orientation,     // an orientation determinant
+  separation,      // the gap between two intervals: projections on an axis, or sections of a line
+};
+
+inline namespace GRAZE_FP {
+
+// The default policy: exact comparison. Other policies sweep an epsilon per site; a tracing one records.
+struct ExactZero {
+  // x itself, or zero where the policy holds x for zero.
+  template <class Real>
+  GRAZE_HD Real snap(Site, const Real& x) const {
+    return x;
+  }
+
+  // l < r, beyond doubt in the policy's eyes. (Not l - r < 0: a subtraction would invite contraction.)
+  template <class Real>
+  GRAZE_HD bool less(Site, const Real& l, const Real& r) const {
+    return l < r;
+  }
+
+  // l <= r, or too close to tell; false for NaN.
+  template <class Real>
+  GRAZE_HD bool at_most(Site, const Real& l, const Real& r) const {
+    return l <= r;
+  }
+};
+
+}  // namespace GRAZE_FP
+}  // namespace graze

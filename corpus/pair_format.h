@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The text format of pairs and cases: a pair a line, 18 numbers and optional fields. One reader, one writer.
+// corpus/README.md describes the format.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/pair.h"
+
+namespace graze {
+
+struct Entry {
+  Pair pair{};
+  std::vector<std::pair<std::string, std::string>> fields = {};  // key and value, in the order of the line
+  std::size_t line = 0;                                          // where it was read; 0 when it was not
+};
+
+// Input that is not in the format; what() is one line: "FILE:LINE: expected 18 numbers, found 17".
+struct FormatError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Reads the entries of a stream one at a time, so that a pipe can be followed as it is written.
+class PairReader {
+ public:
+  // Requires: in outlives the reader.   name stands for the stream in messages.
+  PairReader(std::istream& in, std::string name);
+
+  // Returns: the next entry, or nothing at the end of the stream.
+  // Throws: FormatError; the reader then stands at the line after the bad one.
+  std::optional<Entry> next();
+
+ private:
+  bool read_line(std::string& text);
+
+  std::istream& in_;
+  std::string name_;
+  std::size_t line_ = 0;
+};
+
+// All entries of a file.   Throws: FormatError, also for a file that is missing or cannot be read.
+std::vector<Entry> read_pairs(const std::filesystem::path& file);
+
+// Writes the version line, the first line of every file.
+void write_header(std::ostream& out);
+
+// Writes one line: hex floats, then the fields. Reading it gives the same bits (a NaN: some NaN) and texts.
+// Requires: keys are distinct, and words of letters, digits and "_-.".
+void write_entry(std::ostream& out, const Entry& entry);
+
+// Returns: the shortest hex float, such as "0x1.8p+1", "-0x0p+0", "0x1p-149"; or "inf", "-inf", "nan".
+std::string hex_float(float value);
+
+// Returns: the float32 nearest to the number that text spells, ties to even, rounded once; nothing when text is
+// not a number in full, or when its nearest is beyond the largest float32. "inf" and "nan" are numbers.
+std::optional<float> parse_float32(std::string_view text);
+
+// Returns: the value of the field, or null when the entry has none of that key.
+const std::string* field(const Entry& entry, std::string_view key);
+
+}  // namespace graze

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// The text format: what is written reads back bit for bit, decimals round once, and every misfit has its message.
+#include "corpus/pair_format.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <sstream>
+
+namespace graze {
+namespace {
+
+constexpr float kMax = std::numeric_limits<float>::max();
+constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+std::uint32_t bits(float value) {
+  std::uint32_t result;
+  std::memcpy(&result, &value, sizeof result);
+  return result;
+}
+
+std::string write(const Entry& entry) {
+  std::ostringstream out;
+  write_header(out);
+  write_entry(out, entry);
+  return out.str();
+}
+
+std::vector<Entry> read(const std::string& text) {
+  std::istringstream in(text);
+  PairReader reader(in, "in.pairs");
+  std::vector<Entry> entries;
+  while (auto entry = reader.next()) entries.push_back(*entry);
+  return entries;
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    return "read " + std::to_string(read(text).size()) + " entries";
+  } catch (const FormatError& error) {
+    return error.what();
+  }
+}
+
+const std::string kZeros = "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0";  // 18 numbers
+const std::string kSeventeen = "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0";
+
+TEST(HexFloat, IsShortestAndKeepsSigns) {
+  EXPECT_EQ(hex_float(3.0f), "0x1.8p+1");
+  EXPECT_EQ(hex_float(0.1f), "0x1.99999ap-4");
+  EXPECT_EQ(hex_float(0.0f), "0x0p+0");
+  EXPECT_EQ(hex_float(-0.0f), "-0x0p+0");
+  EXPECT_EQ(hex_float(kSmallest), "0x1p-149");
+  EXPECT_EQ(hex_float(-kMax), "-0x1.fffffep+127");
+  EXPECT_EQ(hex_float(kInfinity), "inf");
+  EXPECT_EQ(hex_float(-kInfinity), "-inf");
+  EXPECT_EQ(hex_float(kNan), "nan");
+}
+
+TEST(HexFloat, EveryKindOfFloatReadsBack) {
+  std::mt19937 random(20120604);
+  for (int i = 0; i < 200000; ++i) {
+    auto pattern = static_cast<std::uint32_t>(random());
+    if (i % 4 == 0) pattern &= 0x807fffffu;  // subnormal
+    float value;
+    std::memcpy(&value, &pattern, sizeof value);
+    const std::optional<float> back = parse_float32(hex_float(value));
+    ASSERT_TRUE(back) << hex_float(value);
+    if (std::isnan(value)) {
+      ASSERT_TRUE(std::isnan(*back));
+    } else {
+      ASSERT_EQ(bits(*back), pattern) << hex_float(value);
+    }
+  }
+}
+
+TEST(ParseFloat32, RoundsDecimalsOnce) {
+  EXPECT_EQ(parse_float32("0.1"), 0x1.99999ap-4f);
+  EXPECT_EQ(parse_float32("+1"), 1.0f);
+  EXPECT_EQ(parse_float32(".5e1"), 5.0f);
+  // Ties: 2^24 + 1 and 2^24 + 3 lie halfway, and go to the even neighbour.
+  EXPECT_EQ(parse_float32("16777217"), 16777216.0f);
+  EXPECT_EQ(parse_float32("16777219"), 16777220.0f);
+  // Just beyond a tie, by less than a double can tell: two roundings would end at 2^24.
+  EXPECT_EQ(parse_float32("16777217.0000000001"), 16777218.0f);
+  EXPECT_EQ(parse_float32("0x1000001.00000000001p0"), 16777218.0f);
+  EXPECT_EQ(parse_float32("0x1000001p0"), 16777216.0f);
+}
+
+TEST(ParseFloat32, RoundsUnderflow) {
+  EXPECT_EQ(parse_float32("1e-46"), 0.0f);
+  EXPECT_EQ(bits(*parse_float32("-1e-46")), bits(-0.0f));
+  EXPECT_EQ(parse_float32("1e-999"), 0.0f);
+  EXPECT_EQ(parse_float32("7.1e-46"), kSmallest);
+  EXPECT_EQ(parse_float32("1.4e-45"), kSmallest);
+  EXPECT_EQ(parse_float32("0x1p-150"), 0.0f);  // a tie, to even
+  EXPECT_EQ(parse_float32("0x1.8p-150"), kSmallest);
+  EXPECT_EQ(parse_float32("0x1p-99999"), 0.0f);
+}
+
+TEST(ParseFloat32, RefusesOverflow) {
+  EXPECT_EQ(parse_float32("3.4028235e38"), kMax);
+  EXPECT_EQ(parse_float32("3.4028235677973366e38"), kMax);  // just short of halfway to 2^128
+  EXPECT_EQ(parse_float32("3.4028236e38"), std::nullopt);   // beyond it
+  EXPECT_EQ(parse_float32("-1e39"), std::nullopt);
+  EXPECT_EQ(parse_float32("1e999"), std::nullopt);
+  EXPECT_EQ(parse_float32("0x1.fffffefp127"), kMax);
+  EXPECT_EQ(parse_float32("0x1.ffffffp127"), std::nullopt);
+  EXPECT_EQ(parse_float32("0x1p128"), std::nullopt);
+}
+
+TEST(ParseFloat32, TakesInfAndNan) {
+  EXPECT_EQ(parse_float32("inf"), kInfinity);
+  EXPECT_EQ(parse_float32("-inf"), -kInfinity);
+  EXPECT_TRUE(std::isnan(parse_float32("nan").value()));
+}
+
+TEST(ParseFloat32, RefusesWhatIsNoNumber) {
+  for (const char* text : {"", "-", "--1", "+-1", "1e", "1x", "0x", "0xinf", "0x-1", "1,5", ".", "one", "1 "}) {
+    EXPECT_EQ(parse_float32(text), std::nullopt) << '"' << text << '"';
+  }
+}
+
+TEST(PairFormat, AnEntryReadsBack) {
+  Entry entry;
+  const float values[kCoordinates] = {0, -0.0f, 1, 0.1f, kSmallest, -kSmallest, 1e-40f, kMax, -kMax,
+                                      1, 2,     3, 4,    5,         6,          7,      8,    9};
+  std::copy(std::begin(values), std::end(values), coordinates(entry.pair));
+  entry.fields = {{"name", "all_kinds"},
+                  {"source", "owner/repository#152"},
+                  {"empty", ""},
+                  {"note", "two words, a \"quote\", a \\ and a # and a |"},
+                  {"bytes", std::string("\0\n\r\t\x7f\xff", 6)},
+                  {"quote", "\"bare"}};
+  const std::vector<Entry> back = read(write(entry));
+  ASSERT_EQ(back.size(), 1u);
+  for (int i = 0; i < kCoordinates; ++i) EXPECT_EQ(bits(coordinates(back[0].pair)[i]), bits(values[i])) << i;
+  EXPECT_EQ(back[0].fields, entry.fields);
+  EXPECT_EQ(back[0].line, 2u);
+  EXPECT_EQ(write(back[0]), write(entry));
+}
+
+TEST(PairFormat, NonFiniteNumbersReadBack) {
+  Entry entry;
+  entry.pair.a[0] = {kInfinity, -kInfinity, kNan};
+  const Vec3<float> back = read(write(entry)).at(0).pair.a[0];
+  EXPECT_EQ(back.x, kInfinity);
+  EXPECT_EQ(back.y, -kInfinity);
+  EXPECT_TRUE(std::isnan(back.z));
+}
+
+TEST(PairFormat, WritesOneLineAnEntry) {
+  Entry entry;
+  entry.pair.b[2].z = -1.5f;
+  entry.fields = {{"name", "x"}, {"note", "a b"}};
+  std::string zeros;
+  for (int i = 0; i < 17; ++i) zeros += "0x0p+0 ";
+  EXPECT_EQ(write(entry), "graze-pairs 1\n" + zeros + "-0x1.8p+0 | name=x note=\"a b\"\n");
+}
+
+TEST(PairFormat, SkipsCommentsAndBlankLines) {
+  const auto entries = read("# SPDX\n\n  # more\ngraze-pairs 1  # version\n \t\r\n" + kZeros + " # 1 | x=y\n" + kZeros +
+                            "\t|name=a#b note=\"# inside\" # outside\r\n" + kZeros + "|");
+  ASSERT_EQ(entries.size(), 3u);
+  EXPECT_TRUE(entries[0].fields.empty());
+  EXPECT_EQ(entries[0].line, 6u);
+  EXPECT_EQ(*field(entries[1], "name"), "a#b");
+  EXPECT_EQ(*field(entries[1], "note"), "# inside");
+  EXPECT_EQ(field(entries[1], "outside"), nullptr);
+  EXPECT_EQ(entries[2].line, 8u);
+}
+
+TEST(PairFormat, TheVersionLineMayBeMissingOrRepeated) {
+  EXPECT_EQ(read(kZeros).size(), 1u);
+  EXPECT_EQ(read("graze-pairs 1\n" + kZeros + "\ngraze-pairs 1\n" + kZeros).size(), 2u);  // two files, concatenated
+  EXPECT_EQ(read("").size(), 0u);
+}
+
+TEST(PairFormat, AForeignVersionIsNamed) {
+  EXPECT_EQ(error_of("\ngraze-pairs 2\n"),
+            R"(in.pairs:2: expected the version line "graze-pairs 1", found "graze-pairs 2")");
+  EXPECT_EQ(error_of("graze-pairs\n"), R"(in.pairs:1: expected the version line "graze-pairs 1", found "graze-pairs")");
+}
+
+TEST(PairFormat, AWrongCountIsNamed) {
+  EXPECT_EQ(error_of(kSeventeen), "in.pairs:1: expected 18 numbers, found 17");
+  EXPECT_EQ(error_of("\n" + kSeventeen + " # 0"), "in.pairs:2: expected 18 numbers, found 17");
+  EXPECT_EQ(error_of(kSeventeen + " | name=x"), "in.pairs:1: expected 18 numbers, found 17");
+  EXPECT_EQ(error_of("| name=x"), "in.pairs:1: expected 18 numbers, found 0");
+  EXPECT_EQ(error_of(kZeros + " 0 0"), "in.pairs:1: expected 18 numbers, found 20");
+  EXPECT_EQ(error_of(kZeros + " name=x"),
+            R"(in.pairs:1: expected '|' or the end of the line after 18 numbers, found "name=x")");
+}
+
+TEST(PairFormat, AWordThatIsNoFloat32IsNamed) {
+  EXPECT_EQ(error_of("0 0 0 0 one 0"), R"(in.pairs:1: expected a float32 as number 5 (a[1].y), found "one")");
+  EXPECT_EQ(error_of(kSeventeen + " 1e39"), R"(in.pairs:1: expected a float32 as number 18 (b[2].z), found "1e39")");
+  EXPECT_EQ(error_of("0,0,0"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "0,0,0")");
+}
+
+TEST(PairFormat, ABrokenFieldIsNamed) {
+  const std::string start = kZeros + " | name=x ";
+  EXPECT_EQ(error_of(start + "note"), R"(in.pairs:1: expected a field key=value, found "note")");
+  EXPECT_EQ(error_of(start + "=1"), R"(in.pairs:1: expected a field key=value, found "=1")");
+  EXPECT_EQ(error_of(start + "note= 1"), R"(in.pairs:1: expected a field key=value, found "note=")");
+  EXPECT_EQ(error_of(start + "no\"te=1"), R"(in.pairs:1: expected a field key=value, found "no\"te=1")");
+  EXPECT_EQ(error_of(start + "name=y"), "in.pairs:1: expected every field once, found a second name");
+  EXPECT_EQ(error_of(start + "note=\"a b"),
+            "in.pairs:1: expected a closing quote in the value of note, found the end of the line");
+  EXPECT_EQ(error_of(start + R"(note="a\n")"),
+            R"(in.pairs:1: expected \", \\ or \xHH in the value of note, found "\\n")");
+  EXPECT_EQ(error_of(start + "note=\"a\"b"), R"(in.pairs:1: expected white space after the value of note, found "b")");
+}
+
+TEST(PairFormat, GarbageIsEscapedAndCutShort) {
+  EXPECT_EQ(error_of(std::string("\x7f" "ELF\x02\x01\0\x1b[31m", 12)),
+            R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "\x7fELF\x02\x01\x00\x1b[31m")");
+  EXPECT_EQ(error_of(std::string(1000, 'x')),
+            "in.pairs:1: expected a float32 as number 1 (a[0].x), found \"" + std::string(40, 'x') + "\"...");
+  EXPECT_EQ(error_of("\n" + std::string(1 << 20, '0')),
+            "in.pairs:2: expected a line of at most 65536 bytes, found a longer one");
+}
+
+TEST(PairReader, GoesOnAfterABadLine) {
+  std::istringstream in("bad\n" + kZeros + "\n");
+  PairReader reader(in, "in.pairs");
+  EXPECT_THROW(reader.next(), FormatError);
+  EXPECT_TRUE(reader.next());
+  EXPECT_FALSE(reader.next());
+}
+
+TEST(ReadPairs, NamesTheFile) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("graze_pair_format_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  const auto file = folder / "bad.pairs";
+  std::ofstream(file) << "graze-pairs 1\n1 2 3\n";
+  const auto error = [](const std::filesystem::path& path) {
+    try {
+      read_pairs(path);
+      return std::string("none");
+    } catch (const FormatError& e) {
+      return std::string(e.what());
+    }
+  };
+  EXPECT_EQ(error(file), file.string() + ":2: expected 18 numbers, found 3");
+  EXPECT_EQ(error(folder), folder.string() + ": expected a file of pairs, found a folder");
+  EXPECT_EQ(error(folder / "none"), (folder / "none").string() + ": expected a file of pairs, found none");
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace graze

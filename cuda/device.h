@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device lanes as the host sees them; no CUDA header is needed here, and none of this needs nvcc to build.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/lanes.h"
+
+namespace graze {
+
+// One lane's verdicts on a block of pairs; bit i % 64 of word i / 64 belongs to pair i.
+struct LaneBits {
+  std::vector<std::uint64_t> intersects;
+  std::vector<std::uint64_t> declined;
+};
+
+// A CUDA device and the memory for blocks of pairs on it. One thread at a time.
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  // Decides the pairs by each lane, in their order. Requires: CUDA lanes.   Throws: std::runtime_error on any CUDA error.
+  virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes, std::vector<LaneBits>& bits) = 0;
+
+  std::string name;     // "NVIDIA H100 80GB HBM3"
+  std::string driver;   // CUDA version of the driver, "13.0"
+  std::string toolkit;  // of nvcc, "13.0.88"
+};
+
+// The first CUDA device; null when there is none, with the reason in `why_not` ("no device", "built without CUDA").
+std::unique_ptr<Device> open_device(std::string& why_not);
+
+}  // namespace graze

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The campaign: every pair of every source through all lanes and the oracle; tallies, signatures and kept cases in
+// a directory. The results are a function of the spec and the build alone: not of threads, batches or interruptions.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/lanes.h"
+#include "cuda/device.h"
+#include "fuzz/source.h"
+#include "fuzz/store.h"
+
+namespace graze {
+
+struct Campaign {
+  std::uint64_t seed = 1;
+  std::vector<Source> sources;
+  std::vector<const Lane*> lanes;   // those that run, in table order
+  Device* device = nullptr;         // needed when there are CUDA lanes
+  int threads = 0;                  // 0: one a core
+  std::filesystem::path directory;
+  Json spec;                        // what makes this campaign another one; see campaign_spec
+  Json build;
+};
+
+struct Progress {
+  std::uint64_t done = 0, total = 0;  // pairs
+  std::uint64_t done_here = 0;        // by this process
+  double seconds = 0;                 // of this process
+  std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements by this process only
+  std::vector<std::uint64_t> disagreements_of_source;
+};
+
+// {"seed", "pairs", "strata", "lanes"}: recorded with the results and compared when a campaign goes on.
+Json campaign_spec(const Campaign& campaign);
+
+// Compiler, toolkit, device and commit.
+Json build_info(const Device* device);
+
+// Runs or goes on with the campaign until done or `stop`, then writes summary.json, timings.json and cases/.
+// Returns: the summary.   Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any case.
+Json run_campaign(const Campaign& campaign, const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
+
+}  // namespace graze

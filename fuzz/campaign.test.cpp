@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The campaign's promises: the same bytes whatever the threads and interruptions, and nothing lost.
+#include "fuzz/campaign.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "core/error.h"
+#include "corpus/pair_format.h"
+
+namespace graze {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// Everything that a campaign leaves and that must not depend on how it ran.
+std::map<std::string, std::string> lasting_files(const fs::path& directory) {
+  std::map<std::string, std::string> files{{"summary.json", contents(directory / "summary.json")}};
+  for (const auto& file : fs::directory_iterator(directory / "cases")) files[file.path().filename()] = contents(file.path());
+  return files;
+}
+
+class CampaignTest : public testing::Test {
+ protected:
+  CampaignTest() {
+    root_ = fs::temp_directory_path() / ("graze-campaign-" + std::to_string(getpid()));
+    fs::remove_all(root_);
+  }
+  ~CampaignTest() override { fs::remove_all(root_); }
+
+  Campaign campaign(const std::string& name, int threads, std::uint64_t pairs = 200'000) const {
+    Campaign c;
+    c.seed = 3;
+    c.sources = stratum_sources(c.seed, pairs, {"near_edge_edge", "degenerate"});
+    for (const Lane& lane : lanes()) {
+      if (lane.scalar == Scalar::f32 && !lane.is_cuda() && runs_on_this_cpu(lane)) c.lanes.push_back(&lane);
+    }
+    c.threads = threads;
+    c.directory = root_ / name;
+    c.spec = campaign_spec(c);
+    c.build = build_info(nullptr);
+    return c;
+  }
+
+  Json run(const Campaign& c, std::uint64_t stop_after_batches = ~0ull) const {
+    std::atomic<bool> stop{false};
+    std::uint64_t batches = 0;
+    return run_campaign(c, stop, [&](const Progress&) { stop = ++batches >= stop_after_batches; });
+  }
+
+  fs::path root_;
+};
+
+TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
+  run(campaign("one", 1));
+  run(campaign("many", 4));
+  EXPECT_EQ(lasting_files(root_ / "one"), lasting_files(root_ / "many"));
+}
+
+TEST_F(CampaignTest, SameBytesWhenInterruptedAfterEveryBatch) {
+  const Json whole = run(campaign("whole", 2));
+  Json part;
+  for (int i = 0; i < 4; ++i) part = run(campaign("parts", 2), 1);
+  EXPECT_EQ(part.dump(), whole.dump());
+  EXPECT_EQ(lasting_files(root_ / "parts"), lasting_files(root_ / "whole"));
+}
+
+TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
+  const Json summary = run(campaign("counts", 2));
+  std::uint64_t pairs = 0, in_margins = 0;
+  for (const auto& [stratum, row] : summary["strata"].items()) {
+    pairs += row["pairs"].get<std::uint64_t>();
+    for (const auto& [bucket, counts] : row["margins"].items()) in_margins += counts["pairs"].get<std::uint64_t>();
+  }
+  EXPECT_EQ(pairs, 200'000u);
+  EXPECT_EQ(in_margins, pairs);
+  EXPECT_EQ(summary["oracle"]["cgal"], pairs);
+  EXPECT_EQ(summary["oracle"]["apart"], 0);
+  ASSERT_FALSE(summary["signatures"].empty());
+  std::uint64_t failures = 0;
+  for (const auto& row : summary["signatures"]) {
+    failures += row["count"].get<std::uint64_t>();
+    const auto cases = read_pairs(root_ / "counts" / row["case"].get<std::string>());
+    ASSERT_FALSE(cases.empty());
+    EXPECT_LE(cases.size(), kKeptCases);
+    EXPECT_LE(cases.size(), row["count"].get<std::uint64_t>());
+    EXPECT_EQ(*field(cases[0], "signature"), row["key"].get<std::string>());
+  }
+  const std::uint64_t disagreements = summary["disagreements"];
+  EXPECT_GE(failures, disagreements);  // one a failing algorithm
+  EXPECT_GE(summary["oracle"]["gmp"].get<std::uint64_t>(), disagreements + (pairs - disagreements) / 1024 - 2);
+}
+
+TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
+  run(campaign("taken", 1, 4000));
+  const std::string before = contents(root_ / "taken" / "summary.json");
+  EXPECT_THROW(run(campaign("taken", 1, 5000)), UsageError);
+  EXPECT_EQ(contents(root_ / "taken" / "summary.json"), before);
+}
+
+TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
+  fs::create_directories(root_ / "foreign");
+  std::ofstream(root_ / "foreign" / "campaign.sqlite") << "This is no database, and long enough to be looked at as one: " << std::string(4096, 'x');
+  EXPECT_THROW(run(campaign("foreign", 1, 4000)), std::runtime_error);
+
+  { Database other((fs::create_directories(root_ / "other"), root_ / "other" / "campaign.sqlite")); other.execute("CREATE TABLE t(x)"); }
+  EXPECT_THROW(run(campaign("other", 1, 4000)), std::runtime_error);
+
+  run(campaign("cut", 1, 4000));
+  const fs::path file = root_ / "cut" / "campaign.sqlite";
+  fs::resize_file(file, fs::file_size(file) / 2);
+  EXPECT_THROW(run(campaign("cut", 1, 4000)), std::runtime_error);
+}
+
+TEST(Source, SharesPairsEvenlyAndRefusesUnknownStrata) {
+  const auto sources = stratum_sources(1, 10, {"near_*"});
+  ASSERT_EQ(sources.size(), 4u);
+  EXPECT_EQ(sources[0].pairs, 3u);
+  EXPECT_EQ(sources[3].pairs, 2u);
+  EXPECT_THROW(stratum_sources(1, 10, {"nearly_*"}), UsageError);
+}
+
+TEST(SignatureCount, KeepsTheSmallestCasesInWhateverOrderTheyCome) {
+  SignatureCount forwards, backwards;
+  for (std::uint64_t i = 0; i < 9; ++i) {
+    forwards.add({1, {{i, 0}}});
+    backwards.add({1, {{8 - i, 0}}});
+  }
+  EXPECT_EQ(forwards.count, 9u);
+  EXPECT_EQ(forwards.cases, backwards.cases);
+  EXPECT_EQ(forwards.cases.size(), kKeptCases);
+  EXPECT_EQ(forwards.cases[3].index, 3u);
+}
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/report_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "corpus/pair_format.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+void write_whole(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path beside = file.string() + ".part";
+  std::ofstream out(beside, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(beside.string() + ": expected to write " + std::to_string(text.size()) + " bytes, found no room");
+  std::filesystem::rename(beside, file);
+}
+
+// A name for the signature's file: FNV-1a of the key.
+std::string case_name(const std::string& key) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return fmt::format("cases/{:016x}.pairs", hash);
+}
+
+std::string case_text(const Campaign& campaign, const std::string& key, const SignatureCount& found) {
+  std::ostringstream out;
+  write_header(out);
+  out << "# " << key << ": " << found.count << " pairs\n";
+  for (const CaseKey& c : found.cases) {
+    const Source& source = campaign.sources[static_cast<std::size_t>(c.source)];
+    const Pair pair = source.pair(c.index);
+    const Truth t = truth(pair);
+    write_entry(out, {pair, {{"stratum", source.id},
+                             {"seed", std::to_string(campaign.seed)},
+                             {"index", std::to_string(c.index)},
+                             {"truth", std::string(name(t.verdict))},
+                             {"contact", std::string(name(t.contact))},
+                             {"margin", fmt::format("{}", t.margin)},
+                             {"margin_ulps", fmt::format("{}", t.margin_ulps)},
+                             {"signature", key}}, 0});
+  }
+  return out.str();
+}
+
+}  // namespace
+
+Json write_summary(const Campaign& campaign, const Store& store) {
+  std::vector<std::string> sources, lane_ids;
+  for (const Source& source : campaign.sources) sources.push_back(source.id);
+  for (const Lane* lane : campaign.lanes) lane_ids.push_back(lane->id);
+  Json results = store.results(sources, lane_ids);
+
+  std::filesystem::create_directories(campaign.directory / "cases");
+  const auto by_key = store.signatures();
+  std::vector<const std::pair<const std::string, SignatureCount>*> by_count;
+  for (const auto& row : by_key) by_count.push_back(&row);
+  std::stable_sort(by_count.begin(), by_count.end(), [](auto* l, auto* r) { return l->second.count > r->second.count; });
+  Json signatures = Json::array();
+  for (const auto* row : by_count) {
+    const std::string file = case_name(row->first);
+    write_whole(campaign.directory / file, case_text(campaign, row->first, row->second));
+    signatures.push_back({{"key", row->first}, {"count", row->second.count}, {"case", file}});
+  }
+  Json summary = {{"spec", campaign.spec},
+                  {"build", campaign.build},
+                  {"strata", results["strata"]},
+                  {"disagreements", results["disagreements"]},
+                  {"signatures", signatures},
+                  {"oracle", results["oracle"]}};
+  write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");
+  return summary;
+}
+
+void append_timing(const std::filesystem::path& directory, const Json& run) {
+  const std::filesystem::path file = directory / "timings.json";
+  std::ifstream in(file);
+  Json timings = in ? Json::parse(in, nullptr, false) : Json();
+  if (!timings.is_object() || !timings.contains("runs")) timings = {{"runs", Json::array()}};
+  timings["runs"].push_back(run);
+  write_whole(file, timings.dump(1) + "\n");
+}
+
+}  // namespace graze

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files that a campaign leaves beside its database: summary.json, cases/, and timings.json. A file is written
+// whole beside its place and then moved there, so a reader never sees half of one.
+#pragma once
+
+#include "fuzz/campaign.h"
+
+namespace graze {
+
+// Writes summary.json and cases/ from what the store holds.   Returns: the summary.
+Json write_summary(const Campaign& campaign, const Store& store);
+
+// Adds a run to timings.json, the only file that depends on when and where the campaign ran.
+void append_timing(const std::filesystem::path& directory, const Json& run);
+
+}  // namespace graze

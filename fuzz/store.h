@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The campaign's store: one SQLite database, one transaction a batch. Kill the process anywhere: what was
+// committed stays, and the same campaign goes on from there.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/tally.h"
+#include "fuzz/database.h"
+
+namespace graze {
+
+using Json = nlohmann::ordered_json;
+
+// Cases kept of each signature: those with the smallest keys, whoever finds them first.
+inline constexpr std::size_t kKeptCases = 4;
+
+// A pair by its numbers: which source of the campaign, and its index there.
+struct CaseKey {
+  std::uint64_t index = 0;
+  int source = 0;
+  auto operator<=>(const CaseKey&) const = default;
+};
+
+struct SignatureCount {
+  std::uint64_t count = 0;
+  std::vector<CaseKey> cases;  // the smallest, sorted, at most kKeptCases
+
+  void add(const SignatureCount& other);
+};
+
+// What one batch found; all of it adds.
+struct BatchResult {
+  explicit BatchResult(const Tally& empty) : tally(empty) {}
+
+  Tally tally;
+  std::map<std::string, SignatureCount> signatures;
+  std::uint64_t disagreements = 0;  // pairs on which some lane is wrong
+  std::uint64_t cgal = 0;           // pairs decided by CGAL
+  std::uint64_t gmp = 0;            // pairs confirmed by GMP
+
+  void add(const BatchResult& other);
+};
+
+class Store {
+ public:
+  // Opens the campaign in the directory, or begins it.
+  // Throws: UsageError when the directory holds another campaign; std::runtime_error for a foreign or damaged file.
+  Store(const std::filesystem::path& directory, const Json& spec, const Json& build);
+
+  std::uint64_t batches_done() const { return batches_done_; }
+
+  // One transaction; afterwards batches_done() is one more.
+  void commit(int source, const BatchResult& result);
+
+  // Of all committed batches: {"strata": …, "disagreements": …, "oracle": …}, in a fixed order.
+  Json results(const std::vector<std::string>& sources, const std::vector<std::string>& lanes) const;
+
+  std::map<std::string, SignatureCount> signatures() const;
+  std::uint64_t signature_count() const;
+
+ private:
+  Database database_;
+  std::uint64_t batches_done_ = 0;
+};
+
+}  // namespace graze

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The verdict by CGAL's do_intersect. A degenerate triangle is a segment or a point and is tested as one:
+// CGAL's triangle test (Guigue and Devillers 2003) requires triangles that are not flat.
+#include <algorithm>
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/intersections.h>
+#include <CGAL/long_long.h>
+
+#include "oracle/integer_pair.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+// Plain arithmetic on 128-bit integers. Every do_intersect below between points, segments and triangles takes
+// only signs of determinants of degree three at most and comparisons of coordinates, never a quotient (read in
+// CGAL 5.5: orientation, coplanar orientation, collinear, and, for two segments, line points p + v).
+using SmallKernel = CGAL::Simple_cartesian<boost::int128_type>;
+
+// Filtered double arithmetic for the rest. Any float32 is a double, and a product of three differences of
+// float32 lies between 2^-447 and 2^390: nothing over- or underflows, so the filters' error bounds hold.
+using WideKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+// The closed convex hull of three points as what it is: dimension 0, 1 or 2, with its dimension + 1 vertices.
+template <class Kernel>
+struct Hull {
+  using Point = typename Kernel::Point_3;
+  int dimension;
+  Point vertex[3];
+
+  Hull(const Point& p, const Point& q, const Point& r) : dimension(2), vertex{p, q, r} {
+    if (!CGAL::collinear(p, q, r)) return;
+    std::sort(vertex, vertex + 3, CGAL::Less<Point, Point>());
+    dimension = vertex[0] == vertex[2] ? 0 : 1;
+    vertex[1] = vertex[2];
+  }
+  Point point() const { return vertex[0]; }
+  typename Kernel::Segment_3 segment() const { return {vertex[0], vertex[1]}; }
+  typename Kernel::Triangle_3 triangle() const { return {vertex[0], vertex[1], vertex[2]}; }
+};
+
+template <class Kernel>
+bool hulls_intersect(const Hull<Kernel>& a, const Hull<Kernel>& b) {
+  if (a.dimension < b.dimension) return hulls_intersect(b, a);
+  switch (3 * a.dimension + b.dimension) {
+    case 3 * 2 + 2: return CGAL::do_intersect(a.triangle(), b.triangle());
+    case 3 * 2 + 1: return CGAL::do_intersect(a.triangle(), b.segment());
+    case 3 * 2 + 0: return CGAL::do_intersect(a.triangle(), b.point());
+    case 3 * 1 + 1: return CGAL::do_intersect(a.segment(), b.segment());
+    case 3 * 1 + 0: return CGAL::do_intersect(a.segment(), b.point());
+    default: return a.point() == b.point();
+  }
+}
+
+template <class Kernel, class Real>
+Hull<Kernel> hull(const Vec3<Real> (&p)[3]) {
+  const auto point = [](const Vec3<Real>& v) {
+    using Number = typename Kernel::FT;
+    return typename Kernel::Point_3(Number(v.x), Number(v.y), Number(v.z));
+  };
+  return {point(p[0]), point(p[1]), point(p[2])};
+}
+
+}  // namespace
+
+Verdict cgal_verdict(const Pair& pair) {
+  bool intersects;
+  if (const Grid grid = grid_of(pair); grid.is_small()) {
+    const SmallPair small = small_integers(pair, grid);
+    intersects = hulls_intersect(hull<SmallKernel>(small.a), hull<SmallKernel>(small.b));
+  } else {
+    intersects = hulls_intersect(hull<WideKernel>(pair.a), hull<WideKernel>(pair.b));
+  }
+  return intersects ? Verdict::intersects : Verdict::disjoint;
+}
+
+}  // namespace graze

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// The independent decision: counts the extreme points of the common set with signs of determinants of GMP integers.
+//
+// A point x of A ∩ B lies in the relative interior of exactly one face (vertex, edge, triangle) of A and one of B.
+// It is extreme in A ∩ B just when those two faces have no direction in common. So the extreme points are:
+//   vertices of A in B, and vertices of B in A that are no vertex of A,
+//   points where an open edge crosses an open edge that is not parallel to it,
+//   points where an open edge pierces an open triangle that it is not parallel to.
+// None, one, two or more of them: the common set, their convex hull, is empty, a point, a segment or an area.
+#include <bit>
+
+#include "oracle/gmp_simplex.h"
+#include "oracle/integer_pair.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+using namespace gmp;
+
+struct Workspace {
+  Point p[3], q[3];          // the pair
+  Point u, v, w, normal;     // vectors
+  Point na, nb, moment[3];   // noncoplanar(): normals, and a[i] x a[i+1] seen from b[0]
+  Point ra[3];               // noncoplanar(): a[i] - b[0]
+  Register along_u[3], along_v[3], heights[3], height, side, term;
+};
+
+// normal = (p[1] - p[0]) x (p[2] - p[0]); the triangle is flat when it is zero.
+Simplex simplex_of(Workspace& work, const Point (&p)[3], Point& normal) {
+  subtract(work.u, p[1], p[0]);
+  subtract(work.v, p[2], p[0]);
+  cross(normal, work.u, work.v);
+  return is_zero(normal) ? flat_simplex(p) : Simplex{{&p[0], &p[1], &p[2]}, 3};
+}
+
+Contact contact_of(int extreme_points) { return static_cast<Contact>(extreme_points < 3 ? extreme_points : 3); }
+
+// Two triangles whose planes differ, by the signs of the 15 determinants of four of their six vertices, each
+// a sum of dot products with three moments.
+// Requires: neither is flat; ra[i] = a[i] - b[0], u = b[1] - b[0], v = b[2] - b[0], nb = u x v,
+// heights[i] = ra[i] . nb, sa[i] its sign, not all zero.
+Contact noncoplanar(Workspace& work, const int (&sa)[3]) {
+  for (int i = 0; i < 3; ++i) {
+    cross(work.moment[i], work.ra[i], work.ra[(i + 1) % 3]);
+    dot(work.along_u[i], work.moment[i], work.u);
+    dot(work.along_v[i], work.moment[i], work.v);
+  }
+  // The moments add up to A's normal; b[j] against A's plane, from b[0] on.
+  dot(work.height, work.moment[1], work.ra[0]);
+  int tb[3] = {-work.height.sign(), 0, 0};
+  for (int j = 1; j < 3; ++j) {
+    const Register* along = j == 1 ? work.along_u : work.along_v;
+    mpz_add(work.term, along[0], along[1]);
+    mpz_add(work.term, work.term, along[2]);
+    tb[j] = mpz_cmp(work.term, work.height);
+  }
+  if ((tb[0] > 0 && tb[1] > 0 && tb[2] > 0) || (tb[0] < 0 && tb[1] < 0 && tb[2] < 0)) return Contact::none;
+
+  // side[i][j]: sign of det[a_i+1 - a_i, b_j - a_i, b_j+1 - b_j]. B's edges 0 and 2 pass through b[0], with
+  // directions u and -v; for edge 1, the three determinants add up to (a_i+1 - a_i) . b_normal.
+  int side[3][3];
+  for (int i = 0; i < 3; ++i) {
+    side[i][0] = work.along_u[i].sign();
+    side[i][2] = -work.along_v[i].sign();
+    mpz_sub(work.side, work.heights[(i + 1) % 3], work.heights[i]);
+    mpz_sub(work.term, work.along_v[i], work.along_u[i]);
+    mpz_add(work.side, work.side, work.term);
+    side[i][1] = work.side.sign();
+  }
+
+  // One bit an extreme point, so that what is seen from both sides counts once.
+  unsigned found = 0;
+  const auto vertex_a = [](int i) { return 1u << i; };
+  const auto vertex_b = [](int j) { return 1u << (3 + j); };
+  const auto face_b = [](int i) { return 1u << (6 + i); };
+  const auto face_a = [](int j) { return 1u << (9 + j); };
+  const auto crossing = [](int i, int j) { return 1u << (12 + 3 * i + j); };
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    if (sa[i] == 0) {
+      // Seen along an edge that leaves B's plane at a_i.
+      const Location at = locate(sa[next] != 0 ? side[i] : side[(i + 2) % 3]);
+      if (at.place != Place::outside) found |= vertex_a(i);
+    }
+    if (sa[i] * sa[next] < 0) {
+      const Location at = locate(side[i]);
+      if (at.place == Place::face) found |= face_b(i);
+      if (at.place == Place::edge) found |= crossing(i, at.edge);
+    }
+  }
+  for (int j = 0; j < 3; ++j) {
+    const int next = (j + 1) % 3, last = (j + 2) % 3;
+    const int sides[3] = {side[0][j], side[1][j], side[2][j]};
+    if (tb[j] == 0) {
+      const int sides_last[3] = {side[0][last], side[1][last], side[2][last]};
+      const Location at = tb[next] != 0 ? locate(sides) : locate(sides_last);
+      if (at.place == Place::face || at.place == Place::edge) found |= vertex_b(j);
+    }
+    if (tb[j] * tb[next] < 0) {
+      const Location at = locate(sides);
+      if (at.place == Place::face) found |= face_a(j);
+      if (at.place == Place::edge) found |= crossing(at.edge, j);
+    }
+  }
+  return contact_of(std::popcount(found));
+}
+
+// A segment whose line meets the plane of triangle b in one point: inside b, or nowhere.
+// Requires: the segment's ends are not both in the plane, nor strictly on one side of it.
+Contact pierced(Workspace& work, const Simplex& segment, const Simplex& b) {
+  subtract(work.w, *segment.vertex[1], *segment.vertex[0]);
+  int side[3];
+  for (int j = 0; j < 3; ++j) {
+    subtract(work.u, b.from(j), *segment.vertex[0]);
+    subtract(work.v, b.to(j), *segment.vertex[0]);
+    cross(work.normal, work.u, work.v);
+    dot(work.side, work.normal, work.w);
+    side[j] = work.side.sign();
+  }
+  return locate(side).place == Place::outside ? Contact::none : Contact::point;
+}
+
+// Two simplices of one plane (or line), seen with coordinate `dropped` left out, which keeps the plane a plane.
+struct Planar {
+  Workspace& work;
+  int x, y;
+  Planar(Workspace& w, int dropped) : work(w), x((dropped + 1) % 3), y((dropped + 2) % 3) {}
+
+  int orient(const Point& p, const Point& q, const Point& r) {
+    mpz_sub(work.u.c[0], q.c[x], p.c[x]);
+    mpz_sub(work.u.c[1], q.c[y], p.c[y]);
+    mpz_sub(work.v.c[0], r.c[x], p.c[x]);
+    mpz_sub(work.v.c[1], r.c[y], p.c[y]);
+    mpz_mul(work.side, work.u.c[0], work.v.c[1]);
+    mpz_submul(work.side, work.u.c[1], work.v.c[0]);
+    return work.side.sign();
+  }
+
+  // Signed sides of one simplex's vertices (second index) against the other's edges (first index).
+  struct Sides {
+    int of[3][3];
+  };
+
+  Sides sides(const Simplex& edges, const Simplex& vertices) {
+    Sides result{};
+    for (int i = 0; i < edges.edges(); ++i) {
+      for (int j = 0; j < vertices.count; ++j) {
+        result.of[i][j] = orient(edges.from(i), edges.to(i), *vertices.vertex[j]);
+      }
+    }
+    return result;
+  }
+
+  // Whether p, the vertex with index j in `sides`, lies in s.
+  static bool inside(const Point& p, int j, const Simplex& s, const Sides& sides) {
+    if (s.count == 1) return compare(p, *s.vertex[0]) == 0;
+    if (s.count == 3) return locate({sides.of[0][j], sides.of[1][j], sides.of[2][j]}).place != Place::outside;
+    // On the line, and between the ends: in every coordinate, so in lexicographic order too.
+    return sides.of[0][j] == 0 && compare(p, *s.vertex[0]) * compare(p, *s.vertex[1]) <= 0;
+  }
+
+  Contact contact(const Simplex& a, const Simplex& b) {
+    const Sides a_against_b = sides(b, a), b_against_a = sides(a, b);
+    int count = 0;
+    for (int i = 0; i < a.count; ++i) count += inside(*a.vertex[i], i, b, a_against_b);
+    for (int j = 0; j < b.count; ++j) {
+      bool is_vertex_of_a = false;
+      for (int i = 0; i < a.count; ++i) is_vertex_of_a |= compare(*a.vertex[i], *b.vertex[j]) == 0;
+      if (!is_vertex_of_a) count += inside(*b.vertex[j], j, a, b_against_a);
+    }
+    for (int i = 0; i < a.edges(); ++i) {
+      for (int j = 0; j < b.edges(); ++j) {
+        count += b_against_a.of[i][j] * b_against_a.of[i][(j + 1) % 3] < 0 &&
+                 a_against_b.of[j][i] * a_against_b.of[j][(i + 1) % 3] < 0;
+      }
+    }
+    return contact_of(count);
+  }
+};
+
+// A coordinate that can be left out of the plane with this normal.
+int droppable(const Point& normal) { return normal.c[0].sign() ? 0 : normal.c[1].sign() ? 1 : 2; }
+
+// A coordinate that can be left out of a line with this direction (any, if it is zero).
+int droppable_of_line(const Point& direction) { return direction.c[0].sign() ? 2 : 0; }
+
+// b is a triangle with normal nb, and a is flat.
+Contact flat_with_triangle(Workspace& work, const Simplex& a, const Simplex& b) {
+  int sa[2] = {0, 0};
+  for (int i = 0; i < a.count; ++i) {
+    subtract(work.w, *a.vertex[i], *b.vertex[0]);
+    dot(work.height, work.w, work.nb);
+    sa[i] = work.height.sign();
+  }
+  if (sa[0] == 0 && sa[1] == 0) return Planar(work, droppable(work.nb)).contact(a, b);
+  if (a.count == 1 || sa[0] * sa[1] > 0) return Contact::none;
+  return pierced(work, a, b);
+}
+
+// Points and segments only. Their union spans a line, a plane, or (two skew segments) space.
+Contact flat_with_flat(Workspace& work, const Simplex& a, const Simplex& b) {
+  if (a.count < b.count) return flat_with_flat(work, b, a);
+  if (a.count == 1) return contact_of(compare(*a.vertex[0], *b.vertex[0]) == 0 ? 1 : 0);
+  Point& direction = work.na;
+  subtract(direction, *a.vertex[1], *a.vertex[0]);
+  subtract(work.w, *b.vertex[0], *a.vertex[0]);
+  if (b.count == 2) {
+    subtract(work.v, *b.vertex[1], *b.vertex[0]);
+    cross(work.normal, direction, work.v);
+    if (!is_zero(work.normal)) {
+      dot(work.side, work.normal, work.w);
+      if (work.side.sign() != 0) return Contact::none;
+      return Planar(work, droppable(work.normal)).contact(a, b);
+    }
+  }
+  cross(work.normal, direction, work.w);
+  if (!is_zero(work.normal)) return Contact::none;  // beside a's line, and not crossing it
+  return Planar(work, droppable_of_line(direction)).contact(a, b);
+}
+
+}  // namespace
+
+Contact gmp_contact(const Pair& pair) {
+  thread_local Workspace work;
+  const Grid grid = grid_of(pair);
+  for (int i = 0; i < 9; ++i) {
+    set_integer(work.p[i / 3].c[i % 3], coordinates(pair)[i], grid);
+    set_integer(work.q[i / 3].c[i % 3], coordinates(pair)[9 + i], grid);
+  }
+  const Simplex b = simplex_of(work, work.q, work.nb);
+  if (b.count == 3) {
+    int sa[3];
+    for (int i = 0; i < 3; ++i) {
+      subtract(work.ra[i], work.p[i], work.q[0]);
+      dot(work.heights[i], work.ra[i], work.nb);
+      sa[i] = work.heights[i].sign();
+    }
+    if ((sa[0] > 0 && sa[1] > 0 && sa[2] > 0) || (sa[0] < 0 && sa[1] < 0 && sa[2] < 0)) return Contact::none;
+    subtract(work.v, work.ra[1], work.ra[0]);
+    subtract(work.w, work.ra[2], work.ra[0]);
+    cross(work.na, work.v, work.w);
+    if (is_zero(work.na)) return flat_with_triangle(work, flat_simplex(work.p), b);
+    if (sa[0] == 0 && sa[1] == 0 && sa[2] == 0) {
+      const Simplex a{{&work.p[0], &work.p[1], &work.p[2]}, 3};
+      return Planar(work, droppable(work.nb)).contact(a, b);
+    }
+    subtract(work.v, work.q[2], work.q[0]);
+    return noncoplanar(work, sa);
+  }
+  const Simplex a = simplex_of(work, work.p, work.na);
+  if (a.count < 3) return flat_with_flat(work, a, b);
+  for (int i = 0; i < 3; ++i) mpz_swap(work.nb.c[i], work.na.c[i]);
+  return flat_with_triangle(work, b, a);
+}
+
+}  // namespace graze

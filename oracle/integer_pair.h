@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pair as integers: every float32 coordinate is an integer times one power of two that all 18 share.
+// Signs of determinants do not see that factor; lengths are multiplied by it at the end.
+#pragma once
+
+#include <cstdint>
+
+#include <gmpxx.h>
+
+#include "core/pair.h"
+
+namespace graze {
+
+// Coordinates of at most this many bits keep every degree-3 predicate inside a signed 128-bit integer:
+//   a difference                  < 2 * 2^40           = 2^41
+//   a 2x2 minor                   < 2 * 2^41 * 2^41    = 2^83
+//   a 3x3 determinant             < 3 * 2^83 * 2^41    < 2^126
+//   one row a sum of two differences, as CGAL's line-line test has it:  < 3 * 2^83 * 2^42 < 2^127
+inline constexpr int kSmallBits = 40;
+
+// The common grid: every coordinate is an integer of at most `bits` bits times 2^exponent.
+struct Grid {
+  int exponent = 0;  // in [-149, 127]; 0 when all coordinates are zero
+  int bits = 0;      // in [0, 277]
+  bool is_small() const { return bits <= kSmallBits; }
+};
+
+// Requires: finite coordinates.   Returns: the coarsest such grid.
+Grid grid_of(const Pair& pair);
+
+struct SmallPair {
+  Vec3<std::int64_t> a[3];
+  Vec3<std::int64_t> b[3];
+};
+
+// The pair's coordinates divided by 2^grid.exponent.
+// Requires: grid is the pair's, and is_small().   Exact: always.
+SmallPair small_integers(const Pair& pair, const Grid& grid);
+
+// The same one coordinate at a time, of any size, into an initialised GMP integer.
+// Requires: grid is that of the pair the coordinate is from.   Exact: always.
+void set_integer(mpz_t out, float coordinate, const Grid& grid);
+
+struct LargePair {
+  Vec3<mpz_class> a[3];
+  Vec3<mpz_class> b[3];
+};
+
+// The pair's coordinates divided by 2^grid.exponent.
+LargePair large_integers(const Pair& pair, const Grid& grid);
+
+}  // namespace graze

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// Margins: certified bounds and buckets against the exact margin, and that against an independent search.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "core/margin.h"
+#include "oracle/exact_margin.h"
+#include "oracle/test_pairs.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+using oracle_test::hex;
+using oracle_test::Kind;
+using oracle_test::PairSource;
+
+constexpr std::uint64_t kSeed = 20240502;
+constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
+
+SquaredMargin exact_margin(const Pair& pair, Verdict verdict) {
+  const Grid grid = grid_of(pair);
+  const LargePair large = large_integers(pair, grid);
+  return verdict == Verdict::disjoint ? exact_distance(large, grid.exponent)
+                                      : exact_depth(large, grid.exponent, kAllAxes);
+}
+
+TEST(MarginBucket, IsTheExactMarginsBucket) {
+  for (const Kind kind : oracle_test::kKinds) {
+    PairSource source(kind, kSeed);
+    int certain = 0;
+    constexpr int kPairs = 10000;
+    for (int n = 0; n < kPairs; ++n) {
+      const Pair pair = source.next();
+      const Verdict verdict = cgal_verdict(pair);
+      const SquaredMargin exact = exact_margin(pair, verdict);
+      const int ulp = log2_ulp(pair), sign = verdict == Verdict::disjoint ? 1 : -1;
+      const Bucket expected = exact.numerator == 0 ? Bucket{0} : make_bucket(sign, floor_log2(exact) - ulp);
+      ASSERT_EQ(margin_bucket(pair, verdict), expected) << hex(pair);
+
+      const MarginBounds bounds = margin_bounds(pair, verdict);
+      const double size = rounded(exact);
+      ASSERT_LE(bounds.lo, size) << hex(pair);
+      ASSERT_GE(bounds.hi, size) << hex(pair);
+      Bucket bucket;
+      if (bucket_from_bounds(bounds, verdict, ulp, bucket)) {
+        ++certain;
+        ASSERT_EQ(bucket, expected) << hex(pair);
+      }
+    }
+    RecordProperty("certain_percent_kind_" + std::to_string(static_cast<int>(kind)), 100 * certain / kPairs);
+  }
+}
+
+TEST(MarginBounds, AreTightOnPairsInGeneralPosition) {
+  PairSource source(Kind::uniform, kSeed + 1);
+  for (int n = 0; n < 10000; ++n) {
+    const Pair pair = source.next();
+    const MarginBounds bounds = margin_bounds(pair, cgal_verdict(pair));
+    if (bounds.hi < 1e-6) continue;
+    ASSERT_GT(bounds.lo, bounds.hi * (1 - 1e-8)) << hex(pair);
+  }
+}
+
+using Long = Vec3<long double>;
+
+// The distance by another road: of the origin from the Minkowski difference, the hull of nine points b[j] - a[i]; it
+// is attained on a simplex of one, two or three of them. In long double, over all 129.
+long double distance_of_difference(const Pair& pair) {
+  std::vector<Long> points;
+  for (const auto& a : pair.a) {
+    for (const auto& b : pair.b) {
+      points.push_back({static_cast<long double>(b.x) - a.x, static_cast<long double>(b.y) - a.y,
+                        static_cast<long double>(b.z) - a.z});
+    }
+  }
+  long double least = INFINITY;
+  const auto keep = [&least](const Long& x) { least = std::min(least, std::sqrt(dot(x, x))); };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Long& p = points[i];
+    keep(p);
+    for (std::size_t j = i + 1; j < points.size(); ++j) {
+      const Long u = points[j] - p;
+      const long double along = -dot(p, u) / dot(u, u);
+      if (along >= 0 && along <= 1) keep(p + u * along);
+      for (std::size_t k = j + 1; k < points.size(); ++k) {
+        const Long v = points[k] - p, n = cross(u, v);
+        const long double n2 = dot(n, n), s = -dot(cross(p, v), n) / n2, t = -dot(cross(u, p), n) / n2;
+        if (s >= 0 && t >= 0 && s + t <= 1) keep(p + u * s + v * t);
+      }
+    }
+  }
+  return least;
+}
+
+TEST(ExactDistance, IsThatOfTheMinkowskiDifferenceFromTheOrigin) {
+  for (const Kind kind : {Kind::lattice3, Kind::uniform, Kind::coplanar, Kind::degenerate, Kind::flat}) {
+    PairSource source(kind, kSeed + 2);
+    int compared = 0;
+    for (int n = 0; n < 2000; ++n) {
+      const Pair pair = source.next();
+      if (cgal_verdict(pair) != Verdict::disjoint) continue;
+      const double exact = rounded(exact_margin(pair, Verdict::disjoint));
+      if (exact < 1e-3) continue;
+      ++compared;
+      ASSERT_NEAR(exact, static_cast<double>(distance_of_difference(pair)), 1e-11 * exact) << hex(pair);
+    }
+    EXPECT_GT(compared, 500);
+  }
+}
+
+Pair moved(const Pair& pair, const Vec3<double>& by) {
+  Pair result = pair;
+  for (auto& b : result.b) {
+    b = {static_cast<float>(b.x + by.x), static_cast<float>(b.y + by.y), static_cast<float>(b.z + by.z)};
+  }
+  return result;
+}
+
+// The depth d by its meaning: no push shorter than d parts the pair, and some push a little longer does.
+TEST(ExactDepth, IsTheShortestPartingPush) {
+  for (const Kind kind : {Kind::uniform, Kind::lattice3, Kind::degenerate}) {
+    PairSource source(kind, kSeed + 3);
+    int tried = 0;
+    for (int n = 0; n < 4000 && tried < 150; ++n) {
+      const Pair pair = source.next();
+      if (cgal_verdict(pair) != Verdict::intersects) continue;
+      const double depth = rounded(exact_margin(pair, Verdict::intersects));
+      if (depth < 1e-3) continue;
+      ++tried;
+      for (int k = 0; k < 200; ++k) {
+        Vec3<double> d = {source.below(2001) - 1000.0, source.below(2001) - 1000.0, source.below(2001) - 1000.0};
+        const double length = std::sqrt(dot(d, d));
+        if (length == 0) continue;
+        ASSERT_EQ(cgal_verdict(moved(pair, d * (0.999 * depth / length))), Verdict::intersects) << hex(pair);
+      }
+      bool parted = false;
+      const MarginFrame frame = make_margin_frame(pair);
+      for (int axis = 0; axis < kSeparatingAxes; ++axis) {
+        const Vec3<double> d = direction(frame, axis);
+        const double length = std::sqrt(dot(d, d));
+        if (length == 0) continue;
+        for (const double sign : {-1.001, 1.001}) {
+          parted = parted || cgal_verdict(moved(pair, d * (sign * depth / length))) == Verdict::disjoint;
+        }
+      }
+      ASSERT_TRUE(parted) << hex(pair);
+    }
+    EXPECT_GT(tried, 30);
+  }
+}
+
+// Square roots that lie exactly, or all but exactly, half-way between two doubles.
+TEST(Rounded, RoundsOnceToNearestEven) {
+  const mpz_class half = (mpz_class(1) << 53) + 1;  // 2^53 + 1, half-way between two doubles
+  EXPECT_EQ(rounded({half * half, 1, 0}), 0x1p53);
+  EXPECT_EQ(rounded({half * half + 1, 1, 0}), 0x1p53 + 2);
+  EXPECT_EQ(rounded({half * half - 1, 1, 0}), 0x1p53);
+  const mpz_class other = half + 2;  // 2^53 + 3
+  EXPECT_EQ(rounded({other * other, 1, -3}), std::ldexp(0x1p53 + 4, -3));
+  EXPECT_EQ(rounded({other * other - 1, 1, 0}), 0x1p53 + 2);
+  EXPECT_EQ(rounded({2, 1, 0}), std::sqrt(2.0));
+  EXPECT_EQ(rounded({1, 9, 5}), 32.0 / 3.0);
+}
+
+TEST(FloorLog2, IsExactAtPowersOfTwo) {
+  EXPECT_EQ(floor_log2(SquaredMargin{16, 1, 0}), 2);
+  EXPECT_EQ(floor_log2(SquaredMargin{15, 1, 0}), 1);
+  EXPECT_EQ(floor_log2(SquaredMargin{17, 1, -7}), -5);
+  EXPECT_EQ(floor_log2(SquaredMargin{1, 4, 0}), -1);
+  EXPECT_EQ(floor_log2(SquaredMargin{1, 5, 0}), -2);
+  EXPECT_EQ(floor_log2(SquaredMargin{3, 12, 0}), -1);
+}
+
+}  // namespace
+}  // namespace graze

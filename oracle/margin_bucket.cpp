@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The margin's bucket: by certified double-precision bounds nearly always, else by integers. Nothing is rounded.
+#include "core/margin.h"
+#include "oracle/exact_margin.h"
+#include "oracle/integer_pair.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+using Int128 = __int128;
+
+// Whether the intersecting hulls only touch: some nonzero axis among these has no overlap.
+// Exact: always; an axis is of degree two, an overlap of degree three (see kSmallBits).
+bool touches(const SmallPair& small, std::uint32_t axes) {
+  Vec3<Int128> a[3], b[3];
+  for (int i = 0; i < 3; ++i) {
+    a[i] = {small.a[i].x, small.a[i].y, small.a[i].z};
+    b[i] = {small.b[i].x, small.b[i].y, small.b[i].z};
+  }
+  for (int axis = 0; axis < kSeparatingAxes; ++axis) {
+    if ((axes >> axis & 1u) == 0) continue;
+    const Vec3<Int128> n = integer_direction(a, b, axis);
+    if ((n.x != 0 || n.y != 0 || n.z != 0) && integer_overlap(a, b, axis, n) == 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Bucket margin_bucket(const Pair& pair, Verdict verdict) {
+  const int ulp = log2_ulp(pair);
+  const MarginBounds bounds = margin_bounds(pair, verdict);
+  Bucket bucket;
+  if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
+
+  const Grid grid = grid_of(pair);
+  if (verdict == Verdict::intersects) {
+    if (grid.is_small() && touches(small_integers(pair, grid), bounds.axes)) return 0;
+    const SquaredMargin depth = exact_depth(large_integers(pair, grid), grid.exponent, bounds.axes);
+    return depth.numerator == 0 ? Bucket{0} : make_bucket(-1, floor_log2(depth) - ulp);
+  }
+  // Most often the distance is a power of two, which the lower bound just misses, but an exact one does not.
+  const LargePair large = large_integers(pair, grid);
+  const SquaredMargin lower = exact_separation(large, grid.exponent, bounds.direction);
+  if (lower.numerator != 0) {
+    const Bucket nearest = make_bucket(1, floor_log2(lower) - ulp);
+    if (nearest == make_bucket(1, floor_log2(bounds.hi) - ulp)) return nearest;
+  }
+  return make_bucket(1, floor_log2(exact_distance(large, grid.exponent)) - ulp);
+}
+
+}  // namespace graze

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a pair's hulls are, by exact ranks of integer vectors.
+#include "oracle/integer_pair.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+template <class Integer>
+struct Vector {
+  Integer x, y, z;
+  bool is_zero() const { return x == 0 && y == 0 && z == 0; }
+};
+
+template <class Integer, class From>
+Vector<Integer> difference(const Vec3<From>& p, const Vec3<From>& q) {
+  return {Integer(p.x) - Integer(q.x), Integer(p.y) - Integer(q.y), Integer(p.z) - Integer(q.z)};
+}
+
+template <class Integer>
+Vector<Integer> cross_product(const Vector<Integer>& u, const Vector<Integer>& v) {
+  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+}
+
+template <class Integer, class From>
+int dimension(const Vec3<From> (&p)[3]) {
+  const auto u = difference<Integer>(p[1], p[0]), v = difference<Integer>(p[2], p[0]);
+  if (u.is_zero() && v.is_zero()) return 0;
+  return cross_product(u, v).is_zero() ? 1 : 2;
+}
+
+template <class Integer, class Integers>
+Shape shape_of(const Integers& pair) {
+  Vector<Integer> from_a0[5] = {difference<Integer>(pair.a[1], pair.a[0]), difference<Integer>(pair.a[2], pair.a[0]),
+                                difference<Integer>(pair.b[0], pair.a[0]), difference<Integer>(pair.b[1], pair.a[0]),
+                                difference<Integer>(pair.b[2], pair.a[0])};
+  // The first two independent vectors span the plane that all others must lie in.
+  const Vector<Integer>* first = nullptr;
+  Vector<Integer> normal{0, 0, 0};
+  bool coplanar = true;
+  for (const auto& v : from_a0) {
+    if (!first) {
+      if (!v.is_zero()) first = &v;
+    } else if (normal.is_zero()) {
+      normal = cross_product(*first, v);
+    } else if (Integer(normal.x * v.x + normal.y * v.y + normal.z * v.z) != 0) {
+      coplanar = false;
+    }
+  }
+  return {dimension<Integer>(pair.a), dimension<Integer>(pair.b), coplanar};
+}
+
+}  // namespace
+
+Shape shape(const Pair& pair) {
+  const Grid grid = grid_of(pair);
+  return grid.is_small() ? shape_of<__int128>(small_integers(pair, grid)) : shape_of<mpz_class>(large_integers(pair, grid));
+}
+
+}  // namespace graze

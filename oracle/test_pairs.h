@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs for the oracle's tests and benchmarks: from seeded generators, and written by hand.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "core/pair.h"
+
+namespace graze::oracle_test {
+
+enum class Kind { lattice1, lattice3, uniform, near, coplanar, touching, degenerate, flat, raw_bits, wide };
+inline constexpr Kind kKinds[] = {Kind::lattice1, Kind::lattice3,   Kind::uniform, Kind::near,     Kind::coplanar,
+                                  Kind::touching, Kind::degenerate, Kind::flat,    Kind::raw_bits, Kind::wide};
+
+class PairSource {
+ public:
+  PairSource(Kind kind, std::uint64_t seed) : kind_(kind), random_(seed) {}
+
+  Pair next() {
+    Pair pair;
+    for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = coordinate();
+    if (kind_ == Kind::near || kind_ == Kind::touching) {
+      // b[0] near, or on, a point of A: its centre, an edge's middle or a vertex.
+      const int i = below(3), j = below(2) ? (i + 1) % 3 : i, k = below(3);
+      for (int axis = 0; axis < 3; ++axis) {
+        const float sum = component(pair.a[i], axis) + component(pair.a[j], axis) + component(pair.a[k], axis);
+        float at = kind_ == Kind::near ? sum / 3 : component(pair.a[i], axis);
+        if (kind_ == Kind::near && below(2)) at = std::nextafter(at, below(2) ? 9.0f : -9.0f);
+        component(pair.b[0], axis) = at;
+      }
+    }
+    if (kind_ == Kind::coplanar) {
+      const int axis = below(3);
+      for (int i = 0; i < 3; ++i) component(pair.a[i], axis) = component(pair.b[i], axis) = 0.25f;
+      if (below(4) == 0) component(pair.a[below(3)], axis) = std::nextafter(0.25f, 1.0f);
+    }
+    if (kind_ == Kind::degenerate || kind_ == Kind::flat) {
+      flatten(pair.a);
+      if (kind_ == Kind::flat || below(2)) flatten(pair.b);
+      if (kind_ == Kind::degenerate && below(2)) std::swap(pair.a, pair.b);
+    }
+    return pair;
+  }
+
+  int below(int n) { return static_cast<int>(random_() % static_cast<std::uint64_t>(n)); }
+
+ private:
+  float coordinate() {
+    switch (kind_) {
+      case Kind::lattice1: return static_cast<float>(below(3) - 1);
+      case Kind::lattice3:
+      case Kind::degenerate:
+      case Kind::flat: return static_cast<float>(below(5) - 2);
+      case Kind::raw_bits:
+        for (;;) {
+          const float value = std::bit_cast<float>(static_cast<std::uint32_t>(random_()));
+          if (std::isfinite(value)) return value;
+        }
+      case Kind::wide: return std::ldexp(static_cast<float>(below(5) - 2), 30 * (below(5) - 2));
+      default: return static_cast<float>(below(1 << 25) - (1 << 24)) * 0x1p-24f;
+    }
+  }
+
+  // Makes three points collinear or equal.
+  void flatten(Vec3<float> (&p)[3]) {
+    const int to = below(3), from = (to + 1) % 3, other = (to + 2) % 3;
+    const float t = static_cast<float>(below(4)) - 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float start = component(p[from], axis);
+      component(p[to], axis) = start + t * (component(p[other], axis) - start);
+    }
+    if (below(6) == 0) p[0] = p[1] = p[2];
+  }
+
+  Kind kind_;
+  std::mt19937_64 random_;
+};
+
+// A pair written as 18 numbers.
+inline Pair pair_of(const float (&c)[kCoordinates]) {
+  Pair pair;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = c[i];
+  return pair;
+}
+
+// The same two sets in another of the 72 orders: who comes first, and the order of each one's vertices.
+inline Pair reordered(const Pair& pair, int order) {
+  static constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+  Pair result;
+  for (int i = 0; i < 3; ++i) {
+    result.a[i] = pair.a[kOrders[order % 6][i]];
+    result.b[i] = pair.b[kOrders[order / 6 % 6][i]];
+  }
+  if (order >= 36) std::swap(result.a, result.b);
+  return result;
+}
+
+// Axes permuted (in 6 ways) and, with the three bits above, negated: congruent, and exactly so in float.
+inline Pair turned(const Pair& pair, int way) {
+  static constexpr int kAxes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+  Pair result;
+  for (int i = 0; i < kCoordinates; ++i) {
+    const float c = coordinates(pair)[i / 3 * 3 + kAxes[way % 6][i % 3]];
+    coordinates(result)[i] = (way / 6 >> i % 3 & 1) != 0 ? -c : c;
+  }
+  return result;
+}
+
+// For failure messages: the 18 coordinates as hex floats.
+inline std::string hex(const Pair& pair) {
+  std::string text;
+  char number[32];
+  for (int i = 0; i < kCoordinates; ++i) {
+    std::snprintf(number, sizeof number, " %a", static_cast<double>(coordinates(pair)[i]));
+    text += number;
+  }
+  return text;
+}
+
+}  // namespace graze::oracle_test

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// The truth of a pair: exact for every finite float32 pair, subnormals and 1e38 included.
+#pragma once
+
+#include <stdexcept>
+
+#include "core/bucket.h"
+#include "core/pair.h"
+#include "core/verdict.h"
+
+namespace graze {
+
+struct Truth {
+  Verdict verdict = Verdict::declined;
+  Contact contact = Contact::unknown;
+  double margin = 0;       // signed gap in the pair's units, correctly rounded; NaN when declined
+  double margin_ulps = 0;  // the same in float32 ulps of the largest coordinate
+};
+
+// The oracle's two decisions differ: a defect in the oracle itself.
+struct OracleApart : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Verdict, contact and margin; the verdict is CGAL's, confirmed by the decision on GMP integers.
+// Exact: always; the margin is a rational's square root, rounded once by MPFR.
+// Throws: OracleApart.   Returns: declined, unknown, NaN where a coordinate is not finite.
+Truth truth(const Pair& pair);
+
+// CGAL's decision: closed triangles by its triangle test, degenerate ones as segments and points.
+// Requires: finite coordinates.   Exact: always.
+Verdict cgal_verdict(const Pair& pair);
+
+// The independent decision: the dimension of the common set from signs of determinants of GMP integers.
+// Requires: finite coordinates.   Exact: always.   The pair intersects when this is not Contact::none.
+Contact gmp_contact(const Pair& pair);
+
+// What the two hulls are: their dimensions (0 point, 1 segment, 2 triangle), and whether one plane holds all six points.
+struct Shape {
+  int dimension_a = 2;
+  int dimension_b = 2;
+  bool coplanar = false;
+};
+
+// Requires: finite coordinates.   Exact: always.
+Shape shape(const Pair& pair);
+
+// Bucket of the exact margin. A certified double-precision estimate decides nearly always, GMP otherwise.
+// Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.
+Bucket margin_bucket(const Pair& pair, Verdict verdict);
+
+}  // namespace graze

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/terminal.h"
+
+#include <fmt/format.h>
+
+#include <ostream>
+
+#include "corpus/pair_format.h"
+
+namespace graze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::uint64_t errors(const Json& counts) {
+  return counts["false_positive"].get<std::uint64_t>() + counts["false_negative"].get<std::uint64_t>() + counts["declined"].get<std::uint64_t>();
+}
+
+// A share for a narrow column: "0", "12 %", "3.1e-05".
+std::string share(std::uint64_t part, std::uint64_t whole) {
+  if (part == 0 || whole == 0) return "0";
+  const double x = static_cast<double>(part) / static_cast<double>(whole);
+  return x >= 0.001 ? fmt::format("{:.3g} %", 100 * x) : fmt::format("{:.1e}", x);
+}
+
+void print_strata(std::ostream& out, const Json& summary) {
+  std::vector<std::string> columns;
+  for (const auto& lane : summary["spec"]["lanes"]) {
+    const std::string id = lane;
+    if (id.ends_with("/f32/cpu")) columns.push_back(id);
+  }
+  if (columns.empty()) columns = summary["spec"]["lanes"].get<std::vector<std::string>>();
+  out << "Share of wrong verdicts by stratum, the f32/cpu lanes (all lanes below):\n";
+  out << fmt::format("{:<20}{:>12}{:>12}", "stratum", "pairs", "intersect");
+  for (const std::string& id : columns) out << fmt::format("{:>24}", id.substr(0, id.find('/')));
+  out << '\n';
+  for (const auto& [stratum, row] : summary["strata"].items()) {
+    const std::uint64_t pairs = row["pairs"];
+    out << fmt::format("{:<20}{:>12}{:>12}", stratum, grouped(pairs), share(row["intersects"], pairs));
+    for (const std::string& id : columns) out << fmt::format("{:>24}", share(errors(row["lanes"][id]), pairs));
+    out << '\n';
+  }
+}
+
+void print_lanes(std::ostream& out, const Json& summary) {
+  out << fmt::format("\n{:<36}{:>16}{:>16}{:>10}{:>18}\n", "lane, over all strata", "false positive", "false negative", "declined", "differs from cpu");
+  for (const auto& lane : summary["spec"]["lanes"]) {
+    const std::string id = lane;
+    std::uint64_t sums[4] = {};
+    for (const auto& [stratum, row] : summary["strata"].items()) {
+      int i = 0;
+      for (const auto& [kind, count] : row["lanes"][id].items()) sums[i++] += count.get<std::uint64_t>();
+    }
+    out << fmt::format("{:<36}{:>16}{:>16}{:>10}{:>18}\n", id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]), grouped(sums[3]));
+  }
+}
+
+}  // namespace
+
+std::string grouped(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (int i = static_cast<int>(digits.size()) - 3; i > 0; i -= 3) digits.insert(static_cast<std::size_t>(i), 1, ',');
+  return digits;
+}
+
+void print_summary(std::ostream& out, const Json& summary) {
+  print_strata(out, summary);
+  print_lanes(out, summary);
+  std::uint64_t pairs = 0;
+  for (const auto& [stratum, row] : summary["strata"].items()) pairs += row["pairs"].get<std::uint64_t>();
+  out << fmt::format("\n{} pairs: some lane is wrong on {}, in {} signatures. CGAL decided all of them, GMP confirmed {}; apart: {}.\n", grouped(pairs),
+                     grouped(summary["disagreements"]), grouped(summary["signatures"].size()), grouped(summary["oracle"]["gmp"]), summary["oracle"]["apart"].dump());
+}
+
+void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes, std::span<const Verdict> verdicts) {
+  for (int v = 0; v < 6; ++v) {
+    const Vec3<float>& p = v < 3 ? pair.a[v] : pair.b[v - 3];
+    out << fmt::format("  {}[{}]  {:>15} {:>15} {:>15}   {} {} {}\n", v < 3 ? 'a' : 'b', v % 3, p.x, p.y, p.z, hex_float(p.x), hex_float(p.y), hex_float(p.z));
+  }
+  out << fmt::format("  truth: {}, contact {}, margin {} ({} ulps)\n", name(truth.verdict), name(truth.contact), truth.margin, truth.margin_ulps);
+  out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{:<14}\n", "", "cpu", "cpu-fma", "cuda-nofma", "cuda-fma");
+  for (std::size_t first = 0, end; first < lanes.size(); first = end) {
+    // One row an algorithm and scalar; '-' where a lane was not run, '!' where it is wrong.
+    std::string cells[kTargetCount] = {"-", "-", "-", "-"};
+    for (end = first; end < lanes.size() && lanes[end]->algorithm == lanes[first]->algorithm && lanes[end]->scalar == lanes[first]->scalar; ++end) {
+      const bool wrong = truth.verdict != Verdict::declined && verdicts[end] != truth.verdict;
+      cells[static_cast<std::size_t>(lanes[end]->target)] = fmt::format("{}{}", name(verdicts[end]), wrong ? " !" : "");
+    }
+    out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n", fmt::format("{}/{}", lanes[first]->info->id, name(lanes[first]->scalar)), cells[0], cells[1], cells[2], cells[3]);
+  }
+}
+
+}  // namespace graze

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Results for a terminal: a campaign's summary, one pair's verdicts. Renders; never computes a verdict.
+#pragma once
+
+#include <iosfwd>
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "core/lanes.h"
+#include "core/pair.h"
+#include "oracle/truth.h"
+
+namespace graze {
+
+// What summary.json holds, as two tables: errors by stratum and algorithm, and by lane.
+void print_summary(std::ostream& out, const nlohmann::ordered_json& summary);
+
+// One pair: its coordinates in decimals and hex floats, the truth, and a verdict for each lane, wrong ones marked.
+// Requires: verdicts[i] is what lanes[i] says.
+void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes, std::span<const Verdict> verdicts);
+
+// 1234567 as "1,234,567".
+std::string grouped(std::uint64_t number);
+
+}  // namespace graze

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
+# Writes OUT, a header with the commit that is being built; untouched when nothing changed. Run by every build.
+execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 OUTPUT_VARIABLE commit
+  OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT commit)
+  set(commit unknown)
+endif()
+file(CONFIGURE OUTPUT ${OUT} CONTENT "#pragma once\n#define GRAZE_COMMIT \"${commit}\"\n")

@@ -53,8 +53,7 @@ inline constexpr double kHalfUlp = 0x1p-53;
 // The pair in double. Every difference of coordinates carries one relative error of at most
 // kHalfUlp, or none at all when `exact`. No product of up to six of them over- or underflows: 2^-894 to 2^780.
 struct MarginFrame {
-  Vec3<double> a[3], b[3];
-  Vec3<double> edge_a[3], edge_b[3];
+  Vec3<double> a[3], b[3], edge_a[3], edge_b[3];
   bool exact;
 };
 
@@ -154,14 +153,10 @@ GRAZE_HD inline Interval overlap(const MarginFrame& f, int axis, const Vec3<doub
     error[k] = 12 * kHalfUlp * dot(weight, magnitudes(seen[k]));
   }
   // The feature itself is at zero; the first projection belongs to either side.
-  Interval least = {along[1] - error[1], along[1] + error[1]}, most = least;
-  Interval own_least = {0, 0}, own_most = {0, 0};
+  Interval least = {along[1] - error[1], along[1] + error[1]}, most = least, own_least = {0, 0}, own_most = {0, 0};
   include(least, most, along[2], error[2]);
-  if (own == 1) {
-    include(own_least, own_most, along[0], error[0]);
-  } else {
-    include(least, most, along[0], error[0]);
-  }
+  if (own == 1) include(own_least, own_most, along[0], error[0]);
+  if (own == 0) include(least, most, along[0], error[0]);
   return {lesser(own_most.lo - least.hi, most.lo - own_least.hi),
           lesser(own_most.hi - least.lo, most.hi - own_least.lo)};
 }
@@ -173,17 +168,13 @@ GRAZE_HD inline double separation(const MarginFrame& f, int d) {
   const Vec3<double> n = direction(f, d), weight = magnitudes(n) * (6 * kHalfUlp);
   const int i_of_d = d == kNormalA ? 0 : (d < kFromEdgeA ? d : (d - kFromEdgeA) % 9) / 3;
   const Vec3<double> from = d == kNormalB ? f.b[0] : f.a[i_of_d];
-  double min_a = INFINITY, max_a = -INFINITY, min_b = INFINITY, max_b = -INFINITY;
+  Interval least_a = {INFINITY, INFINITY}, most_a = {-INFINITY, -INFINITY}, least_b = least_a, most_b = most_a;
   for (int i = 0; i < 3; ++i) {
     const Vec3<double> a = f.a[i] - from, b = f.b[i] - from;
-    const double along_a = dot(n, a), error_a = dot(weight, magnitudes(a));
-    const double along_b = dot(n, b), error_b = dot(weight, magnitudes(b));
-    min_a = lesser(min_a, along_a - error_a);
-    max_a = greater(max_a, along_a + error_a);
-    min_b = lesser(min_b, along_b - error_b);
-    max_b = greater(max_b, along_b + error_b);
+    include(least_a, most_a, dot(n, a), dot(weight, magnitudes(a)));
+    include(least_b, most_b, dot(n, b), dot(weight, magnitudes(b)));
   }
-  const double gap = greater(min_b - max_a, min_a - max_b);
+  const double gap = greater(least_b.lo - most_a.hi, least_a.lo - most_b.hi);
   return gap > 0 ? gap / sqrt(dot(n, n)) * (1 - 8 * kHalfUlp) : 0;  // 7 roundings at most
 }
 
@@ -197,8 +188,7 @@ GRAZE_HD inline int floor_log2(double x) {
 // The shortest connection found so far: its squared length and the size of the terms it was summed from, as
 // computed, and the direction that should then separate.
 struct Connection {
-  double squared;
-  double terms;
+  double squared, terms;
   int direction;
 };
 
@@ -263,10 +253,7 @@ GRAZE_HD inline MarginBounds distance_bounds(const MarginFrame& f) {
   // Where two kinds of connection tie, rounding may have named the wrong one.
   for (int d = 0; d < kDirections && floor_log2(bounds.lo) != floor_log2(hi) && bounds.lo < 0.999 * hi; ++d) {
     const double lo = separation(f, d);
-    if (lo > bounds.lo) {
-      bounds.lo = lo;
-      bounds.direction = d;
-    }
+    if (lo > bounds.lo) bounds = {lo, hi, d, 0};
   }
   return bounds;
 }

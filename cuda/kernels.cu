@@ -6,7 +6,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-template <class Algorithm, class Real>
+// One thread a pair. The algorithm is its place in Algorithms, so that the twin generator knows the kernel by its name.
+template <int algorithm, class Real>
 __global__ void decide_pairs(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   Verdict verdict = Verdict::disjoint;
@@ -17,7 +18,7 @@ __global__ void decide_pairs(DevicePairs pairs, std::uint32_t* intersects, std::
     };
     const Vec3<Real> a[3] = {vertex(0), vertex(1), vertex(2)};
     const Vec3<Real> b[3] = {vertex(3), vertex(4), vertex(5)};
-    verdict = Algorithm::decide(a, b);
+    verdict = std::tuple_element_t<algorithm, Algorithms>::decide(a, b);
   }
   const std::uint32_t yes = __ballot_sync(0xffffffffu, verdict == Verdict::intersects);
   const std::uint32_t no_answer = __ballot_sync(0xffffffffu, verdict == Verdict::declined);
@@ -27,18 +28,18 @@ __global__ void decide_pairs(DevicePairs pairs, std::uint32_t* intersects, std::
   }
 }
 
-template <class Algorithm, class Real>
+template <int algorithm, class Real>
 void launch_decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {
-  decide_pairs<Algorithm, Real><<<(pairs.count + kThreads - 1) / kThreads, kThreads, 0, stream>>>(pairs, intersects, declined);
+  decide_pairs<algorithm, Real><<<(pairs.count + kThreads - 1) / kThreads, kThreads, 0, stream>>>(pairs, intersects, declined);
 }
 
-template <class... Algorithm>
-constexpr DeviceKernels launchers(const std::tuple<Algorithm...>*) {
-  return {std::array<LaunchDecide, 2>{launch_decide<Algorithm, float>, launch_decide<Algorithm, double>}...};
+template <int... algorithm>
+constexpr DeviceKernels launchers(std::integer_sequence<int, algorithm...>) {
+  return {std::array<LaunchDecide, 2>{launch_decide<algorithm, float>, launch_decide<algorithm, double>}...};
 }
 
 }  // namespace GRAZE_FP
 
-extern const DeviceKernels GRAZE_DEVICE_KERNELS = launchers(static_cast<const Algorithms*>(nullptr));
+extern const DeviceKernels GRAZE_DEVICE_KERNELS = launchers(std::make_integer_sequence<int, kAlgorithmCount>());
 
 }  // namespace graze

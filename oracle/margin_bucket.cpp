@@ -11,7 +11,7 @@ namespace {
 using Int128 = __int128;
 
 // Whether the intersecting hulls only touch: some nonzero axis among these has no overlap.
-// Exact: always; an axis is of degree two, an overlap of degree three (see kSmallBits).
+// Exact: always; an axis n is of degree two, and an overlap is n . (p - q) of two vertices, degree three (kSmallBits).
 bool touches(const SmallPair& small, std::uint32_t axes) {
   Vec3<Int128> a[3], b[3];
   for (int i = 0; i < 3; ++i) {

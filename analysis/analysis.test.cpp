@@ -75,9 +75,11 @@ TEST(Signature, NamesTheWrongLanesAndHowCloseTheCallWas) {
   for (const Lane& lane : lanes()) {
     if (lane.id == "moller_1997/f32/cpu" || lane.id == "moller_1997/f64/cpu-fma") run.push_back(&lane);
   }
-  EXPECT_EQ(signature(Contact::none, {2, 1, true}, make_bucket(1, -3), Verdict::disjoint, run, std::vector{Verdict::intersects, Verdict::declined}),
-            "none/21/coplanar/+2^-3/moller_1997:+____?__");
-  EXPECT_EQ(signature(Contact::none, {}, make_bucket(1, -3), Verdict::disjoint, run, std::vector{Verdict::disjoint, Verdict::disjoint}), "");
+  const std::vector wrong{Verdict::intersects, Verdict::declined}, right{Verdict::disjoint, Verdict::disjoint};
+  const Signature failure = signature(Contact::none, {2, 1, true}, make_bucket(1, -3), Verdict::disjoint, run, wrong);
+  EXPECT_TRUE(failure.wrong());
+  EXPECT_EQ(key(failure), "none/21/coplanar/+2^-3/moller_1997:+____?__");
+  EXPECT_FALSE(signature(Contact::none, {}, make_bucket(1, -3), Verdict::disjoint, run, right).wrong());
   EXPECT_EQ(mark(Verdict::disjoint, Verdict::intersects), '-');
   EXPECT_EQ(mark(Verdict::intersects, Verdict::intersects), '.');
 }

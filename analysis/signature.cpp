@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace graze {
 
 char mark(Verdict lane, Verdict truth) {
@@ -10,18 +12,24 @@ char mark(Verdict lane, Verdict truth) {
   return lane == truth ? '.' : lane == Verdict::intersects ? '+' : '-';
 }
 
-std::string signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth, std::span<const Lane* const> lanes,
-                      std::span<const Verdict> verdicts) {
-  std::string marks(2 * kTargetCount, '_');
-  bool wrong = false;
+bool Signature::wrong() const {
+  return std::any_of(marks.begin(), marks.end(), [](char m) { return m != '.' && m != '_'; });
+}
+
+Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth, std::span<const Lane* const> lanes,
+                    std::span<const Verdict> verdicts) {
+  Signature s{contact, shape, bucket, lanes.front()->algorithm, {}};
+  s.marks.fill('_');
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    const char m = mark(verdicts[l], truth);
-    marks[static_cast<std::size_t>(lanes[l]->scalar) * kTargetCount + static_cast<std::size_t>(lanes[l]->target)] = m;
-    wrong = wrong || m != '.';
+    s.marks[static_cast<std::size_t>(lanes[l]->scalar) * kTargetCount + static_cast<std::size_t>(lanes[l]->target)] = mark(verdicts[l], truth);
   }
-  if (!wrong) return {};
-  return fmt::format("{}/{}{}/{}/{}/{}:{}", name(contact), shape.dimension_a, shape.dimension_b, shape.coplanar ? "coplanar" : "skew",
-                     name_of_bucket(bucket), lanes.front()->info->id, marks);
+  return s;
+}
+
+std::string key(const Signature& s) {
+  const auto first_lane = static_cast<std::size_t>(s.algorithm) * 2 * kTargetCount;
+  return fmt::format("{}/{}{}/{}/{}/{}:{}", name(s.contact), s.shape.dimension_a, s.shape.dimension_b, s.shape.coplanar ? "coplanar" : "skew",
+                     name_of_bucket(s.bucket), lanes()[first_lane].info->id, std::string_view(s.marks.data(), s.marks.size()));
 }
 
 }  // namespace graze

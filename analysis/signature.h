@@ -2,6 +2,8 @@
 // Signatures: the bucket key of an algorithm's failure. Pairs with one signature fail alike.
 #pragma once
 
+#include <array>
+#include <compare>
 #include <span>
 #include <string>
 
@@ -15,12 +17,24 @@ namespace graze {
 // How a lane's answer compares with the truth: '.' right, '+' false positive, '-' false negative, '?' declined.
 char mark(Verdict lane, Verdict truth);
 
-// "point/22/skew/-2^-3/moller_1997:+-__..__": contact, dimensions, coplanar or skew, margin bucket, and the algorithm
-// with its lanes' marks, f32 then f64, each in the order of Target; '_' for a lane that did not run.
-// One algorithm a signature: a pair on which several fail belongs to one signature of each.
-// Requires: lanes are of one algorithm, verdicts theirs.   Returns: the key; empty when no lane is wrong.
-std::string signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth, std::span<const Lane* const> lanes,
-                      std::span<const Verdict> verdicts);
+// One algorithm's failure on a pair. One algorithm a signature: a pair on which several fail has several.
+struct Signature {
+  Contact contact = Contact::none;
+  Shape shape;
+  Bucket bucket = 0;
+  int algorithm = 0;
+  std::array<char, 2 * kTargetCount> marks{};  // f32, then f64, each in the order of Target; '_': did not run
+
+  bool wrong() const;  // whether any lane is
+  auto operator<=>(const Signature&) const = default;
+};
+
+// Requires: lanes are of one algorithm, verdicts theirs.
+Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth, std::span<const Lane* const> lanes,
+                    std::span<const Verdict> verdicts);
+
+// "point/22/skew/-2^-3/moller_1997:+-__..__": contact, dimensions, coplanar or skew, margin bucket, algorithm, marks.
+std::string key(const Signature& signature);
 
 // Calls visit(first, count) for each run of lanes of one algorithm. Requires: lanes in table order.
 template <class Visit>

@@ -11,6 +11,8 @@
 #include "core/error.h"
 #include "fuzz/campaign.h"
 #include "fuzz/mesh.h"
+#include "fuzz/report_files.h"
+#include "reports/margin_figure.h"
 #include "reports/terminal.h"
 
 namespace graze {
@@ -61,6 +63,7 @@ int fuzz(const FuzzOptions& options) {
   if (!mesh_spec.is_null()) campaign.spec["mesh"] = mesh_spec;
   campaign.build = build_info(bench.device.get());
 
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   const bool on_terminal = isatty(STDERR_FILENO);
@@ -74,12 +77,13 @@ int fuzz(const FuzzOptions& options) {
     fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
     return 130;
   }
+  write_whole(campaign.directory / "margins.svg", margin_figure(summary));
   if (options.json) {
     std::cout << summary.dump(1) << '\n';
     return 0;
   }
   print_summary(std::cout, summary);
-  std::cout << fmt::format("\nWrote {0}/summary.json, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
+  std::cout << fmt::format("\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
   if (!summary["signatures"].empty()) {
     std::cout << fmt::format("The commonest disagreement again: graze repro {}/{}\n", options.out, summary["signatures"][0]["case"].get<std::string>());
   }

@@ -2,6 +2,8 @@
 // The `graze` command. Exit status: 0 done, 1 a failed run or a failed check, 2 wrong use, 130 interrupted.
 #include <fmt/format.h>
 
+#include <iostream>
+
 #include "cli/commands.h"
 #include "core/error.h"
 
@@ -17,8 +19,8 @@ int main(int argc, char** argv) {
   graze::add_strata(app, status);
   try {
     app.parse(argc, argv);
-    std::fflush(stdout);
-    return std::ferror(stdout) ? 1 : status;
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush()) throw std::runtime_error("standard output: expected room for the output, found none");
+    return status;
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {

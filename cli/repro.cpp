@@ -48,8 +48,9 @@ bool compare_signatures(const Entry& entry, const Truth& t, std::span<const Lane
   const Bucket bucket = margin_bucket(entry.pair, t.verdict);
   bool found = recorded == nullptr;
   for_each_algorithm(run, [&](std::size_t first, std::size_t count) {
-    const std::string now = signature(t.contact, hulls, bucket, t.verdict, run.subspan(first, count), verdicts.subspan(first, count));
-    if (now.empty()) return;
+    const Signature failure = signature(t.contact, hulls, bucket, t.verdict, run.subspan(first, count), verdicts.subspan(first, count));
+    if (!failure.wrong()) return;
+    const std::string now = key(failure);
     const bool same = recorded && same_marks(*recorded, now);
     found = found || same;
     std::cout << "  signature: " << now << (same ? "  (as recorded)" : "") << '\n';

@@ -44,14 +44,12 @@ struct Range {
 // The range of direction . v over a triangle's vertices.
 template <class Real>
 GRAZE_HD Range<Real> project(const Vec3<Real>& direction, const Vec3<Real> (&v)[3]) {
-  Range<Real> range{dot(direction, v[0]), dot(direction, v[0])};
+  const Real first = dot(direction, v[0]);
+  Range<Real> range{first, first};
   for (int i = 1; i < 3; ++i) {
     const Real t = dot(direction, v[i]);
-    if (t < range.lo) {
-      range.lo = t;
-    } else if (t > range.hi) {
-      range.hi = t;
-    }
+    range.lo = t < range.lo ? t : range.lo;  // selections, not branches: which vertex is extreme is anyone's guess
+    range.hi = t > range.hi ? t : range.hi;
   }
   return range;
 }

@@ -98,9 +98,9 @@ class BlockJudge {
       ++result.disagreements;
       const Shape hulls = shape(pairs[i]);
       for_each_algorithm(campaign_.lanes, [&](std::size_t first, std::size_t count) {
-        const std::string key = signature(contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
+        const Signature failure = signature(contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
                                           std::span(campaign_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
-        if (!key.empty()) result.signatures[key].add({1, {{index, batch.source}}});
+        if (failure.wrong()) result.signatures[failure].add(CaseKey{index, batch.source});
       });
     }
   }

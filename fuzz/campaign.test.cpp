@@ -134,8 +134,8 @@ TEST(Source, SharesPairsEvenlyAndRefusesUnknownStrata) {
 TEST(SignatureCount, KeepsTheSmallestCasesInWhateverOrderTheyCome) {
   SignatureCount forwards, backwards;
   for (std::uint64_t i = 0; i < 9; ++i) {
-    forwards.add({1, {{i, 0}}});
-    backwards.add({1, {{8 - i, 0}}});
+    forwards.add(CaseKey{i, 0});
+    backwards.add(CaseKey{8 - i, 0});
   }
   EXPECT_EQ(forwards.count, 9u);
   EXPECT_EQ(forwards.cases, backwards.cases);

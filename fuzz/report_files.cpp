@@ -13,15 +13,6 @@
 namespace graze {
 namespace {
 
-void write_whole(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path beside = file.string() + ".part";
-  std::ofstream out(beside, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error(beside.string() + ": expected to write " + std::to_string(text.size()) + " bytes, found no room");
-  std::filesystem::rename(beside, file);
-}
-
 // A name for the signature's file: FNV-1a of the key.
 std::string case_name(const std::string& key) {
   std::uint64_t hash = 0xcbf29ce484222325u;
@@ -50,6 +41,15 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
 }
 
 }  // namespace
+
+void write_whole(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path beside = file.string() + ".part";
+  std::ofstream out(beside, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(beside.string() + ": expected to write " + std::to_string(text.size()) + " bytes, found no room");
+  std::filesystem::rename(beside, file);
+}
 
 Json write_summary(const Campaign& campaign, const Store& store) {
   std::vector<std::string> sources, lane_ids;

@@ -42,16 +42,25 @@ std::string first_difference(const Json& expected, const Json& found) {
 
 }  // namespace
 
+void SignatureCount::keep(const CaseKey& found) {
+  if (cases.size() == kKeptCases && cases.back() < found) return;
+  cases.insert(std::upper_bound(cases.begin(), cases.end(), found), found);
+  if (cases.size() > kKeptCases) cases.pop_back();
+}
+
+void SignatureCount::add(const CaseKey& found) {
+  ++count;
+  keep(found);
+}
+
 void SignatureCount::add(const SignatureCount& other) {
   count += other.count;
-  cases.insert(cases.end(), other.cases.begin(), other.cases.end());
-  std::sort(cases.begin(), cases.end());
-  cases.resize(std::min(cases.size(), kKeptCases));
+  for (const CaseKey& found : other.cases) keep(found);
 }
 
 void BatchResult::add(const BatchResult& other) {
   tally.add(other.tally);
-  for (const auto& [key, found] : other.signatures) signatures[key].add(found);
+  for (const auto& [signature, found] : other.signatures) signatures[signature].add(found);
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;
@@ -122,8 +131,8 @@ void Store::commit(int source, const BatchResult& result) {
     Statement trim(database_,
                    "DELETE FROM kept WHERE signature = ?1 AND (case_index, source) NOT IN "
                    "(SELECT case_index, source FROM kept WHERE signature = ?1 ORDER BY case_index, source LIMIT ?2)");
-    for (const auto& [key, found] : result.signatures) {
-      add_signature(key, found.count).step();
+    for (const auto& [signature, found] : result.signatures) {
+      add_signature(key(signature), found.count).step();
       const auto id = add_signature.integer(0);
       add_signature.run();
       kept(id).step();

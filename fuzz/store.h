@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/signature.h"
 #include "analysis/tally.h"
 #include "fuzz/database.h"
 
@@ -32,7 +33,11 @@ struct SignatureCount {
   std::uint64_t count = 0;
   std::vector<CaseKey> cases;  // the smallest, sorted, at most kKeptCases
 
+  void add(const CaseKey& found);
   void add(const SignatureCount& other);
+
+ private:
+  void keep(const CaseKey& found);
 };
 
 // What one batch found; all of it adds.
@@ -40,7 +45,7 @@ struct BatchResult {
   explicit BatchResult(const Tally& empty) : tally(empty) {}
 
   Tally tally;
-  std::map<std::string, SignatureCount> signatures;
+  std::map<Signature, SignatureCount> signatures;
   std::uint64_t disagreements = 0;  // pairs on which some lane is wrong
   std::uint64_t cgal = 0;           // pairs decided by CGAL
   std::uint64_t gmp = 0;            // pairs confirmed by GMP

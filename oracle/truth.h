@@ -2,6 +2,7 @@
 // The truth of a pair: exact for every finite float32 pair, subnormals and 1e38 included.
 #pragma once
 
+#include <compare>
 #include <stdexcept>
 
 #include "core/bucket.h"
@@ -40,6 +41,7 @@ struct Shape {
   int dimension_a = 2;
   int dimension_b = 2;
   bool coplanar = false;
+  auto operator<=>(const Shape&) const = default;
 };
 
 // Requires: finite coordinates.   Exact: always.

@@ -78,7 +78,7 @@ void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::sp
     out << fmt::format("  {}[{}]  {:>15} {:>15} {:>15}   {} {} {}\n", v < 3 ? 'a' : 'b', v % 3, p.x, p.y, p.z, hex_float(p.x), hex_float(p.y), hex_float(p.z));
   }
   out << fmt::format("  truth: {}, contact {}, margin {} ({} ulps)\n", name(truth.verdict), name(truth.contact), truth.margin, truth.margin_ulps);
-  out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{:<14}\n", "", "cpu", "cpu-fma", "cuda-nofma", "cuda-fma");
+  out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n", "", "cpu", "cpu-fma", "cuda-nofma", "cuda-fma");
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
     // One row an algorithm and scalar; '-' where a lane was not run, '!' where it is wrong.
     std::string cells[kTargetCount] = {"-", "-", "-", "-"};

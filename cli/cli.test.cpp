@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command as users meet it: contracts of its JSON, one clear line for bad input, and nothing lost when killed.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kTouching = "0 0 0 4 0 0 0 4 0  1 1 0 1 2 4 2 1 4";
+
+class Cli : public testing::Test {
+ protected:
+  Shell shell{std::string("cli-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
+
+  // One line on stderr that holds `part`, and this exit status.
+  void expect_error(const std::string& command, int status, const std::string& part) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
+    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+};
+
+TEST_F(Cli, CheckPrintsOneObjectALine) {
+  const Ran ran = shell(std::string("printf '%s\\n' '") + kTouching + "' '" + kTouching + "' | graze check - --json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  std::istringstream lines(ran.out);
+  std::string line;
+  int count = 0;
+  for (; std::getline(lines, line); ++count) {
+    const Json object = Json::parse(line);
+    EXPECT_EQ(object["pair"], count);
+    EXPECT_EQ(object["truth"].dump(), R"({"verdict":"intersects","contact":"point","margin":0.0,"margin_ulps":0.0})");
+    EXPECT_EQ(object["lanes"]["interval_overlap/f32/cpu"], "intersects");
+  }
+  EXPECT_EQ(count, 2);
+}
+
+TEST_F(Cli, CheckSelectsLanesAndRunsTheOracleAlone) {
+  const Ran some = shell(std::string("echo '") + kTouching + "' | graze check - --json --lanes 'moller_*/f32/cpu,*/f64/cpu'");
+  EXPECT_EQ(Json::parse(some.out)["lanes"].size(), 6u) << some.err;
+  const Ran none = shell(std::string("echo '") + kTouching + "' | graze check - --json --truth-only");
+  EXPECT_TRUE(Json::parse(none.out)["lanes"].empty());
+}
+
+TEST_F(Cli, CheckShowsWhatLanesSayOfNonFiniteInput) {
+  const Ran ran = shell("echo 'nan 0 0 4 0 0 0 4 0  1 1 inf 1 2 4 2 1 4' | graze check - --json");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Json object = Json::parse(ran.out);
+  EXPECT_EQ(object["truth"].dump(), R"({"verdict":"declined","contact":"unknown","margin":null,"margin_ulps":null})");
+  EXPECT_GE(object["lanes"].size(), 10u);
+}
+
+TEST_F(Cli, BadPairsGetOneLineAndKeepWhatCameBefore) {
+  const Ran ran = shell(std::string("printf '%s\\n1 2 3\\n' '") + kTouching + "' > pairs; graze check pairs --json");
+  EXPECT_EQ(ran.status, 1);
+  EXPECT_EQ(ran.err, "graze: pairs:2: expected 18 numbers, found 3\n");
+  EXPECT_EQ(Json::parse(ran.out)["pair"], 0);
+  expect_error("graze check missing.pairs", 1, "missing.pairs: expected");
+  expect_error(": > empty; graze check empty", 1, "empty: expected at least one pair");
+  expect_error("echo 'graze-pairs 2' > future; graze check future", 1, "future:1: expected");
+  expect_error("head -c 300 /dev/zero > zeros; graze check zeros", 1, "zeros:1: expected");
+  expect_error("graze repro missing.pairs", 1, "missing.pairs: expected");
+}
+
+TEST_F(Cli, WrongUseExitsWithTwo) {
+  expect_error("graze", 2, "subcommand");
+  expect_error("graze fuzz --pairs many", 2, "--pairs");
+  expect_error("graze fuzz --pairs 0", 2, "--pairs");
+  expect_error("graze fuzz --lanes 'moler_*'", 2, "found 'moler_*'");
+  expect_error("graze fuzz --strata 'uniform,nowhere'", 2, "found 'nowhere'");
+  expect_error("echo | graze check - --lanes nothing", 2, "found 'nothing'");
+  expect_error("graze repro uniform:x:3", 2, "found 'x'");
+  expect_error("graze repro nowhere:1:3", 2, "found 'nowhere'");
+  expect_error("graze fuzz --pairs 100 --out here > /dev/null && graze fuzz --pairs 200 --out here", 2, "here: holds another campaign");
+}
+
+TEST_F(Cli, MeshesThatDoNotParseAreNamed) {
+  expect_error("echo 'not a mesh' > bad.off; graze fuzz --mesh bad.off", 1, "bad.off: expected");
+  expect_error("graze fuzz --mesh missing.off", 1, "missing.off: expected");
+  expect_error("printf 'OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 nan\\n3 0 1 2\\n' > nan.off; graze fuzz --mesh nan.off", 1, "nan.off: expected");
+}
+
+TEST_F(Cli, AMeshIsACampaign) {
+  std::ofstream(shell.folder / "strip.off") << "OFF\n6 4 0\n0 0 0\n4 0 0\n0 4 0\n4 4 0\n1 1 -1\n1 1 1\n3 0 1 2\n3 1 3 2\n3 4 5 1\n3 4 5 3\n";
+  const Ran ran = shell("graze fuzz --mesh strip.off --json --out mesh");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Json summary = Json::parse(ran.out);
+  EXPECT_EQ(summary["spec"]["strata"].dump(), "[\"mesh\"]");
+  EXPECT_EQ(summary["strata"]["mesh"]["pairs"], 6);
+  EXPECT_EQ(summary["strata"]["mesh"]["intersects"], 6);
+}
+
+TEST_F(Cli, DatabasesOfOthersAreRefused) {
+  expect_error("mkdir a; head -c 8192 /dev/urandom > a/campaign.sqlite; graze fuzz --pairs 1000 --out a", 1, "a/campaign.sqlite: expected a Graze campaign database");
+  expect_error("graze fuzz --pairs 20000 --out b > /dev/null; truncate -s 40000 b/campaign.sqlite; graze fuzz --pairs 20000 --out b", 1, "b/campaign.sqlite: expected");
+  expect_error("touch file; graze fuzz --pairs 1000 --out file", 1, "file");
+}
+
+// A full disk, played by a limit on the size of files: one line, and the same command goes on once there is room.
+TEST_F(Cli, AFullDiskLosesNothing) {
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 150000 --strata 'near_*' ";
+  expect_error("ulimit -f 400; " + fuzz + "--out disk", 1, "disk");
+  ASSERT_EQ(shell(fuzz + "--out disk").status, 0);
+  ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
+  EXPECT_EQ(shell("diff disk/summary.json whole/summary.json && diff -r disk/cases whole/cases").status, 0);
+  EXPECT_NE(shell("graze strata > /dev/full").status, 0);
+}
+
+// kill -9 at many moments; each time the same command goes on, and the end is the same bytes.
+TEST_F(Cli, KilledCampaignsGoOnToTheSameBytes) {
+  const std::string fuzz = "graze fuzz --seed 9 --pairs 600000 --strata 'near_*,degenerate' ";
+  ASSERT_EQ(shell(fuzz + "--threads 2 --out whole").status, 0);
+  int killed = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Ran ran = shell("timeout -s KILL 0." + std::to_string(2 + i % 5) + " " + fuzz + "--threads 1 --out killed");
+    if (ran.status != 0) ++killed;
+  }
+  EXPECT_GT(killed, 2);
+  ASSERT_EQ(shell(fuzz + "--threads 1 --out killed").status, 0);
+  EXPECT_EQ(shell("diff killed/summary.json whole/summary.json && diff -r killed/cases whole/cases").status, 0);
+}
+
+TEST_F(Cli, CtrlCKeepsWhatWasDoneAndSaysSo) {
+  const std::string fuzz = "graze fuzz --seed 9 --pairs 600000 --strata 'near_*,degenerate' --threads 1 ";
+  const Ran ran = shell("timeout -s INT 0.4 " + fuzz + "--out stopped; echo status $?");
+  EXPECT_NE(ran.err.find("graze: interrupted"), std::string::npos) << ran.out << ran.err;
+  ASSERT_EQ(shell(fuzz + "--out stopped").status, 0);
+  ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
+  EXPECT_EQ(shell("diff stopped/summary.json whole/summary.json && diff -r stopped/cases whole/cases").status, 0);
+}
+
+TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
+  ASSERT_EQ(shell("graze fuzz --pairs 20000 --strata exact_contact --out c").status, 0);
+  const std::string first = Json::parse(contents(shell.folder / "c/summary.json"))["signatures"][0]["case"];
+  const Ran same = shell("graze repro c/" + first);
+  EXPECT_EQ(same.status, 0) << same.out;
+  EXPECT_NE(same.out.find("(as recorded)"), std::string::npos);
+  const Ran changed = shell("sed 's|/22/|/21/|' c/" + first + " > changed.pairs; graze repro changed.pairs");
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_NE(changed.out.find("CHANGED"), std::string::npos);
+}
+
+TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
+  for (const std::string verb : {"fuzz", "check", "repro", "lanes", "strata"}) {
+    const Ran help = shell("graze " + verb + " --help");
+    EXPECT_EQ(help.status, 0);
+    const std::size_t at = help.out.find("Example: ");
+    ASSERT_NE(at, std::string::npos) << verb;
+    const std::string example = help.out.substr(at + 9, help.out.find('\n', at) - at - 9);
+    EXPECT_EQ(shell("set -o pipefail; jq() { cat; }; " + example).status, 0) << example;
+  }
+}
+
+TEST_F(Cli, QuietWhenNotOnATerminal) {
+  const Ran ran = shell("graze fuzz --pairs 2000 --out c");
+  EXPECT_EQ(ran.err, "");
+  EXPECT_NE(ran.out.find("graze repro c/cases/"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace graze

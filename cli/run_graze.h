@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: runs shell commands with the built `graze` first on the PATH, in a folder of their own.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace graze {
+
+inline std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+struct Ran {
+  int status;  // exit status; 128 + n for signal n
+  std::string out, err;
+};
+
+class Shell {
+ public:
+  explicit Shell(const std::string& name) : folder(std::filesystem::temp_directory_path() / ("graze-" + name + "-" + std::to_string(getpid()))) {
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+  }
+  ~Shell() { std::filesystem::remove_all(folder); }
+  Shell(const Shell&) = delete;
+  Shell& operator=(const Shell&) = delete;
+
+  Ran operator()(const std::string& command) const {
+    const std::filesystem::path script = folder / ".command";
+    std::ofstream(script) << "cd '" << folder.string() << "'\nPATH='" << GRAZE_BINARY_DIR << "':$PATH\n" << command << "\n";
+    const int rc = std::system(("bash '" + script.string() + "' > '" + (folder / ".out").string() + "' 2> '" + (folder / ".err").string() + "' < /dev/null").c_str());
+    return {WIFEXITED(rc) ? WEXITSTATUS(rc) : 128 + WTERMSIG(rc), contents(folder / ".out"), contents(folder / ".err")};
+  }
+
+  std::filesystem::path folder;
+};
+
+}  // namespace graze

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/margin_figure.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <map>
+
+#include "core/bucket.h"
+
+namespace graze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kWidth = 900, kHeight = 420, kLeft = 64, kRight = 20, kTop = 64, kBottom = 66;
+constexpr int kSpan = 26;                      // buckets from 2^-kSpan to 2^kSpan ulps are drawn, on both sides of zero
+constexpr std::uint64_t kFewestPairs = 30;     // a share of fewer pairs than this is no share
+constexpr std::array<const char*, 6> kColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};  // Okabe and Ito 2008
+
+struct Counts {
+  std::uint64_t pairs = 0;
+  std::map<std::string, std::uint64_t> wrong;
+};
+
+// Position along the axis of a bucket: negative exponents and zero in the middle, -2^26 far left, +2^26 far right.
+int place(int bucket) {
+  if (bucket == 0) return 0;
+  const int k = (bucket < 0 ? -bucket : bucket) + kBucketLowest - 1;
+  const int from_zero = std::clamp(k, -kSpan / 2, kSpan) + kSpan / 2 + 1;
+  return bucket < 0 ? -from_zero : from_zero;
+}
+
+double x_of(int p) {
+  constexpr int kMost = kSpan + kSpan / 2 + 1;
+  return kLeft + (kWidth - kLeft - kRight) * (p + kMost) / (2.0 * kMost);
+}
+
+double y_of(double share) { return kHeight - kBottom - (kHeight - kTop - kBottom) * share; }
+
+std::string text(double x, double y, const char* anchor, const std::string& what) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, what);
+}
+
+std::string axes() {
+  std::string svg;
+  for (int percent = 0; percent <= 100; percent += 25) {
+    svg += fmt::format("<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", kLeft, kWidth - kRight, y_of(percent / 100.0), y_of(percent / 100.0));
+    svg += text(kLeft - 8, y_of(percent / 100.0) + 4, "end", fmt::format("{} %", percent));
+  }
+  for (const int k : {24, 12, 0, -12}) {
+    const int bucket = k - kBucketLowest + 1;
+    svg += text(x_of(place(bucket)), kHeight - kBottom + 18, "middle", fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
+    svg += text(x_of(place(-bucket)), kHeight - kBottom + 18, "middle", fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
+  }
+  svg += text(x_of(0), kHeight - kBottom + 18, "middle", "0");
+  svg += text(x_of(-20), kHeight - 14, "middle", "intersecting, by depth in ulps");
+  svg += text(x_of(0), kHeight - 30, "middle", "touching");
+  svg += text(x_of(20), kHeight - 14, "middle", "disjoint, by distance in ulps");
+  return svg;
+}
+
+}  // namespace
+
+std::string margin_figure(const Json& summary) {
+  std::map<std::string, int> place_of;
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) place_of[name_of_bucket(static_cast<Bucket>(b))] = place(b);
+  std::map<int, Counts> by_place;
+  for (const auto& [stratum, row] : summary["strata"].items()) {
+    for (const auto& [bucket, counts] : row["margins"].items()) {
+      Counts& sum = by_place[place_of.at(bucket)];
+      sum.pairs += counts["pairs"].get<std::uint64_t>();
+      for (const auto& [lane, wrong] : counts["wrong"].items()) sum.wrong[lane] += wrong.get<std::uint64_t>();
+    }
+  }
+
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n"
+      "<title>Share of wrong verdicts against the exact margin</title>\n",
+      kWidth, kHeight);
+  svg += axes();
+  std::size_t row = 0;
+  for (const auto& lane : summary["spec"]["lanes"]) {
+    const std::string id = lane;
+    if (!id.ends_with("/f32/cpu")) continue;
+    const char* colour = kColours[row % kColours.size()];
+    std::string points;
+    for (auto& [p, counts] : by_place) {
+      if (counts.pairs < kFewestPairs) continue;
+      points += fmt::format("{:.1f},{:.1f} ", x_of(p), y_of(static_cast<double>(counts.wrong[id]) / static_cast<double>(counts.pairs)));
+    }
+    svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", colour, points);
+    const double x = kLeft + 168.0 * static_cast<double>(row);
+    svg += fmt::format("<line x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n", x, x + 16, colour);
+    svg += text(x + 21, 40, "start", id.substr(0, id.find('/')));
+    ++row;
+  }
+  svg += text(kLeft, 18, "start", "Share of wrong verdicts, float32 on the CPU, against the exact margin (all strata)");
+  return svg + "</svg>\n";
+}
+
+}  // namespace graze

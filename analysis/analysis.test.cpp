@@ -13,7 +13,10 @@ struct Example {
   std::vector<Bucket> buckets = std::vector<Bucket>(70, make_bucket(1, 5));
   std::vector<LaneVerdicts> verdicts{{right, none}, {wrong, declines}};
   JudgedBlock block{70, truth, buckets, verdicts};
-  Example() { buckets[65] = 0; block.buckets = buckets; }
+  Example() {
+    buckets[65] = 0;
+    block.buckets = buckets;
+  }
 };
 
 TEST(Tally, CountsErrorsByKindLaneAndBucket) {

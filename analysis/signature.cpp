@@ -16,20 +16,22 @@ bool Signature::wrong() const {
   return std::any_of(marks.begin(), marks.end(), [](char m) { return m != '.' && m != '_'; });
 }
 
-Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth, std::span<const Lane* const> lanes,
-                    std::span<const Verdict> verdicts) {
+Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth,
+                    std::span<const Lane* const> lanes, std::span<const Verdict> verdicts) {
   Signature s{contact, shape, bucket, lanes.front()->algorithm, {}};
   s.marks.fill('_');
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    s.marks[static_cast<std::size_t>(lanes[l]->scalar) * kTargetCount + static_cast<std::size_t>(lanes[l]->target)] = mark(verdicts[l], truth);
+    s.marks[static_cast<std::size_t>(lanes[l]->scalar) * kTargetCount + static_cast<std::size_t>(lanes[l]->target)] =
+        mark(verdicts[l], truth);
   }
   return s;
 }
 
 std::string key(const Signature& s) {
   const auto first_lane = static_cast<std::size_t>(s.algorithm) * 2 * kTargetCount;
-  return fmt::format("{}/{}{}/{}/{}/{}:{}", name(s.contact), s.shape.dimension_a, s.shape.dimension_b, s.shape.coplanar ? "coplanar" : "skew",
-                     name_of_bucket(s.bucket), lanes()[first_lane].info->id, std::string_view(s.marks.data(), s.marks.size()));
+  return fmt::format("{}/{}{}/{}/{}/{}:{}", name(s.contact), s.shape.dimension_a, s.shape.dimension_b,
+                     s.shape.coplanar ? "coplanar" : "skew", name_of_bucket(s.bucket), lanes()[first_lane].info->id,
+                     std::string_view(s.marks.data(), s.marks.size()));
 }
 
 }  // namespace graze

@@ -30,8 +30,8 @@ struct Signature {
 };
 
 // Requires: lanes are of one algorithm, verdicts theirs.
-Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth, std::span<const Lane* const> lanes,
-                    std::span<const Verdict> verdicts);
+Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth,
+                    std::span<const Lane* const> lanes, std::span<const Verdict> verdicts);
 
 // "point/22/skew/-2^-3/moller_1997:+-__..__": contact, dimensions, coplanar or skew, margin bucket, algorithm, marks.
 std::string key(const Signature& signature);

@@ -15,7 +15,10 @@ void for_each_bit(std::uint64_t word, Visit visit) {
 }  // namespace
 
 Tally::Tally(std::vector<int> cpu_twin)
-    : cpu_twin_(std::move(cpu_twin)), pairs_(kBucketCount), intersects_(kBucketCount), lanes_(cpu_twin_.size() * kBucketCount) {}
+    : cpu_twin_(std::move(cpu_twin)),
+      pairs_(kBucketCount),
+      intersects_(kBucketCount),
+      lanes_(cpu_twin_.size() * kBucketCount) {}
 
 void Tally::add(const JudgedBlock& block) {
   for (std::size_t i = 0; i < block.count; ++i) {
@@ -33,7 +36,8 @@ void Tally::add(const JudgedBlock& block) {
       for_each_bit(none, [&](std::size_t i) { ++at(i).declined; });
       if (cpu_twin_[l] >= 0) {
         const LaneVerdicts& cpu = block.verdicts[static_cast<std::size_t>(cpu_twin_[l])];
-        for_each_bit((yes ^ cpu.intersects[w]) | (none ^ cpu.declined[w]), [&](std::size_t i) { ++at(i).differs_from_cpu; });
+        for_each_bit((yes ^ cpu.intersects[w]) | (none ^ cpu.declined[w]),
+                     [&](std::size_t i) { ++at(i).differs_from_cpu; });
       }
     }
   }
@@ -64,7 +68,9 @@ std::vector<int> cpu_twins(std::span<const Lane* const> lanes) {
   std::vector<int> twins(lanes.size(), -1);
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     for (std::size_t c = 0; c < lanes.size(); ++c) {
-      if (lanes[c]->target == Target::cpu && lanes[c]->algorithm == lanes[l]->algorithm && lanes[c]->scalar == lanes[l]->scalar) twins[l] = static_cast<int>(c);
+      if (lanes[c]->target == Target::cpu && lanes[c]->algorithm == lanes[l]->algorithm &&
+          lanes[c]->scalar == lanes[l]->scalar)
+        twins[l] = static_cast<int>(c);
     }
   }
   return twins;

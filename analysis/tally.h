@@ -21,15 +21,17 @@ struct LaneVerdicts {
   std::span<const std::uint64_t> declined;
 
   Verdict at(std::size_t i) const {
-    return test_bit(declined, i) ? Verdict::declined : test_bit(intersects, i) ? Verdict::intersects : Verdict::disjoint;
+    return test_bit(declined, i)     ? Verdict::declined
+           : test_bit(intersects, i) ? Verdict::intersects
+                                     : Verdict::disjoint;
   }
 };
 
 struct JudgedBlock {
   std::size_t count = 0;
-  std::span<const std::uint64_t> truth;     // intersects
-  std::span<const Bucket> buckets;          // of each pair's margin
-  std::span<const LaneVerdicts> verdicts;   // of each lane under test
+  std::span<const std::uint64_t> truth;    // intersects
+  std::span<const Bucket> buckets;         // of each pair's margin
+  std::span<const LaneVerdicts> verdicts;  // of each lane under test
 };
 
 struct LaneCounts {

@@ -30,7 +30,8 @@ Bench make_bench(const std::vector<std::string>& globs, bool require_device) {
       why_not = reason;
     }
   }
-  if (bench.lanes.empty()) throw UsageError("expected a lane that runs here, found only unavailable ones (" + why_not + ")");
+  if (bench.lanes.empty())
+    throw UsageError("expected a lane that runs here, found only unavailable ones (" + why_not + ")");
   return bench;
 }
 

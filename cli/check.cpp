@@ -22,7 +22,9 @@ struct CheckOptions {
   bool truth_only = false;
 };
 
-nlohmann::ordered_json number(double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr); }
+nlohmann::ordered_json number(double x) {
+  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json(nullptr);
+}
 
 void check(const CheckOptions& options) {
   const bool from_stdin = options.file == "-";
@@ -40,7 +42,11 @@ void check(const CheckOptions& options) {
     const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(bench, entry->pair);
     if (options.json) {
       nlohmann::ordered_json line = {{"pair", number_of_pair},
-                                     {"truth", {{"verdict", name(t.verdict)}, {"contact", name(t.contact)}, {"margin", number(t.margin)}, {"margin_ulps", number(t.margin_ulps)}}},
+                                     {"truth",
+                                      {{"verdict", name(t.verdict)},
+                                       {"contact", name(t.contact)},
+                                       {"margin", number(t.margin)},
+                                       {"margin_ulps", number(t.margin_ulps)}}},
                                      {"lanes", nlohmann::ordered_json::object()}};
       for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][bench.lanes[l]->id] = name(verdicts[l]);
       fmt::print("{}\n", line.dump());
@@ -52,7 +58,9 @@ void check(const CheckOptions& options) {
       std::cout.flush();
     }
   }
-  if (number_of_pair == 0) throw std::runtime_error((from_stdin ? "standard input" : options.file) + ": expected at least one pair, found none");
+  if (number_of_pair == 0)
+    throw std::runtime_error((from_stdin ? "standard input" : options.file) +
+                             ": expected at least one pair, found none");
 }
 
 }  // namespace

@@ -42,7 +42,8 @@ TEST_F(Cli, CheckPrintsOneObjectALine) {
 }
 
 TEST_F(Cli, CheckSelectsLanesAndRunsTheOracleAlone) {
-  const Ran some = shell(std::string("echo '") + kTouching + "' | graze check - --json --lanes 'moller_*/f32/cpu,*/f64/cpu'");
+  const Ran some =
+      shell(std::string("echo '") + kTouching + "' | graze check - --json --lanes 'moller_*/f32/cpu,*/f64/cpu'");
   EXPECT_EQ(Json::parse(some.out)["lanes"].size(), 6u) << some.err;
   const Ran none = shell(std::string("echo '") + kTouching + "' | graze check - --json --truth-only");
   EXPECT_TRUE(Json::parse(none.out)["lanes"].empty());
@@ -77,17 +78,20 @@ TEST_F(Cli, WrongUseExitsWithTwo) {
   expect_error("echo | graze check - --lanes nothing", 2, "found 'nothing'");
   expect_error("graze repro uniform:x:3", 2, "found 'x'");
   expect_error("graze repro nowhere:1:3", 2, "found 'nowhere'");
-  expect_error("graze fuzz --pairs 100 --out here > /dev/null && graze fuzz --pairs 200 --out here", 2, "here: holds another campaign");
+  expect_error("graze fuzz --pairs 100 --out here > /dev/null && graze fuzz --pairs 200 --out here", 2,
+               "here: holds another campaign");
 }
 
 TEST_F(Cli, MeshesThatDoNotParseAreNamed) {
   expect_error("echo 'not a mesh' > bad.off; graze fuzz --mesh bad.off", 1, "bad.off: expected");
   expect_error("graze fuzz --mesh missing.off", 1, "missing.off: expected");
-  expect_error("printf 'OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 nan\\n3 0 1 2\\n' > nan.off; graze fuzz --mesh nan.off", 1, "nan.off: expected");
+  expect_error("printf 'OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 nan\\n3 0 1 2\\n' > nan.off; graze fuzz --mesh nan.off", 1,
+               "nan.off: expected");
 }
 
 TEST_F(Cli, AMeshIsACampaign) {
-  std::ofstream(shell.folder / "strip.off") << "OFF\n6 4 0\n0 0 0\n4 0 0\n0 4 0\n4 4 0\n1 1 -1\n1 1 1\n3 0 1 2\n3 1 3 2\n3 4 5 1\n3 4 5 3\n";
+  std::ofstream(shell.folder / "strip.off")
+      << "OFF\n6 4 0\n0 0 0\n4 0 0\n0 4 0\n4 4 0\n1 1 -1\n1 1 1\n3 0 1 2\n3 1 3 2\n3 4 5 1\n3 4 5 3\n";
   const Ran ran = shell("graze fuzz --mesh strip.off --json --out mesh");
   ASSERT_EQ(ran.status, 0) << ran.err;
   const Json summary = Json::parse(ran.out);
@@ -97,8 +101,12 @@ TEST_F(Cli, AMeshIsACampaign) {
 }
 
 TEST_F(Cli, DatabasesOfOthersAreRefused) {
-  expect_error("mkdir a; head -c 8192 /dev/urandom > a/campaign.sqlite; graze fuzz --pairs 1000 --out a", 1, "a/campaign.sqlite: expected a Graze campaign database");
-  expect_error("graze fuzz --pairs 20000 --out b > /dev/null; truncate -s 40000 b/campaign.sqlite; graze fuzz --pairs 20000 --out b", 1, "b/campaign.sqlite: expected");
+  expect_error("mkdir a; head -c 8192 /dev/urandom > a/campaign.sqlite; graze fuzz --pairs 1000 --out a", 1,
+               "a/campaign.sqlite: expected a Graze campaign database");
+  expect_error(
+      "graze fuzz --pairs 20000 --out b > /dev/null; truncate -s 40000 b/campaign.sqlite; graze fuzz --pairs 20000 "
+      "--out b",
+      1, "b/campaign.sqlite: expected");
   expect_error("touch file; graze fuzz --pairs 1000 --out file", 1, "file");
 }
 

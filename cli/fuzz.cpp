@@ -34,11 +34,14 @@ extern "C" void request_stop(int) { stop_requested = true; }
 // One line on a terminal, rewritten after each batch.
 void show(const Progress& progress, const std::vector<Source>& sources) {
   const double rate = static_cast<double>(progress.done_here) / std::max(progress.seconds, 1e-9);
-  const auto left = static_cast<std::uint64_t>(static_cast<double>(progress.total - progress.done) / std::max(rate, 1.0));
+  const auto left =
+      static_cast<std::uint64_t>(static_cast<double>(progress.total - progress.done) / std::max(rate, 1.0));
   const auto& yields = progress.disagreements_of_source;
   const auto best = static_cast<std::size_t>(std::max_element(yields.begin(), yields.end()) - yields.begin());
-  fmt::print(stderr, "\r{:3}%  {} of {} pairs  {} pairs/s  {}:{:02} left  {} disagreements, {} signatures, most in {}\033[K", 100 * progress.done / progress.total,
-             grouped(progress.done), grouped(progress.total), grouped(static_cast<std::uint64_t>(rate)), left / 60, left % 60, grouped(progress.disagreements),
+  fmt::print(stderr,
+             "\r{:3}%  {} of {} pairs  {} pairs/s  {}:{:02} left  {} disagreements, {} signatures, most in {}\033[K",
+             100 * progress.done / progress.total, grouped(progress.done), grouped(progress.total),
+             grouped(static_cast<std::uint64_t>(rate)), left / 60, left % 60, grouped(progress.disagreements),
              grouped(progress.signatures), sources[best].id);
 }
 
@@ -52,10 +55,13 @@ int fuzz(const FuzzOptions& options) {
   campaign.threads = options.threads;
   campaign.directory = options.out;
   // A mesh stands alone unless strata are asked for as well.
-  if (options.mesh.empty() || !options.strata.empty()) campaign.sources = stratum_sources(options.seed, options.pairs, options.strata);
+  if (options.mesh.empty() || !options.strata.empty())
+    campaign.sources = stratum_sources(options.seed, options.pairs, options.strata);
   Json mesh_spec;
   if (!options.mesh.empty()) {
-    const auto mesh = std::make_shared<MeshPairs>(read_mesh_pairs(options.mesh[0], options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));
+    const auto mesh = std::make_shared<MeshPairs>(
+        read_mesh_pairs(options.mesh[0], options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1])
+                                                                 : std::nullopt));
     campaign.sources.push_back({"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }});
     mesh_spec = {{"files", options.mesh}, {"content", fmt::format("{:016x}", mesh->content_hash)}};
   }
@@ -83,9 +89,11 @@ int fuzz(const FuzzOptions& options) {
     return 0;
   }
   print_summary(std::cout, summary);
-  std::cout << fmt::format("\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
+  std::cout << fmt::format(
+      "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
   if (!summary["signatures"].empty()) {
-    std::cout << fmt::format("The commonest disagreement again: graze repro {}/{}\n", options.out, summary["signatures"][0]["case"].get<std::string>());
+    std::cout << fmt::format("The commonest disagreement again: graze repro {}/{}\n", options.out,
+                             summary["signatures"][0]["case"].get<std::string>());
   }
   return 0;
 }
@@ -93,16 +101,23 @@ int fuzz(const FuzzOptions& options) {
 }  // namespace
 
 void add_fuzz(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("fuzz", "Run a campaign, or go on with one: strata through all lanes and the oracle");
+  CLI::App* command =
+      app.add_subcommand("fuzz", "Run a campaign, or go on with one: strata through all lanes and the oracle");
   command->footer("Example: graze fuzz --pairs 1000000 --seed 1 --strata 'near_*,coplanar_*' --out campaign");
   auto options = std::make_shared<FuzzOptions>();
   command->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata")->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of all strata")->capture_default_str();
-  command->add_option("--threads", options->threads, "Threads; 0 for one a core; results do not depend on it")->capture_default_str()->check(CLI::NonNegativeNumber);
-  command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")->capture_default_str();
+  command->add_option("--threads", options->threads, "Threads; 0 for one a core; results do not depend on it")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")
+      ->capture_default_str();
   command->add_option("--strata", options->strata, "Only strata that match a pattern: GLOB,…")->delimiter(',');
   command->add_option("--lanes", options->lanes, "Only lanes that match a pattern: GLOB,…")->delimiter(',');
-  command->add_option("--mesh", options->mesh, "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]")->expected(1, 2);
+  command
+      ->add_option("--mesh", options->mesh,
+                   "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]")
+      ->expected(1, 2);
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("--require-device", options->require_device, "Fail when there is no CUDA device");
   command->callback([options, &status] { status = fuzz(*options); });

@@ -19,13 +19,20 @@ void print_lanes(bool json) {
     const std::string reason = unavailable(lane, device.get(), why_no_device);
     const std::string status = reason.empty() ? "available" : "unavailable (" + reason + ")";
     if (json) {
-      rows.push_back({{"lane", lane.id}, {"status", status}, {"algorithm", lane.info->id}, {"scalar", name(lane.scalar)}, {"target", name(lane.target)},
-                      {"paper", lane.info->paper}, {"coplanar", lane.info->coplanar}, {"degenerate", lane.info->degenerate}, {"order", lane.info->order}});
+      rows.push_back({{"lane", lane.id},
+                      {"status", status},
+                      {"algorithm", lane.info->id},
+                      {"scalar", name(lane.scalar)},
+                      {"target", name(lane.target)},
+                      {"paper", lane.info->paper},
+                      {"coplanar", lane.info->coplanar},
+                      {"degenerate", lane.info->degenerate},
+                      {"order", lane.info->order}});
       continue;
     }
     if (lane.info != last) {
-      fmt::print("{}{}: {}\n  coplanar: {}\n  degenerate: {}\n  order: {}\n", last ? "\n" : "", lane.info->id, lane.info->paper, lane.info->coplanar,
-                 lane.info->degenerate, lane.info->order);
+      fmt::print("{}{}: {}\n  coplanar: {}\n  degenerate: {}\n  order: {}\n", last ? "\n" : "", lane.info->id,
+                 lane.info->paper, lane.info->coplanar, lane.info->degenerate, lane.info->order);
       last = lane.info;
     }
     fmt::print("  {:<36} {}\n", lane.id, status);
@@ -36,7 +43,8 @@ void print_lanes(bool json) {
 }  // namespace
 
 void add_lanes(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("lanes", "List the lanes: every way to decide a pair, and whether it runs here");
+  CLI::App* command =
+      app.add_subcommand("lanes", "List the lanes: every way to decide a pair, and whether it runs here");
   command->footer("Example: graze lanes --json | jq -r '.[].lane'");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "One JSON array");

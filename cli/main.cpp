@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
   graze::add_strata(app, status);
   try {
     app.parse(argc, argv);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush()) throw std::runtime_error("standard output: expected room for the output, found none");
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush())
+      throw std::runtime_error("standard output: expected room for the output, found none");
     return status;
   } catch (const CLI::Success& help) {
     return app.exit(help);

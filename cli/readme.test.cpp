@@ -38,9 +38,11 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-bool matches(const std::vector<std::string>& expected, std::size_t e, const std::vector<std::string>& found, std::size_t f) {
+bool matches(const std::vector<std::string>& expected, std::size_t e, const std::vector<std::string>& found,
+             std::size_t f) {
   if (e == expected.size()) return f == found.size();
-  if (expected[e] == "…") return matches(expected, e + 1, found, f) || (f < found.size() && matches(expected, e, found, f + 1));
+  if (expected[e] == "…")
+    return matches(expected, e + 1, found, f) || (f < found.size() && matches(expected, e, found, f + 1));
   return f < found.size() && expected[e] == found[f] && matches(expected, e + 1, found, f + 1);
 }
 
@@ -50,7 +52,8 @@ TEST(Readme, EveryCommandPrintsWhatItSays) {
   const Shell shell("readme");
   for (const Step& step : steps) {
     const Ran ran = shell(step.command);
-    EXPECT_TRUE(matches(step.expected, 0, lines_of(ran.out + ran.err), 0)) << "$ " << step.command << '\n' << ran.out << ran.err;
+    EXPECT_TRUE(matches(step.expected, 0, lines_of(ran.out + ran.err), 0)) << "$ " << step.command << '\n'
+                                                                           << ran.out << ran.err;
   }
 }
 

@@ -27,7 +27,8 @@ struct Ran {
 
 class Shell {
  public:
-  explicit Shell(const std::string& name) : folder(std::filesystem::temp_directory_path() / ("graze-" + name + "-" + std::to_string(getpid()))) {
+  explicit Shell(const std::string& name)
+      : folder(std::filesystem::temp_directory_path() / ("graze-" + name + "-" + std::to_string(getpid()))) {
     std::filesystem::remove_all(folder);
     std::filesystem::create_directories(folder);
   }
@@ -37,8 +38,11 @@ class Shell {
 
   Ran operator()(const std::string& command) const {
     const std::filesystem::path script = folder / ".command";
-    std::ofstream(script) << "cd '" << folder.string() << "'\nPATH='" << GRAZE_BINARY_DIR << "':$PATH\n" << command << "\n";
-    const int rc = std::system(("bash '" + script.string() + "' > '" + (folder / ".out").string() + "' 2> '" + (folder / ".err").string() + "' < /dev/null").c_str());
+    std::ofstream(script) << "cd '" << folder.string() << "'\nPATH='" << GRAZE_BINARY_DIR << "':$PATH\n"
+                          << command << "\n";
+    const int rc = std::system(("bash '" + script.string() + "' > '" + (folder / ".out").string() + "' 2> '" +
+                                (folder / ".err").string() + "' < /dev/null")
+                                   .c_str());
     return {WIFEXITED(rc) ? WEXITSTATUS(rc) : 128 + WTERMSIG(rc), contents(folder / ".out"), contents(folder / ".err")};
   }
 

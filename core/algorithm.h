@@ -13,17 +13,15 @@ namespace graze {
 struct AlgorithmInfo {
   std::string_view id;
   std::string_view paper;
-  std::string_view coplanar;    // what its paper says of coplanar triangles
-  std::string_view degenerate;  // what its paper says of segments and points
-  std::string_view order;       // whether the verdict can depend on the order of triangles and vertices
+  std::string_view coplanar;      // what its paper says of coplanar triangles
+  std::string_view degenerate;    // what its paper says of segments and points
+  std::string_view order;         // whether the verdict can depend on the order of triangles and vertices
   bool rounding_free_on_lattice;  // neither divides nor takes roots
 };
 
 inline namespace GRAZE_FP {
 
-GRAZE_HD inline Verdict verdict_of(bool intersects) {
-  return intersects ? Verdict::intersects : Verdict::disjoint;
-}
+GRAZE_HD inline Verdict verdict_of(bool intersects) { return intersects ? Verdict::intersects : Verdict::disjoint; }
 
 }  // namespace GRAZE_FP
 }  // namespace graze

@@ -151,7 +151,8 @@ void expect_right_in(const char* scalar) {
       a[i] = {Real(example.pair.a[i].x), Real(example.pair.a[i].y), Real(example.pair.a[i].z)};
       b[i] = {Real(example.pair.b[i].x), Real(example.pair.b[i].y), Real(example.pair.b[i].z)};
     }
-    EXPECT_EQ(Algorithm::decide(a, b), example.truth) << example.what << " in " << scalar << " by " << Algorithm::kInfo.id;
+    EXPECT_EQ(Algorithm::decide(a, b), example.truth)
+        << example.what << " in " << scalar << " by " << Algorithm::kInfo.id;
   }
 }
 
@@ -192,7 +193,8 @@ void expect_policy_decides(std::initializer_list<Site> sites) {
   int counts[4] = {};
   EXPECT_EQ(Algorithm::decide(a, b, CountingEpsilon{0, counts}), kNo) << Algorithm::kInfo.id;
   EXPECT_EQ(Algorithm::decide(a, b, CountingEpsilon{1e-6, counts}), kYes) << Algorithm::kInfo.id;
-  for (const Site site : sites) EXPECT_GT(counts[static_cast<int>(site)], 0) << Algorithm::kInfo.id << ", site " << static_cast<int>(site);
+  for (const Site site : sites)
+    EXPECT_GT(counts[static_cast<int>(site)], 0) << Algorithm::kInfo.id << ", site " << static_cast<int>(site);
 }
 
 TEST(Policy, AnEpsilonAtASiteChangesTheVerdict) {

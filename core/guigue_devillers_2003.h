@@ -34,7 +34,8 @@ GRAZE_HD Real orient2d(Vec2<Real> p, Vec2<Real> q, Vec2<Real> r, const Policy& p
 
 // The paper's figure 9: p1 lies in the region of vertex p2, beyond edges r2p2 and q2r2.
 template <class Real, class Policy>
-GRAZE_HD bool vertex_region(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real> r1, Vec2<Real> p2, Vec2<Real> q2, Vec2<Real> r2, const Policy& policy) {
+GRAZE_HD bool vertex_region(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real> r1, Vec2<Real> p2, Vec2<Real> q2, Vec2<Real> r2,
+                            const Policy& policy) {
   const Real zero(0);
   if (orient2d(r2, p2, q1, policy) >= zero) {
     if (orient2d(r2, q2, q1, policy) <= zero) {
@@ -51,7 +52,8 @@ GRAZE_HD bool vertex_region(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real> r1, Vec2<Re
 
 // The paper's figure 10: p1 lies in the region of edge r2p2.
 template <class Real, class Policy>
-GRAZE_HD bool edge_region(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real> r1, Vec2<Real> p2, Vec2<Real> r2, const Policy& policy) {
+GRAZE_HD bool edge_region(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real> r1, Vec2<Real> p2, Vec2<Real> r2,
+                          const Policy& policy) {
   const Real zero(0);
   if (orient2d(r2, p2, q1, policy) >= zero) {
     if (orient2d(p1, p2, q1, policy) >= zero) return orient2d(p1, q1, r2, policy) >= zero;
@@ -63,7 +65,8 @@ GRAZE_HD bool edge_region(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real> r1, Vec2<Real
 
 // Requires: both triangles counterclockwise.
 template <class Real, class Policy>
-GRAZE_HD bool counterclockwise_intersect(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real> r1, Vec2<Real> p2, Vec2<Real> q2, Vec2<Real> r2, const Policy& policy) {
+GRAZE_HD bool counterclockwise_intersect(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real> r1, Vec2<Real> p2, Vec2<Real> q2,
+                                         Vec2<Real> r2, const Policy& policy) {
   const Real zero(0);
   const bool left_of_pq = orient2d(p2, q2, p1, policy) >= zero;
   const bool left_of_qr = orient2d(q2, r2, p1, policy) >= zero;
@@ -77,7 +80,8 @@ GRAZE_HD bool counterclockwise_intersect(Vec2<Real> p1, Vec2<Real> q1, Vec2<Real
 }
 
 template <class Real, class Policy>
-GRAZE_HD bool coplanar_intersect(const Vec3<Real>& normal, const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Policy& policy) {
+GRAZE_HD bool coplanar_intersect(const Vec3<Real>& normal, const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3],
+                                 const Policy& policy) {
   const int axis = dominant_axis(normal);
   const Vec2<Real> p1 = drop(a[0], axis), q1 = drop(a[1], axis), r1 = drop(a[2], axis);
   const Vec2<Real> p2 = drop(b[0], axis), q2 = drop(b[1], axis), r2 = drop(b[2], axis);

@@ -60,7 +60,9 @@ bool runs_on_this_cpu(const Lane& lane) {
 
 bool matches_any(const std::vector<std::string>& globs, std::string_view id) {
   const std::string text(id);
-  return globs.empty() || std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) { return fnmatch(glob.c_str(), text.c_str(), 0) == 0; });
+  return globs.empty() || std::any_of(globs.begin(), globs.end(), [&](const std::string& glob) {
+           return fnmatch(glob.c_str(), text.c_str(), 0) == 0;
+         });
 }
 
 }  // namespace graze

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The block functions of the host lanes. Compiled once a variant, each in its own namespace GRAZE_FP and with its
 // own contraction flags; nothing else may be defined here, or the linker would mix the variants.
-#include "core/algorithms.h"
 #include "core/lanes_cpu.h"
+#include "core/algorithms.h"
 
 namespace graze {
 inline namespace GRAZE_FP {

@@ -16,7 +16,8 @@ struct Plane {
   Vec3<Real> point;   // v0
   Real d;             // normal . (0 - point)
 
-  GRAZE_HD explicit Plane(const Vec3<Real> (&v)[3]) : normal(cross(v[1] - v[0], v[2] - v[0])), point(v[0]), d(distance({Real(0), Real(0), Real(0)})) {}
+  GRAZE_HD explicit Plane(const Vec3<Real> (&v)[3])
+      : normal(cross(v[1] - v[0], v[2] - v[0])), point(v[0]), d(distance({Real(0), Real(0), Real(0)})) {}
 
   // Signed distance of v times |normal|.
   GRAZE_HD Real distance(const Vec3<Real>& v) const { return dot(normal, v - point); }
@@ -62,7 +63,8 @@ GRAZE_HD bool overlap(const Range<Real>& s, const Range<Real>& t, const Policy& 
 // Projects both triangles onto the plane and separates them along the six in-plane edge normals.
 // Reference: Maffina 2012, sections 3.1.2 and 3.1.3 (the listing is lost; the text describes it).
 template <class Real, class Policy>
-GRAZE_HD bool projections_intersect(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Plane<Real>& plane, const Policy& policy) {
+GRAZE_HD bool projections_intersect(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Plane<Real>& plane,
+                                    const Policy& policy) {
   const Vec3<Real> n = normalised(plane.normal);
   Vec3<Real> pa[3], pb[3];
   for (int i = 0; i < 3; ++i) {
@@ -80,18 +82,18 @@ GRAZE_HD bool projections_intersect(const Vec3<Real> (&a)[3], const Vec3<Real> (
 
 // Signed distances of the vertices v to the plane, each through the policy.
 template <class Real, class Policy>
-GRAZE_HD void plane_distances(const Plane<Real>& plane, const Vec3<Real> (&v)[3], const Policy& policy, Real (&distance)[3]) {
+GRAZE_HD void plane_distances(const Plane<Real>& plane, const Vec3<Real> (&v)[3], const Policy& policy,
+                              Real (&distance)[3]) {
   for (int i = 0; i < 3; ++i) distance[i] = policy.snap(Site::plane_distance, plane.distance(v[i]));
 }
 
 struct ProjectedSat {
-  static constexpr AlgorithmInfo kInfo{
-      "projected_sat",
-      "Maffina 2012, first version (section 3.1)",
-      "the projections' 2D test decides",
-      "says nothing; a zero normal divides by zero",
-      "depends: projects onto the first triangle's plane",
-      false};
+  static constexpr AlgorithmInfo kInfo{"projected_sat",
+                                       "Maffina 2012, first version (section 3.1)",
+                                       "the projections' 2D test decides",
+                                       "says nothing; a zero normal divides by zero",
+                                       "depends: projects onto the first triangle's plane",
+                                       false};
 
   template <class Real, class Policy = ExactZero>
   GRAZE_HD static Verdict decide(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Policy& policy = {}) {

@@ -9,13 +9,12 @@ namespace graze {
 inline namespace GRAZE_FP {
 
 struct SeparatingAxes {
-  static constexpr AlgorithmInfo kInfo{
-      "separating_axes",
-      "Gottschalk, Lin, Manocha 1996; Schneider and Eberly 2002, section 7.7",
-      "the in-plane edge normals separate",
-      "says nothing; zero axes never separate, so degenerate pairs lack axes",
-      "depends in rounding",
-      true};
+  static constexpr AlgorithmInfo kInfo{"separating_axes",
+                                       "Gottschalk, Lin, Manocha 1996; Schneider and Eberly 2002, section 7.7",
+                                       "the in-plane edge normals separate",
+                                       "says nothing; zero axes never separate, so degenerate pairs lack axes",
+                                       "depends in rounding",
+                                       true};
 
   template <class Real, class Policy = ExactZero>
   GRAZE_HD static Verdict decide(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Policy& policy = {}) {
@@ -29,14 +28,16 @@ struct SeparatingAxes {
       }
     }
     for (int i = 0; i < 3; ++i) {
-      if (separates(cross(na, ea[i]), a, b, policy) || separates(cross(nb, eb[i]), a, b, policy)) return Verdict::disjoint;
+      if (separates(cross(na, ea[i]), a, b, policy) || separates(cross(nb, eb[i]), a, b, policy))
+        return Verdict::disjoint;
     }
     return Verdict::intersects;
   }
 
  private:
   template <class Real, class Policy>
-  GRAZE_HD static bool separates(const Vec3<Real>& axis, const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Policy& policy) {
+  GRAZE_HD static bool separates(const Vec3<Real>& axis, const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3],
+                                 const Policy& policy) {
     return !overlap(project(axis, a), project(axis, b), policy);
   }
 };

@@ -15,7 +15,7 @@ namespace graze {
 namespace {
 
 struct Case {
-  std::string name;  // folder and name: classic_thesis_2012_case_3
+  std::string name;            // folder and name: classic_thesis_2012_case_3
   std::filesystem::path file;  // below the root of the sources
   Entry entry;
 };

@@ -222,7 +222,9 @@ TEST(PairFormat, ABrokenFieldIsNamed) {
 }
 
 TEST(PairFormat, GarbageIsEscapedAndCutShort) {
-  EXPECT_EQ(error_of(std::string("\x7f" "ELF\x02\x01\0\x1b[31m", 12)),
+  EXPECT_EQ(error_of(std::string("\x7f"
+                                 "ELF\x02\x01\0\x1b[31m",
+                                 12)),
             R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "\x7fELF\x02\x01\x00\x1b[31m")");
   EXPECT_EQ(error_of(std::string(1000, 'x')),
             "in.pairs:1: expected a float32 as number 1 (a[0].x), found \"" + std::string(40, 'x') + "\"...");

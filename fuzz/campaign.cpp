@@ -37,7 +37,8 @@ std::vector<Batch> make_batches(const std::vector<Source>& sources) {
     more = false;
     for (std::size_t s = 0; s < sources.size(); ++s) {
       if (first >= sources[s].pairs) continue;
-      batches.push_back({static_cast<int>(s), first, static_cast<std::size_t>(std::min<std::uint64_t>(kBatchPairs, sources[s].pairs - first))});
+      batches.push_back({static_cast<int>(s), first,
+                         static_cast<std::size_t>(std::min<std::uint64_t>(kBatchPairs, sources[s].pairs - first))});
       more = true;
     }
   }
@@ -47,7 +48,8 @@ std::vector<Batch> make_batches(const std::vector<Source>& sources) {
 // Judges one block of a batch: host lanes and oracle here, device lanes from the batch's bits.
 class BlockJudge {
  public:
-  BlockJudge(const Campaign& campaign, const std::vector<LaneBits>& device_bits) : campaign_(campaign), device_bits_(device_bits) {
+  BlockJudge(const Campaign& campaign, const std::vector<LaneBits>& device_bits)
+      : campaign_(campaign), device_bits_(device_bits) {
     host_bits_.resize(campaign.lanes.size());
     views_.resize(campaign.lanes.size());
     verdicts_.resize(campaign.lanes.size());
@@ -68,7 +70,8 @@ class BlockJudge {
     for (std::size_t l = 0; l < campaign_.lanes.size(); ++l) {
       if (campaign_.lanes[l]->is_cuda()) {
         const LaneBits& bits = device_bits_[next_device++];
-        views_[l] = {std::span(bits.intersects).subspan(begin / 64, words), std::span(bits.declined).subspan(begin / 64, words)};
+        views_[l] = {std::span(bits.intersects).subspan(begin / 64, words),
+                     std::span(bits.declined).subspan(begin / 64, words)};
       } else {
         LaneBits& bits = host_bits_[l];
         bits.intersects.resize(words);
@@ -89,17 +92,19 @@ class BlockJudge {
       const Contact contact = gmp_contact(pairs[i]);
       ++result.gmp;
       if ((contact != Contact::none) != intersects) {
-        throw OracleApart(fmt::format("the oracle's two decisions differ on {}:{}:{}: CGAL says {}, GMP says contact {}",
-                                      campaign_.sources[static_cast<std::size_t>(batch.source)].id, campaign_.seed, index,
-                                      intersects ? "intersects" : "disjoint", name(contact)));
+        throw OracleApart(
+            fmt::format("the oracle's two decisions differ on {}:{}:{}: CGAL says {}, GMP says contact {}",
+                        campaign_.sources[static_cast<std::size_t>(batch.source)].id, campaign_.seed, index,
+                        intersects ? "intersects" : "disjoint", name(contact)));
       }
       if (!disagreement) continue;
       for (std::size_t l = 0; l < views_.size(); ++l) verdicts_[l] = views_[l].at(i);
       ++result.disagreements;
       const Shape hulls = shape(pairs[i]);
       for_each_algorithm(campaign_.lanes, [&](std::size_t first, std::size_t count) {
-        const Signature failure = signature(contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
-                                          std::span(campaign_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
+        const Signature failure =
+            signature(contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
+                      std::span(campaign_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
         if (failure.wrong()) result.signatures[failure].add(CaseKey{index, batch.source});
       });
     }
@@ -119,7 +124,9 @@ BatchResult run_batch(const Campaign& campaign, const Batch& batch, const std::v
   const Source& source = campaign.sources[static_cast<std::size_t>(batch.source)];
   std::vector<Pair> pairs(batch.count);
   const std::size_t blocks = (batch.count + kBlockPairs - 1) / kBlockPairs;
-  const auto range_of = [&](std::size_t block) { return std::pair(block * kBlockPairs, std::min(batch.count, (block + 1) * kBlockPairs)); };
+  const auto range_of = [&](std::size_t block) {
+    return std::pair(block * kBlockPairs, std::min(batch.count, (block + 1) * kBlockPairs));
+  };
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const auto [begin, end] = range_of(block);
     for (std::size_t i = begin; i < end; ++i) pairs[i] = source.pair(batch.first + i);
@@ -154,18 +161,24 @@ Json campaign_spec(const Campaign& campaign) {
 }
 
 Json build_info(const Device* device) {
-  Json info = {{"version", GRAZE_VERSION}, {"commit", GRAZE_COMMIT}, {"compiler", GRAZE_COMPILER}, {"cuda", nullptr}, {"device", nullptr}};
+  Json info = {{"version", GRAZE_VERSION},
+               {"commit", GRAZE_COMMIT},
+               {"compiler", GRAZE_COMPILER},
+               {"cuda", nullptr},
+               {"device", nullptr}};
   if (*GRAZE_NVCC) info["cuda"] = std::string("nvcc ") + GRAZE_NVCC;
   if (device) info["device"] = device->name + ", driver " + device->driver;
   return info;
 }
 
-Json run_campaign(const Campaign& campaign, const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report) {
+Json run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
+                  const std::function<void(const Progress&)>& report) {
   const auto start = std::chrono::steady_clock::now();
   const int threads = campaign.threads > 0 ? campaign.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   std::vector<const Lane*> cuda_lanes;
-  std::copy_if(campaign.lanes.begin(), campaign.lanes.end(), std::back_inserter(cuda_lanes), [](const Lane* lane) { return lane->is_cuda(); });
+  std::copy_if(campaign.lanes.begin(), campaign.lanes.end(), std::back_inserter(cuda_lanes),
+               [](const Lane* lane) { return lane->is_cuda(); });
 
   Store store(campaign.directory, campaign.spec, campaign.build);
   const std::vector<Batch> batches = make_batches(campaign.sources);

@@ -20,18 +20,18 @@ namespace graze {
 struct Campaign {
   std::uint64_t seed = 1;
   std::vector<Source> sources;
-  std::vector<const Lane*> lanes;   // those that run, in table order
-  Device* device = nullptr;         // needed when there are CUDA lanes
-  int threads = 0;                  // 0: one a core
+  std::vector<const Lane*> lanes;  // those that run, in table order
+  Device* device = nullptr;        // needed when there are CUDA lanes
+  int threads = 0;                 // 0: one a core
   std::filesystem::path directory;
-  Json spec;                        // what makes this campaign another one; see campaign_spec
+  Json spec;  // what makes this campaign another one; see campaign_spec
   Json build;
 };
 
 struct Progress {
-  std::uint64_t done = 0, total = 0;  // pairs
-  std::uint64_t done_here = 0;        // by this process
-  double seconds = 0;                 // of this process
+  std::uint64_t done = 0, total = 0;                // pairs
+  std::uint64_t done_here = 0;                      // by this process
+  double seconds = 0;                               // of this process
   std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements by this process only
   std::vector<std::uint64_t> disagreements_of_source;
 };
@@ -44,6 +44,7 @@ Json build_info(const Device* device);
 
 // Runs or goes on with the campaign until done or `stop`, then writes summary.json, timings.json and cases/.
 // Returns: the summary.   Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any case.
-Json run_campaign(const Campaign& campaign, const std::atomic<bool>& stop, const std::function<void(const Progress&)>& report);
+Json run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
+                  const std::function<void(const Progress&)>& report);
 
 }  // namespace graze

@@ -27,7 +27,8 @@ std::string contents(const fs::path& file) {
 // Everything that a campaign leaves and that must not depend on how it ran.
 std::map<std::string, std::string> lasting_files(const fs::path& directory) {
   std::map<std::string, std::string> files{{"summary.json", contents(directory / "summary.json")}};
-  for (const auto& file : fs::directory_iterator(directory / "cases")) files[file.path().filename()] = contents(file.path());
+  for (const auto& file : fs::directory_iterator(directory / "cases"))
+    files[file.path().filename()] = contents(file.path());
   return files;
 }
 
@@ -111,10 +112,14 @@ TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
 
 TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
   fs::create_directories(root_ / "foreign");
-  std::ofstream(root_ / "foreign" / "campaign.sqlite") << "This is no database, and long enough to be looked at as one: " << std::string(4096, 'x');
+  std::ofstream(root_ / "foreign" / "campaign.sqlite")
+      << "This is no database, and long enough to be looked at as one: " << std::string(4096, 'x');
   EXPECT_THROW(run(campaign("foreign", 1, 4000)), std::runtime_error);
 
-  { Database other((fs::create_directories(root_ / "other"), root_ / "other" / "campaign.sqlite")); other.execute("CREATE TABLE t(x)"); }
+  {
+    Database other((fs::create_directories(root_ / "other"), root_ / "other" / "campaign.sqlite"));
+    other.execute("CREATE TABLE t(x)");
+  }
   EXPECT_THROW(run(campaign("other", 1, 4000)), std::runtime_error);
 
   run(campaign("cut", 1, 4000));

@@ -27,8 +27,10 @@ class Database {
 
   void check(int rc) const {
     if (rc == SQLITE_OK || rc == SQLITE_ROW || rc == SQLITE_DONE) return;
-    if (rc == SQLITE_NOTADB || rc == SQLITE_CORRUPT) throw std::runtime_error(file_ + ": expected a Graze campaign database, found a foreign or damaged file");
-    if (rc == SQLITE_BUSY) throw std::runtime_error(file_ + ": expected to be alone, found another process that uses this campaign");
+    if (rc == SQLITE_NOTADB || rc == SQLITE_CORRUPT)
+      throw std::runtime_error(file_ + ": expected a Graze campaign database, found a foreign or damaged file");
+    if (rc == SQLITE_BUSY)
+      throw std::runtime_error(file_ + ": expected to be alone, found another process that uses this campaign");
     throw std::runtime_error(file_ + ": " + sqlite3_errmsg(handle_.get()));
   }
 
@@ -75,17 +77,19 @@ class Statement {
   std::int64_t integer(int column) const { return sqlite3_column_int64(handle_.get(), column); }
   std::string text(int column) const {
     const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(handle_.get(), column));
-    return bytes ? std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column))) : std::string();
+    return bytes ? std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(handle_.get(), column)))
+                 : std::string();
   }
 
  private:
   template <class Integer>
-    requires std::is_integral_v<Integer>
+  requires std::is_integral_v<Integer>
   void bind(int column, Integer value) {
     database_->check(sqlite3_bind_int64(handle_.get(), column, static_cast<sqlite3_int64>(value)));
   }
   void bind(int column, std::string_view value) {
-    database_->check(sqlite3_bind_text(handle_.get(), column, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT));
+    database_->check(
+        sqlite3_bind_text(handle_.get(), column, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT));
   }
 
   struct Finalize {

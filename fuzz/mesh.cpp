@@ -93,8 +93,8 @@ void read_triangles(const std::filesystem::path& file, std::vector<Triangle>& tr
   bool parsed = false;
   try {
     const Silence silent_out(std::cout), silent_error(std::cerr);
-    parsed = (format != "ply" || ply_header_is_sound(file)) &&
-             CGAL::IO::read_polygon_soup(file.string(), points, faces);
+    parsed =
+        (format != "ply" || ply_header_is_sound(file)) && CGAL::IO::read_polygon_soup(file.string(), points, faces);
   } catch (const std::exception&) {  // a header that promises more than memory holds, or a CGAL precondition
   }
   if (!parsed) fail(file, "a mesh in the " + format + " format", "text or bytes that do not parse as one");
@@ -130,8 +130,8 @@ std::vector<Box> boxes_of(const std::vector<Triangle>& triangles, std::size_t be
   for (std::size_t i = begin; i < end; ++i) {
     float low[3], high[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const auto [least, most] = std::minmax({component(triangles[i][0], axis), component(triangles[i][1], axis),
-                                              component(triangles[i][2], axis)});
+      const auto [least, most] = std::minmax(
+          {component(triangles[i][0], axis), component(triangles[i][1], axis), component(triangles[i][2], axis)});
       low[axis] = least;
       high[axis] = most;
     }

@@ -49,7 +49,8 @@ class MeshFile : public testing::Test {
   }
 
  private:
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("graze_mesh_test_" + std::to_string(getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("graze_mesh_test_" + std::to_string(getpid()));
 };
 
 std::string off_of(const std::vector<Triangle>& triangles) {
@@ -218,7 +219,9 @@ TEST_F(MeshFile, WhatDoesNotParseIsAnError) {
            " format, found text or bytes that do not parse as one";
   };
   for (const std::string format : {"off", "obj", "stl", "ply"}) {
-    for (const char* content : {"", "garbage\n1 2 3\n", "\x7f" "ELF\x02\x01"}) {
+    for (const char* content : {"", "garbage\n1 2 3\n",
+                                "\x7f"
+                                "ELF\x02\x01"}) {
       write("bad." + format, content);
       const std::string error = error_of("bad." + format);
       // CGAL takes some of these for a file of no faces.
@@ -234,11 +237,11 @@ TEST_F(MeshFile, WhatDoesNotParseIsAnError) {
     write("bad.ply", "ply\nformat ascii 1.0\n" + header + faces);
     EXPECT_EQ(error_of("bad.ply"), misfit("ply")) << header;
   }
-  for (const char* content : {"OFF\n4 4 0\n0 0 0\n1 0 0\n",                        // ends early
-                              "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n",       // a vertex that is not there
-                              "OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n",       // a word for a number
-                              "OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n",     // not finite
-                              "OFF\n4000000000 1 0\n0 0 0\n"}) {                  // more than memory holds
+  for (const char* content : {"OFF\n4 4 0\n0 0 0\n1 0 0\n",                    // ends early
+                              "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n",    // a vertex that is not there
+                              "OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n",    // a word for a number
+                              "OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n",  // not finite
+                              "OFF\n4000000000 1 0\n0 0 0\n"}) {               // more than memory holds
     write("bad.off", content);
     EXPECT_EQ(error_of("bad.off"), misfit("off")) << content;
   }

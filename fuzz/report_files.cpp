@@ -28,14 +28,16 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
     const Source& source = campaign.sources[static_cast<std::size_t>(c.source)];
     const Pair pair = source.pair(c.index);
     const Truth t = truth(pair);
-    write_entry(out, {pair, {{"stratum", source.id},
-                             {"seed", std::to_string(campaign.seed)},
-                             {"index", std::to_string(c.index)},
-                             {"truth", std::string(name(t.verdict))},
-                             {"contact", std::string(name(t.contact))},
-                             {"margin", fmt::format("{}", t.margin)},
-                             {"margin_ulps", fmt::format("{}", t.margin_ulps)},
-                             {"signature", key}}, 0});
+    write_entry(out, {pair,
+                      {{"stratum", source.id},
+                       {"seed", std::to_string(campaign.seed)},
+                       {"index", std::to_string(c.index)},
+                       {"truth", std::string(name(t.verdict))},
+                       {"contact", std::string(name(t.contact))},
+                       {"margin", fmt::format("{}", t.margin)},
+                       {"margin_ulps", fmt::format("{}", t.margin_ulps)},
+                       {"signature", key}},
+                      0});
   }
   return out.str();
 }
@@ -47,7 +49,9 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(beside, std::ios::binary);
   out << text;
   out.close();
-  if (!out) throw std::runtime_error(beside.string() + ": expected to write " + std::to_string(text.size()) + " bytes, found no room");
+  if (!out)
+    throw std::runtime_error(beside.string() + ": expected to write " + std::to_string(text.size()) +
+                             " bytes, found no room");
   std::filesystem::rename(beside, file);
 }
 
@@ -61,19 +65,17 @@ Json write_summary(const Campaign& campaign, const Store& store) {
   const auto by_key = store.signatures();
   std::vector<const std::pair<const std::string, SignatureCount>*> by_count;
   for (const auto& row : by_key) by_count.push_back(&row);
-  std::stable_sort(by_count.begin(), by_count.end(), [](auto* l, auto* r) { return l->second.count > r->second.count; });
+  std::stable_sort(by_count.begin(), by_count.end(),
+                   [](auto* l, auto* r) { return l->second.count > r->second.count; });
   Json signatures = Json::array();
   for (const auto* row : by_count) {
     const std::string file = case_name(row->first);
     write_whole(campaign.directory / file, case_text(campaign, row->first, row->second));
     signatures.push_back({{"key", row->first}, {"count", row->second.count}, {"case", file}});
   }
-  Json summary = {{"spec", campaign.spec},
-                  {"build", campaign.build},
-                  {"strata", results["strata"]},
-                  {"disagreements", results["disagreements"]},
-                  {"signatures", signatures},
-                  {"oracle", results["oracle"]}};
+  Json summary = {{"spec", campaign.spec},       {"build", campaign.build},
+                  {"strata", results["strata"]}, {"disagreements", results["disagreements"]},
+                  {"signatures", signatures},    {"oracle", results["oracle"]}};
   write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");
   return summary;
 }

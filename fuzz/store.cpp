@@ -66,7 +66,8 @@ void BatchResult::add(const BatchResult& other) {
   gmp += other.gmp;
 }
 
-Store::Store(const std::filesystem::path& directory, const Json& spec, const Json& build) : database_(database_file(directory)) {
+Store::Store(const std::filesystem::path& directory, const Json& spec, const Json& build)
+    : database_(database_file(directory)) {
   // One process a campaign. A write-ahead log: a killed process loses only the transaction under way.
   database_.execute("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
   const bool fresh = integer(database_, "SELECT count(*) FROM sqlite_schema") == 0;
@@ -77,7 +78,9 @@ Store::Store(const std::filesystem::path& directory, const Json& spec, const Jso
     put(std::string_view("spec"), spec.dump()).run();
     put(std::string_view("build"), build.dump()).run();
     put(std::string_view("batches_done"), std::string_view("0")).run();
-    database_.execute(("PRAGMA application_id = " + std::to_string(kApplicationId) + "; PRAGMA user_version = " + std::to_string(kFormat)).c_str());
+    database_.execute(("PRAGMA application_id = " + std::to_string(kApplicationId) +
+                       "; PRAGMA user_version = " + std::to_string(kFormat))
+                          .c_str());
     database_.execute("COMMIT");
     return;
   }
@@ -86,19 +89,24 @@ Store::Store(const std::filesystem::path& directory, const Json& spec, const Jso
     throw std::runtime_error(file + ": expected a Graze campaign database, found another program's");
   }
   if (const auto format = integer(database_, "PRAGMA user_version"); format != kFormat) {
-    throw std::runtime_error(file + ": expected format " + std::to_string(kFormat) + ", found " + std::to_string(format));
+    throw std::runtime_error(file + ": expected format " + std::to_string(kFormat) + ", found " +
+                             std::to_string(format));
   }
   Statement quick_check(database_, "PRAGMA quick_check(1)");
-  if (!quick_check.step() || quick_check.text(0) != "ok") throw std::runtime_error(file + ": expected a whole database, found damage: " + quick_check.text(0));
+  if (!quick_check.step() || quick_check.text(0) != "ok")
+    throw std::runtime_error(file + ": expected a whole database, found damage: " + quick_check.text(0));
 
   Statement get(database_, "SELECT value FROM meta WHERE key = ?");
   const auto meta = [&](std::string_view key) { return get(key).step() ? get.text(0) : std::string(); };
-  const Json found_spec = Json::parse(meta("spec"), nullptr, false), found_build = Json::parse(meta("build"), nullptr, false);
+  const Json found_spec = Json::parse(meta("spec"), nullptr, false),
+             found_build = Json::parse(meta("build"), nullptr, false);
   if (found_spec != spec) {
-    throw UsageError(directory.string() + ": holds another campaign (expected the same " + first_difference(spec, found_spec) + "); choose another --out");
+    throw UsageError(directory.string() + ": holds another campaign (expected the same " +
+                     first_difference(spec, found_spec) + "); choose another --out");
   }
   if (found_build != build) {
-    throw UsageError(directory.string() + ": was begun by another build (expected the same " + first_difference(build, found_build) + "); choose another --out");
+    throw UsageError(directory.string() + ": was begun by another build (expected the same " +
+                     first_difference(build, found_build) + "); choose another --out");
   }
   batches_done_ = std::stoull(meta("batches_done"));
 }
@@ -107,17 +115,21 @@ void Store::commit(int source, const BatchResult& result) {
   database_.execute("BEGIN IMMEDIATE");
   try {
     Statement add_margin(database_,
-                         "INSERT INTO margin VALUES(?1, ?2, ?3, ?4) ON CONFLICT DO UPDATE SET pairs = pairs + ?3, intersects = intersects + ?4");
-    Statement add_wrong(database_,
-                        "INSERT INTO wrong VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO UPDATE SET false_positive = false_positive + ?4, "
-                        "false_negative = false_negative + ?5, declined = declined + ?6, differs_from_cpu = differs_from_cpu + ?7");
+                         "INSERT INTO margin VALUES(?1, ?2, ?3, ?4) ON CONFLICT DO UPDATE SET pairs = pairs + ?3, "
+                         "intersects = intersects + ?4");
+    Statement add_wrong(
+        database_,
+        "INSERT INTO wrong VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO UPDATE SET false_positive = "
+        "false_positive + ?4, "
+        "false_negative = false_negative + ?5, declined = declined + ?6, differs_from_cpu = differs_from_cpu + ?7");
     for (int b = -kBucketMost; b <= kBucketMost; ++b) {
       const Bucket bucket = static_cast<Bucket>(b);
       if (result.tally.pairs(bucket) == 0) continue;
       add_margin(source, b, result.tally.pairs(bucket), result.tally.intersects(bucket)).run();
       for (int l = 0; l < result.tally.lane_count(); ++l) {
         const LaneCounts& lane = result.tally.lane(l, bucket);
-        if (lane.any()) add_wrong(source, l, b, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu).run();
+        if (lane.any())
+          add_wrong(source, l, b, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu).run();
       }
     }
     Statement add_total(database_, "INSERT INTO total VALUES(?1, ?2) ON CONFLICT DO UPDATE SET count = count + ?2");
@@ -125,7 +137,9 @@ void Store::commit(int source, const BatchResult& result) {
     add_total(std::string_view("cgal"), result.cgal).run();
     add_total(std::string_view("gmp"), result.gmp).run();
 
-    Statement add_signature(database_, "INSERT INTO signature(key, count) VALUES(?1, ?2) ON CONFLICT DO UPDATE SET count = count + ?2 RETURNING id");
+    Statement add_signature(
+        database_,
+        "INSERT INTO signature(key, count) VALUES(?1, ?2) ON CONFLICT DO UPDATE SET count = count + ?2 RETURNING id");
     Statement keep(database_, "INSERT INTO kept VALUES(?, ?, ?)");
     Statement kept(database_, "SELECT count(*), max(case_index) FROM kept WHERE signature = ?");
     Statement trim(database_,
@@ -143,7 +157,8 @@ void Store::commit(int source, const BatchResult& result) {
       }
       trim(id, kKeptCases).run();
     }
-    Statement(database_, "UPDATE meta SET value = ? WHERE key = 'batches_done'")(std::to_string(batches_done_ + 1)).run();
+    Statement(database_, "UPDATE meta SET value = ? WHERE key = 'batches_done'")(std::to_string(batches_done_ + 1))
+        .run();
     database_.execute("COMMIT");
   } catch (...) {
     sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
@@ -154,7 +169,9 @@ void Store::commit(int source, const BatchResult& result) {
 
 std::map<std::string, SignatureCount> Store::signatures() const {
   std::map<std::string, SignatureCount> all;
-  Statement query(database_, "SELECT key, count, case_index, source FROM signature JOIN kept ON signature = id ORDER BY key, case_index, source");
+  Statement query(database_,
+                  "SELECT key, count, case_index, source FROM signature JOIN kept ON signature = id ORDER BY key, "
+                  "case_index, source");
   while (query.step()) {
     SignatureCount& found = all[query.text(0)];
     found.count = static_cast<std::uint64_t>(query.integer(1));
@@ -163,13 +180,17 @@ std::map<std::string, SignatureCount> Store::signatures() const {
   return all;
 }
 
-std::uint64_t Store::signature_count() const { return static_cast<std::uint64_t>(integer(database_, "SELECT count(*) FROM signature")); }
+std::uint64_t Store::signature_count() const {
+  return static_cast<std::uint64_t>(integer(database_, "SELECT count(*) FROM signature"));
+}
 
 Json Store::results(const std::vector<std::string>& sources, const std::vector<std::string>& lanes) const {
   Json strata = Json::object();
   for (const std::string& source : sources) {
-    Json& row = strata[source] = {{"pairs", 0}, {"intersects", 0}, {"lanes", Json::object()}, {"margins", Json::object()}};
-    for (const std::string& lane : lanes) row["lanes"][lane] = {{"false_positive", 0}, {"false_negative", 0}, {"declined", 0}, {"differs_from_cpu", 0}};
+    Json& row =
+        strata[source] = {{"pairs", 0}, {"intersects", 0}, {"lanes", Json::object()}, {"margins", Json::object()}};
+    for (const std::string& lane : lanes)
+      row["lanes"][lane] = {{"false_positive", 0}, {"false_negative", 0}, {"declined", 0}, {"differs_from_cpu", 0}};
   }
   const auto add = [](Json& total, std::int64_t more) { total = total.get<std::int64_t>() + more; };
   Statement margins(database_, "SELECT source, bucket, pairs, intersects FROM margin ORDER BY source, bucket");
@@ -177,10 +198,12 @@ Json Store::results(const std::vector<std::string>& sources, const std::vector<s
     Json& row = strata[sources.at(static_cast<std::size_t>(margins.integer(0)))];
     add(row["pairs"], margins.integer(2));
     add(row["intersects"], margins.integer(3));
-    row["margins"][name_of_bucket(static_cast<Bucket>(margins.integer(1)))] = {{"pairs", margins.integer(2)}, {"wrong", Json::object()}};
+    row["margins"][name_of_bucket(static_cast<Bucket>(margins.integer(1)))] = {{"pairs", margins.integer(2)},
+                                                                               {"wrong", Json::object()}};
   }
   Statement wrong(database_,
-                  "SELECT source, lane, bucket, false_positive, false_negative, declined, differs_from_cpu FROM wrong ORDER BY source, lane, bucket");
+                  "SELECT source, lane, bucket, false_positive, false_negative, declined, differs_from_cpu FROM wrong "
+                  "ORDER BY source, lane, bucket");
   while (wrong.step()) {
     Json& row = strata[sources.at(static_cast<std::size_t>(wrong.integer(0)))];
     const std::string& lane = lanes.at(static_cast<std::size_t>(wrong.integer(1)));

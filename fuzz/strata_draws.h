@@ -47,9 +47,7 @@ struct Draws {
   GRAZE_HD bool coin() { return below(2) != 0; }
 
   // -reach … reach.
-  GRAZE_HD int integer(int reach) {
-    return static_cast<int>(below(2 * static_cast<std::uint32_t>(reach) + 1)) - reach;
-  }
+  GRAZE_HD int integer(int reach) { return static_cast<int>(below(2 * static_cast<std::uint32_t>(reach) + 1)) - reach; }
 
   // low … high.
   GRAZE_HD int between(int low, int high) {

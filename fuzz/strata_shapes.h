@@ -42,11 +42,21 @@ GRAZE_HD inline Pair degenerate(Draws& draws) {
   const Vec v = draw_step(draws, grain);
   Draft draft;
   switch (draws.below(5)) {
-    case 0: put_point(p, draft.a); break;
-    case 1: put_segment(draws, grain, p, u, draft.a); break;
-    case 2: put_vertex(draws, grain, {}, p, v, draft.a); break;
-    case 3: put_edge(draws, grain, {}, p, u, v, draft.a); break;
-    default: put_face(draws, grain, p, u, v, draft.a); break;
+    case 0:
+      put_point(p, draft.a);
+      break;
+    case 1:
+      put_segment(draws, grain, p, u, draft.a);
+      break;
+    case 2:
+      put_vertex(draws, grain, {}, p, v, draft.a);
+      break;
+    case 3:
+      put_edge(draws, grain, {}, p, u, v, draft.a);
+      break;
+    default:
+      put_face(draws, grain, p, u, v, draft.a);
+      break;
   }
   if (draws.below(4) == 0) {
     put_point(p, draft.b);

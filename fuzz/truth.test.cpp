@@ -52,12 +52,15 @@ TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
     if (bucket != 0 && t.margin_ulps != 0 && std::isfinite(t.margin_ulps)) {
       // The rounded margin may sit on a bucket's border; the bucket may then be the one below.
       const int log2_ulps = std::ilogb(t.margin_ulps);
-      EXPECT_TRUE(bucket == make_bucket(bucket > 0 ? 1 : -1, log2_ulps) || std::abs(t.margin_ulps) == std::ldexp(1.0, log2_ulps)) << index;
+      EXPECT_TRUE(bucket == make_bucket(bucket > 0 ? 1 : -1, log2_ulps) ||
+                  std::abs(t.margin_ulps) == std::ldexp(1.0, log2_ulps))
+          << index;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Strata, EveryStratum, testing::ValuesIn(kStrata), [](const auto& row) { return std::string(row.param.id); });
+INSTANTIATE_TEST_SUITE_P(Strata, EveryStratum, testing::ValuesIn(kStrata),
+                         [](const auto& row) { return std::string(row.param.id); });
 
 // Every near, coplanar, degenerate and extreme stratum must defeat some lane, or it is not worth its name.
 TEST(Lanes, FailInEveryHardStratum) {
@@ -66,7 +69,8 @@ TEST(Lanes, FailInEveryHardStratum) {
     std::uint64_t failures = 0;
     for (std::uint64_t index = 0; index < 3000; ++index) {
       const Pair pair = generate(kSeed, row.stratum, index);
-      failures += wrong(lane("moller_1997/f32/cpu"), pair, cgal_verdict(pair)) || wrong(lane("guigue_devillers_2003/f32/cpu"), pair, cgal_verdict(pair));
+      failures += wrong(lane("moller_1997/f32/cpu"), pair, cgal_verdict(pair)) ||
+                  wrong(lane("guigue_devillers_2003/f32/cpu"), pair, cgal_verdict(pair));
     }
     EXPECT_GT(failures, 0u) << row.id;
   }

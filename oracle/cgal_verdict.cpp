@@ -45,12 +45,18 @@ template <class Kernel>
 bool hulls_intersect(const Hull<Kernel>& a, const Hull<Kernel>& b) {
   if (a.dimension < b.dimension) return hulls_intersect(b, a);
   switch (3 * a.dimension + b.dimension) {
-    case 3 * 2 + 2: return CGAL::do_intersect(a.triangle(), b.triangle());
-    case 3 * 2 + 1: return CGAL::do_intersect(a.triangle(), b.segment());
-    case 3 * 2 + 0: return CGAL::do_intersect(a.triangle(), b.point());
-    case 3 * 1 + 1: return CGAL::do_intersect(a.segment(), b.segment());
-    case 3 * 1 + 0: return CGAL::do_intersect(a.segment(), b.point());
-    default: return a.point() == b.point();
+    case 3 * 2 + 2:
+      return CGAL::do_intersect(a.triangle(), b.triangle());
+    case 3 * 2 + 1:
+      return CGAL::do_intersect(a.triangle(), b.segment());
+    case 3 * 2 + 0:
+      return CGAL::do_intersect(a.triangle(), b.point());
+    case 3 * 1 + 1:
+      return CGAL::do_intersect(a.segment(), b.segment());
+    case 3 * 1 + 0:
+      return CGAL::do_intersect(a.segment(), b.point());
+    default:
+      return a.point() == b.point();
   }
 }
 

@@ -19,10 +19,10 @@ namespace {
 using namespace gmp;
 
 struct Workspace {
-  Point p[3], q[3];          // the pair
-  Point u, v, w, normal;     // vectors
-  Point na, nb, moment[3];   // noncoplanar(): normals, and a[i] x a[i+1] seen from b[0]
-  Point ra[3];               // noncoplanar(): a[i] - b[0]
+  Point p[3], q[3];         // the pair
+  Point u, v, w, normal;    // vectors
+  Point na, nb, moment[3];  // noncoplanar(): normals, and a[i] x a[i+1] seen from b[0]
+  Point ra[3];              // noncoplanar(): a[i] - b[0]
   Register along_u[3], along_v[3], heights[3], height, side, term;
 };
 

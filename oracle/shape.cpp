@@ -54,7 +54,8 @@ Shape shape_of(const Integers& pair) {
 
 Shape shape(const Pair& pair) {
   const Grid grid = grid_of(pair);
-  return grid.is_small() ? shape_of<__int128>(small_integers(pair, grid)) : shape_of<mpz_class>(large_integers(pair, grid));
+  return grid.is_small() ? shape_of<__int128>(small_integers(pair, grid))
+                         : shape_of<mpz_class>(large_integers(pair, grid));
 }
 
 }  // namespace graze

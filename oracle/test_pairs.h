@@ -53,17 +53,21 @@ class PairSource {
  private:
   float coordinate() {
     switch (kind_) {
-      case Kind::lattice1: return static_cast<float>(below(3) - 1);
+      case Kind::lattice1:
+        return static_cast<float>(below(3) - 1);
       case Kind::lattice3:
       case Kind::degenerate:
-      case Kind::flat: return static_cast<float>(below(5) - 2);
+      case Kind::flat:
+        return static_cast<float>(below(5) - 2);
       case Kind::raw_bits:
         for (;;) {
           const float value = std::bit_cast<float>(static_cast<std::uint32_t>(random_()));
           if (std::isfinite(value)) return value;
         }
-      case Kind::wide: return std::ldexp(static_cast<float>(below(5) - 2), 30 * (below(5) - 2));
-      default: return static_cast<float>(below(1 << 25) - (1 << 24)) * 0x1p-24f;
+      case Kind::wide:
+        return std::ldexp(static_cast<float>(below(5) - 2), 30 * (below(5) - 2));
+      default:
+        return static_cast<float>(below(1 << 25) - (1 << 24)) * 0x1p-24f;
     }
   }
 

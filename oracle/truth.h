@@ -36,7 +36,8 @@ Verdict cgal_verdict(const Pair& pair);
 // Requires: finite coordinates.   Exact: always.   The pair intersects when this is not Contact::none.
 Contact gmp_contact(const Pair& pair);
 
-// What the two hulls are: their dimensions (0 point, 1 segment, 2 triangle), and whether one plane holds all six points.
+// What the two hulls are: their dimensions (0 point, 1 segment, 2 triangle), and whether one plane holds all six
+// points.
 struct Shape {
   int dimension_a = 2;
   int dimension_b = 2;

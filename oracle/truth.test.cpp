@@ -83,12 +83,13 @@ const Example kExamples[] = {
     {"points_at_zero", pair_of({0, 0, 0, 0, -0.0f, 0, 0, 0, 0, 0, 0, 0, -0.0f, 0, 0, 0, 0, 0}), Contact::point, 0},
 
     // The ends of float32.
-    {"subnormal_apart", pair_of({0, 0, 0, 0x4p-149f, 0, 0, 0, 0x4p-149f, 0, 0, 0, 0x1p-149f, 0x4p-149f, 0, 0x1p-149f, 0,
-                                 0x4p-149f, 0x1p-149f}),
+    {"subnormal_apart",
+     pair_of({0, 0, 0, 0x4p-149f, 0, 0, 0, 0x4p-149f, 0, 0, 0, 0x1p-149f, 0x4p-149f, 0, 0x1p-149f, 0, 0x4p-149f,
+              0x1p-149f}),
      Contact::none, 0x1p-149},
     {"subnormal_pierced",
-     pair_of({-0x9p-149f, -0x9p-149f, 0, 0x9p-149f, -0x9p-149f, 0, 0, 0x9p-149f, 0,
-              0, 0, -0x1p-149f, 0x3p-149f, 0, 0x4p-149f, -0x3p-149f, 0, 0x4p-149f}),
+     pair_of({-0x9p-149f, -0x9p-149f, 0, 0x9p-149f, -0x9p-149f, 0, 0, 0x9p-149f, 0, 0, 0, -0x1p-149f, 0x3p-149f, 0,
+              0x4p-149f, -0x3p-149f, 0, 0x4p-149f}),
      Contact::segment, -0x1p-149},
     {"largest_apart",
      pair_of({FLT_MAX, 0, 0, FLT_MAX, 1, 0, FLT_MAX, 0, 1, -FLT_MAX, 0, 0, -FLT_MAX, 1, 0, -FLT_MAX, 0, 1}),
@@ -132,14 +133,12 @@ TEST(Shape, NamesDimensionsAndCommonPlane) {
     bool coplanar;
   };
   // The first prefix that fits decides.
-  const Group kGroups[] = {{"coplanar", 2, 2, true},        {"same_triangle", 2, 2, true},
-                           {"segment_in", 2, 1, true},      {"segment_across", 2, 1, true},
-                           {"segment_along", 2, 1, true},   {"segment_touches", 2, 1, true},
-                           {"segment_", 2, 1, false},       {"segments_skew", 1, 1, false},
-                           {"segments_", 1, 1, true},       {"point_in", 2, 0, true},
-                           {"point_beside", 2, 0, true},    {"point_above", 2, 0, false},
-                           {"point_", 1, 0, true},          {"points_", 0, 0, true},
-                           {"", 2, 2, false}};
+  const Group kGroups[] = {
+      {"coplanar", 2, 2, true},       {"same_triangle", 2, 2, true},  {"segment_in", 2, 1, true},
+      {"segment_across", 2, 1, true}, {"segment_along", 2, 1, true},  {"segment_touches", 2, 1, true},
+      {"segment_", 2, 1, false},      {"segments_skew", 1, 1, false}, {"segments_", 1, 1, true},
+      {"point_in", 2, 0, true},       {"point_beside", 2, 0, true},   {"point_above", 2, 0, false},
+      {"point_", 1, 0, true},         {"points_", 0, 0, true},        {"", 2, 2, false}};
   for (const Example& example : kExamples) {
     const std::string name = example.name;
     const Group* group = kGroups;

@@ -14,9 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kWidth = 900, kHeight = 420, kLeft = 64, kRight = 20, kTop = 64, kBottom = 66;
-constexpr int kSpan = 26;                      // buckets from 2^-kSpan to 2^kSpan ulps are drawn, on both sides of zero
-constexpr std::uint64_t kFewestPairs = 30;     // a share of fewer pairs than this is no share
-constexpr std::array<const char*, 6> kColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};  // Okabe and Ito 2008
+constexpr int kSpan = 26;                   // buckets from 2^-kSpan to 2^kSpan ulps are drawn, on both sides of zero
+constexpr std::uint64_t kFewestPairs = 30;  // a share of fewer pairs than this is no share
+constexpr std::array<const char*, 6> kColours = {"#d55e00", "#0072b2", "#009e73",
+                                                 "#cc79a7", "#e69f00", "#56b4e9"};  // Okabe and Ito 2008
 
 struct Counts {
   std::uint64_t pairs = 0;
@@ -45,13 +46,17 @@ std::string text(double x, double y, const char* anchor, const std::string& what
 std::string axes() {
   std::string svg;
   for (int percent = 0; percent <= 100; percent += 25) {
-    svg += fmt::format("<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", kLeft, kWidth - kRight, y_of(percent / 100.0), y_of(percent / 100.0));
+    svg +=
+        fmt::format("<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n",
+                    kLeft, kWidth - kRight, y_of(percent / 100.0), y_of(percent / 100.0));
     svg += text(kLeft - 8, y_of(percent / 100.0) + 4, "end", fmt::format("{} %", percent));
   }
   for (const int k : {24, 12, 0, -12}) {
     const int bucket = k - kBucketLowest + 1;
-    svg += text(x_of(place(bucket)), kHeight - kBottom + 18, "middle", fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
-    svg += text(x_of(place(-bucket)), kHeight - kBottom + 18, "middle", fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
+    svg += text(x_of(place(bucket)), kHeight - kBottom + 18, "middle",
+                fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
+    svg += text(x_of(place(-bucket)), kHeight - kBottom + 18, "middle",
+                fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
   }
   svg += text(x_of(0), kHeight - kBottom + 18, "middle", "0");
   svg += text(x_of(-20), kHeight - 14, "middle", "intersecting, by depth in ulps");
@@ -75,7 +80,8 @@ std::string margin_figure(const Json& summary) {
   }
 
   std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
+      "font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n"
       "<title>Share of wrong verdicts against the exact margin</title>\n",
       kWidth, kHeight);
   svg += axes();
@@ -87,11 +93,13 @@ std::string margin_figure(const Json& summary) {
     std::string points;
     for (auto& [p, counts] : by_place) {
       if (counts.pairs < kFewestPairs) continue;
-      points += fmt::format("{:.1f},{:.1f} ", x_of(p), y_of(static_cast<double>(counts.wrong[id]) / static_cast<double>(counts.pairs)));
+      points += fmt::format("{:.1f},{:.1f} ", x_of(p),
+                            y_of(static_cast<double>(counts.wrong[id]) / static_cast<double>(counts.pairs)));
     }
     svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", colour, points);
     const double x = kLeft + 168.0 * static_cast<double>(row);
-    svg += fmt::format("<line x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n", x, x + 16, colour);
+    svg += fmt::format("<line x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n",
+                       x, x + 16, colour);
     svg += text(x + 21, 40, "start", id.substr(0, id.find('/')));
     ++row;
   }

@@ -39,7 +39,8 @@ TEST(Terminal, PairMarksWrongLanes) {
   const Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
   const std::vector<const Lane*> run{&lanes()[0], &lanes()[1]};
   std::ostringstream out;
-  print_pair(out, pair, {Verdict::disjoint, Contact::none, 1, 8388608}, run, std::vector{Verdict::disjoint, Verdict::intersects});
+  print_pair(out, pair, {Verdict::disjoint, Contact::none, 1, 8388608}, run,
+             std::vector{Verdict::disjoint, Verdict::intersects});
   EXPECT_NE(out.str().find("margin 1 (8388608 ulps)"), std::string::npos);
   EXPECT_NE(out.str().find("disjoint      intersects !"), std::string::npos) << out.str();
 }

@@ -13,7 +13,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::uint64_t errors(const Json& counts) {
-  return counts["false_positive"].get<std::uint64_t>() + counts["false_negative"].get<std::uint64_t>() + counts["declined"].get<std::uint64_t>();
+  return counts["false_positive"].get<std::uint64_t>() + counts["false_negative"].get<std::uint64_t>() +
+         counts["declined"].get<std::uint64_t>();
 }
 
 // A share for a narrow column: "0", "12 %", "3.1e-05".
@@ -43,7 +44,8 @@ void print_strata(std::ostream& out, const Json& summary) {
 }
 
 void print_lanes(std::ostream& out, const Json& summary) {
-  out << fmt::format("\n{:<36}{:>16}{:>16}{:>10}{:>18}\n", "lane, over all strata", "false positive", "false negative", "declined", "differs from cpu");
+  out << fmt::format("\n{:<36}{:>16}{:>16}{:>10}{:>18}\n", "lane, over all strata", "false positive", "false negative",
+                     "declined", "differs from cpu");
   for (const auto& lane : summary["spec"]["lanes"]) {
     const std::string id = lane;
     std::uint64_t sums[4] = {};
@@ -51,7 +53,8 @@ void print_lanes(std::ostream& out, const Json& summary) {
       int i = 0;
       for (const auto& [kind, count] : row["lanes"][id].items()) sums[i++] += count.get<std::uint64_t>();
     }
-    out << fmt::format("{:<36}{:>16}{:>16}{:>10}{:>18}\n", id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]), grouped(sums[3]));
+    out << fmt::format("{:<36}{:>16}{:>16}{:>10}{:>18}\n", id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]),
+                       grouped(sums[3]));
   }
 }
 
@@ -68,25 +71,35 @@ void print_summary(std::ostream& out, const Json& summary) {
   print_lanes(out, summary);
   std::uint64_t pairs = 0;
   for (const auto& [stratum, row] : summary["strata"].items()) pairs += row["pairs"].get<std::uint64_t>();
-  out << fmt::format("\n{} pairs: some lane is wrong on {}, in {} signatures. CGAL decided all of them, GMP confirmed {}; apart: {}.\n", grouped(pairs),
-                     grouped(summary["disagreements"]), grouped(summary["signatures"].size()), grouped(summary["oracle"]["gmp"]), summary["oracle"]["apart"].dump());
+  out << fmt::format(
+      "\n{} pairs: some lane is wrong on {}, in {} signatures. CGAL decided all of them, GMP confirmed {}; apart: "
+      "{}.\n",
+      grouped(pairs), grouped(summary["disagreements"]), grouped(summary["signatures"].size()),
+      grouped(summary["oracle"]["gmp"]), summary["oracle"]["apart"].dump());
 }
 
-void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes, std::span<const Verdict> verdicts) {
+void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes,
+                std::span<const Verdict> verdicts) {
   for (int v = 0; v < 6; ++v) {
     const Vec3<float>& p = v < 3 ? pair.a[v] : pair.b[v - 3];
-    out << fmt::format("  {}[{}]  {:>15} {:>15} {:>15}   {} {} {}\n", v < 3 ? 'a' : 'b', v % 3, p.x, p.y, p.z, hex_float(p.x), hex_float(p.y), hex_float(p.z));
+    out << fmt::format("  {}[{}]  {:>15} {:>15} {:>15}   {} {} {}\n", v < 3 ? 'a' : 'b', v % 3, p.x, p.y, p.z,
+                       hex_float(p.x), hex_float(p.y), hex_float(p.z));
   }
-  out << fmt::format("  truth: {}, contact {}, margin {} ({} ulps)\n", name(truth.verdict), name(truth.contact), truth.margin, truth.margin_ulps);
+  out << fmt::format("  truth: {}, contact {}, margin {} ({} ulps)\n", name(truth.verdict), name(truth.contact),
+                     truth.margin, truth.margin_ulps);
   out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n", "", "cpu", "cpu-fma", "cuda-nofma", "cuda-fma");
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
     // One row an algorithm and scalar; '-' where a lane was not run, '!' where it is wrong.
     std::string cells[kTargetCount] = {"-", "-", "-", "-"};
-    for (end = first; end < lanes.size() && lanes[end]->algorithm == lanes[first]->algorithm && lanes[end]->scalar == lanes[first]->scalar; ++end) {
+    for (end = first; end < lanes.size() && lanes[end]->algorithm == lanes[first]->algorithm &&
+                      lanes[end]->scalar == lanes[first]->scalar;
+         ++end) {
       const bool wrong = truth.verdict != Verdict::declined && verdicts[end] != truth.verdict;
       cells[static_cast<std::size_t>(lanes[end]->target)] = fmt::format("{}{}", name(verdicts[end]), wrong ? " !" : "");
     }
-    out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n", fmt::format("{}/{}", lanes[first]->info->id, name(lanes[first]->scalar)), cells[0], cells[1], cells[2], cells[3]);
+    out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n",
+                       fmt::format("{}/{}", lanes[first]->info->id, name(lanes[first]->scalar)), cells[0], cells[1],
+                       cells[2], cells[3]);
   }
 }
 

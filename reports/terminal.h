@@ -17,7 +17,8 @@ void print_summary(std::ostream& out, const nlohmann::ordered_json& summary);
 
 // One pair: its coordinates in decimals and hex floats, the truth, and a verdict for each lane, wrong ones marked.
 // Requires: verdicts[i] is what lanes[i] says.
-void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes, std::span<const Verdict> verdicts);
+void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes,
+                std::span<const Verdict> verdicts);
 
 // 1234567 as "1,234,567".
 std::string grouped(std::uint64_t number);

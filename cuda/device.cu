@@ -4,44 +4,12 @@
 #include <cuda_runtime.h>
 
 #include <algorithm>
-#include <source_location>
-#include <stdexcept>
 
+#include "cuda/device_memory.h"
 #include "cuda/kernels.h"
 
 namespace graze {
 namespace {
-
-void check(cudaError_t error, std::source_location where = std::source_location::current()) {
-  if (error != cudaSuccess) {
-    throw std::runtime_error(std::string("CUDA: ") + cudaGetErrorString(error) + " (" + where.file_name() + ":" + std::to_string(where.line()) + ")");
-  }
-}
-
-// Device memory that grows and is freed with its owner.
-template <class T>
-class DeviceArray {
- public:
-  DeviceArray() = default;
-  DeviceArray(const DeviceArray&) = delete;
-  DeviceArray& operator=(const DeviceArray&) = delete;
-  ~DeviceArray() { cudaFree(data_); }
-
-  T* at_least(std::size_t count) {
-    if (count > count_) {
-      check(cudaFree(data_));
-      data_ = nullptr;
-      count_ = 0;
-      check(cudaMalloc(&data_, count * sizeof(T)));
-      count_ = count;
-    }
-    return data_;
-  }
-
- private:
-  T* data_ = nullptr;
-  std::size_t count_ = 0;
-};
 
 std::string version(int packed) { return std::to_string(packed / 1000) + "." + std::to_string(packed % 1000 / 10); }
 
@@ -55,10 +23,12 @@ class CudaDevice final : public Device {
     int driver_version = 0;
     check(cudaDriverGetVersion(&driver_version));
     driver = version(driver_version);
-    toolkit = std::to_string(__CUDACC_VER_MAJOR__) + "." + std::to_string(__CUDACC_VER_MINOR__) + "." + std::to_string(__CUDACC_VER_BUILD__);
+    toolkit = std::to_string(__CUDACC_VER_MAJOR__) + "." + std::to_string(__CUDACC_VER_MINOR__) + "." +
+              std::to_string(__CUDACC_VER_BUILD__);
   }
 
-  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes, std::vector<LaneBits>& bits) override {
+  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
+              std::vector<LaneBits>& bits) override {
     bits.resize(cuda_lanes.size());
     if (pairs.empty()) return;
     // Whole thread blocks, so that each writes whole words.
@@ -76,16 +46,19 @@ class CudaDevice final : public Device {
     std::uint64_t* declined = declined_.at_least(words * cuda_lanes.size());
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
       const Lane& lane = *cuda_lanes[l];
-      const DeviceKernels& kernels = lane.target == Target::cuda_fma ? kKernelsFma : kKernelsNofma;
+      const DeviceKernels<LaunchDecide>& kernels = lane.target == Target::cuda_fma ? kDecideFma : kDecideNofma;
       kernels[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](
-          block, reinterpret_cast<std::uint32_t*>(intersects + l * words), reinterpret_cast<std::uint32_t*>(declined + l * words), nullptr);
+          block, reinterpret_cast<std::uint32_t*>(intersects + l * words),
+          reinterpret_cast<std::uint32_t*>(declined + l * words), nullptr);
       check(cudaGetLastError());
     }
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
       bits[l].intersects.resize(words);
       bits[l].declined.resize(words);
-      check(cudaMemcpy(bits[l].intersects.data(), intersects + l * words, words * sizeof(std::uint64_t), cudaMemcpyDeviceToHost));
-      check(cudaMemcpy(bits[l].declined.data(), declined + l * words, words * sizeof(std::uint64_t), cudaMemcpyDeviceToHost));
+      check(cudaMemcpy(bits[l].intersects.data(), intersects + l * words, words * sizeof(std::uint64_t),
+                       cudaMemcpyDeviceToHost));
+      check(cudaMemcpy(bits[l].declined.data(), declined + l * words, words * sizeof(std::uint64_t),
+                       cudaMemcpyDeviceToHost));
     }
   }
 

@@ -24,8 +24,10 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  // Decides the pairs by each lane, in their order. Requires: CUDA lanes.   Throws: std::runtime_error on any CUDA error.
-  virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes, std::vector<LaneBits>& bits) = 0;
+  // Decides the pairs by each lane, in their order. Requires: CUDA lanes.   Throws: std::runtime_error on any CUDA
+  // error.
+  virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
+                      std::vector<LaneBits>& bits) = 0;
 
   std::string name;     // "NVIDIA H100 80GB HBM3"
   std::string driver;   // CUDA version of the driver, "13.0"

@@ -2,11 +2,17 @@
 // Stands in for device.cu where there is no nvcc: the CUDA lanes are listed, and unavailable.
 #include "cuda/device.h"
 
+#include <stdexcept>
+
+#include "cuda/prove.h"
+
 namespace graze {
 
 std::unique_ptr<Device> open_device(std::string& why_not) {
   why_not = "built without CUDA";
   return nullptr;
 }
+
+ProofRecord prove_twin(const ProofOptions&) { throw std::runtime_error("a proof needs a device: built without CUDA"); }
 
 }  // namespace graze

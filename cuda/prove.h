@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The proof that the twins are right on a device. Over all strata, and in every CUDA lane, verdicts and trace hashes of
+// the default build are compared with those of the explicit PTX, in which every contraction is written out and which
+// the driver assembles; and on a sample with the twin, which is generated from that explicit PTX.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace graze {
+
+struct ProofOptions {
+  std::uint64_t pairs = 10'000'000'000;    // a lane, all strata together
+  std::uint64_t twin_pairs = 100'000'000;  // of them, on the CPU too
+  std::uint64_t seed = 1;
+  std::vector<std::string> lanes = {};  // shell patterns; all CUDA lanes when empty
+  bool wrong_rule = false;              // the explicit PTX contracts the right product first: differences must show
+  std::function<void(const std::string& line)> progress = nullptr;  // called after each stratum
+};
+
+// Pairs compared and differences, in verdict or trace hash.
+struct StratumProof {
+  std::string stratum;
+  std::uint64_t pairs = 0, verdict_differences = 0, trace_differences = 0;  // default build, explicit PTX
+  std::uint64_t twin_pairs = 0, twin_verdict_differences = 0, twin_trace_differences = 0;  // default build, twin
+  std::vector<std::uint64_t> examples = {};  // indices of a few pairs that differ
+};
+
+struct LaneProof {
+  std::string lane;
+  std::string hash, trace_hash;  // of the two kernels; see twin_hash
+  std::vector<StratumProof> strata;
+
+  std::uint64_t pairs() const;
+  std::uint64_t differences() const;
+  std::uint64_t twin_pairs() const;
+  std::uint64_t twin_differences() const;
+  bool proven() const { return pairs() > 0 && twin_pairs() > 0 && differences() == 0 && twin_differences() == 0; }
+};
+
+struct ProofRecord {
+  std::string device, driver, toolkit;
+  std::uint64_t seed = 0;
+  double seconds = 0;
+  std::vector<LaneProof> lanes;
+
+  bool proven() const;  // every lane
+};
+
+// Throws: std::runtime_error without a device, and on any CUDA error.
+ProofRecord prove_twin(const ProofOptions& options);
+
+// The record as cuda/proofs keeps it.
+nlohmann::ordered_json to_json(const ProofRecord& record);
+
+}  // namespace graze

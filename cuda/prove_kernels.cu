@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled with -fmad=false: the strata's bits are those of the host only without contraction.
+#include "cuda/prove_kernels.h"
+
+#include "fuzz/strata.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+namespace {
+
+__global__ void generate_pairs(float* coordinates, std::uint32_t count, std::uint64_t seed, Stratum stratum,
+                               std::uint64_t first) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= count) return;
+  const Pair pair = generate(seed, stratum, first + i);
+  const float* values = &pair.a[0].x;
+  for (int c = 0; c < kCoordinates; ++c) coordinates[static_cast<std::size_t>(c) * count + i] = values[c];
+}
+
+__device__ void note(Differences* differences, std::uint64_t place) {
+  const unsigned long long n = atomicAdd(&differences->count, 1ull);
+  if (n < kExamples) differences->places[n] = place;
+}
+
+__global__ void compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
+                             Differences* differences) {
+  const std::uint32_t word = blockIdx.x * blockDim.x + threadIdx.x;
+  if (word * 32 >= count) return;
+  for (std::uint32_t differ = a[word] ^ b[word]; differ != 0; differ &= differ - 1) {
+    const std::uint32_t place = word * 32 + static_cast<std::uint32_t>(__ffs(static_cast<int>(differ)) - 1);
+    if (place < count) note(differences, first + place);
+  }
+}
+
+__global__ void compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
+                               Differences* differences) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count && a[i] != b[i]) note(differences, first + i);
+}
+
+constexpr std::uint32_t kBlock = 256;
+constexpr std::uint32_t blocks(std::uint32_t threads) { return (threads + kBlock - 1) / kBlock; }
+
+}  // namespace
+}  // namespace GRAZE_FP
+
+void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
+                     cudaStream_t stream) {
+  generate_pairs<<<blocks(count), kBlock, 0, stream>>>(coordinates, count, seed, static_cast<Stratum>(stratum), first);
+}
+
+void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
+                         Differences* differences, cudaStream_t stream) {
+  compare_bits<<<blocks((count + 31) / 32), kBlock, 0, stream>>>(a, b, count, first, differences);
+}
+
+void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
+                           Differences* differences, cudaStream_t stream) {
+  compare_hashes<<<blocks(count), kBlock, 0, stream>>>(a, b, count, first, differences);
+}
+
+}  // namespace graze

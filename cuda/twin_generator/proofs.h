@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Proof records (cuda/proofs/*.json, written by `graze prove-twin`) as rows of a C++ table, for twin_evidence.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace graze::twin {
+
+// Writes a row {"hash", "trace hash", "device", "toolkit", pairs}, for each lane without any difference in the records.
+// Throws: PtxError for a file that is no record.
+void write_proofs(std::ostream& out, const std::vector<std::string>& records);
+
+}  // namespace graze::twin

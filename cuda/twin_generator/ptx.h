@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// PTX as the twin generator sees it: kernels of parameters, registers, local memory and instructions.
+// Reference: NVIDIA, PTX ISA 9.0. Of its grammar, what nvcc writes for kernels without calls and shared memory.
+#pragma once
+
+#include <iosfwd>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace graze::twin {
+
+// what() is one line: "FILE:LINE: why: INSTRUCTION".
+struct PtxError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct Place {
+  int file = 0;  // number in Module::files; 0 when unknown
+  int line = 0;
+  int column = 0;
+  friend bool operator==(const Place&, const Place&) = default;
+};
+
+// Where an instruction comes from: its source line, and the line into which that was inlined (file 0: into none).
+// PTX does not say without doubt what lies further out.
+struct Source {
+  Place at;
+  Place from;
+  friend bool operator==(const Source&, const Source&) = default;
+};
+
+// A label (no operation), or an instruction.
+struct Instruction {
+  std::string label = {};
+  std::string guard = {};  // "%p3", or empty
+  bool guard_negated = false;
+  std::vector<std::string> op = {};        // "fma", "rn", "f32"
+  std::vector<std::string> operands = {};  // destination first; "[%rd1+4]" and "{%r1,%r2}" are one operand each
+  int line = 0;                            // in the PTX file
+  Source source = {};
+  int site = -1;  // of a contraction, in Contracted::sites
+
+  bool is_label() const { return op.empty(); }
+  bool has(std::string_view modifier) const;
+};
+
+// An instruction as PTX spells it, without the semicolon.
+std::string text(const Instruction& instruction);
+
+struct Parameter {
+  std::string declaration;  // ".param .align 8 .b8 NAME[16]"
+  std::string name;
+};
+
+struct Kernel {
+  std::string name;
+  int line = 0;
+  std::vector<Parameter> parameters;
+  std::map<std::string, std::pair<std::string, int>>
+      registers;      // prefix, such as "%f", to type and count: 0 for a single register
+  std::string local;  // name of the local array, or empty
+  int local_align = 0;
+  int local_bytes = 0;
+  std::vector<Instruction> body;
+};
+
+// Type of a register of the kernel ("f32", "pred"), or empty when it has none of that name.
+std::string register_type(const Kernel& kernel, std::string_view name);
+
+struct Module {
+  std::string path;
+  std::string version;  // "9.0"
+  std::string target;   // "sm_75"
+  std::string toolkit;  // "13.0.88", from the comment of nvcc; or empty
+  std::map<int, std::string> files;
+  std::vector<Kernel> kernels;
+};
+
+// Reads PTX. `path` stands for the stream in messages.
+// Throws: PtxError for what this reader does not know; an unknown instruction is the writers' affair.
+Module read_ptx(std::istream& in, const std::string& path);
+
+}  // namespace graze::twin

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// PTX operations on the CPU, one function each: what generated twins are made of. IEEE 754 binary32 and binary64,
+// round to nearest even. Of a NaN neither sign nor payload is replayed.
+// Requires: compiled with -ffp-contract=off, in a namespace GRAZE_FP of its own for each set of instructions.
+// Reference: NVIDIA, PTX ISA 9.0, chapter 9.7.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+
+#include "core/vec3.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+namespace ptx {
+
+using u16 = std::uint16_t;
+using u32 = std::uint32_t;
+using u64 = std::uint64_t;
+using s16 = std::int16_t;
+using s32 = std::int32_t;
+using s64 = std::int64_t;
+using f32 = float;
+using f64 = double;
+
+template <class T>
+using Bits = std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>;
+
+// The register's bits as another type of the same size; integers of other sizes are widened or cut.
+template <class T, class From>
+constexpr T as(From x) {
+  if constexpr (std::is_integral_v<T> && std::is_integral_v<From>) {
+    return static_cast<T>(x);
+  } else {
+    return std::bit_cast<T>(x);
+  }
+}
+
+template <class T>
+T load(u64 address) {
+  T value;
+  std::memcpy(&value, reinterpret_cast<const void*>(address), sizeof value);
+  return value;
+}
+
+template <class T>
+void store(u64 address, T value) {
+  std::memcpy(reinterpret_cast<void*>(address), &value, sizeof value);
+}
+
+// ---- bits of floating-point numbers ----
+
+template <class T>
+constexpr Bits<T> kSign = Bits<T>{1} << (8 * sizeof(T) - 1);
+
+template <class T>
+T neg(T x) {
+  if constexpr (std::is_integral_v<T>)
+    return static_cast<T>(Bits<T>{0} - static_cast<Bits<T>>(x));
+  else
+    return std::bit_cast<T>(std::bit_cast<Bits<T>>(x) ^ kSign<T>);
+}
+
+template <class T>
+T abs(T x) {
+  if constexpr (std::is_integral_v<T>)
+    return x < 0 ? neg(x) : x;
+  else
+    return std::bit_cast<T>(std::bit_cast<Bits<T>>(x) & ~kSign<T>);
+}
+
+// The magnitude of b with the sign of a: PTX has the operands in this order.
+template <class T>
+T copysign(T a, T b) {
+  return std::bit_cast<T>((std::bit_cast<Bits<T>>(a) & kSign<T>) | (std::bit_cast<Bits<T>>(b) & ~kSign<T>));
+}
+
+template <class T>
+bool is_nan(T x) {
+  return x != x;
+}
+
+template <class T>
+bool is_subnormal(T x) {
+  return x != 0 && abs(x) < std::numeric_limits<T>::min();
+}
+
+// .ftz: a subnormal becomes a zero of its sign.
+inline f32 flushed(f32 x) { return is_subnormal(x) ? copysign(x, 0.0f) : x; }
+
+// .sat: [0, 1], and +0 for NaN.
+template <class T>
+T saturated(T x) {
+  return x > 0 ? (x < 1 ? x : T{1}) : T{0};
+}
+
+// ---- arithmetic ----
+
+template <class T>
+T fma(T a, T b, T c) {
+  if constexpr (sizeof(T) == 4)
+    return __builtin_fmaf(a, b, c);
+  else
+    return __builtin_fma(a, b, c);
+}
+
+template <class T>
+T add(T a, T b) {
+  if constexpr (std::is_integral_v<T>)
+    return static_cast<T>(static_cast<u64>(a) + static_cast<u64>(b));
+  else
+    return a + b;
+}
+
+template <class T>
+T sub(T a, T b) {
+  if constexpr (std::is_integral_v<T>)
+    return static_cast<T>(static_cast<u64>(a) - static_cast<u64>(b));
+  else
+    return a - b;
+}
+
+template <class T>
+T mul(T a, T b) {
+  return a * b;
+}
+
+template <class T>
+T div(T a, T b) {
+  return a / b;
+}
+
+// .ftz looks at a result rounded to 24 bits without a least exponent, unlike IEEE arithmetic, which rounds what is
+// below the least normal number to fewer: the largest results that flush would be rounded up to it. (Measured on an
+// H100.) A sum or difference is exact there, so that only products and quotients can tell.
+constexpr f64 kFlushBelow = 0x1p-126 - 0x1p-151;
+
+inline f32 mul_ftz(f32 a, f32 b) {
+  const f64 exact = f64{flushed(a)} * f64{flushed(b)};
+  return abs(exact) < kFlushBelow ? static_cast<f32>(copysign(exact, 0.0)) : flushed(a) * flushed(b);
+}
+
+inline f32 fma_ftz(f32 a, f32 b, f32 c) {
+  const f64 product = f64{flushed(a)} * f64{flushed(b)}, addend = flushed(c);
+  const f64 sum = product + addend, part = sum - product;
+  const f64 rest = (product - (sum - part)) + (addend - part);  // the sum is exactly sum + rest: Knuth's TwoSum
+  const bool flushes = abs(sum) < kFlushBelow || (abs(sum) == kFlushBelow && rest != 0 && (rest < 0) == (sum > 0));
+  return flushes ? static_cast<f32>(copysign(sum, 0.0)) : fma(flushed(a), flushed(b), flushed(c));
+}
+
+// Double precision cannot round a quotient of floats onto the limit: they differ by 2^-49 of it at least.
+inline f32 div_ftz(f32 a, f32 b) {
+  const f64 quotient = f64{flushed(a)} / f64{flushed(b)};
+  return abs(quotient) < kFlushBelow ? static_cast<f32>(copysign(quotient, 0.0)) : flushed(a) / flushed(b);
+}
+
+inline f32 narrow_ftz(f64 x) { return abs(x) < kFlushBelow ? static_cast<f32>(copysign(x, 0.0)) : static_cast<f32>(x); }
+
+template <class T>
+T sqrt(T x) {
+  if constexpr (sizeof(T) == 4)
+    return __builtin_sqrtf(x);
+  else
+    return __builtin_sqrt(x);
+}
+
+// The other operand for a NaN; -0 is less than +0.
+template <class T>
+T min(T a, T b) {
+  if constexpr (std::is_floating_point_v<T>) {
+    if (is_nan(a)) return b;
+    if (is_nan(b)) return a;
+    if (a == b) return std::bit_cast<T>(std::bit_cast<Bits<T>>(a) | std::bit_cast<Bits<T>>(b));
+  }
+  return b < a ? b : a;
+}
+
+template <class T>
+T max(T a, T b) {
+  if constexpr (std::is_floating_point_v<T>) {
+    if (is_nan(a)) return b;
+    if (is_nan(b)) return a;
+    if (a == b) return std::bit_cast<T>(std::bit_cast<Bits<T>>(a) & std::bit_cast<Bits<T>>(b));
+  }
+  return a < b ? b : a;
+}
+
+// .NaN: a NaN if either operand is one.
+template <class T>
+T min_nan(T a, T b) {
+  return is_nan(a) || is_nan(b) ? std::numeric_limits<T>::quiet_NaN() : min(a, b);
+}
+
+template <class T>
+T max_nan(T a, T b) {
+  return is_nan(a) || is_nan(b) ? std::numeric_limits<T>::quiet_NaN() : max(a, b);
+}
+
+// ---- what contracts ----
+
+// A contraction site of a kernel as it runs: one rounding, at every site.
+struct AllFused {
+  template <class T>
+  T operator()(int, T a, T b, T c) const {
+    return fma(a, b, c);
+  }
+  static f32 flushing(int, f32 a, f32 b, f32 c) { return fma_ftz(a, b, c); }
+};
+
+// The same kernel with two roundings at the sites whose bit is not set.
+struct SomeFused {
+  const u64* bits;
+
+  template <class T>
+  T operator()(int site, T a, T b, T c) const {
+    return fused(site) ? fma(a, b, c) : a * b + c;
+  }
+  f32 flushing(int site, f32 a, f32 b, f32 c) const {
+    return fused(site) ? fma_ftz(a, b, c) : flushed(mul_ftz(a, b) + flushed(c));
+  }
+  bool fused(int site) const { return bits[site / 64] >> (site % 64) & 1; }
+};
+
+}  // namespace ptx
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -17,7 +17,7 @@ namespace {
 
 struct CheckOptions {
   std::string file;
-  std::vector<std::string> lanes;
+  LaneOptions lanes;
   bool json = false;
   bool truth_only = false;
 };
@@ -29,12 +29,9 @@ nlohmann::ordered_json number(double x) {
 void check(const CheckOptions& options) {
   const bool from_stdin = options.file == "-";
   std::ifstream file;
-  if (!from_stdin) {
-    file.open(options.file);
-    if (!file) throw std::runtime_error(options.file + ": expected a file of pairs, found none that can be read");
-  }
+  if (!from_stdin) file = open_pairs(options.file);
   Bench bench;
-  if (!options.truth_only) bench = make_bench(options.lanes);
+  if (!options.truth_only) bench = make_bench(options.lanes.globs, options.lanes.executor);
   PairReader reader(from_stdin ? std::cin : file, from_stdin ? "standard input" : options.file);
   std::size_t number_of_pair = 0;
   for (; const auto entry = reader.next(); ++number_of_pair) {
@@ -70,7 +67,7 @@ void add_check(CLI::App& app, int&) {
   command->footer("Example: echo '0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1' | graze check -");
   auto options = std::make_shared<CheckOptions>();
   command->add_option("file", options->file, "File of pairs (18 numbers a line), or - for standard input")->required();
-  command->add_option("--lanes", options->lanes, "Only lanes that match a pattern: GLOB,…")->delimiter(',');
+  add_lane_options(*command, options->lanes);
   command->add_flag("--json", options->json, "One JSON object a line");
   command->add_flag("--truth-only", options->truth_only, "Run just the oracle");
   command->callback([options] { check(*options); });

@@ -72,7 +72,13 @@ TEST_F(Cli, BadPairsGetOneLineAndKeepWhatCameBefore) {
 TEST_F(Cli, WrongUseExitsWithTwo) {
   expect_error("graze", 2, "subcommand");
   expect_error("graze fuzz --pairs many", 2, "--pairs");
-  expect_error("graze fuzz --pairs 0", 2, "--pairs");
+  expect_error("graze nosuch", 2, "found 'nosuch'");
+  expect_error("graze fuzz --pairs 0", 2, "found '0'");
+  expect_error("graze fuzz --pairs -5", 2, "found '-5'");
+  expect_error("graze fuzz --seed 99999999999999999999999", 2, "expected a whole number");
+  expect_error("graze fuzz --threads -1", 2, "from 0 to 4096");
+  expect_error("graze fuzz --executor gpu", 2, "gpu");
+  expect_error("graze repro 'near_*:1:0'", 2, "expected one stratum");
   expect_error("graze fuzz --lanes 'moler_*'", 2, "found 'moler_*'");
   expect_error("graze fuzz --strata 'uniform,nowhere'", 2, "found 'nowhere'");
   expect_error("echo | graze check - --lanes nothing", 2, "found 'nothing'");
@@ -107,7 +113,8 @@ TEST_F(Cli, DatabasesOfOthersAreRefused) {
       "graze fuzz --pairs 20000 --out b > /dev/null; truncate -s 40000 b/campaign.sqlite; graze fuzz --pairs 20000 "
       "--out b",
       1, "b/campaign.sqlite: expected");
-  expect_error("touch file; graze fuzz --pairs 1000 --out file", 1, "file");
+  expect_error("touch file; graze fuzz --pairs 1000 --out file", 2, "file: expected a directory");
+  expect_error("rm b/campaign.sqlite; touch b/summary.json; graze fuzz --pairs 1000 --out b", 2, "not their database");
 }
 
 // A full disk, played by a limit on the size of files: one line, and the same command goes on once there is room.
@@ -152,10 +159,17 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
   const Ran changed = shell("sed 's|/22/|/21/|' c/" + first + " > changed.pairs; graze repro changed.pairs");
   EXPECT_EQ(changed.status, 1);
   EXPECT_NE(changed.out.find("CHANGED"), std::string::npos);
+  // Lanes that do not run now change nothing.
+  const std::string algorithm = Json::parse(contents(shell.folder / "c/summary.json"))["signatures"][0]["key"];
+  const std::string other = algorithm.find("moller") == std::string::npos ? "moller_*" : "separating_*";
+  const Ran others = shell("graze repro c/" + first + " --lanes '" + other + "'");
+  EXPECT_EQ(others.status, 0) << others.out;
+  EXPECT_NE(others.out.find("not compared"), std::string::npos);
+  EXPECT_EQ(shell("echo '0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1 | stratum=x' > s.pairs; graze repro s.pairs").status, 0);
 }
 
 TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
-  for (const std::string verb : {"fuzz", "check", "repro", "lanes", "strata"}) {
+  for (const std::string verb : {"fuzz", "check", "repro", "lanes", "strata"}) {  // prove-twin needs a device
     const Ran help = shell("graze " + verb + " --help");
     EXPECT_EQ(help.status, 0);
     const std::size_t at = help.out.find("Example: ");
@@ -163,6 +177,25 @@ TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
     const std::string example = help.out.substr(at + 9, help.out.find('\n', at) - at - 9);
     EXPECT_EQ(shell("set -o pipefail; jq() { cat; }; " + example).status, 0) << example;
   }
+}
+
+TEST_F(Cli, TheLastOutAndFlagsInAnyOrderCount) {
+  EXPECT_EQ(shell("graze fuzz --pairs 1000 --out a --out b && test -f b/summary.json && test ! -e a").status, 0);
+  EXPECT_EQ(shell(std::string("echo '") + kTouching + "' > p; graze check --lanes '*/f32/cpu' p --json").status, 0);
+}
+
+TEST_F(Cli, TwinsFillTheCudaColumnsWithoutADevice) {
+  const Ran ran = shell("graze fuzz --pairs 4000 --executor twin --lanes '*/f32/*' --json --out c");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const Json summary = Json::parse(ran.out);
+  EXPECT_EQ(summary["complete"], true);
+  EXPECT_EQ(summary["build"]["executors"]["moller_1997/f32/cuda-fma"].get<std::string>().substr(0, 4), "twin");
+  std::uint64_t fused = 0;
+  for (const auto& [stratum, row] : summary["strata"].items()) {
+    EXPECT_EQ(row["lanes"]["moller_1997/f32/cuda-nofma"]["differs_from_cpu"], 0);
+    fused += row["lanes"]["moller_1997/f32/cuda-fma"]["differs_from_cpu"].get<std::uint64_t>();
+  }
+  EXPECT_GT(fused, 0u);
 }
 
 TEST_F(Cli, QuietWhenNotOnATerminal) {

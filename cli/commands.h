@@ -3,12 +3,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "core/lanes.h"
-#include "cuda/device.h"
+#include "fuzz/bench.h"
 
 namespace graze {
 
@@ -18,20 +16,25 @@ void add_repro(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
 
-// The lanes that this machine can run, and what it runs them on.
-struct Bench {
-  std::vector<const Lane*> lanes;  // selected and available, in table order
-  std::unique_ptr<Device> device;  // null when there is none
+void add_prove_twin(CLI::App& app, int& status);
+
+// --lanes and --executor, which every verb that runs lanes has.
+struct LaneOptions {
+  std::vector<std::string> globs;
+  Executor executor = Executor::automatic;
 };
+void add_lane_options(CLI::App& command, LaneOptions& options);
 
-// Throws: UsageError when a pattern matches no lane, or no selected lane is available; std::runtime_error when
-// `require_device` and there is none.
-Bench make_bench(const std::vector<std::string>& globs, bool require_device = false);
+// Patterns, separated by commas, in one argument.
+CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 
-// Why the lane cannot run here: "no device", "built without CUDA", "no FMA instructions"; empty when it can.
-std::string unavailable(const Lane& lane, const Device* device, const std::string& why_no_device);
+// Accepts whole numbers in [least, most] and nothing else: CLI11 alone would wrap negative ones.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
-// Each lane's verdict on one pair.
+// Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
 std::vector<Verdict> decide(const Bench& bench, const Pair& pair);
+
+// One line: what runs the CUDA lanes of the bench. Empty without any.
+std::string cuda_evidence(const Bench& bench);
 
 }  // namespace graze

@@ -23,7 +23,8 @@ struct FuzzOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   std::string out = "campaign";
-  std::vector<std::string> strata, lanes, mesh;
+  std::vector<std::string> strata, mesh;
+  LaneOptions lanes;
   bool json = false;
   bool require_device = false;
 };
@@ -46,12 +47,10 @@ void show(const Progress& progress, const std::vector<Source>& sources) {
 }
 
 int fuzz(const FuzzOptions& options) {
-  if (options.pairs == 0) throw UsageError("--pairs: expected at least 1, found 0");
-  const Bench bench = make_bench(options.lanes, options.require_device);
+  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor, options.require_device);
   Campaign campaign;
   campaign.seed = options.seed;
-  campaign.lanes = bench.lanes;
-  campaign.device = bench.device.get();
+  campaign.bench = &bench;
   campaign.threads = options.threads;
   campaign.directory = options.out;
   // A mesh stands alone unless strata are asked for as well.
@@ -67,23 +66,21 @@ int fuzz(const FuzzOptions& options) {
   }
   campaign.spec = campaign_spec(campaign);
   if (!mesh_spec.is_null()) campaign.spec["mesh"] = mesh_spec;
-  campaign.build = build_info(bench.device.get());
+  campaign.build = build_info(bench);
 
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   const bool on_terminal = isatty(STDERR_FILENO);
-  bool finished = false;
   const Json summary = run_campaign(campaign, stop_requested, [&](const Progress& progress) {
-    finished = progress.done == progress.total;
     if (on_terminal) show(progress, campaign.sources);
   });
   if (on_terminal) fmt::print(stderr, "\r\033[K");
-  if (stop_requested && !finished) {
+  write_whole(campaign.directory / "margins.svg", margin_figure(summary));
+  if (!summary["complete"]) {
     fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
     return 130;
   }
-  write_whole(campaign.directory / "margins.svg", margin_figure(summary));
   if (options.json) {
     std::cout << summary.dump(1) << '\n';
     return 0;
@@ -105,18 +102,27 @@ void add_fuzz(CLI::App& app, int& status) {
       app.add_subcommand("fuzz", "Run a campaign, or go on with one: strata through all lanes and the oracle");
   command->footer("Example: graze fuzz --pairs 1000000 --seed 1 --strata 'near_*,coplanar_*' --out campaign");
   auto options = std::make_shared<FuzzOptions>();
-  command->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata")->capture_default_str();
-  command->add_option("--seed", options->seed, "Seed of all strata")->capture_default_str();
-  command->add_option("--threads", options->threads, "Threads; 0 for one a core; results do not depend on it")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")
+  // 2^53: whole in every reader of JSON.
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 53;
+  command
+      ->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata; a mesh takes all of its own")
+      ->check(whole_number(1, kMost))
       ->capture_default_str();
-  command->add_option("--strata", options->strata, "Only strata that match a pattern: GLOB,…")->delimiter(',');
-  command->add_option("--lanes", options->lanes, "Only lanes that match a pattern: GLOB,…")->delimiter(',');
+  command->add_option("--seed", options->seed, "Seed of all strata")
+      ->check(whole_number(0, kMost))
+      ->capture_default_str();
+  command->add_option("--threads", options->threads, "Threads; 0 for one a core; results do not depend on it")
+      ->check(whole_number(0, 4096))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")
+      ->take_last()
+      ->capture_default_str();
+  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  add_lane_options(*command, options->lanes);
   command
       ->add_option("--mesh", options->mesh,
-                   "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]")
+                   "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]; alone unless "
+                   "--strata is given too")
       ->expected(1, 2);
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("--require-device", options->require_device, "Fail when there is no CUDA device");

@@ -16,11 +16,10 @@ void print_lanes(bool json) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   const AlgorithmInfo* last = nullptr;
   for (const Lane& lane : lanes()) {
-    const std::string reason = unavailable(lane, device.get(), why_no_device);
-    const std::string status = reason.empty() ? "available" : "unavailable (" + reason + ")";
+    const std::string here = status(lane, device.get(), why_no_device);
     if (json) {
       rows.push_back({{"lane", lane.id},
-                      {"status", status},
+                      {"status", here},
                       {"algorithm", lane.info->id},
                       {"scalar", name(lane.scalar)},
                       {"target", name(lane.target)},
@@ -35,7 +34,7 @@ void print_lanes(bool json) {
                  lane.info->paper, lane.info->coplanar, lane.info->degenerate, lane.info->order);
       last = lane.info;
     }
-    fmt::print("  {:<36} {}\n", lane.id, status);
+    fmt::print("  {:<36} {}\n", lane.id, here);
   }
   if (json) fmt::print("{}\n", rows.dump(1));
 }

@@ -17,13 +17,19 @@ int main(int argc, char** argv) {
   graze::add_repro(app, status);
   graze::add_lanes(app, status);
   graze::add_strata(app, status);
+  graze::add_prove_twin(app, status);
   try {
+    if (argc > 1 && argv[1][0] != '-' &&
+        app.get_subcommands([&](CLI::App* verb) { return verb->check_name(argv[1]); }).empty()) {
+      throw graze::UsageError(std::string("expected a verb (see `graze --help`), found '") + argv[1] + "'");
+    }
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush())
       throw std::runtime_error("standard output: expected room for the output, found none");
     return status;
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    app.exit(help);
+    return std::cout.flush() ? 0 : 1;
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "graze: {} (see `graze --help`)\n", error.what());
     return 2;

@@ -30,17 +30,25 @@ std::vector<Entry> cases_of(const std::string& name) {
   if (first == std::string::npos || first == last || name.find('/') != std::string::npos) return read_pairs(name);
   const std::uint64_t seed = whole_number(std::string_view(name).substr(first + 1, last - first - 1), name);
   const std::uint64_t index = whole_number(std::string_view(name).substr(last + 1), name);
-  return {{stratum_sources(seed, 1, {name.substr(0, first)}).front().pair(index), {}, 0}};
+  const std::vector<Source> sources = stratum_sources(seed, 1, {name.substr(0, first)});
+  if (sources.size() != 1) throw UsageError(name + ": expected one stratum, found a pattern of several");
+  return {{sources.front().pair(index), {}, 0}};
 }
 
-// Whether two signatures are equal, up to lanes that ran only once: every lane that ran then and runs now gives the
-// recorded answer; '_' stands for one that did not run.
-bool same_marks(const std::string& recorded, const std::string& now) {
-  if (recorded.size() != now.size()) return false;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    if (recorded[i] != now[i] && recorded[i] != '_' && now[i] != '_') return false;
+enum class Compared { same, changed, nothing };
+
+// Compares two keys of one algorithm, the marks only of lanes that ran both times ('_' stands for one that did not).
+Compared compare(const std::string& recorded, const std::string& now) {
+  const std::size_t marks = now.find(':');
+  if (recorded.size() != now.size()) return Compared::changed;
+  bool ran_both_times = false;
+  for (std::size_t i = marks + 1; i < now.size(); ++i) {
+    if (recorded[i] == '_' || now[i] == '_') continue;
+    if (recorded[i] != now[i]) return Compared::changed;
+    ran_both_times = true;
   }
-  return true;
+  if (recorded.compare(0, marks, now, 0, marks) != 0) return Compared::changed;
+  return ran_both_times ? Compared::same : Compared::nothing;
 }
 
 // Prints the pair's signatures, and whether the recorded one still holds.   Returns: whether it changed.
@@ -49,31 +57,35 @@ bool compare_signatures(const Entry& entry, const Truth& t, std::span<const Lane
   const std::string* recorded = field(entry, "signature");
   const Shape hulls = shape(entry.pair);
   const Bucket bucket = margin_bucket(entry.pair, t.verdict);
-  bool found = recorded == nullptr;
+  Compared compared = Compared::nothing;
   for_each_algorithm(run, [&](std::size_t first, std::size_t count) {
     const Signature failure =
         signature(t.contact, hulls, bucket, t.verdict, run.subspan(first, count), verdicts.subspan(first, count));
-    if (!failure.wrong()) return;
     const std::string now = key(failure);
-    const bool same = recorded && same_marks(*recorded, now);
-    found = found || same;
-    std::cout << "  signature: " << now << (same ? "  (as recorded)" : "") << '\n';
+    const std::string algorithm = "/" + std::string(run[first]->info->id) + ":";
+    const bool is_recorded = recorded && recorded->find(algorithm) != std::string::npos;
+    if (is_recorded) compared = compare(*recorded, now);
+    if (failure.wrong()) {
+      std::cout << "  signature: " << now << (is_recorded && compared == Compared::same ? "  (as recorded)" : "")
+                << '\n';
+    }
   });
-  if (!found) std::cout << "  CHANGED, recorded: " << *recorded << '\n';
-  return !found;
+  if (!recorded) return false;
+  if (compared == Compared::changed) std::cout << "  CHANGED, recorded: " << *recorded << '\n';
+  if (compared == Compared::nothing) std::cout << "  not compared, its lanes were not run: " << *recorded << '\n';
+  return compared == Compared::changed;
 }
 
-int repro(const std::string& name, const std::vector<std::string>& globs) {
-  const Bench bench = make_bench(globs);
+int repro(const std::string& name, const LaneOptions& lanes) {
+  const Bench bench = make_bench(lanes.globs, lanes.executor);
   const std::vector<Entry> entries = cases_of(name);
   if (entries.empty()) throw std::runtime_error(name + ": expected at least one case, found none");
   bool changed = false;
   for (const Entry& entry : entries) {
     const Truth t = truth(entry.pair);
     const std::vector<Verdict> verdicts = decide(bench, entry.pair);
-    const std::string* stratum = field(entry, "stratum");
-    fmt::print("{}\n",
-               stratum ? fmt::format("{}:{}:{}", *stratum, *field(entry, "seed"), *field(entry, "index")) : name);
+    const std::string *stratum = field(entry, "stratum"), *seed = field(entry, "seed"), *index = field(entry, "index");
+    fmt::print("{}\n", stratum && seed && index ? fmt::format("{}:{}:{}", *stratum, *seed, *index) : name);
     std::fflush(stdout);
     print_pair(std::cout, entry.pair, t, bench.lanes, verdicts);
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, bench.lanes, verdicts) || changed;
@@ -89,9 +101,9 @@ void add_repro(CLI::App& app, int& status) {
       "repro", "Run a stored case again, or the pair named STRATUM:SEED:INDEX; exit 1 when a verdict changed");
   command->footer("Example: graze repro near_edge_edge:1:42");
   auto name = std::make_shared<std::string>();
-  auto lanes = std::make_shared<std::vector<std::string>>();
+  auto lanes = std::make_shared<LaneOptions>();
   command->add_option("case", *name, "A file of a campaign's cases/, or STRATUM:SEED:INDEX")->required();
-  command->add_option("--lanes", *lanes, "Only lanes that match a pattern: GLOB,…")->delimiter(',');
+  add_lane_options(*command, *lanes);
   command->callback([name, lanes, &status] { status = repro(*name, *lanes); });
 }
 

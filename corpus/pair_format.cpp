@@ -203,7 +203,7 @@ std::optional<Entry> PairReader::next() {
   return std::nullopt;
 }
 
-std::vector<Entry> read_pairs(const std::filesystem::path& file) {
+std::ifstream open_pairs(const std::filesystem::path& file) {
   std::error_code ignored;
   const std::string name = file.string();
   if (!std::filesystem::exists(file, ignored)) throw FormatError(name + ": expected a file of pairs, found none");
@@ -212,7 +212,12 @@ std::vector<Entry> read_pairs(const std::filesystem::path& file) {
   }
   std::ifstream in(file, std::ios::binary);
   if (!in) throw FormatError(name + ": expected a file of pairs, found one that cannot be opened");
-  PairReader reader(in, name);
+  return in;
+}
+
+std::vector<Entry> read_pairs(const std::filesystem::path& file) {
+  std::ifstream in = open_pairs(file);
+  PairReader reader(in, file.string());
   std::vector<Entry> entries;
   while (std::optional<Entry> entry = reader.next()) entries.push_back(std::move(*entry));
   return entries;

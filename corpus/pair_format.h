@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <iosfwd>
 #include <optional>
 #include <stdexcept>
@@ -45,6 +46,9 @@ class PairReader {
   std::string name_;
   std::size_t line_ = 0;
 };
+
+// Opens a file of pairs.   Throws: FormatError for one that is missing, a folder, or cannot be read.
+std::ifstream open_pairs(const std::filesystem::path& file);
 
 // All entries of a file.   Throws: FormatError, also for a file that is missing or cannot be read.
 std::vector<Entry> read_pairs(const std::filesystem::path& file);

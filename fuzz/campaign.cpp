@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 #include "analysis/signature.h"
 #include "build_info.h"
@@ -29,30 +30,42 @@ struct Batch {
   std::size_t count;
 };
 
-// Round robin over the sources, so that a campaign cut short has seen all of them.
-std::vector<Batch> make_batches(const std::vector<Source>& sources) {
-  std::vector<Batch> batches;
-  bool more = true;
-  for (std::uint64_t first = 0; more; first += kBatchPairs) {
-    more = false;
-    for (std::size_t s = 0; s < sources.size(); ++s) {
-      if (first >= sources[s].pairs) continue;
-      batches.push_back({static_cast<int>(s), first,
-                         static_cast<std::size_t>(std::min<std::uint64_t>(kBatchPairs, sources[s].pairs - first))});
-      more = true;
-    }
-  }
-  return batches;
-}
+// The batches in order, one after the other: round robin over the sources, so that a campaign cut short has seen all
+// of them. Computed as it goes, so that the largest campaign takes no more memory than the smallest.
+class Batches {
+ public:
+  explicit Batches(const std::vector<Source>& sources) : sources_(sources) {}
 
-// Judges one block of a batch: host lanes and oracle here, device lanes from the batch's bits.
+  std::optional<Batch> next() {
+    for (std::size_t passed = 0; passed < sources_.size(); ++passed) {
+      const std::size_t s = source_;
+      const std::uint64_t first = first_;
+      if (++source_ == sources_.size()) {
+        source_ = 0;
+        first_ += kBatchPairs;
+      }
+      if (first < sources_[s].pairs) {
+        const std::uint64_t left = sources_[s].pairs - first;
+        return Batch{static_cast<int>(s), first, static_cast<std::size_t>(std::min<std::uint64_t>(kBatchPairs, left))};
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const std::vector<Source>& sources_;
+  std::size_t source_ = 0;
+  std::uint64_t first_ = 0;
+};
+
+// Judges one block of a batch: host lanes, twins and oracle here, device lanes from the batch's bits.
 class BlockJudge {
  public:
   BlockJudge(const Campaign& campaign, const std::vector<LaneBits>& device_bits)
-      : campaign_(campaign), device_bits_(device_bits) {
-    host_bits_.resize(campaign.lanes.size());
-    views_.resize(campaign.lanes.size());
-    verdicts_.resize(campaign.lanes.size());
+      : campaign_(campaign), bench_(*campaign.bench), device_bits_(device_bits) {
+    host_bits_.resize(bench_.lanes.size());
+    views_.resize(bench_.lanes.size());
+    verdicts_.resize(bench_.lanes.size());
   }
 
   void judge(const Batch& batch, std::size_t begin, std::span<const Pair> pairs, BatchResult& result) {
@@ -67,17 +80,22 @@ class BlockJudge {
     result.cgal += pairs.size();
 
     std::size_t next_device = 0;
-    for (std::size_t l = 0; l < campaign_.lanes.size(); ++l) {
-      if (campaign_.lanes[l]->is_cuda()) {
-        const LaneBits& bits = device_bits_[next_device++];
-        views_[l] = {std::span(bits.intersects).subspan(begin / 64, words),
-                     std::span(bits.declined).subspan(begin / 64, words)};
-      } else {
+    for (std::size_t l = 0; l < bench_.lanes.size(); ++l) {
+      if (bench_.on_host[l]) {
         LaneBits& bits = host_bits_[l];
         bits.intersects.resize(words);
         bits.declined.resize(words);
-        campaign_.lanes[l]->decide(pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
+        bench_.on_host[l](pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
         views_[l] = {bits.intersects, bits.declined};
+      }
+      if (!bench_.on_device(l)) continue;
+      const LaneBits& bits = device_bits_[next_device++];
+      const LaneVerdicts twin = views_[l];
+      views_[l] = {std::span(bits.intersects).subspan(begin / 64, words),
+                   std::span(bits.declined).subspan(begin / 64, words)};
+      for (std::size_t i = 0; bench_.on_both(l) && i < pairs.size(); ++i) {
+        if (views_[l].at(i) == twin.at(i)) continue;
+        result.executors_apart[bench_.lanes[l]->id].add(CaseKey{batch.first + begin + i, batch.source});
       }
     }
 
@@ -101,10 +119,10 @@ class BlockJudge {
       for (std::size_t l = 0; l < views_.size(); ++l) verdicts_[l] = views_[l].at(i);
       ++result.disagreements;
       const Shape hulls = shape(pairs[i]);
-      for_each_algorithm(campaign_.lanes, [&](std::size_t first, std::size_t count) {
+      for_each_algorithm(bench_.lanes, [&](std::size_t first, std::size_t count) {
         const Signature failure =
             signature(contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
-                      std::span(campaign_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
+                      std::span(bench_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
         if (failure.wrong()) result.signatures[failure].add(CaseKey{index, batch.source});
       });
     }
@@ -112,6 +130,7 @@ class BlockJudge {
 
  private:
   const Campaign& campaign_;
+  const Bench& bench_;
   const std::vector<LaneBits>& device_bits_;
   Bits truth_;
   std::vector<Bucket> buckets_;
@@ -133,9 +152,9 @@ BatchResult run_batch(const Campaign& campaign, const Batch& batch, const std::v
   });
 
   std::vector<LaneBits> device_bits;
-  if (!cuda_lanes.empty()) campaign.device->decide(pairs, cuda_lanes, device_bits);
+  if (!cuda_lanes.empty()) campaign.bench->device->decide(pairs, cuda_lanes, device_bits);
 
-  const BatchResult empty(Tally(cpu_twins(campaign.lanes)));
+  const BatchResult empty(Tally(cpu_twins(campaign.bench->lanes)));
   tbb::enumerable_thread_specific<BatchResult> results(empty);
   tbb::enumerable_thread_specific<BlockJudge> judges([&] { return BlockJudge(campaign, device_bits); });
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
@@ -156,18 +175,22 @@ Json campaign_spec(const Campaign& campaign) {
     strata.push_back(source.id);
     pairs += source.pairs;
   }
-  for (const Lane* lane : campaign.lanes) lane_ids.push_back(lane->id);
+  for (const Lane* lane : campaign.bench->lanes) lane_ids.push_back(lane->id);
   return {{"seed", campaign.seed}, {"pairs", pairs}, {"strata", strata}, {"lanes", lane_ids}};
 }
 
-Json build_info(const Device* device) {
+Json build_info(const Bench& bench) {
   Json info = {{"version", GRAZE_VERSION},
                {"commit", GRAZE_COMMIT},
                {"compiler", GRAZE_COMPILER},
                {"cuda", nullptr},
                {"device", nullptr}};
   if (*GRAZE_NVCC) info["cuda"] = std::string("nvcc ") + GRAZE_NVCC;
-  if (device) info["device"] = device->name + ", driver " + device->driver;
+  if (bench.device) info["device"] = bench.device->name + ", driver " + bench.device->driver;
+  info["executors"] = Json::object();
+  for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
+    if (bench.lanes[l]->is_cuda()) info["executors"][bench.lanes[l]->id] = bench.evidence(l);
+  }
   return info;
 }
 
@@ -177,31 +200,31 @@ Json run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
   const int threads = campaign.threads > 0 ? campaign.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   std::vector<const Lane*> cuda_lanes;
-  std::copy_if(campaign.lanes.begin(), campaign.lanes.end(), std::back_inserter(cuda_lanes),
-               [](const Lane* lane) { return lane->is_cuda(); });
+  for (std::size_t l = 0; l < campaign.bench->lanes.size(); ++l) {
+    if (campaign.bench->on_device(l)) cuda_lanes.push_back(campaign.bench->lanes[l]);
+  }
 
   Store store(campaign.directory, campaign.spec, campaign.build);
-  const std::vector<Batch> batches = make_batches(campaign.sources);
+  Batches batches(campaign.sources);
   Progress progress;
   progress.disagreements_of_source.resize(campaign.sources.size());
-  for (std::size_t b = 0; b < batches.size(); ++b) {
-    progress.total += batches[b].count;
-    if (b < store.batches_done()) progress.done += batches[b].count;
-  }
+  for (const Source& source : campaign.sources) progress.total += source.pairs;
+  for (std::uint64_t b = 0; b < store.batches_done(); ++b) progress.done += batches.next()->count;
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  while (store.batches_done() < batches.size() && !stop) {
-    const Batch& batch = batches[store.batches_done()];
-    const BatchResult result = run_batch(campaign, batch, cuda_lanes);
-    store.commit(batch.source, result);
-    progress.done += batch.count;
-    progress.done_here += batch.count;
+  while (!stop) {
+    const std::optional<Batch> batch = batches.next();
+    if (!batch) break;
+    const BatchResult result = run_batch(campaign, *batch, cuda_lanes);
+    store.commit(batch->source, result);
+    progress.done += batch->count;
+    progress.done_here += batch->count;
     progress.seconds = seconds();
     progress.signatures = store.signature_count();
     progress.disagreements += result.disagreements;
-    progress.disagreements_of_source[static_cast<std::size_t>(batch.source)] += result.disagreements;
+    progress.disagreements_of_source[static_cast<std::size_t>(batch->source)] += result.disagreements;
     report(progress);
   }
-  const Json summary = write_summary(campaign, store);
+  const Json summary = write_summary(campaign, store, progress.done == progress.total);
   append_timing(campaign.directory, {{"pairs", progress.done_here}, {"seconds", seconds()}, {"threads", threads}});
   return summary;
 }

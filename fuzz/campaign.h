@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes.h"
-#include "cuda/device.h"
+#include "fuzz/bench.h"
 #include "fuzz/source.h"
 #include "fuzz/store.h"
 
@@ -20,9 +19,8 @@ namespace graze {
 struct Campaign {
   std::uint64_t seed = 1;
   std::vector<Source> sources;
-  std::vector<const Lane*> lanes;  // those that run, in table order
-  Device* device = nullptr;        // needed when there are CUDA lanes
-  int threads = 0;                 // 0: one a core
+  const Bench* bench = nullptr;  // the lanes, and what runs them
+  int threads = 0;               // 0: one a core
   std::filesystem::path directory;
   Json spec;  // what makes this campaign another one; see campaign_spec
   Json build;
@@ -39,8 +37,8 @@ struct Progress {
 // {"seed", "pairs", "strata", "lanes"}: recorded with the results and compared when a campaign goes on.
 Json campaign_spec(const Campaign& campaign);
 
-// Compiler, toolkit, device and commit.
-Json build_info(const Device* device);
+// Version, commit, compiler, toolkit, device, and for each CUDA lane what ran it.
+Json build_info(const Bench& bench);
 
 // Runs or goes on with the campaign until done or `stop`, then writes summary.json, timings.json and cases/.
 // Returns: the summary.   Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any case.

@@ -44,13 +44,11 @@ class CampaignTest : public testing::Test {
     Campaign c;
     c.seed = 3;
     c.sources = stratum_sources(c.seed, pairs, {"near_edge_edge", "degenerate"});
-    for (const Lane& lane : lanes()) {
-      if (lane.scalar == Scalar::f32 && !lane.is_cuda() && runs_on_this_cpu(lane)) c.lanes.push_back(&lane);
-    }
+    c.bench = &bench_;
     c.threads = threads;
     c.directory = root_ / name;
     c.spec = campaign_spec(c);
-    c.build = build_info(nullptr);
+    c.build = build_info(bench_);
     return c;
   }
 
@@ -61,6 +59,7 @@ class CampaignTest : public testing::Test {
   }
 
   fs::path root_;
+  Bench bench_ = make_bench({"*/f32/*"}, Executor::twin);
 };
 
 TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {

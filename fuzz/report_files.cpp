@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -49,19 +51,16 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(beside, std::ios::binary);
   out << text;
   out.close();
-  if (!out)
-    throw std::runtime_error(beside.string() + ": expected to write " + std::to_string(text.size()) +
-                             " bytes, found no room");
+  if (!out) throw std::runtime_error(beside.string() + ": expected to write it, found: " + std::strerror(errno));
   std::filesystem::rename(beside, file);
 }
 
-Json write_summary(const Campaign& campaign, const Store& store) {
+Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
   std::vector<std::string> sources, lane_ids;
   for (const Source& source : campaign.sources) sources.push_back(source.id);
-  for (const Lane* lane : campaign.lanes) lane_ids.push_back(lane->id);
+  for (const Lane* lane : campaign.bench->lanes) lane_ids.push_back(lane->id);
   Json results = store.results(sources, lane_ids);
 
-  std::filesystem::create_directories(campaign.directory / "cases");
   const auto by_key = store.signatures();
   std::vector<const std::pair<const std::string, SignatureCount>*> by_count;
   for (const auto& row : by_key) by_count.push_back(&row);
@@ -74,6 +73,7 @@ Json write_summary(const Campaign& campaign, const Store& store) {
     signatures.push_back({{"key", row->first}, {"count", row->second.count}, {"case", file}});
   }
   Json summary = {{"spec", campaign.spec},       {"build", campaign.build},
+                  {"complete", complete},
                   {"strata", results["strata"]}, {"disagreements", results["disagreements"]},
                   {"signatures", signatures},    {"oracle", results["oracle"]}};
   write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");

@@ -8,7 +8,7 @@
 namespace graze {
 
 // Writes summary.json and cases/ from what the store holds.   Returns: the summary.
-Json write_summary(const Campaign& campaign, const Store& store);
+Json write_summary(const Campaign& campaign, const Store& store, bool complete);
 
 // Writes the file beside its place and moves it there.   Throws: std::runtime_error when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text);

@@ -23,7 +23,11 @@ CREATE TABLE kept(signature INTEGER, case_index INTEGER, source INTEGER, PRIMARY
 )";
 
 std::filesystem::path database_file(const std::filesystem::path& directory) {
-  std::filesystem::create_directories(directory);
+  std::error_code error;
+  std::filesystem::create_directories(directory / "cases", error);
+  if (error) {
+    throw UsageError(directory.string() + ": expected a directory that can be written, found: " + error.message());
+  }
   return directory / "campaign.sqlite";
 }
 
@@ -61,6 +65,7 @@ void SignatureCount::add(const SignatureCount& other) {
 void BatchResult::add(const BatchResult& other) {
   tally.add(other.tally);
   for (const auto& [signature, found] : other.signatures) signatures[signature].add(found);
+  for (const auto& [lane, found] : other.executors_apart) executors_apart[lane].add(found);
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;
@@ -68,9 +73,17 @@ void BatchResult::add(const BatchResult& other) {
 
 Store::Store(const std::filesystem::path& directory, const Json& spec, const Json& build)
     : database_(database_file(directory)) {
+  const std::string file = (directory / "campaign.sqlite").string();
+  const std::int64_t application = integer(database_, "PRAGMA application_id");
+  const bool fresh = application == 0 && integer(database_, "SELECT count(*) FROM sqlite_schema") == 0;
+  if (!fresh && application != kApplicationId) {
+    throw std::runtime_error(file + ": expected a Graze campaign database, found another program's");
+  }
+  if (fresh && std::filesystem::exists(directory / "summary.json")) {
+    throw UsageError(directory.string() + ": holds results but not their database; choose another --out");
+  }
   // One process a campaign. A write-ahead log: a killed process loses only the transaction under way.
   database_.execute("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
-  const bool fresh = integer(database_, "SELECT count(*) FROM sqlite_schema") == 0;
   if (fresh) {
     database_.execute("BEGIN IMMEDIATE");
     database_.execute(kSchema);
@@ -83,10 +96,6 @@ Store::Store(const std::filesystem::path& directory, const Json& spec, const Jso
                           .c_str());
     database_.execute("COMMIT");
     return;
-  }
-  const std::string file = (directory / "campaign.sqlite").string();
-  if (integer(database_, "PRAGMA application_id") != kApplicationId) {
-    throw std::runtime_error(file + ": expected a Graze campaign database, found another program's");
   }
   if (const auto format = integer(database_, "PRAGMA user_version"); format != kFormat) {
     throw std::runtime_error(file + ": expected format " + std::to_string(kFormat) + ", found " +
@@ -145,8 +154,8 @@ void Store::commit(int source, const BatchResult& result) {
     Statement trim(database_,
                    "DELETE FROM kept WHERE signature = ?1 AND (case_index, source) NOT IN "
                    "(SELECT case_index, source FROM kept WHERE signature = ?1 ORDER BY case_index, source LIMIT ?2)");
-    for (const auto& [signature, found] : result.signatures) {
-      add_signature(key(signature), found.count).step();
+    const auto add = [&](const std::string& name, const SignatureCount& found) {
+      add_signature(name, found.count).step();
       const auto id = add_signature.integer(0);
       add_signature.run();
       kept(id).step();
@@ -156,7 +165,9 @@ void Store::commit(int source, const BatchResult& result) {
         if (!full || c.index <= largest) keep(id, c.index, c.source).run();
       }
       trim(id, kKeptCases).run();
-    }
+    };
+    for (const auto& [signature, found] : result.signatures) add(key(signature), found);
+    for (const auto& [lane, found] : result.executors_apart) add("executors/" + lane, found);
     Statement(database_, "UPDATE meta SET value = ? WHERE key = 'batches_done'")(std::to_string(batches_done_ + 1))
         .run();
     database_.execute("COMMIT");

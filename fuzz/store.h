@@ -46,9 +46,10 @@ struct BatchResult {
 
   Tally tally;
   std::map<Signature, SignatureCount> signatures;
-  std::uint64_t disagreements = 0;  // pairs on which some lane is wrong
-  std::uint64_t cgal = 0;           // pairs decided by CGAL
-  std::uint64_t gmp = 0;            // pairs confirmed by GMP
+  std::map<std::string, SignatureCount> executors_apart;  // by lane: device and twin differ
+  std::uint64_t disagreements = 0;                        // pairs on which some lane is wrong
+  std::uint64_t cgal = 0;                                 // pairs decided by CGAL
+  std::uint64_t gmp = 0;                                  // pairs confirmed by GMP
 
   void add(const BatchResult& other);
 };

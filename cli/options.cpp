@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <charconv>
+#include <map>
+
+#include "cli/commands.h"
+
+namespace graze {
+
+CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description) {
+  return command.add_option(name, globs, description)->delimiter(',')->allow_extra_args(false)->option_text("GLOB,…");
+}
+
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+  const auto check = [least, most](std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool whole = error == std::errc() && end == text.data() + text.size();
+    if (whole && value >= least && value <= most) return {};
+    return fmt::format("expected a whole number from {} to {}, found '{}'", least, most, text);
+  };
+  return CLI::Validator(check, "");
+}
+
+void add_lane_options(CLI::App& command, LaneOptions& options) {
+  static const std::map<std::string, Executor> names{
+      {"auto", Executor::automatic}, {"device", Executor::device}, {"twin", Executor::twin}, {"both", Executor::both}};
+  add_globs(command, "--lanes", options.globs, "Only lanes that match a pattern");
+  command
+      .add_option(
+          "--executor", options.executor,
+          "What runs the CUDA lanes: auto (the device where there is one, else its twin), device, twin, or both "
+          "(compared)")
+      ->transform(CLI::CheckedTransformer(names))
+      ->option_text("auto|device|twin|both");
+}
+
+std::vector<Verdict> decide(const Bench& bench, const Pair& pair) {
+  std::vector<const Lane*> apart;
+  std::vector<Verdict> verdicts = decide(bench, pair, apart);
+  for (const Lane* lane : apart) fmt::print(stderr, "graze: {}: device and twin differ\n", lane->id);
+  return verdicts;
+}
+
+std::string cuda_evidence(const Bench& bench) {
+  for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
+    if (bench.lanes[l]->is_cuda()) return bench.evidence(l);
+  }
+  return {};
+}
+
+}  // namespace graze

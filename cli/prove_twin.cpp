@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze prove-twin`: on a device, proves that the twins give its verdicts, and writes the record.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cuda/prove.h"
+#include "fuzz/report_files.h"
+#include "reports/terminal.h"
+
+namespace graze {
+namespace {
+
+int prove(const ProofOptions& options, const std::string& out) {
+  const ProofRecord record = prove_twin(options);
+  write_whole(out, to_json(record).dump(1) + "\n");
+  fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", "lane", "explicit PTX", "differences", "twin", "differences");
+  for (const LaneProof& lane : record.lanes) {
+    fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", lane.lane, grouped(lane.pairs()), grouped(lane.differences()),
+               grouped(lane.twin_pairs()), grouped(lane.twin_differences()));
+  }
+  fmt::print("\n{}, driver {}, nvcc {}: {} in {:.0f} s. Wrote {}\n", record.device, record.driver, record.toolkit,
+             record.proven() ? "proven" : "NOT proven", record.seconds, out);
+  return record.proven() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_prove_twin(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "prove-twin",
+      "On a GPU: compare each CUDA lane with its explicit PTX and its twin, bit for bit; exit 1 on any difference");
+  command->footer("Example: graze prove-twin --pairs 10000000000 --out proof.json");
+  auto options = std::make_shared<ProofOptions>();
+  auto out = std::make_shared<std::string>("proof.json");
+  command->add_option("--pairs", options->pairs, "Pairs a lane, all strata together")->capture_default_str();
+  command->add_option("--twin-pairs", options->twin_pairs, "Of them, by the twin too")->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all strata")->capture_default_str();
+  add_globs(*command, "--lanes", options->lanes, "Only lanes that match a pattern");
+  command->add_flag("--wrong-rule", options->wrong_rule, "Contract the wrong product first: the proof must then fail");
+  command->add_option("--out", *out, "File of the record")->capture_default_str();
+  command->callback([options, out, &status] {
+    options->progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+    status = prove(*options, *out);
+  });
+}
+
+}  // namespace graze

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/bench.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/error.h"
+#include "cuda/twin.h"
+
+namespace graze {
+namespace {
+
+DecideBlock twin_of(const Lane& lane) { return twin_block(lane.algorithm, lane.scalar, lane.target); }
+
+std::string twin_evidence_of(const Lane& lane) { return twin_evidence(lane.algorithm, lane.scalar, lane.target); }
+
+}  // namespace
+
+std::string Bench::evidence(std::size_t l) const {
+  const std::string twin = on_host[l] ? twin_evidence_of(*lanes[l]) : "";
+  return !on_device(l) ? twin : twin.empty() ? "device" : "device and " + twin;
+}
+
+std::string status(const Lane& lane, const Device* device, const std::string& why_no_device) {
+  if (!lane.is_cuda()) return runs_on_this_cpu(lane) ? "available" : "unavailable (no FMA instructions)";
+  if (device) return "available (device)";
+  return twin_of(lane) ? "available (" + twin_evidence_of(lane) + ")" : "unavailable (" + why_no_device + ")";
+}
+
+Bench make_bench(const std::vector<std::string>& globs, Executor executor, bool require_device) {
+  for (const std::string& glob : globs) {
+    if (std::none_of(lanes().begin(), lanes().end(), [&](const Lane& lane) { return matches_any({glob}, lane.id); })) {
+      throw UsageError("expected a lane (see `graze lanes`), found '" + glob + "'");
+    }
+  }
+  Bench bench;
+  std::string why_not;
+  if (executor != Executor::twin) bench.device = open_device(why_not);
+  const bool needs_device = require_device || executor == Executor::device || executor == Executor::both;
+  if (needs_device && !bench.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
+  for (const Lane& lane : lanes()) {
+    if (!matches_any(globs, lane.id)) continue;
+    DecideBlock on_host = lane.decide;
+    if (lane.is_cuda() && (!bench.device || executor == Executor::both)) on_host = twin_of(lane);
+    if (lane.is_cuda() ? on_host || bench.device : runs_on_this_cpu(lane)) {
+      bench.lanes.push_back(&lane);
+      bench.on_host.push_back(on_host);
+    } else {
+      why_not = status(lane, bench.device.get(), why_not);
+    }
+  }
+  if (bench.lanes.empty()) throw UsageError("expected a lane that runs here, found only some that are " + why_not);
+  return bench;
+}
+
+std::vector<Verdict> decide(const Bench& bench, const Pair& pair, std::vector<const Lane*>& apart) {
+  apart.clear();
+  const auto verdict = [](std::uint64_t intersects, std::uint64_t declined) {
+    return declined & 1 ? Verdict::declined : intersects & 1 ? Verdict::intersects : Verdict::disjoint;
+  };
+  std::vector<Verdict> verdicts(bench.lanes.size());
+  for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
+    if (!bench.on_host[l]) continue;
+    std::uint64_t intersects = 0, declined = 0;
+    bench.on_host[l](&pair, 1, &intersects, &declined);
+    verdicts[l] = verdict(intersects, declined);
+  }
+  if (!bench.device) return verdicts;
+  std::vector<const Lane*> cuda_lanes;
+  std::copy_if(bench.lanes.begin(), bench.lanes.end(), std::back_inserter(cuda_lanes),
+               [](const Lane* lane) { return lane->is_cuda(); });
+  std::vector<LaneBits> bits;
+  bench.device->decide(std::span(&pair, 1), cuda_lanes, bits);
+  std::size_t next = 0;
+  for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
+    if (!bench.on_device(l)) continue;
+    const Verdict on_device = verdict(bits[next].intersects[0], bits[next].declined[0]);
+    if (bench.on_both(l) && on_device != verdicts[l]) apart.push_back(bench.lanes[l]);
+    verdicts[l] = on_device;
+    ++next;
+  }
+  return verdicts;
+}
+
+}  // namespace graze

@@ -32,6 +32,7 @@ void check(const CheckOptions& options) {
   if (!from_stdin) file = open_pairs(options.file);
   Bench bench;
   if (!options.truth_only) bench = make_bench(options.lanes.globs, options.lanes.executor);
+  const std::string evidence = cuda_evidence(bench);
   PairReader reader(from_stdin ? std::cin : file, from_stdin ? "standard input" : options.file);
   std::size_t number_of_pair = 0;
   for (; const auto entry = reader.next(); ++number_of_pair) {
@@ -46,12 +47,14 @@ void check(const CheckOptions& options) {
                                        {"margin_ulps", number(t.margin_ulps)}}},
                                      {"lanes", nlohmann::ordered_json::object()}};
       for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][bench.lanes[l]->id] = name(verdicts[l]);
+      if (!evidence.empty()) line["cuda"] = evidence;
       fmt::print("{}\n", line.dump());
     } else {
       const std::string* label = field(*entry, "name");
       fmt::print("pair {}, line {}{}\n", number_of_pair, entry->line, label ? ": " + *label : "");
       std::fflush(stdout);
       print_pair(std::cout, entry->pair, t, bench.lanes, verdicts);
+      if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
       std::cout.flush();
     }
   }

@@ -37,6 +37,8 @@ TEST_F(Cli, CheckPrintsOneObjectALine) {
     EXPECT_EQ(object["pair"], count);
     EXPECT_EQ(object["truth"].dump(), R"({"verdict":"intersects","contact":"point","margin":0.0,"margin_ulps":0.0})");
     EXPECT_EQ(object["lanes"]["interval_overlap/f32/cpu"], "intersects");
+    EXPECT_TRUE(object["lanes"].contains("interval_overlap/f64/cuda-fma"));  // without a device by its twin
+    EXPECT_FALSE(object["cuda"].get<std::string>().empty());
   }
   EXPECT_EQ(count, 2);
 }

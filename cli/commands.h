@@ -34,7 +34,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
 std::vector<Verdict> decide(const Bench& bench, const Pair& pair);
 
-// One line: what runs the CUDA lanes of the bench. Empty without any.
+// What runs the CUDA lanes of the bench, in one line: each kind of evidence once. Empty without CUDA lanes.
 std::string cuda_evidence(const Bench& bench);
 
 }  // namespace graze

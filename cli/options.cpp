@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <map>
+#include <set>
 
 #include "cli/commands.h"
 
@@ -44,10 +45,11 @@ std::vector<Verdict> decide(const Bench& bench, const Pair& pair) {
 }
 
 std::string cuda_evidence(const Bench& bench) {
+  std::set<std::string> kinds;
   for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
-    if (bench.lanes[l]->is_cuda()) return bench.evidence(l);
+    if (bench.lanes[l]->is_cuda()) kinds.insert(bench.evidence(l));
   }
-  return {};
+  return fmt::format("{}", fmt::join(kinds, "; "));
 }
 
 }  // namespace graze

@@ -80,6 +80,7 @@ int repro(const std::string& name, const LaneOptions& lanes) {
   const Bench bench = make_bench(lanes.globs, lanes.executor);
   const std::vector<Entry> entries = cases_of(name);
   if (entries.empty()) throw std::runtime_error(name + ": expected at least one case, found none");
+  const std::string evidence = cuda_evidence(bench);
   bool changed = false;
   for (const Entry& entry : entries) {
     const Truth t = truth(entry.pair);
@@ -88,6 +89,7 @@ int repro(const std::string& name, const LaneOptions& lanes) {
     fmt::print("{}\n", stratum && seed && index ? fmt::format("{}:{}:{}", *stratum, *seed, *index) : name);
     std::fflush(stdout);
     print_pair(std::cout, entry.pair, t, bench.lanes, verdicts);
+    if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, bench.lanes, verdicts) || changed;
     std::cout.flush();
   }

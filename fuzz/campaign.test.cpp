@@ -5,12 +5,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <sstream>
 
 #include "core/error.h"
 #include "corpus/pair_format.h"
+#include "cuda/twin.h"
 
 namespace graze {
 namespace {
@@ -125,6 +127,34 @@ TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
   const fs::path file = root_ / "cut" / "campaign.sqlite";
   fs::resize_file(file, fs::file_size(file) / 2);
   EXPECT_THROW(run(campaign("cut", 1, 4000)), std::runtime_error);
+}
+
+// A device that is its twin, but for the eighth pair of every block.
+class WrongOnce final : public Device {
+ public:
+  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
+              std::vector<LaneBits>& bits) override {
+    bits.assign(cuda_lanes.size(), {Bits((pairs.size() + 63) / 64), Bits((pairs.size() + 63) / 64)});
+    for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
+      const Lane& lane = *cuda_lanes[l];
+      twin_block(lane.algorithm, lane.scalar, lane.target)(pairs.data(), pairs.size(), bits[l].intersects.data(),
+                                                           bits[l].declined.data());
+      bits[l].intersects[0] ^= 1u << 7;
+    }
+  }
+};
+
+TEST_F(CampaignTest, ReportsEachDifferenceOfDeviceAndTwin) {
+  bench_ = make_bench({"moller_1997/f32/cuda-fma"}, Executor::twin);
+  bench_.device = std::make_unique<WrongOnce>();
+  const Json summary = run(campaign("apart", 2, 4000));
+  const auto apart = std::find_if(summary["signatures"].begin(), summary["signatures"].end(),
+                                  [](const Json& row) { return row["key"] == "executors/moller_1997/f32/cuda-fma"; });
+  ASSERT_NE(apart, summary["signatures"].end());
+  EXPECT_EQ((*apart)["count"], 2);  // one a stratum
+  const auto cases = read_pairs(root_ / "apart" / (*apart)["case"].get<std::string>());
+  EXPECT_EQ(*field(cases.at(0), "index"), "7");
+  EXPECT_EQ(bench_.evidence(0).substr(0, 15), "device and twin");
 }
 
 TEST(Source, SharesPairsEvenlyAndRefusesUnknownStrata) {

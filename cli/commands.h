@@ -3,7 +3,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "fuzz/bench.h"
@@ -15,7 +17,6 @@ void add_check(CLI::App& app, int& status);
 void add_repro(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
-
 void add_prove_twin(CLI::App& app, int& status);
 
 // --lanes and --executor, which every verb that runs lanes has.
@@ -27,6 +28,9 @@ void add_lane_options(CLI::App& command, LaneOptions& options);
 
 // Patterns, separated by commas, in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
+
+// The whole number that the text spells, without a sign; nothing when it spells none or one too large.
+std::optional<std::uint64_t> parse_whole(std::string_view text);
 
 // Accepts whole numbers in [least, most] and nothing else: CLI11 alone would wrap negative ones.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);

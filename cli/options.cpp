@@ -13,12 +13,17 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
   return command.add_option(name, globs, description)->delimiter(',')->allow_extra_args(false)->option_text("GLOB,…");
 }
 
+std::optional<std::uint64_t> parse_whole(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   const auto check = [least, most](std::string& text) -> std::string {
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = error == std::errc() && end == text.data() + text.size();
-    if (whole && value >= least && value <= most) return {};
+    const std::optional<std::uint64_t> value = parse_whole(text);
+    if (value && *value >= least && *value <= most) return {};
     return fmt::format("expected a whole number from {} to {}, found '{}'", least, most, text);
   };
   return CLI::Validator(check, "");

@@ -2,38 +2,16 @@
 // `graze repro`: a stored case, or a pair named by its three numbers, run again on every lane and on the oracle.
 #include <fmt/format.h>
 
-#include <charconv>
 #include <iostream>
 
 #include "analysis/signature.h"
+#include "cli/cases.h"
 #include "cli/commands.h"
-#include "core/error.h"
-#include "corpus/pair_format.h"
-#include "fuzz/source.h"
 #include "oracle/truth.h"
 #include "reports/terminal.h"
 
 namespace graze {
 namespace {
-
-std::uint64_t whole_number(std::string_view text, const std::string& name) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || text.empty())
-    throw UsageError(name + ": expected a whole number, found '" + std::string(text) + "'");
-  return value;
-}
-
-// STRATUM:SEED:INDEX, or a file of cases.
-std::vector<Entry> cases_of(const std::string& name) {
-  const std::size_t first = name.find(':'), last = name.rfind(':');
-  if (first == std::string::npos || first == last || name.find('/') != std::string::npos) return read_pairs(name);
-  const std::uint64_t seed = whole_number(std::string_view(name).substr(first + 1, last - first - 1), name);
-  const std::uint64_t index = whole_number(std::string_view(name).substr(last + 1), name);
-  const std::vector<Source> sources = stratum_sources(seed, 1, {name.substr(0, first)});
-  if (sources.size() != 1) throw UsageError(name + ": expected one stratum, found a pattern of several");
-  return {{sources.front().pair(index), {}, 0}};
-}
 
 enum class Compared { same, changed, nothing };
 
@@ -78,8 +56,7 @@ bool compare_signatures(const Entry& entry, const Truth& t, std::span<const Lane
 
 int repro(const std::string& name, const LaneOptions& lanes) {
   const Bench bench = make_bench(lanes.globs, lanes.executor);
-  const std::vector<Entry> entries = cases_of(name);
-  if (entries.empty()) throw std::runtime_error(name + ": expected at least one case, found none");
+  const std::vector<Entry> entries = read_cases(name);
   const std::string evidence = cuda_evidence(bench);
   bool changed = false;
   for (const Entry& entry : entries) {

@@ -2,7 +2,6 @@
 #include "fuzz/bench.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "core/error.h"
 #include "cuda/twin.h"
@@ -15,6 +14,14 @@ DecideBlock twin_of(const Lane& lane) { return twin_block(lane.algorithm, lane.s
 std::string twin_evidence_of(const Lane& lane) { return twin_evidence(lane.algorithm, lane.scalar, lane.target); }
 
 }  // namespace
+
+std::vector<const Lane*> Bench::device_lanes() const {
+  std::vector<const Lane*> result;
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    if (on_device(l)) result.push_back(lanes[l]);
+  }
+  return result;
+}
 
 std::string Bench::evidence(std::size_t l) const {
   const std::string twin = on_host[l] ? twin_evidence_of(*lanes[l]) : "";
@@ -66,11 +73,8 @@ std::vector<Verdict> decide(const Bench& bench, const Pair& pair, std::vector<co
     verdicts[l] = verdict(intersects, declined);
   }
   if (!bench.device) return verdicts;
-  std::vector<const Lane*> cuda_lanes;
-  std::copy_if(bench.lanes.begin(), bench.lanes.end(), std::back_inserter(cuda_lanes),
-               [](const Lane* lane) { return lane->is_cuda(); });
   std::vector<LaneBits> bits;
-  bench.device->decide(std::span(&pair, 1), cuda_lanes, bits);
+  bench.device->decide(std::span(&pair, 1), bench.device_lanes(), bits);
   std::size_t next = 0;
   for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
     if (!bench.on_device(l)) continue;

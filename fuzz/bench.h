@@ -20,6 +20,8 @@ struct Bench {
   std::unique_ptr<Device> device;    // null when the CUDA lanes do not run on one
 
   bool on_device(std::size_t l) const { return device && lanes[l]->is_cuda(); }
+  // Those that the device runs, in order.
+  std::vector<const Lane*> device_lanes() const;
   // Whether the lane runs on the device and by its twin, to be compared; the device's verdicts then count.
   bool on_both(std::size_t l) const { return on_device(l) && on_host[l]; }
   // How a CUDA lane's verdicts come about: "device", "twin, proven on …", "twin", "device and twin, …".

@@ -199,10 +199,7 @@ Json run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
   const auto start = std::chrono::steady_clock::now();
   const int threads = campaign.threads > 0 ? campaign.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  std::vector<const Lane*> cuda_lanes;
-  for (std::size_t l = 0; l < campaign.bench->lanes.size(); ++l) {
-    if (campaign.bench->on_device(l)) cuda_lanes.push_back(campaign.bench->lanes[l]);
-  }
+  const std::vector<const Lane*> cuda_lanes = campaign.bench->device_lanes();
 
   Store store(campaign.directory, campaign.spec, campaign.build);
   Batches batches(campaign.sources);

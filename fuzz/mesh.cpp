@@ -17,6 +17,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/fnv1a.h"
+
 namespace graze {
 namespace {
 
@@ -44,17 +46,16 @@ class Silence {
   std::streambuf* buffer_;
 };
 
-// FNV-1a of 64 bits, continued over the bytes of the file (Fowler, Noll and Vo).
-void hash_file(const std::filesystem::path& file, std::uint64_t& hash) {
+// The hash, continued over the bytes of the file.
+std::uint64_t hash_file(const std::filesystem::path& file, std::uint64_t hash) {
   std::ifstream in(file, std::ios::binary);
   if (!in || !std::filesystem::is_regular_file(file)) fail(file, "a mesh file", "none that can be opened");
   char block[65536];
   do {
     in.read(block, sizeof block);
-    for (std::streamsize i = 0; i < in.gcount(); ++i) {
-      hash = (hash ^ static_cast<unsigned char>(block[i])) * 0x100000001b3u;
-    }
+    hash = fnv1a({block, static_cast<std::size_t>(in.gcount())}, hash);
   } while (in);
+  return hash;
 }
 
 // CGAL's PLY reader (5.5) crashes on a property of no element and on coordinates of an integer type, and takes
@@ -150,9 +151,8 @@ Pair MeshPairs::pair(std::size_t index) const {
 
 MeshPairs read_mesh_pairs(const std::filesystem::path& file, const std::optional<std::filesystem::path>& other) {
   MeshPairs result;
-  result.content_hash = 0xcbf29ce484222325u;
-  hash_file(file, result.content_hash);
-  if (other) hash_file(*other, result.content_hash);
+  result.content_hash = hash_file(file, fnv1a(""));
+  if (other) result.content_hash = hash_file(*other, result.content_hash);
   read_triangles(file, result.triangles);
   const std::size_t first_count = result.triangles.size();
   if (other) read_triangles(*other, result.triangles);

@@ -9,18 +9,15 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/fnv1a.h"
 #include "corpus/pair_format.h"
 #include "oracle/truth.h"
 
 namespace graze {
 namespace {
 
-// A name for the signature's file: FNV-1a of the key.
-std::string case_name(const std::string& key) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return fmt::format("cases/{:016x}.pairs", hash);
-}
+// A name for the signature's file.
+std::string case_name(const std::string& key) { return fmt::format("cases/{:016x}.pairs", fnv1a(key)); }
 
 std::string case_text(const Campaign& campaign, const std::string& key, const SignatureCount& found) {
   std::ostringstream out;
@@ -72,10 +69,13 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
     write_whole(campaign.directory / file, case_text(campaign, row->first, row->second));
     signatures.push_back({{"key", row->first}, {"count", row->second.count}, {"case", file}});
   }
-  Json summary = {{"spec", campaign.spec},       {"build", campaign.build},
+  Json summary = {{"spec", campaign.spec},
+                  {"build", campaign.build},
                   {"complete", complete},
-                  {"strata", results["strata"]}, {"disagreements", results["disagreements"]},
-                  {"signatures", signatures},    {"oracle", results["oracle"]}};
+                  {"strata", results["strata"]},
+                  {"disagreements", results["disagreements"]},
+                  {"signatures", signatures},
+                  {"oracle", results["oracle"]}};
   write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");
   return summary;
 }

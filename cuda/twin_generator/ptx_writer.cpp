@@ -6,6 +6,8 @@
 #include <ostream>
 #include <regex>
 
+#include "core/fnv1a.h"
+
 namespace graze::twin {
 namespace {
 
@@ -80,14 +82,14 @@ void write_explicit(std::ostream& out, const Module& module, Rule rule) {
 std::string kernel_hash(const Kernel& kernel, const Contracted& contracted) {
   // Names that tell only where in its module the kernel stands.
   static const std::regex kPlace(R"((\$L__BB|__local_depot)\d+)");
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint64_t hash = fnv1a("");
   for (const Kernel* form : {&kernel, &contracted.kernel}) {
     for (const Instruction& i : form->body) {
       std::string line = std::regex_replace(text(i) + "\n", kPlace, "$1");
       for (auto at = line.find(kernel.name); at != std::string::npos; at = line.find(kernel.name)) {
         line.erase(at, kernel.name.size());
       }
-      for (unsigned char c : line) hash = (hash ^ c) * 0x100000001b3u;
+      hash = fnv1a(line, hash);
     }
   }
   return fmt::format("{:016x}", hash);

@@ -36,12 +36,13 @@ Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict 
 // "point/22/skew/-2^-3/moller_1997:+-__..__": contact, dimensions, coplanar or skew, margin bucket, algorithm, marks.
 std::string key(const Signature& signature);
 
-// Calls visit(first, count) for each run of lanes of one algorithm. Requires: lanes in table order.
+// Calls visit(first, count) for each run of lanes of one algorithm, but for the exact lanes, which have no failures.
+// Requires: lanes in table order.
 template <class Visit>
 void for_each_algorithm(std::span<const Lane* const> lanes, Visit visit) {
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
     for (end = first; end < lanes.size() && lanes[end]->algorithm == lanes[first]->algorithm;) ++end;
-    visit(first, end - first);
+    if (!lanes[first]->is_exact()) visit(first, end - first);
   }
 }
 

@@ -108,14 +108,15 @@ INSTANTIATE_TEST_SUITE_P(Lanes, EveryHostLane, testing::ValuesIn(host_lanes()), 
   return id;
 });
 
-TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndTargets) {
+TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndTargetsAndTheExactLanes) {
   std::set<std::string> ids;
   for (const Lane& lane : lanes()) {
     ids.insert(lane.id);
     EXPECT_EQ(&lanes()[static_cast<std::size_t>(lane.index)], &lane);
     EXPECT_EQ(lane.decide == nullptr, lane.is_cuda()) << lane.id;
   }
-  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount) * 2 * kTargetCount);
+  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount) * 2 * kTargetCount + 2);
+  EXPECT_TRUE(ids.contains("exact/f32/cuda"));
   EXPECT_TRUE(ids.contains("moller_1997/f32/cuda-fma"));
   EXPECT_TRUE(matches_any({"*/f32/*", "x"}, "moller_1997/f32/cpu"));
   EXPECT_FALSE(matches_any({"*/f64/*"}, "moller_1997/f32/cpu"));

@@ -5,10 +5,29 @@
 
 #include <algorithm>
 
+#include "core/exact.h"
 #include "core/lanes_cpu.h"
 
 namespace graze {
 namespace {
+
+constexpr AlgorithmInfo kExactInfo{"exact",
+                                   "Guigue and Devillers 2003, and separating axes, on exact numbers",
+                                   "exact",
+                                   "exact: segments and points",
+                                   "does not depend on it",
+                                   true};
+
+void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  std::fill_n(intersects, (count + 63) / 64, 0);
+  std::fill_n(declined, (count + 63) / 64, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool finite = is_finite(pairs[i]);
+    const bool yes = finite && exact::intersects(&pairs[i].a[0].x, &pairs[i].b[0].x);
+    intersects[i / 64] |= std::uint64_t{yes} << i % 64;
+    declined[i / 64] |= std::uint64_t{!finite} << i % 64;
+  }
+}
 
 template <class... Algorithm>
 std::vector<const AlgorithmInfo*> infos(const std::tuple<Algorithm...>*) {
@@ -33,15 +52,21 @@ std::vector<Lane> make_lanes() {
       }
     }
   }
+  for (Target target : {Target::cpu, Target::cuda}) {
+    table.push_back({static_cast<int>(table.size()), "exact/f32/" + std::string(name(target)), &kExactInfo,
+                     kAlgorithmCount, Scalar::f32, target, target == Target::cpu ? decide_exactly : nullptr});
+  }
   return table;
 }
 
 }  // namespace
 
+bool Lane::is_exact() const { return algorithm == kAlgorithmCount; }
+
 std::string_view name(Scalar scalar) { return scalar == Scalar::f32 ? "f32" : "f64"; }
 
 std::string_view name(Target target) {
-  constexpr std::string_view kNames[] = {"cpu", "cpu-fma", "cuda-nofma", "cuda-fma"};
+  constexpr std::string_view kNames[] = {"cpu", "cpu-fma", "cuda-nofma", "cuda-fma", "cuda"};
   return kNames[static_cast<int>(target)];
 }
 

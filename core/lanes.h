@@ -16,8 +16,9 @@ namespace graze {
 enum class Scalar : std::uint8_t { f32, f64 };
 
 // cpu: no contraction. cpu_fma: the host compiler's contraction. cuda_nofma: -fmad=false. cuda_fma: nvcc's default.
-enum class Target : std::uint8_t { cpu, cpu_fma, cuda_nofma, cuda_fma };
-inline constexpr int kTargetCount = 4;
+// cuda: exact lanes only, whose verdicts do not depend on contraction.
+enum class Target : std::uint8_t { cpu, cpu_fma, cuda_nofma, cuda_fma, cuda };
+inline constexpr int kTargetCount = 4;  // of every published algorithm; exact lanes have cpu and cuda
 
 std::string_view name(Scalar scalar);
 std::string_view name(Target target);
@@ -30,15 +31,16 @@ struct Lane {
   int index;  // place in lanes()
   std::string id;
   const AlgorithmInfo* info;
-  int algorithm;  // place in Algorithms
+  int algorithm;  // place in Algorithms; behind its end for exact lanes
   Scalar scalar;
   Target target;
   DecideBlock decide;  // null for CUDA lanes; see cuda/device.h
 
-  bool is_cuda() const { return target == Target::cuda_nofma || target == Target::cuda_fma; }
+  bool is_cuda() const { return target != Target::cpu && target != Target::cpu_fma; }
+  bool is_exact() const;  // right on every finite pair, and declines the others; see core/exact.h
 };
 
-// All lanes, ordered by algorithm, scalar, target.
+// All lanes, ordered by algorithm, scalar, target; the exact ones last.
 std::span<const Lane> lanes();
 
 // Whether this processor can run the host lane (cpu-fma needs FMA instructions).

@@ -57,7 +57,7 @@ class Prover {
  public:
   explicit Prover(const ProofOptions& options) : options_(options) {
     for (const Lane& lane : lanes()) {
-      if (!lane.is_cuda() || !matches_any(options.lanes, lane.id)) continue;
+      if (!lane.is_cuda() || lane.is_exact() || !matches_any(options.lanes, lane.id)) continue;
       lanes_.push_back(&lane);
       const TwinRow& row = twin_row(lane.algorithm, lane.scalar, lane.target);
       record_.lanes.push_back({lane.id, row.hash, row.trace_hash, std::vector<StratumProof>(kStrataCount)});

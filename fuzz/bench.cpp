@@ -9,9 +9,14 @@
 namespace graze {
 namespace {
 
-DecideBlock twin_of(const Lane& lane) { return twin_block(lane.algorithm, lane.scalar, lane.target); }
+// The lane before the exact CUDA lane is the same source on the CPU.
+DecideBlock twin_of(const Lane& lane) {
+  return lane.is_exact() ? (&lane - 1)->decide : twin_block(lane.algorithm, lane.scalar, lane.target);
+}
 
-std::string twin_evidence_of(const Lane& lane) { return twin_evidence(lane.algorithm, lane.scalar, lane.target); }
+std::string twin_evidence_of(const Lane& lane) {
+  return lane.is_exact() ? "twin, exact" : twin_evidence(lane.algorithm, lane.scalar, lane.target);
+}
 
 }  // namespace
 

@@ -110,13 +110,19 @@ class BlockJudge {
       const Contact contact = gmp_contact(pairs[i]);
       ++result.gmp;
       if ((contact != Contact::none) != intersects) {
-        throw OracleApart(
-            fmt::format("the oracle's two decisions differ on {}:{}:{}: CGAL says {}, GMP says contact {}",
-                        campaign_.sources[static_cast<std::size_t>(batch.source)].id, campaign_.seed, index,
-                        intersects ? "intersects" : "disjoint", name(contact)));
+        throw OracleApart(fmt::format(
+            "the oracle's two decisions differ on {}:{}:{}: CGAL says {}, GMP says contact {}", source_id(batch),
+            campaign_.seed, index, intersects ? "intersects" : "disjoint", name(contact)));
       }
       if (!disagreement) continue;
-      for (std::size_t l = 0; l < views_.size(); ++l) verdicts_[l] = views_[l].at(i);
+      for (std::size_t l = 0; l < views_.size(); ++l) {
+        verdicts_[l] = views_[l].at(i);
+        if (bench_.lanes[l]->is_exact() && (verdicts_[l] == Verdict::intersects) != intersects) {
+          throw OracleApart(fmt::format("{} and the oracle differ on {}:{}:{}: it says {}, the oracle {}",
+                                        bench_.lanes[l]->id, source_id(batch), campaign_.seed, index,
+                                        name(verdicts_[l]), intersects ? "intersects" : "disjoint"));
+        }
+      }
       ++result.disagreements;
       const Shape hulls = shape(pairs[i]);
       for_each_algorithm(bench_.lanes, [&](std::size_t first, std::size_t count) {
@@ -129,6 +135,10 @@ class BlockJudge {
   }
 
  private:
+  const std::string& source_id(const Batch& batch) const {
+    return campaign_.sources[static_cast<std::size_t>(batch.source)].id;
+  }
+
   const Campaign& campaign_;
   const Bench& bench_;
   const std::vector<LaneBits>& device_bits_;

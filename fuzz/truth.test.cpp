@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/tally.h"
+#include "core/exact.h"
 #include "fuzz/strata.h"
 #include "oracle/truth.h"
 
@@ -39,6 +40,23 @@ TEST_P(EveryStratum, TheOraclesTwoDecisionsAgree) {
   // Neighbours in a mesh always share a point; everywhere else both verdicts must occur.
   const bool shared = GetParam().stratum == Stratum::shared_vertex || GetParam().stratum == Stratum::shared_edge;
   EXPECT_EQ(intersecting == 100'000u, shared);
+}
+
+// The exact decision on machine numbers: verdict, contact, shape and the margin's sign are the oracle's.
+TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
+  for (std::uint64_t index = 0; index < 100'000; ++index) {
+    const Pair pair = generate(kSeed + 1, GetParam().stratum, index);
+    const float *a = &pair.a[0].x, *b = &pair.b[0].x;
+    const Verdict verdict = cgal_verdict(pair);
+    const Contact contact = gmp_contact(pair);
+    ASSERT_EQ(exact::intersects(a, b), verdict == Verdict::intersects) << index;
+    const exact::Relation r = exact::relation(a, b);
+    ASSERT_EQ(r.intersects, verdict == Verdict::intersects) << index;
+    ASSERT_EQ(r.contact, static_cast<int>(contact) - 1) << index;
+    ASSERT_EQ((Shape{r.dimension_a, r.dimension_b, r.coplanar}), shape(pair)) << index;
+    const Bucket bucket = margin_bucket(pair, verdict);
+    ASSERT_EQ(r.margin_sign, (bucket > 0) - (bucket < 0)) << index;
+  }
 }
 
 // The margin's certified bucket, sign included, against the exact margin.

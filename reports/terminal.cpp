@@ -90,13 +90,15 @@ void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::sp
   out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n", "", "cpu", "cpu-fma", "cuda-nofma", "cuda-fma");
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
     // One row an algorithm and scalar; '-' where a lane was not run, '!' where it is wrong.
-    std::string cells[kTargetCount] = {"-", "-", "-", "-"};
+    std::string cells[kTargetCount + 1] = {"-", "-", "-", "-", "-"};
     for (end = first; end < lanes.size() && lanes[end]->algorithm == lanes[first]->algorithm &&
                       lanes[end]->scalar == lanes[first]->scalar;
          ++end) {
       const bool wrong = truth.verdict != Verdict::declined && verdicts[end] != truth.verdict;
       cells[static_cast<std::size_t>(lanes[end]->target)] = fmt::format("{}{}", name(verdicts[end]), wrong ? " !" : "");
     }
+    // The exact CUDA lane is the same with contraction and without.
+    if (lanes[first]->is_exact()) cells[2] = cells[3] = cells[kTargetCount];
     out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n",
                        fmt::format("{}/{}", lanes[first]->info->id, name(lanes[first]->scalar)), cells[0], cells[1],
                        cells[2], cells[3]);

@@ -319,6 +319,29 @@ GRAZE_HD typename Numbers::T determinant(const VecOf<Numbers>& o, const VecOf<Nu
   return dot<typename Numbers::T>(cross<typename Numbers::M>(q - o, r - o), s - o);
 }
 
+// Number i of three. On a device without indexing, which would move all three from registers to memory.
+template <class T>
+GRAZE_HD T pick(const T& x, const T& y, const T& z, unsigned i) {
+  return i == 0 ? x : i == 1 ? y : z;
+}
+
+template <class D>
+GRAZE_HD Vec<D> pick(const Vec<D> (&v)[3], unsigned i) {
+#ifdef __CUDA_ARCH__
+  return {pick(v[0].x, v[1].x, v[2].x, i), pick(v[0].y, v[1].y, v[2].y, i), pick(v[0].z, v[1].z, v[2].z, i)};
+#else
+  return v[i];
+#endif
+}
+
+GRAZE_HD inline Vec<float> vertex(const float* v, unsigned i) {
+#ifdef __CUDA_ARCH__
+  return {pick(v[0], v[3], v[6], i), pick(v[1], v[4], v[7], i), pick(v[2], v[5], v[8], i)};
+#else
+  return {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+#endif
+}
+
 // The order of vertices in which each triangle has its lone vertex first, and it lies above the other triangle.
 struct Turn {
   unsigned a[3], b[3];
@@ -355,9 +378,9 @@ GRAZE_HD Answer by_planes(const Triangles<Numbers>& t, const Numbers& numbers = 
   if (of_a.in == 7 || of_b.in == 7) return Answer::unsure;
 
   const Turn turn = lone_vertices(of_a, of_b);
-  const VecOf<Numbers>&a0 = t.a[turn.a[0]], &b0 = t.b[turn.b[0]];
-  const auto first = determinant<Numbers>(t.a[turn.a[1]], b0, a0, t.b[turn.b[1]]);
-  const auto second = determinant<Numbers>(a0, b0, t.a[turn.a[2]], t.b[turn.b[2]]);
+  const VecOf<Numbers> a0 = pick(t.a, turn.a[0]), b0 = pick(t.b, turn.b[0]);
+  const auto first = determinant<Numbers>(pick(t.a, turn.a[1]), b0, a0, pick(t.b, turn.b[1]));
+  const auto second = determinant<Numbers>(a0, b0, pick(t.a, turn.a[2]), pick(t.b, turn.b[2]));
   if (numbers.positive(first) || numbers.positive(second)) return Answer::disjoint;
   if (numbers.negative(first) && numbers.negative(second)) {
     return (of_a.in | of_b.in) == 0 ? Answer::crosses : Answer::intersects;
@@ -390,8 +413,8 @@ GRAZE_HD inline unsigned exceeds(const Two& x, const Two& bound) {
 
 GRAZE_HD inline Two exchanged(const Two& x) { return Two{x[1], x[0]}; }
 
-GRAZE_HD inline Vec<Two> both(const float* l, const float* r) {
-  return {Two{double(l[0]), double(r[0])}, Two{double(l[1]), double(r[1])}, Two{double(l[2]), double(r[2])}};
+GRAZE_HD inline Vec<Two> both(const Vec<float>& l, const Vec<float>& r) {
+  return {Two{double(l.x), double(r.x)}, Two{double(l.y), double(r.y)}, Two{double(l.z), double(r.z)}};
 }
 
 // A bound of the error of every determinant of the pair: each is a sum of six products of a difference in x, one in y
@@ -415,7 +438,8 @@ GRAZE_HD inline double determinant_error(const float* a, const float* b) {
 GRAZE_HD inline Answer by_planes_quickly(const float* a, const float* b) {
   const double error = determinant_error(a, b);
   const Two bound = {error, error};
-  const Vec<Two> v[3] = {both(a, b), both(a + 3, b + 3), both(a + 6, b + 6)};
+  const Vec<Two> v[3] = {both(vertex(a, 0), vertex(b, 0)), both(vertex(a, 1), vertex(b, 1)),
+                         both(vertex(a, 2), vertex(b, 2))};
   const Vec<Two> n = cross<Two>(v[1] - v[0], v[2] - v[0]);
   unsigned above[3], below[3];  // of each vertex: bit 0 of b's, bit 1 of a's
   for (int i = 0; i < 3; ++i) {
@@ -429,8 +453,9 @@ GRAZE_HD inline Answer by_planes_quickly(const float* a, const float* b) {
   const unsigned above_a = above[0] >> 1 | (above[1] >> 1) << 1 | (above[2] >> 1) << 2;
   const unsigned above_b = (above[0] & 1) | (above[1] & 1) << 1 | (above[2] & 1) << 2;
   const Turn turn = lone_vertices({above_a, 7 & ~above_a, 0}, {above_b, 7 & ~above_b, 0});
-  const Vec<Two> o = both(a + 3 * turn.a[1], a + 3 * turn.a[0]), p = both(b + 3 * turn.b[0], b + 3 * turn.b[0]);
-  const Vec<Two> q = both(a + 3 * turn.a[0], a + 3 * turn.a[2]), r = both(b + 3 * turn.b[1], b + 3 * turn.b[2]);
+  const Vec<float> a0 = vertex(a, turn.a[0]), b0 = vertex(b, turn.b[0]);
+  const Vec<Two> o = both(vertex(a, turn.a[1]), a0), p = both(b0, b0), q = both(a0, vertex(a, turn.a[2])),
+                 r = both(vertex(b, turn.b[1]), vertex(b, turn.b[2]));
   const Two height = dot<Two>(cross<Two>(p - o, q - o), r - o);
   if (exceeds(height, bound) != 0) return Answer::disjoint;
   return exceeds(-height, bound) == 3 ? Answer::crosses : Answer::unsure;

@@ -6,12 +6,26 @@
 #include <algorithm>
 
 #include "cuda/device_memory.h"
+#include "cuda/exact_kernels.h"
 #include "cuda/kernels.h"
 
 namespace graze {
 namespace {
 
 std::string version(int packed) { return std::to_string(packed / 1000) + "." + std::to_string(packed % 1000 / 10); }
+
+}  // namespace
+
+void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
+                 std::uint32_t* declined, cudaStream_t stream) {
+  if (lane.is_exact()) return exact.decide(pairs, intersects, declined, nullptr, stream);
+  const DeviceKernels<LaunchDecide>& kernels = lane.target == Target::cuda_fma ? kDecideFma : kDecideNofma;
+  kernels[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pairs, intersects, declined,
+                                                                                           stream);
+  check(cudaGetLastError());
+}
+
+namespace {
 
 class CudaDevice final : public Device {
  public:
@@ -46,11 +60,8 @@ class CudaDevice final : public Device {
     std::uint64_t* declined = declined_.at_least(words * cuda_lanes.size());
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
       const Lane& lane = *cuda_lanes[l];
-      const DeviceKernels<LaunchDecide>& kernels = lane.target == Target::cuda_fma ? kDecideFma : kDecideNofma;
-      kernels[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](
-          block, reinterpret_cast<std::uint32_t*>(intersects + l * words),
-          reinterpret_cast<std::uint32_t*>(declined + l * words), nullptr);
-      check(cudaGetLastError());
+      launch_lane(lane, exact_, block, reinterpret_cast<std::uint32_t*>(intersects + l * words),
+                  reinterpret_cast<std::uint32_t*>(declined + l * words), nullptr);
     }
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
       bits[l].intersects.resize(words);
@@ -65,6 +76,7 @@ class CudaDevice final : public Device {
  private:
   std::vector<float> staging_;
   DeviceArray<float> coordinates_;
+  DeviceExact exact_;
   DeviceArray<std::uint64_t> intersects_, declined_;
 };
 

@@ -48,12 +48,16 @@ void Tally::add(const Tally& other) {
     pairs_[b] += other.pairs_[b];
     intersects_[b] += other.intersects_[b];
   }
-  for (std::size_t i = 0; i < lanes_.size(); ++i) {
-    lanes_[i].false_positive += other.lanes_[i].false_positive;
-    lanes_[i].false_negative += other.lanes_[i].false_negative;
-    lanes_[i].declined += other.lanes_[i].declined;
-    lanes_[i].differs_from_cpu += other.lanes_[i].differs_from_cpu;
-  }
+  for (std::size_t i = 0; i < lanes_.size(); ++i) lanes_[i] += other.lanes_[i];
+}
+
+void Tally::add(Bucket b, std::uint64_t pairs, std::uint64_t intersects) {
+  pairs_[row(b)] += pairs;
+  intersects_[row(b)] += intersects;
+}
+
+void Tally::add(Bucket b, int lane, const LaneCounts& counts) {
+  lanes_[static_cast<std::size_t>(lane) * kBucketCount + row(b)] += counts;
 }
 
 Bits disagreements(const JudgedBlock& block) {

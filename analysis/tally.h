@@ -41,6 +41,13 @@ struct LaneCounts {
   std::uint64_t differs_from_cpu = 0;  // another verdict than the cpu lane of the same algorithm and scalar
 
   bool any() const { return false_positive || false_negative || declined || differs_from_cpu; }
+  LaneCounts& operator+=(const LaneCounts& other) {
+    false_positive += other.false_positive;
+    false_negative += other.false_negative;
+    declined += other.declined;
+    differs_from_cpu += other.differs_from_cpu;
+    return *this;
+  }
 };
 
 // Counts by margin bucket, of pairs and of each lane's errors. Tallies add; order never matters.
@@ -51,6 +58,8 @@ class Tally {
 
   void add(const JudgedBlock& block);
   void add(const Tally& other);
+  void add(Bucket b, std::uint64_t pairs, std::uint64_t intersects);
+  void add(Bucket b, int lane, const LaneCounts& counts);
 
   int lane_count() const { return static_cast<int>(cpu_twin_.size()); }
   std::uint64_t pairs(Bucket b) const { return pairs_[row(b)]; }

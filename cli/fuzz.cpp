@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <csignal>
 #include <iostream>
+#include <map>
 
 #include "cli/commands.h"
 #include "core/error.h"
@@ -25,6 +26,7 @@ struct FuzzOptions {
   std::string out = "campaign";
   std::vector<std::string> strata, mesh;
   LaneOptions lanes;
+  EngineChoice engine = EngineChoice::automatic;
   bool json = false;
   bool require_device = false;
 };
@@ -72,7 +74,8 @@ int fuzz(const FuzzOptions& options) {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   const bool on_terminal = isatty(STDERR_FILENO);
-  const Json summary = run_campaign(campaign, stop_requested, [&](const Progress& progress) {
+  campaign.engines = choose_engines(campaign, options.engine);
+  const auto [summary, oracle] = run_campaign(campaign, stop_requested, [&](const Progress& progress) {
     if (on_terminal) show(progress, campaign.sources);
   });
   if (on_terminal) fmt::print(stderr, "\r\033[K");
@@ -85,7 +88,7 @@ int fuzz(const FuzzOptions& options) {
     std::cout << summary.dump(1) << '\n';
     return 0;
   }
-  print_summary(std::cout, summary);
+  print_summary(std::cout, summary, oracle);
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
   if (!summary["signatures"].empty()) {
@@ -124,6 +127,15 @@ void add_fuzz(CLI::App& app, int& status) {
                    "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]; alone unless "
                    "--strata is given too")
       ->expected(1, 2);
+  static const std::map<std::string, EngineChoice> engines{
+      {"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"gpu", EngineChoice::gpu}};
+  command
+      ->add_option(
+          "--engine", options->engine,
+          "What judges the pairs: cpu (CGAL and GMP), gpu (all on the device, where all lanes are CUDA lanes), "
+          "or auto; results do not depend on it")
+      ->transform(CLI::CheckedTransformer(engines))
+      ->option_text("auto|cpu|gpu");
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("--require-device", options->require_device, "Fail when there is no CUDA device");
   command->callback([options, &status] { status = fuzz(*options); });

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "cuda/engine.h"
 #include "cuda/prove.h"
 
 namespace graze {
@@ -12,6 +13,8 @@ std::unique_ptr<Device> open_device(std::string& why_not) {
   why_not = "built without CUDA";
   return nullptr;
 }
+
+std::vector<std::unique_ptr<Engine>> open_engines(std::span<const Lane* const>) { return {}; }
 
 ProofRecord prove_twin(const ProofOptions&) { throw std::runtime_error("a proof needs a device: built without CUDA"); }
 

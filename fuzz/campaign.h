@@ -7,9 +7,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "cuda/engine.h"
 #include "fuzz/bench.h"
 #include "fuzz/source.h"
 #include "fuzz/store.h"
@@ -19,8 +21,9 @@ namespace graze {
 struct Campaign {
   std::uint64_t seed = 1;
   std::vector<Source> sources;
-  const Bench* bench = nullptr;  // the lanes, and what runs them
-  int threads = 0;               // 0: one a core
+  const Bench* bench = nullptr;                  // the lanes, and what runs them
+  int threads = 0;                               // 0: one a core
+  std::vector<std::unique_ptr<Engine>> engines;  // the devices' engines, which share it; none: the CPU engine
   std::filesystem::path directory;
   Json spec;  // what makes this campaign another one; see campaign_spec
   Json build;
@@ -40,9 +43,22 @@ Json campaign_spec(const Campaign& campaign);
 // Version, commit, compiler, toolkit, device, and for each CUDA lane what ran it.
 Json build_info(const Bench& bench);
 
+// What judges the pairs. automatic: the devices where they can, which is where all lanes are theirs and all sources
+// are strata; else the CPU.
+enum class EngineChoice { automatic, cpu, gpu };
+
+// The engines that take the campaign; none for the CPU engine.
+// Throws: UsageError when the GPU engine is asked for and cannot take it; std::runtime_error without a device.
+std::vector<std::unique_ptr<Engine>> choose_engines(const Campaign& campaign, EngineChoice choice);
+
+struct Outcome {
+  Json summary;
+  Json oracle;  // {"cgal", "gmp", "device", "apart"}: pairs that each exact decision saw; depends on the engine
+};
+
 // Runs or goes on with the campaign until done or `stop`, then writes summary.json, timings.json and cases/.
-// Returns: the summary.   Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any case.
-Json run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
-                  const std::function<void(const Progress&)>& report);
+// Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any case.
+Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
+                     const std::function<void(const Progress&)>& report);
 
 }  // namespace graze

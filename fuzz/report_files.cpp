@@ -74,18 +74,18 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
                   {"complete", complete},
                   {"strata", results["strata"]},
                   {"disagreements", results["disagreements"]},
-                  {"signatures", signatures},
-                  {"oracle", results["oracle"]}};
+                  {"signatures", signatures}};
   write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");
   return summary;
 }
 
-void append_timing(const std::filesystem::path& directory, const Json& run) {
+void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle) {
   const std::filesystem::path file = directory / "timings.json";
   std::ifstream in(file);
   Json timings = in ? Json::parse(in, nullptr, false) : Json();
   if (!timings.is_object() || !timings.contains("runs")) timings = {{"runs", Json::array()}};
   timings["runs"].push_back(run);
+  timings["oracle"] = oracle;
   write_whole(file, timings.dump(1) + "\n");
 }
 

@@ -13,7 +13,7 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete);
 // Writes the file beside its place and moves it there.   Throws: std::runtime_error when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
-// Adds a run to timings.json, the only file that depends on when and where the campaign ran.
-void append_timing(const std::filesystem::path& directory, const Json& run);
+// Adds a run to timings.json, the only file that depends on when, where and by which engine the campaign ran.
+void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle);
 
 }  // namespace graze

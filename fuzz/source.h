@@ -15,6 +15,7 @@ struct Source {
   std::string id;
   std::uint64_t pairs = 0;  // how many of them the campaign takes: indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;
+  int stratum = -1;  // its place in kStrata; -1 for a mesh
 };
 
 // The strata whose names match (all of them for an empty list), `pairs` shared evenly, the first ones taking the rest.

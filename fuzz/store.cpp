@@ -9,10 +9,11 @@ namespace graze {
 namespace {
 
 constexpr int kApplicationId = 0x67726173;  // "gras"
-constexpr int kFormat = 1;
+constexpr int kFormat = 2;
 
 constexpr const char* kSchema = R"(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE done(source INTEGER PRIMARY KEY, pairs INTEGER NOT NULL);
 CREATE TABLE total(name TEXT PRIMARY KEY, count INTEGER NOT NULL) WITHOUT ROWID;
 CREATE TABLE margin(source INTEGER, bucket INTEGER, pairs INTEGER NOT NULL, intersects INTEGER NOT NULL,
   PRIMARY KEY(source, bucket)) WITHOUT ROWID;
@@ -34,6 +35,11 @@ std::filesystem::path database_file(const std::filesystem::path& directory) {
 std::int64_t integer(const Database& database, const char* sql) {
   Statement query(database, sql);
   return query.step() ? query.integer(0) : 0;
+}
+
+std::int64_t total(const Database& database, std::string_view name) {
+  Statement query(database, "SELECT count FROM total WHERE name = ?");
+  return query(name).step() ? query.integer(0) : 0;
 }
 
 // Names the first field in which two specs differ.
@@ -69,6 +75,7 @@ void BatchResult::add(const BatchResult& other) {
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;
+  device += other.device;
 }
 
 Store::Store(const std::filesystem::path& directory, const Json& spec, const Json& build)
@@ -90,7 +97,6 @@ Store::Store(const std::filesystem::path& directory, const Json& spec, const Jso
     Statement put(database_, "INSERT INTO meta VALUES(?, ?)");
     put(std::string_view("spec"), spec.dump()).run();
     put(std::string_view("build"), build.dump()).run();
-    put(std::string_view("batches_done"), std::string_view("0")).run();
     database_.execute(("PRAGMA application_id = " + std::to_string(kApplicationId) +
                        "; PRAGMA user_version = " + std::to_string(kFormat))
                           .c_str());
@@ -117,10 +123,14 @@ Store::Store(const std::filesystem::path& directory, const Json& spec, const Jso
     throw UsageError(directory.string() + ": was begun by another build (expected the same " +
                      first_difference(build, found_build) + "); choose another --out");
   }
-  batches_done_ = std::stoull(meta("batches_done"));
 }
 
-void Store::commit(int source, const BatchResult& result) {
+std::uint64_t Store::done(int source) const {
+  Statement query(database_, "SELECT pairs FROM done WHERE source = ?");
+  return query(source).step() ? static_cast<std::uint64_t>(query.integer(0)) : 0;
+}
+
+void Store::commit(int source, std::uint64_t pairs, const BatchResult& result) {
   database_.execute("BEGIN IMMEDIATE");
   try {
     Statement add_margin(database_,
@@ -145,6 +155,7 @@ void Store::commit(int source, const BatchResult& result) {
     add_total(std::string_view("disagreements"), result.disagreements).run();
     add_total(std::string_view("cgal"), result.cgal).run();
     add_total(std::string_view("gmp"), result.gmp).run();
+    add_total(std::string_view("device"), result.device).run();
 
     Statement add_signature(
         database_,
@@ -168,14 +179,13 @@ void Store::commit(int source, const BatchResult& result) {
     };
     for (const auto& [signature, found] : result.signatures) add(key(signature), found);
     for (const auto& [lane, found] : result.executors_apart) add("executors/" + lane, found);
-    Statement(database_, "UPDATE meta SET value = ? WHERE key = 'batches_done'")(std::to_string(batches_done_ + 1))
+    Statement(database_, "INSERT INTO done VALUES(?1, ?2) ON CONFLICT DO UPDATE SET pairs = pairs + ?2")(source, pairs)
         .run();
     database_.execute("COMMIT");
   } catch (...) {
     sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
     throw;
   }
-  ++batches_done_;
 }
 
 std::map<std::string, SignatureCount> Store::signatures() const {
@@ -226,11 +236,15 @@ Json Store::results(const std::vector<std::string>& sources, const std::vector<s
     const std::int64_t errors = wrong.integer(3) + wrong.integer(4) + wrong.integer(5);
     if (errors) row["margins"][name_of_bucket(static_cast<Bucket>(wrong.integer(2)))]["wrong"][lane] = errors;
   }
-  Statement totals(database_, "SELECT count FROM total WHERE name = ?");
-  const auto total = [&](std::string_view name) { return totals(name).step() ? totals.integer(0) : 0; };
-  // The last is always 0: a campaign that finds the two decisions apart stops before it stores anything.
-  const Json oracle = {{"cgal", total("cgal")}, {"gmp", total("gmp")}, {"apart", 0}};
-  return {{"strata", strata}, {"disagreements", total("disagreements")}, {"oracle", oracle}};
+  return {{"strata", strata}, {"disagreements", total(database_, "disagreements")}};
+}
+
+Json Store::oracle() const {
+  // The last is always 0: a campaign that finds two exact decisions apart stops before it stores anything.
+  return {{"cgal", total(database_, "cgal")},
+          {"gmp", total(database_, "gmp")},
+          {"device", total(database_, "device")},
+          {"apart", 0}};
 }
 
 }  // namespace graze

@@ -50,6 +50,7 @@ struct BatchResult {
   std::uint64_t disagreements = 0;                        // pairs on which some lane is wrong
   std::uint64_t cgal = 0;                                 // pairs decided by CGAL
   std::uint64_t gmp = 0;                                  // pairs confirmed by GMP
+  std::uint64_t device = 0;                               // pairs decided by the exact lane on a device
 
   void add(const BatchResult& other);
 };
@@ -60,12 +61,16 @@ class Store {
   // Throws: UsageError when the directory holds another campaign; std::runtime_error for a foreign or damaged file.
   Store(const std::filesystem::path& directory, const Json& spec, const Json& build);
 
-  std::uint64_t batches_done() const { return batches_done_; }
+  // How many pairs of the source are done: those with indices below.
+  std::uint64_t done(int source) const;
 
-  // One transaction; afterwards batches_done() is one more.
-  void commit(int source, const BatchResult& result);
+  // One transaction: the next `pairs` pairs of the source are done.
+  void commit(int source, std::uint64_t pairs, const BatchResult& result);
 
-  // Of all committed batches: {"strata": …, "disagreements": …, "oracle": …}, in a fixed order.
+  // Of all that is committed: how many pairs each decision saw.
+  Json oracle() const;
+
+  // Of all that is committed: {"strata": …, "disagreements": …}, in a fixed order.
   Json results(const std::vector<std::string>& sources, const std::vector<std::string>& lanes) const;
 
   std::map<std::string, SignatureCount> signatures() const;
@@ -73,7 +78,6 @@ class Store {
 
  private:
   Database database_;
-  std::uint64_t batches_done_ = 0;
 };
 
 }  // namespace graze

@@ -66,16 +66,18 @@ std::string grouped(std::uint64_t number) {
   return digits;
 }
 
-void print_summary(std::ostream& out, const Json& summary) {
+void print_summary(std::ostream& out, const Json& summary, const Json& oracle) {
   print_strata(out, summary);
   print_lanes(out, summary);
   std::uint64_t pairs = 0;
   for (const auto& [stratum, row] : summary["strata"].items()) pairs += row["pairs"].get<std::uint64_t>();
-  out << fmt::format(
-      "\n{} pairs: some lane is wrong on {}, in {} signatures. CGAL decided all of them, GMP confirmed {}; apart: "
-      "{}.\n",
-      grouped(pairs), grouped(summary["disagreements"]), grouped(summary["signatures"].size()),
-      grouped(summary["oracle"]["gmp"]), summary["oracle"]["apart"].dump());
+  const std::uint64_t on_device = oracle["device"];
+  const std::string judged = on_device == 0 ? "CGAL decided all of them"
+                                            : fmt::format("the exact lane on the device decided {}, CGAL {}",
+                                                          grouped(on_device), grouped(oracle["cgal"]));
+  out << fmt::format("\n{} pairs: some lane is wrong on {}, in {} signatures. {}, GMP confirmed {}; apart: {}.\n",
+                     grouped(pairs), grouped(summary["disagreements"]), grouped(summary["signatures"].size()), judged,
+                     grouped(oracle["gmp"]), oracle["apart"].dump());
 }
 
 void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes,

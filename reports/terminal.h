@@ -12,8 +12,9 @@
 
 namespace graze {
 
-// What summary.json holds, as two tables: errors by stratum and algorithm, and by lane.
-void print_summary(std::ostream& out, const nlohmann::ordered_json& summary);
+// What summary.json holds, as two tables: errors by stratum and algorithm, and by lane;
+// and which exact decisions stand behind them (see Outcome).
+void print_summary(std::ostream& out, const nlohmann::ordered_json& summary, const nlohmann::ordered_json& oracle);
 
 // One pair: its coordinates in decimals and hex floats, the truth, and a verdict for each lane, wrong ones marked.
 // Requires: verdicts[i] is what lanes[i] says.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine's kernels: margins, relations, signatures and counts of one block of pairs. Device code only.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include "cuda/engine.h"
+#include "cuda/exact_kernels.h"
+
+namespace graze {
+
+inline constexpr std::int8_t kUndecided = 127;  // a bucket that is not known
+inline constexpr int kMostLanes = 32;
+
+struct LaneWords {
+  const std::uint32_t *intersects, *declined;
+  int algorithm, slot;  // place of the lane's mark in a signature; -1 for exact lanes
+};
+
+struct LaneTable {
+  int count;
+  LaneWords lane[kMostLanes];
+};
+
+// Signatures by open addressing; bits 0: free.
+struct SignatureTable {
+  EngineSignature* rows;
+  std::uint32_t size;  // a power of two
+  std::uint32_t* full;
+};
+
+// Indices of pairs for the host; `count` goes on past `size`.
+struct IndexList {
+  std::uint64_t* indices;
+  std::uint32_t size;
+  std::uint32_t* count;
+};
+
+struct EngineBlock {
+  DevicePairs pairs;
+  std::uint64_t first;  // index of the block's first pair
+  const std::uint32_t* truth;
+  std::uint32_t* wrong;  // pairs on which some lane is
+  std::int8_t* buckets;
+  LaneTable lanes;
+  LeftPairs left, left_wide;  // pairs that need their relation; their places' directions beside
+  SignatureTable signatures;
+  IndexList undecided;
+  unsigned long long* counts;  // see EngineResult
+  unsigned long long* disagreements;
+};
+
+GRAZE_HD constexpr std::size_t engine_counters(int lanes) { return (2 + 4 * static_cast<std::size_t>(lanes)) * kBucketCount; }
+
+// Requires: truth and the lanes' words are written, the lists are empty.
+void launch_engine(const EngineBlock& block, cudaStream_t stream);
+
+}  // namespace graze

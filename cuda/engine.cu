@@ -10,7 +10,7 @@
 namespace graze {
 namespace {
 
-constexpr std::uint32_t kBlockPairs = 1u << 20;  // decided together; a multiple of kThreads, and fits in 26 bits
+constexpr std::uint32_t kBlockPairs = 1u << 20;  // decided together; a multiple of kThreads
 constexpr std::uint32_t kSignatures = 1u << 18;  // a million pairs of all strata make six thousand
 constexpr std::uint32_t kMostUndecided = 1u << 24;
 
@@ -42,10 +42,15 @@ class CudaEngine final : public Engine {
     block.buckets = buckets_.at_least(kBlockPairs);
     block.lanes.count = static_cast<int>(lanes_.size());
     std::uint32_t* words = lane_words_.at_least(2 * kWords * lanes_.size());
+    std::uint32_t* none = none_.at_least(kWords);
+    check(cudaMemset(none, 0, kWords * sizeof *none));
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
       const Lane& lane = *lanes_[l];
-      const int slot =
-          lane.is_exact() ? -1 : static_cast<int>(lane.scalar) * kTargetCount + static_cast<int>(lane.target);
+      if (lane.is_exact()) {  // it is the truth, and declines nothing
+        block.lanes.lane[l] = {block.truth, none, lane.algorithm, -1};
+        continue;
+      }
+      const int slot = static_cast<int>(lane.scalar) * kTargetCount + static_cast<int>(lane.target);
       block.lanes.lane[l] = {words + 2 * kWords * l, words + 2 * kWords * l + kWords, lane.algorithm, slot};
     }
     std::uint32_t* lengths = lengths_.at_least(4);
@@ -58,9 +63,9 @@ class CudaEngine final : public Engine {
     block.disagreements = block.counts + counters();
     check(cudaMemset(lengths, 0, 4 * sizeof *lengths));
     check(cudaMemset(block.counts, 0, (counters() + 1) * sizeof *block.counts));
-    std::vector<EngineSignature> none(kSignatures);
-    for (EngineSignature& row : none) std::fill_n(row.cases, kEngineCases, ~std::uint64_t{0});
-    check(cudaMemcpy(block.signatures.rows, none.data(), none.size() * sizeof none[0], cudaMemcpyHostToDevice));
+    std::vector<EngineSignature> empty(kSignatures);
+    for (EngineSignature& row : empty) std::fill_n(row.cases, kEngineCases, ~std::uint64_t{0});
+    check(cudaMemcpy(block.signatures.rows, empty.data(), empty.size() * sizeof empty[0], cudaMemcpyHostToDevice));
     return block;
   }
 
@@ -71,6 +76,7 @@ class CudaEngine final : public Engine {
     exact_.decide(block.pairs, truth, block.wrong, nullptr, nullptr);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
       const LaneWords& words = block.lanes.lane[l];
+      if (words.intersects == truth) continue;
       launch_lane(*lanes_[l], exact_, block.pairs, const_cast<std::uint32_t*>(words.intersects),
                   const_cast<std::uint32_t*>(words.declined), nullptr);
     }
@@ -111,7 +117,7 @@ class CudaEngine final : public Engine {
   std::vector<const Lane*> lanes_;
   DeviceExact exact_;
   DeviceArray<float> coordinates_, left_;
-  DeviceArray<std::uint32_t> truth_, wrong_, lane_words_, places_, wide_places_, lengths_;
+  DeviceArray<std::uint32_t> truth_, wrong_, none_, lane_words_, places_, wide_places_, lengths_;
   DeviceArray<std::int8_t> buckets_;
   DeviceArray<std::uint64_t> undecided_;
   DeviceArray<unsigned long long> counts_;

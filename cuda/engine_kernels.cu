@@ -4,7 +4,7 @@
 // time.
 #include "cuda/engine_kernels.h"
 
-#include "core/margin.h"
+#include "core/margin_quick.h"
 #include "core/margin_tie.h"
 #include "cuda/kernels.h"
 
@@ -27,13 +27,9 @@ __global__ void mark_wrong(EngineBlock block) {
   block.wrong[word] = wrong;
 }
 
-// The pair's bucket from bounds, or kUndecided and the direction along which it may be proven.
-__device__ std::int8_t bucket_of(const Pair& pair, bool intersects, int& direction) {
-  const Verdict verdict = intersects ? Verdict::intersects : Verdict::disjoint;
-  const MarginBounds bounds = margin_bounds(pair, verdict);
-  Bucket bucket;
-  direction = bounds.direction;
-  return bucket_from_bounds(bounds, verdict, log2_ulp(pair), bucket) ? bucket : kUndecided;
+__device__ Pair pair_of(const float* c) {
+  return {{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}},
+          {{c[9], c[10], c[11]}, {c[12], c[13], c[14]}, {c[15], c[16], c[17]}}};
 }
 
 __global__ void __launch_bounds__(kThreads) measure_margins(EngineBlock block) {
@@ -43,13 +39,12 @@ __global__ void __launch_bounds__(kThreads) measure_margins(EngineBlock block) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
   float c[kCoordinates];
   std::uint32_t mine = ~0u;
-  int direction = 0;
   if (i < block.pairs.count) {
     for (std::uint32_t k = 0; k < kCoordinates; ++k)
       c[k] = block.pairs.coordinates[std::size_t{k} * block.pairs.stride + i];
-    const Pair pair{{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}},
-                    {{c[9], c[10], c[11]}, {c[12], c[13], c[14]}, {c[15], c[16], c[17]}}};
-    const std::int8_t bucket = bucket_of(pair, bit(block.truth, i), direction);
+    const Verdict verdict = bit(block.truth, i) ? Verdict::intersects : Verdict::disjoint;
+    Bucket bucket;
+    if (!quick_bucket(pair_of(c), verdict, bucket)) bucket = kUndecided;
     block.buckets[i] = bucket;
     if (bucket == kUndecided || bit(block.wrong, i)) mine = atomicAdd(&gathered, 1u);
   }
@@ -59,7 +54,7 @@ __global__ void __launch_bounds__(kThreads) measure_margins(EngineBlock block) {
   if (mine == ~0u) return;
   for (std::uint32_t k = 0; k < kCoordinates; ++k)
     block.left.coordinates[std::size_t{k} * block.left.stride + first + mine] = c[k];
-  block.left.places[first + mine] = i | static_cast<std::uint32_t>(direction) << 26;
+  block.left.places[first + mine] = i;
 }
 
 // 1: right; 2: false positive; 3: false negative; 4: declined.
@@ -116,19 +111,24 @@ __device__ void add_signatures(const EngineBlock& block, std::uint32_t i, const 
   }
 }
 
+// The bucket by all means that there are on a device, or kUndecided.
+__device__ Bucket bucket_of(const float* c, const Relation& r) {
+  if (r.margin_sign == 0) return 0;
+  const Pair pair = pair_of(c);
+  const Verdict verdict = r.intersects ? Verdict::intersects : Verdict::disjoint;
+  const MarginBounds bounds = margin_bounds(pair, verdict);
+  const int ulp = log2_ulp(pair);
+  Bucket bucket;
+  if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
+  const int upper = floor_log2(bounds.hi);
+  return !r.intersects && are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
+}
+
 // The relation is known: completes the bucket, or leaves the pair to the host, and adds the signatures.
-__device__ void settle(const EngineBlock& block, const float* c, std::uint32_t i, int direction, const Relation& r) {
-  std::int8_t bucket = block.buckets[i];
+__device__ void settle(const EngineBlock& block, const float* c, std::uint32_t i, const Relation& r) {
+  Bucket bucket = block.buckets[i];
   if (bucket == kUndecided) {
-    if (r.margin_sign == 0) bucket = 0;
-    if (r.margin_sign > 0) {
-      const Pair pair{{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}},
-                      {{c[9], c[10], c[11]}, {c[12], c[13], c[14]}, {c[15], c[16], c[17]}}};
-      const MarginBounds bounds = margin_bounds(pair, Verdict::disjoint);
-      const int upper = floor_log2(bounds.hi), ulp = log2_ulp(pair);
-      if (are_apart_by(c, c + 9, direction, upper) || are_apart_by(c, c + 9, bounds.direction, upper))
-        bucket = make_bucket(1, upper - ulp);
-    }
+    bucket = bucket_of(c, r);
     block.buckets[i] = bucket;
     if (bucket == kUndecided) {
       const std::uint32_t n = atomicAdd(block.undecided.count, 1u);
@@ -139,14 +139,11 @@ __device__ void settle(const EngineBlock& block, const float* c, std::uint32_t i
   if (bit(block.wrong, i)) add_signatures(block, i, r, bucket);
 }
 
-constexpr std::uint32_t kPlace = (1u << 26) - 1;
-
 __global__ void __launch_bounds__(kThreads) relate(EngineBlock block) {
   for (std::uint32_t at = blockIdx.x * kThreads + threadIdx.x; at < *block.left.count; at += gridDim.x * kThreads) {
     float c[kCoordinates];
     for (std::uint32_t k = 0; k < kCoordinates; ++k)
       c[k] = block.left.coordinates[std::size_t{k} * block.left.stride + at];
-    const std::uint32_t tagged = block.left.places[at], i = tagged & kPlace;
     Relation r{true, 1, -1, 2, 2, false};
     if (numbers::by_planes_quickly(c, c + 9) != numbers::Answer::crosses) {
       const numbers::Grid grid = numbers::grid_of(c, c + 9);
@@ -162,7 +159,7 @@ __global__ void __launch_bounds__(kThreads) relate(EngineBlock block) {
         continue;
       }
     }
-    settle(block, c, i, static_cast<int>(tagged >> 26), r);
+    settle(block, c, block.left.places[at], r);
   }
 }
 
@@ -172,9 +169,7 @@ __global__ void __launch_bounds__(kThreads) relate_wide(EngineBlock block) {
     float c[kCoordinates];
     for (std::uint32_t k = 0; k < kCoordinates; ++k)
       c[k] = block.left.coordinates[std::size_t{k} * block.left.stride + at];
-    const std::uint32_t tagged = block.left.places[at];
-    settle(block, c, tagged & kPlace, static_cast<int>(tagged >> 26),
-           by_axes(numbers::triangles<numbers::WideNumbers>(c, c + 9)));
+    settle(block, c, block.left.places[at], by_axes(numbers::triangles<numbers::WideNumbers>(c, c + 9)));
   }
 }
 

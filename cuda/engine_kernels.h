@@ -43,14 +43,17 @@ struct EngineBlock {
   std::uint32_t* wrong;  // pairs on which some lane is
   std::int8_t* buckets;
   LaneTable lanes;
-  LeftPairs left, left_wide;  // pairs that need their relation; their places' directions beside
+  LeftPairs left;       // pairs that need their relation
+  LeftPairs left_wide;  // of them, those that need wide integers: places in `left`
   SignatureTable signatures;
   IndexList undecided;
   unsigned long long* counts;  // see EngineResult
   unsigned long long* disagreements;
 };
 
-GRAZE_HD constexpr std::size_t engine_counters(int lanes) { return (2 + 4 * static_cast<std::size_t>(lanes)) * kBucketCount; }
+GRAZE_HD constexpr std::size_t engine_counters(int lanes) {
+  return (2 + 4 * static_cast<std::size_t>(lanes)) * kBucketCount;
+}
 
 // Requires: truth and the lanes' words are written, the lists are empty.
 void launch_engine(const EngineBlock& block, cudaStream_t stream);

@@ -5,6 +5,8 @@
 
 #include "analysis/tally.h"
 #include "core/exact.h"
+#include "core/margin_quick.h"
+#include "core/margin_tie.h"
 #include "fuzz/strata.h"
 #include "oracle/truth.h"
 
@@ -57,6 +59,33 @@ TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
     const Bucket bucket = margin_bucket(pair, verdict);
     ASSERT_EQ(r.margin_sign, (bucket > 0) - (bucket < 0)) << index;
   }
+}
+
+// The engine's two shortcuts to a bucket: quick bounds, and the proof of a distance in integers.
+TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
+  std::uint64_t quick = 0, undecided = 0;
+  for (std::uint64_t index = 0; index < 20'000; ++index) {
+    const Pair pair = generate(kSeed + 2, GetParam().stratum, index);
+    const float *a = &pair.a[0].x, *b = &pair.b[0].x;
+    const Verdict verdict = exact::intersects(a, b) ? Verdict::intersects : Verdict::disjoint;
+    const Bucket expected = margin_bucket(pair, verdict);
+    Bucket bucket;
+    if (quick_bucket(pair, verdict, bucket)) {
+      ++quick;
+      ASSERT_EQ(bucket, expected) << index;
+    }
+    const MarginBounds bounds = margin_bounds(pair, verdict);
+    const int ulp = log2_ulp(pair), upper = floor_log2(bounds.hi);
+    if (verdict == Verdict::intersects || bucket_from_bounds(bounds, verdict, ulp, bucket)) continue;
+    if (are_apart_by(a, b, bounds.direction, upper))
+      ASSERT_EQ(make_bucket(1, upper - ulp), expected) << index;
+    else
+      ++undecided;
+    EXPECT_FALSE(are_apart_by(a, b, bounds.direction, upper + 1)) << index;
+  }
+  const bool touching = GetParam().stratum == Stratum::shared_vertex || GetParam().stratum == Stratum::shared_edge;
+  if (!touching) EXPECT_GT(quick, 3'000u);
+  if (GetParam().stratum != Stratum::mixed_scale) EXPECT_LT(undecided, 20u);
 }
 
 // The margin's certified bucket, sign included, against the exact margin.

@@ -13,7 +13,7 @@ class Minimize : public testing::Test {
  protected:
   Shell shell{std::string("minimize-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
   static constexpr const char* kFuzz =
-      "graze fuzz --seed 2 --pairs 4000 --executor twin --strata 'near_edge_edge,degenerate,extreme_scale' ";
+      "graze fuzz --seed 2 --pairs 240 --lanes '*/f32/*' --executor twin --strata 'near_edge_edge,degenerate' ";
 
   void expect_error(const std::string& command, int status, const std::string& part) {
     const Ran ran = shell(command);
@@ -53,7 +53,7 @@ TEST_F(Minimize, ACampaignTwiceIsTheSameBytesWhateverTheThreads) {
   expect_done(std::string(kFuzz) + "--out one > /dev/null && cp -r one two && cp -r one fresh");
   expect_done("graze minimize one --threads 1 && graze minimize two --threads 4 && diff -r one/cases two/cases");
   const auto summary = nlohmann::json::parse(contents(shell.folder / "one/summary.json"));
-  ASSERT_GT(summary["signatures"].size(), 100u);
+  ASSERT_GT(summary["signatures"].size(), 50u);
   for (const auto& row : summary["signatures"]) {
     const std::string name = row["case"], file = contents(shell.folder / "one" / name),
                       fresh = contents(shell.folder / "fresh" / name);
@@ -76,10 +76,10 @@ TEST_F(Minimize, KilledItGoesOn) {
 }
 
 TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
-  expect_done("graze fuzz --seed 2 --pairs 2000 --strata near_edge_edge --lanes '*/cpu' --out host > /dev/null");
+  expect_done("graze fuzz --seed 2 --pairs 100 --strata near_edge_edge --lanes '*/cpu' --out host > /dev/null");
   const Ran ran = shell("graze minimize host && grep -h kind=minimised host/cases/*.pairs");
   EXPECT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find(":-____.___"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(":-___.___"), std::string::npos) << ran.out;
   const Ran some = shell("graze minimize host --lanes 'moller_*'");
   EXPECT_EQ(some.status, 0) << some.err;
   EXPECT_NE(some.out.find("no selected lane is wrong on the others"), std::string::npos) << some.out;

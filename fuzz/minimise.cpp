@@ -72,6 +72,7 @@ std::vector<Failure> failures_of(const Bench& bench, const Pair& pair) {
       const Lane& lane = *bench.lanes[l];
       const DecideBlock on_host =
           bench.on_host[l] ? bench.on_host[l] : twin_block(lane.algorithm, lane.scalar, lane.target);
+      if (!on_host) throw std::runtime_error(lane.id + ": expected a twin to minimise with, found none");
       failure.lanes.push_back(&lane);
       failure.on_host.push_back(on_host);
       failure.verdicts.push_back(verdicts[l]);

@@ -22,7 +22,7 @@ void append(Pairs& moved, const Pair& pair) {
   if (is_finite(pair)) moved.push_back(pair);
 }
 
-// Appends the pair with coordinate i replaced by make(i).
+// Appends the pair whose coordinate i is make(i), rounded to float32; what overflows it is not finite.
 template <class Make>
 void append_each(Pairs& moved, Make make) {
   Pair result;

@@ -10,7 +10,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <iostream>
 #include <mutex>
 #include <sstream>
@@ -37,11 +36,6 @@ struct MinimizeOptions {
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 void print(const MinimisedCase& found, const std::string& name) {
   const Truth t = truth(found.result.pair);
   const std::string from = found.from.empty() ? name : found.from;
@@ -62,7 +56,7 @@ void minimize_case(const MinimizeOptions& options) {
   std::vector<Entry> entries = read_cases(options.name);
   std::string text;
   if (entries.front().line != 0) {
-    text = contents(options.name);
+    text = read_whole(options.name);
   } else {
     std::ostringstream out;
     write_header(out);
@@ -91,7 +85,7 @@ Done minimize_file(const Bench& bench, const fs::path& file, bool again) {
   if (!again && has_result(bench, entries)) return {true, nontrivial_magnitudes(entries.front().pair), 0};
   const std::vector<MinimisedCase> results = minimise_cases(bench, entries);
   if (results.empty()) return {};
-  const std::string text = contents(file), after = with_results(text, entries, results);
+  const std::string text = read_whole(file), after = with_results(text, entries, results);
   if (after != text) write_whole(file, after);
   const auto cases = std::count_if(entries.begin(), entries.end(), [](const Entry& e) { return !field(e, "kind"); });
   return {true, nontrivial_magnitudes(results.front().result.pair),
@@ -118,11 +112,10 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
 void minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
-  const Json summary = Json::parse(contents(directory / "summary.json"), nullptr, false);
+  const Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
   const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
                           summary.value("spec", Json()).contains("lanes");
-  if (!is_summary)
-    throw UsageError(options.name + ": expected a campaign's directory with summary.json, found none");
+  if (!is_summary) throw UsageError(options.name + ": expected a campaign's directory with summary.json, found none");
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
   std::vector<fs::path> files;

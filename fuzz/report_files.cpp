@@ -35,12 +35,6 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
   return out.str();
 }
 
-// The file's text; empty where there is none.
-std::string contents(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> truth_fields(const Truth& t) {
@@ -48,6 +42,11 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const Truth& t) {
           {"contact", std::string(name(t.contact))},
           {"margin", fmt::format("{}", t.margin)},
           {"margin_ulps", fmt::format("{}", t.margin_ulps)}};
+}
+
+std::string read_whole(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void write_whole(const std::filesystem::path& file, const std::string& text) {
@@ -74,7 +73,7 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
   for (const auto* row : by_count) {
     const std::string file = case_name(row->first);
     const std::string text = case_text(campaign, row->first, row->second);
-    if (!is_minimised_from(contents(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
+    if (!is_minimised_from(read_whole(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
     signatures.push_back({{"key", row->first}, {"count", row->second.count}, {"case", file}});
   }
   Json summary = {{"spec", campaign.spec},

@@ -17,6 +17,9 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const Truth& truth
 // put into it.   Returns: the summary.
 Json write_summary(const Campaign& campaign, const Store& store, bool complete);
 
+// The file's bytes; empty where there is none.
+std::string read_whole(const std::filesystem::path& file);
+
 // Writes the file beside its place and moves it there.   Throws: std::runtime_error when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 

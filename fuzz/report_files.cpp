@@ -11,7 +11,7 @@
 
 #include "core/fnv1a.h"
 #include "corpus/pair_format.h"
-#include "oracle/truth.h"
+#include "fuzz/minimised_cases.h"
 
 namespace graze {
 namespace {
@@ -26,22 +26,28 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
   for (const CaseKey& c : found.cases) {
     const Source& source = campaign.sources[static_cast<std::size_t>(c.source)];
     const Pair pair = source.pair(c.index);
-    const Truth t = truth(pair);
-    write_entry(out, {pair,
-                      {{"stratum", source.id},
-                       {"seed", std::to_string(campaign.seed)},
-                       {"index", std::to_string(c.index)},
-                       {"truth", std::string(name(t.verdict))},
-                       {"contact", std::string(name(t.contact))},
-                       {"margin", fmt::format("{}", t.margin)},
-                       {"margin_ulps", fmt::format("{}", t.margin_ulps)},
-                       {"signature", key}},
-                      0});
+    Entry entry{
+        pair, {{"stratum", source.id}, {"seed", std::to_string(campaign.seed)}, {"index", std::to_string(c.index)}}, 0};
+    for (auto& part : truth_fields(truth(pair))) entry.fields.push_back(std::move(part));
+    entry.fields.push_back({"signature", key});
+    write_entry(out, entry);
   }
   return out.str();
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::string>> truth_fields(const Truth& t) {
+  return {{"truth", std::string(name(t.verdict))},
+          {"contact", std::string(name(t.contact))},
+          {"margin", fmt::format("{}", t.margin)},
+          {"margin_ulps", fmt::format("{}", t.margin_ulps)}};
+}
+
+std::string read_whole(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
 
 void write_whole(const std::filesystem::path& file, const std::string& text) {
   const std::filesystem::path beside = file.string() + ".part";
@@ -66,7 +72,8 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
   Json signatures = Json::array();
   for (const auto* row : by_count) {
     const std::string file = case_name(row->first);
-    write_whole(campaign.directory / file, case_text(campaign, row->first, row->second));
+    const std::string text = case_text(campaign, row->first, row->second);
+    if (!is_minimised_from(read_whole(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
     signatures.push_back({{"key", row->first}, {"count", row->second.count}, {"case", file}});
   }
   Json summary = {{"spec", campaign.spec},

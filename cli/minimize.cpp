@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze minimize`: shrinks a case, or all cases of a campaign, to pairs that a person can read.
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <iostream>
+#include <mutex>
+#include <sstream>
+
+#include "cli/cases.h"
+#include "cli/commands.h"
+#include "core/error.h"
+#include "fuzz/minimised_cases.h"
+#include "fuzz/report_files.h"
+#include "reports/terminal.h"
+
+namespace graze {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct MinimizeOptions {
+  std::string name, out;
+  int threads = 0;
+  bool again = false;
+  LaneOptions lanes;
+};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void print(const MinimisedCase& found, const std::string& name) {
+  const Truth t = truth(found.result.pair);
+  const std::string from = found.from.empty() ? name : found.from;
+  fmt::print("{}, {}\n", from, found.failure.lanes.front()->info->id);
+  std::fflush(stdout);
+  print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts);
+  std::cout << fmt::format(
+      "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
+      "  1-minimal: none of the {} single moves to a simpler pair keeps the failure\n"
+      "  worst on the way: {} ulps\n",
+      key(signature_of(found.failure, found.result.pair)), nontrivial_magnitudes(found.result.pair),
+      nontrivial_magnitudes(found.original), grouped(found.result.single_moves), found.result.worst_ulps);
+  std::cout.flush();
+}
+
+void minimize_case(const MinimizeOptions& options) {
+  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
+  std::vector<Entry> entries = read_cases(options.name);
+  std::string text;
+  if (entries.front().line != 0) {
+    text = read_whole(options.name);
+  } else {
+    std::ostringstream out;
+    write_header(out);
+    write_entry(out, entries.front());
+    text = out.str();
+    entries.front().line = 2;
+  }
+  const std::vector<MinimisedCase> results = minimise_cases(bench, entries);
+  if (results.empty())
+    throw std::runtime_error(options.name + ": expected a case on which a lane is wrong, found none");
+  for (const MinimisedCase& found : results) print(found, options.name);
+  if (!options.out.empty()) write_whole(options.out, with_results(text, entries, results));
+}
+
+// What became of a signature of a campaign.
+struct Done {
+  bool minimised = false;   // now or before; otherwise no selected lane is wrong on it
+  int magnitudes = 0;       // of the first result
+  double milliseconds = 0;  // a case; 0 where it was done before
+};
+
+Done minimize_file(const Bench& bench, const fs::path& file, bool again) {
+  const auto start = Clock::now();
+  std::vector<Entry> entries = read_pairs(file);
+  if (entries.empty()) throw std::runtime_error(file.string() + ": expected at least one case, found none");
+  if (!again && has_result(bench, entries)) return {true, nontrivial_magnitudes(entries.front().pair), 0};
+  const std::vector<MinimisedCase> results = minimise_cases(bench, entries);
+  if (results.empty()) return {};
+  const std::string text = read_whole(file), after = with_results(text, entries, results);
+  if (after != text) write_whole(file, after);
+  const auto cases = std::count_if(entries.begin(), entries.end(), [](const Entry& e) { return !field(e, "kind"); });
+  return {true, nontrivial_magnitudes(results.front().result.pair),
+          1e3 * seconds_since(start) / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1))};
+}
+
+void print_directory(const std::string& directory, const std::vector<Done>& all) {
+  std::vector<int> magnitudes;
+  for (const Done& done : all) {
+    if (done.minimised) magnitudes.push_back(done.magnitudes);
+  }
+  fmt::print("{} of {} signatures minimised", grouped(magnitudes.size()), grouped(all.size()));
+  fmt::print("{}\n", magnitudes.size() < all.size() ? "; no selected lane is wrong on the others" : "");
+  if (magnitudes.empty()) return;
+  std::sort(magnitudes.begin(), magnitudes.end());
+  fmt::print("magnitudes other than 0 and 1, and how many signatures have so many (median {}):\n ",
+             magnitudes[magnitudes.size() / 2]);
+  for (int n = 0; n <= magnitudes.back(); ++n)
+    fmt::print(" {}: {}{}", n, grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))),
+               n == magnitudes.back() ? "\n" : ",");
+  fmt::print("Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n", directory);
+}
+
+void minimize_directory(MinimizeOptions options) {
+  const fs::path directory = options.name;
+  if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
+  const Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
+  const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
+                          summary.value("spec", Json()).contains("lanes");
+  if (!is_summary) throw UsageError(options.name + ": expected a campaign's directory with summary.json, found none");
+  if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
+  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
+  std::vector<fs::path> files;
+  for (const Json& row : summary["signatures"]) {
+    // Pairs on which a device and its twin differ are kept too; they are nobody's failure.
+    if (!row["key"].get<std::string>().starts_with("executors/"))
+      files.push_back(directory / row["case"].get<std::string>());
+  }
+
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
+  const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const bool on_terminal = isatty(STDERR_FILENO);
+  const auto start = Clock::now();
+  std::vector<Done> all(files.size());
+  std::size_t count = 0;
+  std::mutex mutex;
+  tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+    all[i] = minimize_file(bench, files[i], options.again);
+    const std::lock_guard lock(mutex);
+    if (++count % 16 != 0 || !on_terminal) return;
+    const double left = seconds_since(start) / static_cast<double>(count) * static_cast<double>(files.size() - count);
+    fmt::print(stderr, "\r{:3}%  {} of {} signatures  {:.0f} s left\033[K", 100 * count / files.size(), grouped(count),
+               grouped(files.size()), left);
+  });
+  if (on_terminal) fmt::print(stderr, "\r\033[K");
+  print_directory(options.name, all);
+
+  std::vector<double> times;
+  for (const Done& done : all) {
+    if (done.milliseconds > 0) times.push_back(done.milliseconds);
+  }
+  std::sort(times.begin(), times.end());
+  append_timing(directory, {{"minimised", times.size()},
+                            {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
+                            {"seconds", seconds_since(start)},
+                            {"threads", threads}});
+}
+
+}  // namespace
+
+void add_minimize(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand(
+      "minimize", "Shrink a case, or all of a campaign, to the simplest pair that fails in the same way");
+  command->footer("Example: graze minimize campaign");
+  auto options = std::make_shared<MinimizeOptions>();
+  command
+      ->add_option("case", options->name,
+                   "A campaign's directory, a file of its cases/, or STRATUM:SEED:INDEX; a directory's results go into "
+                   "its cases/")
+      ->required();
+  command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file");
+  command->add_flag("--again", options->again, "Of a directory, also what is minimised already");
+  command->add_option("--threads", options->threads, "Threads; 0 for one a core; results do not depend on it")
+      ->check(whole_number(0, 4096))
+      ->capture_default_str();
+  add_lane_options(*command, options->lanes);
+  command->callback(
+      [options] { fs::is_directory(options->name) ? minimize_directory(*options) : minimize_case(*options); });
+}
+
+}  // namespace graze

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze minimize` as users meet it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze {
+namespace {
+
+class Minimize : public testing::Test {
+ protected:
+  Shell shell{std::string("minimize-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
+  static constexpr const char* kFuzz =
+      "graze fuzz --seed 2 --pairs 240 --lanes '*/f32/*' --executor twin --strata 'near_edge_edge,degenerate' ";
+
+  void expect_error(const std::string& command, int status, const std::string& part) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
+    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  void expect_done(const std::string& command) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
+  }
+};
+
+TEST_F(Minimize, ACaseIsPrintedAndWrittenWithItsOriginal) {
+  const Ran ran = shell("graze minimize exact_contact:1:1 --lanes 'guigue_*/f32/cpu' --out small.pairs");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("exact_contact:1:1, guigue_devillers_2003\n"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("1-minimal: none of the "), std::string::npos) << ran.out;
+  const std::string file = contents(shell.folder / "small.pairs");
+  const std::size_t minimised = file.find("kind=minimised"), worst = file.find("kind=worst"),
+                    original = file.find("index=1");
+  EXPECT_LT(minimised, worst);
+  EXPECT_LT(worst, original);
+  EXPECT_NE(original, std::string::npos);
+  EXPECT_NE(file.find("from=exact_contact:1:1"), std::string::npos);
+  // Both fail as they say.
+  const Ran repro = shell("graze repro small.pairs --lanes 'guigue_*/f32/cpu'");
+  EXPECT_EQ(repro.status, 0) << repro.out;
+  std::size_t as_recorded = 0;
+  for (std::size_t at = 0; (at = repro.out.find("(as recorded)", at)) != std::string::npos; ++at) ++as_recorded;
+  EXPECT_EQ(as_recorded, 2u) << repro.out;
+  // The file as the case: what is in it already is made anew, not minimised further.
+  expect_done("graze minimize small.pairs --lanes 'guigue_*/f32/cpu' --out again.pairs && cmp small.pairs again.pairs");
+}
+
+TEST_F(Minimize, ACampaignTwiceIsTheSameBytesWhateverTheThreads) {
+  expect_done(std::string(kFuzz) + "--out one > /dev/null && cp -r one two && cp -r one fresh");
+  expect_done("graze minimize one --threads 1 && graze minimize two --threads 4 && diff -r one/cases two/cases");
+  const auto summary = nlohmann::json::parse(contents(shell.folder / "one/summary.json"));
+  ASSERT_GT(summary["signatures"].size(), 50u);
+  for (const auto& row : summary["signatures"]) {
+    const std::string name = row["case"], file = contents(shell.folder / "one" / name),
+                      fresh = contents(shell.folder / "fresh" / name);
+    EXPECT_NE(file.find("kind=minimised"), std::string::npos) << name;
+    const std::size_t entries = fresh.find('\n', fresh.find('\n') + 1) + 1;
+    EXPECT_TRUE(file.ends_with(fresh.substr(entries))) << name;  // the originals, as they were
+  }
+  expect_done("graze minimize one && diff -r one/cases two/cases");
+  expect_done("graze minimize one --again && diff -r one/cases two/cases");
+  // The campaign, asked for again, leaves the results where they are.
+  expect_done(std::string(kFuzz) + "--out one > /dev/null && diff -r one/cases two/cases");
+  expect_done(
+      "f=$(grep -om1 'cases/[0-9a-f]*.pairs' one/summary.json); graze repro one/$f --executor twin > /dev/null");
+}
+
+TEST_F(Minimize, KilledItGoesOn) {
+  expect_done(std::string(kFuzz) + "--out whole > /dev/null && cp -r whole parts && graze minimize whole");
+  for (int i = 0; i < 3; ++i) shell("timeout -s KILL 0.3 graze minimize parts");
+  expect_done("graze minimize parts && rm -f parts/cases/*.part && diff -r whole/cases parts/cases");
+}
+
+TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
+  expect_done("graze fuzz --seed 2 --pairs 100 --strata near_edge_edge --lanes '*/cpu' --out host > /dev/null");
+  const Ran ran = shell("graze minimize host && grep -h kind=minimised host/cases/*.pairs");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find(":-___.___"), std::string::npos) << ran.out;
+  const Ran some = shell("graze minimize host --lanes 'moller_*'");
+  EXPECT_EQ(some.status, 0) << some.err;
+  EXPECT_NE(some.out.find("no selected lane is wrong on the others"), std::string::npos) << some.out;
+}
+
+TEST_F(Minimize, BadInputGetsOneLine) {
+  expect_error("graze minimize", 2, "case");
+  expect_error("graze minimize missing.pairs", 1, "missing.pairs: expected");
+  expect_error("graze minimize nowhere:1:2", 2, "found 'nowhere'");
+  expect_error("mkdir empty; graze minimize empty", 2, "empty: expected a campaign's directory");
+  expect_error("mkdir odd; echo '{\"spec\": 1, \"signatures\": 2}' > odd/summary.json; graze minimize odd", 2,
+               "odd: expected a campaign's directory");
+  expect_error("echo '0 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5' > right.pairs; graze minimize right.pairs", 1,
+               "right.pairs: expected a case on which a lane is wrong");
+  expect_error("echo 'nan 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5' > nan.pairs; graze minimize nan.pairs", 1,
+               "nan.pairs: expected a case on which a lane is wrong");
+  expect_error("graze minimize exact_contact:1:1 --lanes nothing", 2, "found 'nothing'");
+  expect_error("graze minimize exact_contact:1:1 --out no/where.pairs > /dev/null", 1, "no/where.pairs");
+}
+
+}  // namespace
+}  // namespace graze

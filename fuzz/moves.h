@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The single moves of the minimiser: what one step may make of a pair. A move promises nothing; the minimiser keeps
+// only what is simpler and fails alike.
+#pragma once
+
+#include <vector>
+
+#include "core/pair.h"
+
+namespace graze {
+
+// The moves come in kinds, in this order:
+//   0..6    a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits or not at
+//           all; then scaled to whole numbers, or to a size of about one, or not
+//   7..12   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of
+//           three vertices
+//   13..15  on one axis: several vertices given one value, 0, 1, -1 or one that occurs there; all translated by one
+//           vertex's value; all scaled by a power of two
+//   16..33  a value, wherever it occurs with either sign, replaced
+//   34..51  one coordinate replaced
+//   52..69  two coordinates, each replaced by 0, 1 or -1
+//   70      two axes or vertices exchanged, the triangles exchanged, an axis mirrored; a multiple of an axis added to
+//           another: once, twice, or so that a vertex's coordinate becomes 0 or the remainder of a division; all scaled
+//           by a power of two
+//   71..76  four vertices to the origin and the ends of the unit vectors, rounded to a lattice of 1 to 24 bits or not
+// A value is replaced by 0, a value that occurs, its half or double, a whole number up to 9, each with either sign,
+// itself rounded towards and away from zero to 1 to 23 bits or to a whole number, or its neighbours.
+inline constexpr int kMoveKinds = 77;
+
+// Appends what the moves of a kind make of the pair; finite pairs only, some of them perhaps the pair itself.
+// Requires: finite coordinates, 0 <= kind < kMoveKinds.
+void append_moves(const Pair& pair, int kind, std::vector<Pair>& moved);
+
+}  // namespace graze

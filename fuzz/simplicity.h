@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// A total order of pairs by how simple they are to read. The minimiser goes down in it, so it always ends.
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+
+#include "core/pair.h"
+
+namespace graze {
+
+// The first count that differs decides, the smaller being the simpler:
+//   1. different magnitudes other than 0 and 1
+//   2. coordinates that are not zero
+//   3. coordinates that are not whole numbers below 1000
+//   4. bits of the mantissas, from the first to the last one that is set, of all coordinates together
+//   5. distances of the exponents from 0, of all coordinates together
+//   6. different vertices
+//   7. 0 when the first triangle lies in the plane z = 0, 1 when in x = 0 or y = 0, else 2
+//   8. minus signs, that of -0 included
+//   9. the coordinates in their order, by magnitude and then sign: two pairs are equal only when all their bits are.
+struct Simplicity {
+  std::array<int, 8> counts{};
+  std::array<std::uint32_t, kCoordinates> ranks{};
+  auto operator<=>(const Simplicity&) const = default;
+};
+
+// Requires: finite coordinates.
+Simplicity simplicity(const Pair& pair);
+
+// How many different magnitudes other than 0 and 1 the pair has.
+inline int nontrivial_magnitudes(const Pair& pair) { return simplicity(pair).counts[0]; }
+
+}  // namespace graze

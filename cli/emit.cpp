@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/emit.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "cli/cases.h"
+#include "cli/commands.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+std::string described(const std::string& name, const Entry& entry, const Truth& t) {
+  const std::string* label = field(entry, "name");
+  const std::string which = label ? *label : entry.line > 0 ? fmt::format("{}:{}", name, entry.line) : name;
+  return fmt::format("Case {}: contact {}, margin {} ({} ulps)", numbers_of(entry).value_or(which),
+                     graze::name(t.contact), t.margin, t.margin_ulps);
+}
+
+}  // namespace
+
+std::string emit(SnippetKind kind, const std::string& name, const std::vector<Entry>& entries, const Bench& bench) {
+  std::optional<SnippetCase> fallback;
+  for (const Entry& entry : entries) {
+    const Truth t = truth(entry.pair);
+    if (t.verdict == Verdict::declined) continue;
+    const SnippetCase found{described(name, entry, t), entry.pair, t.verdict, nullptr, t.verdict};
+    const std::vector<Verdict> verdicts = decide(bench, entry.pair);
+    for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
+      if (verdicts[l] == t.verdict || (shows_lanes(kind) && !shows(kind, *bench.lanes[l]))) continue;
+      return snippet(kind, {found.name, found.pair, found.truth, bench.lanes[l], verdicts[l]});
+    }
+    if (!fallback) fallback = found;
+  }
+  if (!fallback) throw std::runtime_error(name + ": expected a case with finite coordinates, found none");
+  if (!shows_lanes(kind)) return snippet(kind, *fallback);
+  throw std::runtime_error(fmt::format("{}: expected a case on which one of the {} lanes is wrong, found none", name,
+                                       kind == SnippetKind::cuda ? "CUDA" : "CPU"));
+}
+
+}  // namespace graze

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sightings: failures on their way into the regression corpus, from a campaign's directory or from single cases.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fuzz/campaign.h"
+#include "fuzz/regression.h"
+
+namespace graze {
+
+struct Sighting {
+  std::string signature;
+  Entry entry;
+  std::uint64_t count;  // pairs of this signature
+  std::string seen;     // by which build, and in what: "commit, compiler, toolkit, device; campaign HASH"
+};
+
+// One sighting a signature, with the first entry of its file of cases; of each algorithm only the `most` commonest.
+// Throws: UsageError for a directory that holds no finished campaign; FormatError.
+std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directory, std::size_t most);
+
+// One sighting a signature of the entries: that of the field `signature`, or those of all algorithms that are wrong.
+std::vector<Sighting> sightings_of_cases(const std::vector<Entry>& entries, const Json& build,
+                                         std::span<const Lane* const> lanes, const DecideLanes& decide);
+
+enum class Added { as_new, seen_again, known };
+
+// A signature's first sighting becomes a case, after a replay; further ones count. A case that was fixed and is wrong
+// again is failing again, with the new pair. The same sighting twice running counts once, so that an interrupted
+// command can be run again.
+// Throws: std::runtime_error when the pair is not one of the signature.
+Added add(RegressionCorpus& corpus, const Sighting& sighting, std::span<const Lane* const> lanes,
+          const DecideLanes& decide);
+
+}  // namespace graze

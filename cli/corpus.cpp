@@ -25,6 +25,7 @@ namespace {
 struct CorpusOptions {
   std::string folder = "corpus/regression";
   std::vector<std::string> names;  // of cases and campaigns
+  std::vector<std::string> signatures;
   std::size_t most = std::numeric_limits<std::size_t>::max();
   LaneOptions lanes;
   bool update = false;
@@ -73,7 +74,7 @@ void add(const CorpusOptions& options) {
   std::vector<std::pair<std::string, std::vector<Sighting>>> found;
   for (const std::string& name : options.names) {
     found.emplace_back(name, std::filesystem::is_directory(name)
-                                 ? sightings_of_campaign(name, options.most)
+                                 ? sightings_of_campaign(name, options.signatures, options.most)
                                  : sightings_of_cases(read_cases(name), build, bench.lanes, by_bench));
     if (found.back().second.empty())
       throw std::runtime_error(name + ": expected a case on which some lane is wrong, found none");
@@ -151,6 +152,7 @@ void add_corpus(CLI::App& app, int& status) {
       ->add_option("cases", options->names,
                    "Directories of campaigns (the first case of each signature), files of cases, or STRATUM:SEED:INDEX")
       ->required();
+  add_globs(*command, "--signatures", options->signatures, "Of a campaign only signatures that match a pattern");
   command->add_option("--top", options->most, "Of a campaign only the commonest signatures, so many an algorithm")
       ->check(whole_number(1, 1'000'000'000));
   add_lane_options(*command, options->lanes);

@@ -34,6 +34,10 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
   const Ran held = shell("graze corpus verify --executor twin");
   EXPECT_EQ(held.status, 0) << held.out << held.err;
   EXPECT_NE(held.out.find("15 failing, 0 fixed, 0 flaky"), std::string::npos) << held.out;
+  const Ran some = shell("graze corpus add c --signatures '*/moller_1997:*,none/*' --top 1 --corpus some");
+  EXPECT_EQ(some.out, "5 new, 0 seen again, 0 known already; some/cases.pairs holds 5\n") << some.err;
+  EXPECT_EQ(shell("graze corpus list --corpus some | grep -v moller_1997 | grep -cE '^ +(point|segment|area)/'").out,
+            "0\n");
   // The same campaign again counts nothing; another one counts.
   EXPECT_EQ(shell("cp corpus/regression/cases.pairs a; graze corpus add c --top 3; cmp corpus/regression/cases.pairs a")
                 .status,
@@ -103,7 +107,7 @@ TEST_F(CorpusVerb, KilledWhileAddingLosesNothing) {
   ASSERT_EQ(shell("graze corpus add c --corpus killed --top 3 && cp killed/cases.pairs old").status, 0);
   int killed = 0;
   for (int i = 1; i <= 20; ++i) {
-    const Ran ran = shell("timeout -s KILL 0.0" + std::to_string(10 + 2 * i) + " graze corpus add c --corpus killed");
+    const Ran ran = shell("timeout -s KILL " + std::to_string(0.002 * i) + " graze corpus add c --corpus killed");
     if (ran.status == 0) continue;
     ++killed;
     EXPECT_EQ(shell("cmp killed/cases.pairs old || cmp killed/cases.pairs whole/cases.pairs").status, 0);

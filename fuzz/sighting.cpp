@@ -44,13 +44,13 @@ std::vector<Signature> signatures_of(const Pair& pair, const Replay& seen) {
 
 // Requires: the summary is whole; a missing part throws Json::exception.
 std::vector<Sighting> sightings_of_summary(const std::filesystem::path& directory, const Json& summary,
-                                           std::size_t most) {
+                                           const std::vector<std::string>& globs, std::size_t most) {
   const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
   std::vector<Sighting> sightings;
   std::map<std::string, std::size_t> taken;
   for (const Json& row : summary.at("signatures")) {  // the commonest first
     const std::string signature = row.at("key");
-    if (taken[algorithm_of(signature)]++ >= most) continue;
+    if (!matches_any(globs, signature) || taken[algorithm_of(signature)]++ >= most) continue;
     const std::filesystem::path file = directory / row.at("case").get<std::string>();
     const std::vector<Entry> entries = read_pairs(file);
     if (entries.empty()) throw FormatError(file.string() + ": expected at least one case, found none");
@@ -61,7 +61,8 @@ std::vector<Sighting> sightings_of_summary(const std::filesystem::path& director
 
 }  // namespace
 
-std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directory, std::size_t most) {
+std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directory,
+                                            const std::vector<std::string>& globs, std::size_t most) {
   const std::filesystem::path file = directory / "summary.json";
   std::ifstream in(file);
   if (!in) throw UsageError(directory.string() + ": expected a campaign's directory, found no summary.json in it");
@@ -69,7 +70,7 @@ std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directo
     const Json summary = Json::parse(in);
     if (!summary.at("complete").get<bool>())
       throw UsageError(directory.string() + ": expected a finished campaign, found one that was interrupted");
-    return sightings_of_summary(directory, summary, most);
+    return sightings_of_summary(directory, summary, globs, most);
   } catch (const Json::exception&) {
     throw FormatError(file.string() + ": expected a campaign's summary, found something else");
   }

@@ -19,9 +19,11 @@ struct Sighting {
   std::string seen;     // by which build, and in what: "commit, compiler, toolkit, device; campaign HASH"
 };
 
-// One sighting a signature, with the first entry of its file of cases; of each algorithm only the `most` commonest.
+// One sighting a signature that matches one of the shell patterns, with the first entry of its file of cases; of each
+// algorithm only the `most` commonest.   No pattern matches everything.
 // Throws: UsageError for a directory that holds no finished campaign; FormatError.
-std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directory, std::size_t most);
+std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directory,
+                                            const std::vector<std::string>& globs, std::size_t most);
 
 // One sighting a signature of the entries: that of the field `signature`, or those of all algorithms that are wrong.
 std::vector<Sighting> sightings_of_cases(const std::vector<Entry>& entries, const Json& build,

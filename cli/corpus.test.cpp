@@ -57,6 +57,27 @@ TEST_F(CorpusVerb, TakesTheFirstEntryOfEachCaseFile) {
   EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
 }
 
+// Signatures whose cases were minimised to the same one are one case.
+TEST_F(CorpusVerb, CountsWhatWasMinimisedToOneCaseTogether) {
+  campaign("c", "--pairs 5000 --strata lattice");
+  const std::string kept = "graze corpus list --corpus r | sed -n 's/^failing *\\([0-9,]*\\).*/\\1/p' | tr -d ,";
+  ASSERT_EQ(shell("graze corpus add c --corpus r").status, 0);
+  const std::string sum = "| paste -sd+ | (read -r s; echo $((s)))", before = shell(kept + sum).out;
+  const std::string cases = shell(kept + "| wc -l").out;
+  ASSERT_EQ(shell("rm -r r; set -- c/cases/*; { head -n 2 $1; grep '^[-0-9]' $1 | head -n 1 | sed 's/ stratum=.* "
+                  "truth/ kind=minimised "
+                  "from=x truth/'; tail -n +3 $2; } > m && cp m $2 && cp m $1 && graze corpus add c --corpus r")
+                .status,
+            0);
+  EXPECT_EQ(shell(kept + sum).out, before);
+  EXPECT_EQ(std::stoi(shell(kept + "| wc -l").out), std::stoi(cases) - 1);
+  // A file of cases by itself: its minimised case stands for all of it.
+  EXPECT_TRUE(shell("graze corpus add m --corpus s").out.starts_with("1 new"));
+  EXPECT_EQ(shell("grep -c 'kind=minimised from=x' s/cases.pairs").out, "1\n");
+  EXPECT_EQ(shell("graze repro s/cases.pairs > /dev/null").status, 0);
+  EXPECT_EQ(shell("graze repro m --emit obj | grep -c 'Case minimised from x:'").out, "1\n");
+}
+
 TEST_F(CorpusVerb, AChangedVerdictFailsUntilItIsRecorded) {
   shell("echo '0 0 0 4 0 0 2 0 0  1 0 0 1 0 4 1 0 2' > p; graze corpus add p --corpus r");
   ASSERT_EQ(shell("graze corpus verify --corpus r").status, 0);

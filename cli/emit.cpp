@@ -12,11 +12,17 @@
 namespace graze {
 namespace {
 
+// Where the case is from: its numbers, or those it was minimised from, its name, or its line.
+std::string origin(const std::string& name, const Entry& entry) {
+  if (const std::optional<std::string> numbers = numbers_of(entry)) return *numbers;
+  const std::string *kind = field(entry, "kind"), *from = field(entry, "from"), *label = field(entry, "name");
+  if (kind && from) return fmt::format("{} from {}", *kind, *from);
+  return label ? *label : entry.line > 0 ? fmt::format("{}:{}", name, entry.line) : name;
+}
+
 std::string described(const std::string& name, const Entry& entry, const Truth& t) {
-  const std::string* label = field(entry, "name");
-  const std::string which = label ? *label : entry.line > 0 ? fmt::format("{}:{}", name, entry.line) : name;
-  return fmt::format("Case {}: contact {}, margin {} ({} ulps)", numbers_of(entry).value_or(which),
-                     graze::name(t.contact), t.margin, t.margin_ulps);
+  return fmt::format("Case {}: contact {}, margin {} ({} ulps)", origin(name, entry), graze::name(t.contact), t.margin,
+                     t.margin_ulps);
 }
 
 }  // namespace

@@ -58,7 +58,11 @@ class Emit : public testing::TestWithParam<EmitCase> {
     std::string comment, command;
     text >> comment;
     std::getline(text, command);
+#ifdef GRAZE_NVCC_DIR
+    return shell("PATH=$PATH:" GRAZE_NVCC_DIR "\n" + command);
+#else
     return shell(command);
+#endif
   }
 
   // Only an optimising compiler contracts, and only for a processor that can.
@@ -94,7 +98,9 @@ TEST_P(Emit, GtestFails) {
 }
 
 TEST_P(Emit, CudaShowsTheWrongVerdict) {
-  if (shell("command -v nvcc").status != 0) GTEST_SKIP() << "no nvcc";
+#ifndef GRAZE_NVCC_DIR
+  GTEST_SKIP() << "built without nvcc";
+#endif
   const Ran ran = run("cuda", "case.cu", GetParam().cuda);
   ASSERT_TRUE(std::filesystem::exists(shell.folder / "case")) << ran.err;
   if (shell("graze lanes | grep -q 'available (device)'").status != 0)
@@ -102,11 +108,13 @@ TEST_P(Emit, CudaShowsTheWrongVerdict) {
   expect_wrong(ran, GetParam().cuda);
 }
 
-TEST_P(Emit, PythonAndCgalProveTheTruth) {
-  const Ran python = run("python", "case.py"), cgal = run("cgal", "case.cpp");
-  EXPECT_EQ(python.status, 0) << python.out << python.err;
+TEST_P(Emit, CgalAndPythonProveTheTruth) {
+  const Ran cgal = run("cgal", "case.cpp");
   EXPECT_EQ(cgal.status, 0) << cgal.out << cgal.err;
   EXPECT_TRUE(cgal.out == "truth: disjoint; Graze: disjoint\n" || cgal.out == "truth: intersects; Graze: intersects\n");
+  if (shell("command -v python3").status != 0) GTEST_SKIP() << "no python3";
+  const Ran python = run("python", "case.py");
+  EXPECT_EQ(python.status, 0) << python.out << python.err;
   EXPECT_TRUE(python.out.ends_with(cgal.out)) << python.out << cgal.out;
 }
 
@@ -152,7 +160,7 @@ TEST(EmitErrors, SayWhatIsMissing) {
   expect(easy + "cpp --lanes '*/cuda-*'", 1, "one of the CPU lanes is wrong");
   expect(easy + "fortran", 2, "fortran");
   expect("echo 'nan 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > n; graze repro n --emit obj", 1, "finite coordinates");
-  EXPECT_EQ(shell(easy + "python > easy.py && python3 easy.py").status, 0);
+  EXPECT_NE(shell(easy + "python").out.find("Graze: disjoint"), std::string::npos);  // the truth needs no wrong lane
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <set>
@@ -47,14 +48,22 @@ std::vector<Sighting> sightings_of_summary(const std::filesystem::path& director
                                            const std::vector<std::string>& globs, std::size_t most) {
   const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
   std::vector<Sighting> sightings;
-  std::map<std::string, std::size_t> taken;
+  std::map<std::string, std::size_t> place, taken;    // of a signature in the list; signatures of an algorithm
   for (const Json& row : summary.at("signatures")) {  // the commonest first
-    const std::string signature = row.at("key");
-    if (!matches_any(globs, signature) || taken[algorithm_of(signature)]++ >= most) continue;
+    const std::string recorded = row.at("key");
+    if (!matches_any(globs, recorded)) continue;
     const std::filesystem::path file = directory / row.at("case").get<std::string>();
     const std::vector<Entry> entries = read_pairs(file);
     if (entries.empty()) throw FormatError(file.string() + ": expected at least one case, found none");
-    sightings.push_back({signature, entries.front(), row.at("count"), seen});
+    const std::string* own = field(entries.front(), "signature");
+    const std::string& signature = own ? *own : recorded;
+    const std::uint64_t count = row.at("count");
+    if (const auto known = place.find(signature); known != place.end()) {
+      sightings[known->second].count += count;
+    } else if (taken[algorithm_of(signature)]++ < most) {
+      place.emplace(signature, sightings.size());
+      sightings.push_back({signature, entries.front(), count, seen});
+    }
   }
   return sightings;
 }
@@ -86,7 +95,13 @@ std::vector<Sighting> sightings_of_cases(const std::vector<Entry>& entries, cons
     write_entry(bits, {entry.pair});
     sightings.push_back({signature, entry, 1, seen_by(build, "case", bits.str())});
   };
+  const auto is_minimised = [](const Entry& entry) {
+    const std::string* kind = field(entry, "kind");
+    return kind && *kind == "minimised";
+  };
+  const bool minimised = std::any_of(entries.begin(), entries.end(), is_minimised);
   for (const Entry& entry : entries) {
+    if (minimised && !is_minimised(entry)) continue;
     if (const std::string* signature = field(entry, "signature")) {
       take(*signature, entry);
       continue;

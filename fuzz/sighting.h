@@ -19,13 +19,15 @@ struct Sighting {
   std::string seen;     // by which build, and in what: "commit, compiler, toolkit, device; campaign HASH"
 };
 
-// One sighting a signature that matches one of the shell patterns, with the first entry of its file of cases; of each
-// algorithm only the `most` commonest.   No pattern matches everything.
+// The first entry of each file of cases, where the campaign's signature matches one of the shell patterns (or there is
+// none). A minimised entry has a signature of its own: those that became one are one sighting, counted together.
+// Of each algorithm only the `most` commonest.
 // Throws: UsageError for a directory that holds no finished campaign; FormatError.
 std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most);
 
 // One sighting a signature of the entries: that of the field `signature`, or those of all algorithms that are wrong.
+// Minimised entries stand for all.
 std::vector<Sighting> sightings_of_cases(const std::vector<Entry>& entries, const Json& build,
                                          std::span<const Lane* const> lanes, const DecideLanes& decide);
 

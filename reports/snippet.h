@@ -2,7 +2,6 @@
 // A case as a self-contained program or file with the exact bits, which a person can paste into a bug report.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 

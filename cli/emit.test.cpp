@@ -145,6 +145,38 @@ TEST(EmitFlags, AreThoseOfTheLane) {
   EXPECT_EQ(first_line("cuda --lanes '*/f32/cuda-fma'").find("fmad"), std::string::npos);
 }
 
+// Without a device: by the contraction rules that were proven on one, a snippet's kernel has as many fused operations
+// as its lane's.
+TEST(EmitCuda, ContractsAsItsLaneDoes) {
+#ifndef GRAZE_NVCC_DIR
+  GTEST_SKIP() << "built without nvcc";
+#else
+  const Shell shell("emit-cuda");
+  const std::string explicit_ptx = "graze_twin_generator " GRAZE_LANE_PTX " --explicit lanes.ptx && ";
+  // Segments, on which some lane of every algorithm is wrong, alike on host and device.
+  shell("printf '0 0 0 4 0 0 2 0 0 1 0 1 1 0 4 1 0 2\\n0 0 0 4 0 0 2 0 0 1 0 0 1 0 4 1 0 2\\n' > p");
+  const std::string ids = shell("graze lanes | sed -n 's|^  \\([a-z0-9_]*\\)/f32/cpu .*|\\1|p'").out;
+  std::istringstream algorithms(ids);
+  int index = 0;
+  for (std::string id; algorithms >> id; ++index) {
+    for (const std::string scalar : {"f32", "f64"}) {
+      const std::string kernel = "decide_pairsILi" + std::to_string(index) + "E" + (scalar == "f32" ? 'f' : 'd');
+      const Ran counts = shell(explicit_ptx + "graze repro p --emit cuda --lanes '" + id + "/" + scalar +
+                               "/cuda-fma' > case.cu && PATH=$PATH:" GRAZE_NVCC_DIR
+                               " nvcc -std=c++20 -O3 -arch=compute_75 -ptx -lineinfo case.cu -o case.ptx && "
+                               "graze_twin_generator case.ptx --explicit own.ptx && grep -c fma.rn own.ptx && "
+                               "sed -n '/entry.*" +
+                               kernel + "/,/^}/p' lanes.ptx | grep -c fma.rn");
+      int own = 0, lane = 0;
+      std::istringstream(counts.out) >> own >> lane;
+      EXPECT_GT(own, 40) << id << scalar << counts.err;
+      EXPECT_EQ(own, lane) << id << '/' << scalar;
+    }
+  }
+  EXPECT_GE(index, 5) << ids;
+#endif
+}
+
 TEST(EmitErrors, SayWhatIsMissing) {
   const Shell shell("emit-errors");
   const auto expect = [&](const std::string& command, int status, const std::string& part) {

@@ -7,6 +7,7 @@
 
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "fuzz/regression.h"
 #include "oracle/truth.h"
 
 namespace graze {
@@ -34,10 +35,14 @@ std::string emit(SnippetKind kind, const std::string& name, const std::vector<En
     if (t.verdict == Verdict::declined) continue;
     const SnippetCase found{described(name, entry, t), entry.pair, t.verdict, nullptr, t.verdict};
     const std::vector<Verdict> verdicts = decide(bench, entry.pair);
+    const std::string* signature = field(entry, "signature");
+    std::optional<std::size_t> wrong;
     for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
       if (verdicts[l] == t.verdict || (shows_lanes(kind) && !shows(kind, *bench.lanes[l]))) continue;
-      return snippet(kind, {found.name, found.pair, found.truth, bench.lanes[l], verdicts[l]});
+      const bool is_recorded = signature && bench.lanes[l]->info->id == algorithm_of(*signature);
+      if (!wrong || (is_recorded && bench.lanes[*wrong]->info != bench.lanes[l]->info)) wrong = l;
     }
+    if (wrong) return snippet(kind, {found.name, found.pair, found.truth, bench.lanes[*wrong], verdicts[*wrong]});
     if (!fallback) fallback = found;
   }
   if (!fallback) throw std::runtime_error(name + ": expected a case with finite coordinates, found none");

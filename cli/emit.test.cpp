@@ -132,6 +132,18 @@ TEST_P(Emit, ObjHoldsTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(cli, Emit, testing::ValuesIn(kCases),
                          [](const testing::TestParamInfo<EmitCase>& test) { return test.param.name; });
 
+TEST(EmitLane, IsOfTheRecordedSignature) {
+  const Shell shell("emit-lane");
+  const std::string pair = "echo '0 0 0 4 0 0 2 0 0  1 0 1 1 0 4 1 0 2";
+  const auto shown = [&](const std::string& fields) {
+    return shell(pair + fields + "' > p; graze repro p --emit cpp | sed -n 's/.*on which \\(.*\\) is wrong.*/\\1/p'")
+        .out;
+  };
+  EXPECT_EQ(shown(""), "projected_sat/f32/cpu\n");
+  EXPECT_EQ(shown(" | signature=none/11/skew/+2^21/separating_axes:++++++++"), "separating_axes/f32/cpu\n");
+  EXPECT_EQ(shown(" | signature=none/11/skew/+2^21/moller_1997:++++++++"), "projected_sat/f32/cpu\n");  // is right
+}
+
 // A lane is its flags.
 TEST(EmitFlags, AreThoseOfTheLane) {
   const Shell shell("emit-flags");

@@ -30,4 +30,10 @@ std::vector<Entry> read_cases(const std::string& name) {
   return {{sources.front().pair(number(index, name)), {{"stratum", stratum}, {"seed", seed}, {"index", index}}, 0}};
 }
 
+std::optional<std::string> numbers_of(const Entry& entry) {
+  const std::string *stratum = field(entry, "stratum"), *seed = field(entry, "seed"), *index = field(entry, "index");
+  if (!stratum || !seed || !index) return std::nullopt;
+  return *stratum + ':' + *seed + ':' + *index;
+}
+
 }  // namespace graze

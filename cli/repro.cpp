@@ -2,11 +2,13 @@
 // `graze repro`: a stored case, or a pair named by its three numbers, run again on every lane and on the oracle.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "analysis/signature.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "cli/emit.h"
 #include "oracle/truth.h"
 #include "reports/terminal.h"
 
@@ -54,16 +56,20 @@ bool compare_signatures(const Entry& entry, const Truth& t, std::span<const Lane
   return compared == Compared::changed;
 }
 
-int repro(const std::string& name, const LaneOptions& lanes) {
+int repro(const std::string& name, const LaneOptions& lanes, const std::string& emitted) {
   const Bench bench = make_bench(lanes.globs, lanes.executor);
   const std::vector<Entry> entries = read_cases(name);
+  if (!emitted.empty()) {
+    const auto kind = std::find(std::begin(kSnippetKinds), std::end(kSnippetKinds), emitted);
+    std::cout << emit(static_cast<SnippetKind>(kind - std::begin(kSnippetKinds)), name, entries, bench);
+    return 0;
+  }
   const std::string evidence = cuda_evidence(bench);
   bool changed = false;
   for (const Entry& entry : entries) {
     const Truth t = truth(entry.pair);
     const std::vector<Verdict> verdicts = decide(bench, entry.pair);
-    const std::string *stratum = field(entry, "stratum"), *seed = field(entry, "seed"), *index = field(entry, "index");
-    fmt::print("{}\n", stratum && seed && index ? fmt::format("{}:{}:{}", *stratum, *seed, *index) : name);
+    fmt::print("{}\n", numbers_of(entry).value_or(name));
     std::fflush(stdout);
     print_pair(std::cout, entry.pair, t, bench.lanes, verdicts);
     if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
@@ -77,13 +83,23 @@ int repro(const std::string& name, const LaneOptions& lanes) {
 
 void add_repro(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "repro", "Run a stored case again, or the pair named STRATUM:SEED:INDEX; exit 1 when a verdict changed");
+      "repro",
+      "Run a stored case again, or the pair named STRATUM:SEED:INDEX; exit 1 when a verdict changed; or print it as a "
+      "program");
   command->footer("Example: graze repro near_edge_edge:1:42");
   auto name = std::make_shared<std::string>();
   auto lanes = std::make_shared<LaneOptions>();
   command->add_option("case", *name, "A file of a campaign's cases/, or STRATUM:SEED:INDEX")->required();
   add_lane_options(*command, *lanes);
-  command->callback([name, lanes, &status] { status = repro(*name, *lanes); });
+  auto emitted = std::make_shared<std::string>();
+  command
+      ->add_option(
+          "--emit", *emitted,
+          "Print a self-contained program or file instead, of the first case with a wrong lane that it can "
+          "show (choose by --lanes): cpp and gtest show a CPU lane, cuda a CUDA lane; python and cgal the truth")
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(kSnippetKinds), std::end(kSnippetKinds))))
+      ->option_text("cpp|cuda|python|obj|cgal|gtest");
+  command->callback([name, lanes, emitted, &status] { status = repro(*name, *lanes, *emitted); });
 }
 
 }  // namespace graze

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze corpus`: the regression corpus. add takes failures in, list shows them, verify replays them.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+#include "cli/cases.h"
+#include "cli/commands.h"
+#include "core/error.h"
+#include "fuzz/sighting.h"
+#include "reports/terminal.h"
+
+namespace graze {
+namespace {
+
+struct CorpusOptions {
+  std::string folder = "corpus/regression";
+  std::vector<std::string> names;  // of cases and campaigns
+  std::vector<std::string> signatures;
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+  LaneOptions lanes;
+  bool update = false;
+
+  std::filesystem::path file() const { return std::filesystem::path(folder) / "cases.pairs"; }
+};
+
+// Held from reading the corpus to writing it, so that two commands at once lose nothing.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder) : handle_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (handle_ < 0 || flock(handle_, LOCK_EX) != 0)
+      throw std::runtime_error(fmt::format("{}: expected a folder, found: {}", folder, std::strerror(errno)));
+  }
+  ~FolderLock() { close(handle_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int handle_;
+};
+
+RegressionCorpus read_corpus(const CorpusOptions& options) {
+  if (!std::filesystem::exists(options.file())) {
+    throw UsageError(
+        fmt::format("{}: expected a regression corpus (see `graze corpus add`), found none", options.file().string()));
+  }
+  RegressionCorpus corpus = read_regressions(options.file());
+  if (corpus.empty()) throw std::runtime_error(options.file().string() + ": expected at least one case, found none");
+  return corpus;
+}
+
+void write_corpus(const CorpusOptions& options, const RegressionCorpus& corpus) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
+  write_regressions(options.file(), corpus);
+}
+
+DecideLanes decide_by(const Bench& bench) {
+  return [&bench](const Pair& pair, std::vector<const Lane*>& apart) { return decide(bench, pair, apart); };
+}
+
+void add(const CorpusOptions& options) {
+  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
+  const DecideLanes by_bench = decide_by(bench);
+  const Json build = build_info(bench);
+  std::vector<std::pair<std::string, std::vector<Sighting>>> found;
+  for (const std::string& name : options.names) {
+    found.emplace_back(name, std::filesystem::is_directory(name)
+                                 ? sightings_of_campaign(name, options.signatures, options.most)
+                                 : sightings_of_cases(read_cases(name), build, bench.lanes, by_bench));
+    if (found.back().second.empty())
+      throw std::runtime_error(name + ": expected a case on which some lane is wrong, found none");
+  }
+
+  std::error_code failed;
+  std::filesystem::create_directories(options.folder, failed);
+  const FolderLock lock(options.folder);
+  RegressionCorpus corpus;
+  if (std::filesystem::exists(options.file())) corpus = read_regressions(options.file());
+  std::array<std::size_t, 3> count{};
+  for (const auto& [name, sightings] : found) {
+    for (const Sighting& sighting : sightings) {
+      try {
+        ++count[static_cast<std::size_t>(graze::add(corpus, sighting, bench.lanes, by_bench))];
+      } catch (const std::runtime_error& error) {
+        throw std::runtime_error(name + ": " + error.what());
+      }
+    }
+  }
+  write_corpus(options, corpus);
+  fmt::print("{} new, {} seen again, {} known already; {} holds {}\n", grouped(count[0]), grouped(count[1]),
+             grouped(count[2]), options.file().string(), grouped(corpus.size()));
+}
+
+void list(const CorpusOptions& options) {
+  for (const auto& [signature, c] : read_corpus(options)) {
+    fmt::print("{:<8}{:>11}  {}\n{:21}{}\n{:21}first: {}\n{:21}last:  {}\n", name(c.state), grouped(c.count), c.name,
+               "", signature, "", c.first, "", c.last);
+  }
+}
+
+int verify(const CorpusOptions& options) {
+  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
+  std::unique_ptr<FolderLock> lock;
+  if (options.update && std::filesystem::exists(options.folder)) lock = std::make_unique<FolderLock>(options.folder);
+  RegressionCorpus corpus = read_corpus(options);
+  const Verified result = graze::verify(corpus, bench.lanes, decide_by(bench));
+  std::array<std::size_t, 3> states{};
+  for (const auto& [signature, c] : corpus) ++states[static_cast<std::size_t>(c.state)];
+  for (const Change& change : result.changes) fmt::print("{}: {}\n", change.name, change.what);
+  fmt::print("{} cases on {} lanes: {} failing, {} fixed, {} flaky; {} verdicts compared, {} changes{}\n",
+             grouped(corpus.size()), bench.lanes.size(), states[0], states[1], states[2], grouped(result.compared),
+             result.changes.size(), options.update ? ", recorded" : "");
+  if (const std::string evidence = cuda_evidence(bench); !evidence.empty()) fmt::print("CUDA lanes: {}\n", evidence);
+  if (options.update) {
+    write_corpus(options, corpus);
+    return 0;
+  }
+  if (result.compared == 0)
+    throw std::runtime_error(options.file().string() + ": expected a record of these lanes to compare, found none");
+  return result.changes.empty() ? 0 : 1;
+}
+
+CLI::App* add_verb(CLI::App& corpus, const char* name, const char* what, const char* example,
+                   const std::shared_ptr<CorpusOptions>& options) {
+  CLI::App* command = corpus.add_subcommand(name, what);
+  command->footer(example);
+  command->add_option("--corpus", options->folder, "Folder of the corpus")->capture_default_str();
+  return command;
+}
+
+}  // namespace
+
+void add_corpus(CLI::App& app, int& status) {
+  CLI::App* corpus = app.add_subcommand("corpus", "The regression corpus: add failures to it, list and replay them");
+  corpus->require_subcommand(1);
+  corpus->footer("Example: graze corpus --help");
+  auto options = std::make_shared<CorpusOptions>();
+
+  CLI::App* command =
+      add_verb(*corpus, "add", "Keep failures: a case a signature, with how often and where it was first and last seen",
+               "Example: graze corpus add near_edge_edge:1:42 --corpus regression", options);
+  command
+      ->add_option("cases", options->names,
+                   "Directories of campaigns (the first case of each signature), files of cases, or STRATUM:SEED:INDEX")
+      ->required();
+  add_globs(*command, "--signatures", options->signatures, "Of a campaign only signatures that match a pattern");
+  command->add_option("--top", options->most, "Of a campaign only the commonest signatures, so many an algorithm")
+      ->check(whole_number(1, 1'000'000'000));
+  add_lane_options(*command, options->lanes);
+  command->callback([options] { add(*options); });
+
+  command = add_verb(*corpus, "list", "List the cases: state, count, name, signature, first and last sighting",
+                     "Example: graze corpus list --corpus regression", options);
+  command->callback([options] { list(*options); });
+
+  command =
+      add_verb(*corpus, "verify", "Replay every case on every lane; exit 1 when a verdict is not the recorded one",
+               "Example: graze corpus verify --corpus regression", options);
+  add_lane_options(*command, options->lanes);
+  command->add_flag("--update", options->update, "Record what was found: verdicts, and failing, fixed or flaky");
+  command->callback([options, &status] { status = verify(*options); });
+}
+
+}  // namespace graze

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze corpus` as users meet it, and the regression corpus of the repository.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "cli/run_graze.h"
+
+namespace graze {
+namespace {
+
+class CorpusVerb : public testing::Test {
+ protected:
+  Shell shell{std::string("corpus-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
+
+  void campaign(const std::string& out, const std::string& options) {
+    const Ran ran = shell("graze fuzz --threads 1 --executor twin " + options + " --out " + out);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+  }
+  void expect_error(const std::string& command, int status, const std::string& part) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
+    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+};
+
+TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
+  campaign("c", "--pairs 20000 --strata 'lattice,degenerate'");
+  const Ran added = shell("graze corpus add c --top 3");
+  EXPECT_EQ(added.out, "15 new, 0 seen again, 0 known already; corpus/regression/cases.pairs holds 15\n") << added.err;
+  const Ran listed = shell("graze corpus list | grep -c ^failing");
+  EXPECT_EQ(listed.out, "15\n");
+  const Ran held = shell("graze corpus verify --executor twin");
+  EXPECT_EQ(held.status, 0) << held.out << held.err;
+  EXPECT_NE(held.out.find("15 failing, 0 fixed, 0 flaky"), std::string::npos) << held.out;
+  const Ran some = shell("graze corpus add c --signatures '*/moller_1997:*,none/*' --top 1 --corpus some");
+  EXPECT_EQ(some.out, "5 new, 0 seen again, 0 known already; some/cases.pairs holds 5\n") << some.err;
+  EXPECT_EQ(shell("graze corpus list --corpus some | grep -v moller_1997 | grep -cE '^ +(point|segment|area)/'").out,
+            "0\n");
+  // The same campaign again counts nothing; another one counts.
+  EXPECT_EQ(shell("cp corpus/regression/cases.pairs a; graze corpus add c --top 3; cmp corpus/regression/cases.pairs a")
+                .status,
+            0);
+  campaign("d", "--pairs 20000 --strata 'lattice,degenerate' --seed 2");
+  const Ran again = shell("graze corpus add d --top 3");
+  EXPECT_EQ(again.out.find("0 known already") == std::string::npos, false) << again.out;
+  EXPECT_EQ(again.out.find(" 0 seen again") == std::string::npos, true) << again.out;
+}
+
+TEST_F(CorpusVerb, TakesTheFirstEntryOfEachCaseFile) {
+  campaign("c", "--pairs 5000 --strata lattice");
+  shell("graze corpus add c --corpus r");
+  const Ran ran = shell(
+      "for f in c/cases/*.pairs; do grep '^[-0-9]' $f | head -n 1 | cut -d '|' -f 1; done | sort > firsts;"
+      "grep '^[-0-9]' r/cases.pairs | cut -d '|' -f 1 | sort > kept; test -s kept && cmp firsts kept");
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+}
+
+// Signatures whose cases were minimised to the same one are one case.
+TEST_F(CorpusVerb, CountsWhatWasMinimisedToOneCaseTogether) {
+  campaign("c", "--pairs 5000 --strata lattice");
+  const std::string kept = "graze corpus list --corpus r | sed -n 's/^failing *\\([0-9,]*\\).*/\\1/p' | tr -d ,";
+  ASSERT_EQ(shell("graze corpus add c --corpus r").status, 0);
+  const std::string sum = "| paste -sd+ | (read -r s; echo $((s)))", before = shell(kept + sum).out;
+  const std::string cases = shell(kept + "| wc -l").out;
+  ASSERT_EQ(shell("rm -r r; set -- c/cases/*; { head -n 2 $1; grep '^[-0-9]' $1 | head -n 1 | sed 's/ stratum=.* "
+                  "truth/ kind=minimised "
+                  "from=x truth/'; tail -n +3 $2; } > m && cp m $2 && cp m $1 && graze corpus add c --corpus r")
+                .status,
+            0);
+  EXPECT_EQ(shell(kept + sum).out, before);
+  EXPECT_EQ(std::stoi(shell(kept + "| wc -l").out), std::stoi(cases) - 1);
+  // A file of cases by itself: its minimised case stands for all of it.
+  EXPECT_TRUE(shell("graze corpus add m --corpus s").out.starts_with("1 new"));
+  EXPECT_EQ(shell("grep -c 'kind=minimised from=x' s/cases.pairs").out, "1\n");
+  EXPECT_EQ(shell("graze repro s/cases.pairs > /dev/null").status, 0);
+  EXPECT_EQ(shell("graze repro m --emit obj | grep -c 'Case minimised from x:'").out, "1\n");
+}
+
+TEST_F(CorpusVerb, AChangedVerdictFailsUntilItIsRecorded) {
+  shell("echo '0 0 0 4 0 0 2 0 0  1 0 0 1 0 4 1 0 2' > p; graze corpus add p --corpus r");
+  ASSERT_EQ(shell("graze corpus verify --corpus r").status, 0);
+  const std::string forge = "sed -i 's/moller_1997:-/moller_1997:./2; s/state=failing/state=fixed/' r/cases.pairs;";
+  const Ran changed = shell(forge + "cp r/cases.pairs forged; graze corpus verify --corpus r");
+  EXPECT_EQ(changed.status, 1) << changed.out;
+  EXPECT_NE(changed.out.find(": moller_1997/f32/cpu: was intersects (right), is disjoint (wrong)\n"), std::string::npos)
+      << changed.out;
+  EXPECT_NE(changed.out.find(": fixed -> failing\n"), std::string::npos) << changed.out;
+  EXPECT_EQ(shell("cmp forged r/cases.pairs").status, 0);  // looking changes nothing
+  EXPECT_EQ(shell("graze corpus verify --corpus r --update").status, 0);
+  EXPECT_EQ(shell("graze corpus verify --corpus r").status, 0);
+}
+
+TEST_F(CorpusVerb, BadInputGetsOneLine) {
+  expect_error("graze corpus", 2, "subcommand");
+  expect_error("graze corpus verify", 2, "corpus/regression/cases.pairs: expected a regression corpus");
+  expect_error("graze corpus list --corpus none", 2, "none/cases.pairs: expected a regression corpus");
+  expect_error("mkdir e; echo 'graze-pairs 1' > e/cases.pairs; graze corpus verify --corpus e", 1,
+               "e/cases.pairs: expected at least one case, found none");
+  expect_error("mkdir d; graze corpus add d", 2, "d: expected a campaign's directory, found no summary.json in it");
+  expect_error("echo '{\"complete\":true}' > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
+  expect_error("echo '{\"complete\":false}' > d/summary.json; graze corpus add d", 2,
+               "d: expected a finished campaign");
+  expect_error("head -c 99 /dev/urandom > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
+  expect_error("graze corpus add missing.pairs", 1, "missing.pairs: expected");
+  expect_error("graze corpus add nowhere:1:2", 2, "found 'nowhere'");
+  expect_error("echo '0 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > easy; graze corpus add easy", 1,
+               "easy: expected a case on which some lane is wrong, found none");
+  expect_error("echo 'nan 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > nan; graze corpus add nan", 1, "nan: expected a case");
+  expect_error("sed -i 's/$/ | signature=x/' easy; graze corpus add easy", 1,
+               "easy: expected a pair with the signature x");
+  expect_error("touch file; graze corpus add near_edge_edge:1:42 --corpus file", 1, "file: expected a folder");
+  EXPECT_NE(shell("test -e corpus/regression/cases.pairs").status, 0);
+}
+
+TEST_F(CorpusVerb, NoRecordOfTheLanesThatRunIsAFailure) {
+  shell("echo '0 0 0 4 0 0 2 0 0  1 0 0 1 0 4 1 0 2' > p; graze corpus add p --corpus r --lanes 'moller_*'");
+  EXPECT_EQ(shell("graze corpus verify --corpus r").status, 0);
+  expect_error("graze corpus verify --corpus r --lanes 'separating_*' > /dev/null", 1,
+               "expected a record of these lanes");
+}
+
+// kill -9 at many moments: the file is the old or the new one, and the same command ends with the same bytes.
+TEST_F(CorpusVerb, KilledWhileAddingLosesNothing) {
+  campaign("c", "--pairs 150000 --strata 'near_*,coplanar_*'");
+  ASSERT_EQ(shell("graze corpus add c --corpus whole --top 3 && graze corpus add c --corpus whole").status, 0);
+  ASSERT_EQ(shell("graze corpus add c --corpus killed --top 3 && cp killed/cases.pairs old").status, 0);
+  int killed = 0;
+  for (int i = 1; i <= 20; ++i) {
+    const Ran ran = shell("timeout -s KILL " + std::to_string(0.002 * i) + " graze corpus add c --corpus killed");
+    if (ran.status == 0) continue;
+    ++killed;
+    EXPECT_EQ(shell("cmp killed/cases.pairs old || cmp killed/cases.pairs whole/cases.pairs").status, 0);
+  }
+  EXPECT_GT(killed, 2);
+  ASSERT_EQ(shell("graze corpus add c --corpus killed").status, 0);
+  EXPECT_EQ(shell("cmp killed/cases.pairs whole/cases.pairs").status, 0);
+}
+
+TEST_F(CorpusVerb, TwoAtOnceLoseNothing) {
+  const Ran ran = shell(
+      "mkdir r; for i in 0 1 2 3 4 5 6 7 8 9; do graze corpus add degenerate:1:$i --corpus r & done; wait;"
+      "for i in 0 1 2 3 4 5 6 7 8 9; do graze corpus add degenerate:1:$i --corpus s; done;"
+      "a=$(graze corpus list --corpus r | grep -c ^failing); test \"$a\" -gt 9;"
+      "test \"$a\" = \"$(graze corpus list --corpus s | grep -c ^failing)\"");
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+}
+
+TEST_F(CorpusVerb, AFullDiskLosesNothing) {
+  campaign("c", "--pairs 40000");
+  ASSERT_EQ(shell("graze corpus add c --top 2 --corpus r; cp r/cases.pairs old").status, 0);
+  expect_error("ulimit -f 40; graze corpus add c --corpus r", 1, "r/cases.pairs");
+  EXPECT_EQ(shell("cmp r/cases.pairs old").status, 0);
+}
+
+TEST_F(CorpusVerb, ExamplesInTheHelpRun) {
+  for (const std::string verb : {"add", "list", "verify"}) {
+    const Ran help = shell("graze corpus " + verb + " --help");
+    const std::size_t at = help.out.find("Example: ");
+    ASSERT_NE(at, std::string::npos) << verb;
+    const std::string example = help.out.substr(at + 9, help.out.find('\n', at) - at - 9);
+    EXPECT_EQ(shell(example).status, 0) << example;
+  }
+}
+
+// Lanes without contraction give one answer everywhere; the others are the compiler's and the toolkit's business.
+TEST_F(CorpusVerb, TheRepositorysOwnHolds) {
+  const Ran ran =
+      shell("graze corpus verify --lanes '*/cpu,*/cuda-nofma' --corpus '" GRAZE_SOURCE_DIR "/corpus/regression'");
+  EXPECT_EQ(ran.status, 0) << ran.out << ran.err;
+}
+
+}  // namespace
+}  // namespace graze

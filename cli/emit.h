@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze repro --emit`: one of a user's cases as a snippet.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "corpus/pair_format.h"
+#include "fuzz/bench.h"
+#include "reports/snippet.h"
+
+namespace graze {
+
+// The first case on which a lane of the bench is wrong that the snippet can show, and the first such lane, if it can be
+// of the algorithm in the case's signature. Where the kind shows no lane: the first case on which any lane is wrong, or
+// else the first case.
+// `name` is what the user called the cases.
+// Throws: std::runtime_error when there is none, or none with finite coordinates.
+std::string emit(SnippetKind kind, const std::string& name, const std::vector<Entry>& entries, const Bench& bench);
+
+}  // namespace graze

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/snippet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "corpus/pair_format.h"
+
+namespace graze {
+namespace {
+
+struct Embedded {
+  std::string_view path, text;
+};
+constexpr Embedded kEmbedded[] = {
+#include "embedded.inc"
+};
+
+std::string_view embedded(std::string_view path) {
+  const auto file = std::find_if(std::begin(kEmbedded), std::end(kEmbedded), [&](auto& f) { return f.path == path; });
+  if (file == std::end(kEmbedded)) throw std::logic_error(fmt::format("{}: expected an embedded file", path));
+  return file->text;
+}
+
+// A header and what it includes, each once, in the order in which a compiler reads them.
+struct Amalgamation {
+  std::set<std::string> seen, system;
+  std::string text;
+
+  void add(const std::string& path) {
+    if (!seen.insert(path).second) return;
+    std::string own;
+    std::istringstream lines{std::string(embedded(path))};
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("#include \"")) {
+        add(line.substr(10, line.size() - 11));
+      } else if (line.starts_with("#include <")) {
+        system.insert(line);
+      } else if (line != "#pragma once" && !line.starts_with("// SPDX-")) {
+        const bool doubled_gap = line.empty() && (own.empty() || own.ends_with("\n\n"));
+        if (!doubled_gap) own += line + '\n';
+      }
+    }
+    text += '\n' + own;
+  }
+};
+
+std::string header_of(std::string_view algorithm_id) { return fmt::format("core/{}.h", algorithm_id); }
+
+// The name of the algorithm's struct: the one that has kInfo.
+std::string type_name(std::string_view algorithm_id) {
+  const std::string_view text = embedded(header_of(algorithm_id));
+  constexpr std::string_view kStruct = "struct ";
+  const std::size_t info = text.find("AlgorithmInfo kInfo");
+  const std::size_t at = info == text.npos ? info : text.rfind(kStruct, info);
+  if (at == text.npos) throw std::logic_error(fmt::format("{}: expected a struct with kInfo", algorithm_id));
+  const std::size_t first = at + kStruct.size();
+  return std::string(text.substr(first, text.find(' ', first) - first));
+}
+
+// The line that compiles and runs the snippet; its flags are those of the lane's build.
+std::string command(SnippetKind kind, const Lane* lane) {
+#ifdef __clang__
+  constexpr std::string_view kCompiler = "clang++";
+#else
+  constexpr std::string_view kCompiler = "g++";
+#endif
+#ifdef __x86_64__
+  constexpr std::string_view kFused = "-mfma -ffp-contract=fast";
+#else
+  constexpr std::string_view kFused = "-ffp-contract=fast";
+#endif
+  switch (kind) {
+    case SnippetKind::cpp:
+    case SnippetKind::gtest:
+      return fmt::format("{} -std=c++20 -O3 -fno-math-errno {} case.cpp{} -o case && ./case", kCompiler,
+                         lane->target == Target::cpu_fma ? kFused : "-ffp-contract=off",
+                         kind == SnippetKind::gtest ? " -lgtest -lgtest_main -pthread" : "");
+    case SnippetKind::cuda:
+      return fmt::format("nvcc -std=c++20 -O3 -arch=native {}case.cu -o case && ./case",
+                         lane->target == Target::cuda_nofma ? "-fmad=false " : "");
+    case SnippetKind::cgal:
+      return fmt::format("{} -std=c++20 case.cpp -lmpfr -lgmp -o case && ./case", kCompiler);
+    case SnippetKind::python:
+      return "python3 case.py";
+    case SnippetKind::obj:
+      break;
+  }
+  return "";
+}
+
+std::string_view file_of(SnippetKind kind) {
+  constexpr std::string_view kFiles[] = {"lane.cpp.in", "lane.cu.in",  "truth.py.in",
+                                         "pair.obj.in", "cgal.cpp.in", "gtest.cpp.in"};
+  return kFiles[static_cast<std::size_t>(kind)];
+}
+
+// The vertices of one triangle as the kind's language has them; C++ puts a decimal beside the bits.
+std::string vertices(SnippetKind kind, const Vec3<float> (&triangle)[3], char label) {
+  std::string text;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3<float>& v = triangle[i];
+    const std::string x = hex_float(v.x), y = hex_float(v.y), z = hex_float(v.z);
+    // Nine digits are nearer to a float32 than to the middle between it and the next, through a double as well.
+    const std::string decimals = fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z);
+    if (kind == SnippetKind::python) {
+      text += fmt::format("{}\"{} {} {}\"", i > 0 ? ",\n     " : "", x, y, z);
+    } else if (kind == SnippetKind::obj) {
+      text += fmt::format("# {} {} {}\nv {}\n", x, y, z, decimals);
+    } else {
+      text += fmt::format("    {}f, {}f, {}f,  // {}[{}]: {}\n", x, y, z, label, i, decimals);
+    }
+  }
+  return text;
+}
+
+// Names come from files: nothing in one may end the comment that it stands in.
+std::string in_comment(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
+}  // namespace
+
+bool shows_lanes(SnippetKind kind) {
+  return kind == SnippetKind::cpp || kind == SnippetKind::cuda || kind == SnippetKind::gtest;
+}
+
+bool shows(SnippetKind kind, const Lane& lane) {
+  return shows_lanes(kind) && lane.is_cuda() == (kind == SnippetKind::cuda);
+}
+
+std::string amalgamated_source(std::string_view algorithm_id) {
+  Amalgamation all;
+  all.add(header_of(algorithm_id));
+  std::string text = "// SPDX-License-Identifier: Apache-2.0\n";
+  for (const std::string& line : all.system) text += line + '\n';
+  return text + all.text;
+}
+
+std::string snippet(SnippetKind kind, const SnippetCase& found) {
+  std::vector<std::pair<std::string_view, std::string>> values = {
+      {"command", command(kind, found.lane)},
+      {"case", in_comment(found.name)},
+      {"truth", std::string(name(found.truth))},
+      {"intersects", found.truth == Verdict::intersects ? "true" : "false"},
+      {"vertices_a", vertices(kind, found.pair.a, 'a')},
+      {"vertices_b", vertices(kind, found.pair.b, 'b')}};
+  values.emplace_back("coordinates", values[4].second + values[5].second);
+  if (shows_lanes(kind)) {
+    const std::string_view id = found.lane->info->id;
+    values.insert(values.end(), {{"lane", found.lane->id},
+                                 {"verdict", std::string(name(found.verdict))},
+                                 {"algorithm", std::string(id)},
+                                 {"scalar", std::string(name(found.lane->scalar))},
+                                 {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
+                                 {"type", type_name(id)},
+                                 {"sources", amalgamated_source(id)}});
+  }
+  // @name@ in the text is a value.
+  std::string text;
+  std::string_view rest = embedded(fmt::format("reports/snippets/{}", file_of(kind)));
+  for (std::size_t at; (at = rest.find('@')) != rest.npos;) {
+    text += rest.substr(0, at);
+    rest.remove_prefix(at + 1);
+    const std::string_view key = rest.substr(0, rest.find('@'));
+    const auto value = std::find_if(values.begin(), values.end(), [&](auto& v) { return v.first == key; });
+    if (value == values.end()) throw std::logic_error(fmt::format("{}: no value of '{}'", file_of(kind), key));
+    text += value->second;
+    rest.remove_prefix(key.size() + 1);
+  }
+  return text.append(rest);
+}
+
+}  // namespace graze

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Snippets as texts, and the Python one run over the whole corpus: its 32 axes against the oracle. The others are
+// compiled and run by cli/emit.test.cpp.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "corpus/pair_format.h"
+#include "oracle/truth.h"
+#include "reports/snippet.h"
+
+namespace graze {
+namespace {
+
+std::string contents(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
+  for (const Lane& lane : lanes()) {
+    const std::string id(lane.info->id), source = amalgamated_source(id);
+    EXPECT_EQ(source.find("#include \""), source.npos) << id;
+    const std::string header = contents(std::string(GRAZE_SOURCE_DIR) + "/core/" + id + ".h");
+    const std::size_t body = header.find("namespace graze {");
+    ASSERT_NE(body, header.npos) << id;
+    EXPECT_NE(source.find(header.substr(body)), source.npos) << id << ": not the file in core/, byte for byte";
+  }
+}
+
+TEST(Snippet, HoldsNothingItDoesNotNeed) {
+  EXPECT_EQ(amalgamated_source("moller_1997").find("ProjectedSat"), std::string::npos);
+  EXPECT_NE(amalgamated_source("guigue_devillers_2003").find("Vec2<Real> drop("), std::string::npos);
+}
+
+TEST(Snippet, ANameCannotEndItsComment) {
+  SnippetCase found{"x\nsystem(\"rm\")\r#", {}, Verdict::intersects, &lanes()[0], Verdict::disjoint};
+  for (std::size_t k = 0; k < std::size(kSnippetKinds); ++k) {
+    const auto kind = static_cast<SnippetKind>(k);
+    if (kind == SnippetKind::cuda) found.lane = &lanes()[3];
+    const std::string text = snippet(kind, found);
+    found.lane = &lanes()[0];
+    EXPECT_NE(text.find("x?system(\"rm\")?#"), std::string::npos) << kSnippetKinds[k];
+    EXPECT_EQ(text.find('\r'), std::string::npos);
+  }
+}
+
+TEST(Snippet, ObjDecimalsReadAsTheSameBits) {
+  const float numbers[] = {0x1p-149f, 0x1.fffffep+127f, -0.0f, 0x1.fffffcp-127f, 16777217.0f, 0x1.99999ap-4f, 1 / 3.0f};
+  for (const float x : numbers) {
+    Pair pair{};
+    coordinates(pair)[0] = x;
+    std::istringstream text(snippet(SnippetKind::obj, {"c", pair, Verdict::disjoint, nullptr, Verdict::disjoint}));
+    std::string line;
+    while (std::getline(text, line) && !line.starts_with("v ")) {
+    }
+    const std::string word = line.substr(2, line.find(' ', 2) - 2);
+    const float once = std::strtof(word.c_str(), nullptr),
+                twice = static_cast<float>(std::strtod(word.c_str(), nullptr));
+    EXPECT_EQ(hex_float(once), hex_float(x)) << line;
+    EXPECT_EQ(hex_float(twice), hex_float(x)) << line;
+  }
+}
+
+// Every finite pair of the corpus: all contacts of triangles, segments and points, in one plane, on one line, and not.
+TEST(Snippet, PythonDecidesTheWholeCorpus) {
+  if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "graze-python-snippets";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  int count = 0, disjoint = 0;
+  for (const auto& item : std::filesystem::recursive_directory_iterator(GRAZE_SOURCE_DIR "/corpus")) {
+    if (item.path().extension() != ".pairs") continue;
+    for (const Entry& entry : read_pairs(item.path())) {
+      const Truth t = truth(entry.pair);
+      if (t.verdict == Verdict::declined) continue;
+      disjoint += t.verdict == Verdict::disjoint;
+      std::ofstream(folder / (std::to_string(count++) + ".py"))
+          << snippet(SnippetKind::python, {*field(entry, "name"), entry.pair, t.verdict, nullptr, t.verdict});
+    }
+  }
+  ASSERT_GT(count, 100);
+  ASSERT_GT(disjoint, 30);
+  // One interpreter runs them all; each ends with the status 0 when it agrees with the truth given.
+  std::ofstream(folder / "all.driver") << "import glob, runpy, sys\n"
+                                          "wrong = 0\n"
+                                          "for f in glob.glob(sys.argv[1] + '/*.py'):\n"
+                                          "    try: runpy.run_path(f)\n"
+                                          "    except SystemExit as e:\n"
+                                          "        if e.code: wrong += 1; print(f, file=sys.stderr)\n"
+                                          "    else: wrong += 1\n"
+                                          "sys.exit(wrong != 0)\n";
+  const std::string command =
+      "python3 '" + (folder / "all.driver").string() + "' '" + folder.string() + "' > /dev/null";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+// A truth turned round must show: the program really decides.
+TEST(Snippet, PythonContradictsAWrongTruth) {
+  if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "graze-wrong-truth.py";
+  const Pair pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};
+  for (const Verdict claimed : {Verdict::intersects, Verdict::disjoint}) {
+    std::ofstream(file) << snippet(SnippetKind::python, {"c", pair, claimed, nullptr, claimed});
+    const int rc = std::system(("python3 '" + file.string() + "' > /dev/null").c_str());
+    EXPECT_EQ(rc == 0, claimed == Verdict::intersects);
+  }
+}
+
+}  // namespace
+}  // namespace graze

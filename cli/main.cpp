@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   graze::add_fuzz(app, status);
   graze::add_check(app, status);
   graze::add_repro(app, status);
+  graze::add_explain(app, status);
   graze::add_lanes(app, status);
   graze::add_strata(app, status);
   graze::add_prove_twin(app, status);

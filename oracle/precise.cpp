@@ -45,17 +45,17 @@ Trace<Ball> run_exactly(int algorithm, const Pair& pair, int bits, const Path& l
 Beside beside(double lane, const Ball& exact, int bits) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const mpfr_srcptr x = exact.mid.get();
-  if (mpfr_nan_p(x) || std::isnan(lane)) {
-    const bool both = mpfr_nan_p(x) && std::isnan(lane);
-    return {lane, mpfr_get_d(x, MPFR_RNDN), mpfr_nan_p(x) ? "nan" : "", both ? 0 : kInfinity};
-  }
-  if (exact.can_be_zero()) return {lane, 0, "0", lane == 0 ? 0 : kInfinity};
+  if (!mpfr_nan_p(x) && exact.can_be_zero()) return {lane, 0, "0", lane == 0 ? 0 : kInfinity};
   char decimal[64];
   mpfr_snprintf(decimal, sizeof decimal, "%.6Rg", x);
-  if (mpfr_inf_p(x)) return {lane, mpfr_get_d(x, MPFR_RNDN), decimal, lane == mpfr_get_d(x, MPFR_RNDN) ? 0 : kInfinity};
+  const double rounded = mpfr_get_d(x, MPFR_RNDN);
+  if (!mpfr_number_p(x) || !std::isfinite(lane)) {
+    const bool same = !mpfr_number_p(x) && (lane == rounded || (std::isnan(lane) && std::isnan(rounded)));
+    return {lane, rounded, decimal, same ? 0 : kInfinity};
+  }
   Multi error = Multi(lane) - exact.mid;
   mpfr_mul_2si(error.get(), error.get(), bits - static_cast<long>(mpfr_get_exp(x)), MPFR_RNDN);
-  return {lane, mpfr_get_d(x, MPFR_RNDN), decimal, std::abs(mpfr_get_d(error.get(), MPFR_RNDN))};
+  return {lane, rounded, decimal, std::abs(mpfr_get_d(error.get(), MPFR_RNDN))};
 }
 
 }  // namespace
@@ -97,11 +97,13 @@ Exactly decide_exactly(int algorithm, const Pair& pair) {
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run, int bits) {
   const Trace<Ball> exact = run_exactly(algorithm, pair, bits, path_of(run));
   if (exact.seen.size() != run.seen.size()) throw std::logic_error("exact_steps: the run is of another algorithm");
+  const int mantissa = mantissa_bits(scalar);
   std::vector<ExactStep> steps;
   for (std::size_t i = 0; i < run.seen.size(); ++i) {
+    const Seen<double>& lane = run.seen[i];
     const Seen<Ball>& seen = exact.seen[i];
-    steps.push_back({beside(run.seen[i].left, seen.left, mantissa_bits(scalar)),
-                     beside(run.seen[i].right, seen.right, mantissa_bits(scalar)), seen.held});
+    steps.push_back({beside(lane.left, seen.left, mantissa), beside(lane.right, seen.right, mantissa),
+                     beside(lane.left - lane.right, seen.left - seen.right, mantissa), seen.held});
   }
   return steps;
 }

@@ -49,13 +49,14 @@ Exactly decide_exactly(int algorithm, const Pair& pair);
 struct Beside {
   double lane;
   double exact;         // rounded; may be 0 or infinite where `decimal` is neither
-  std::string decimal;  // to 6 digits; "0" only for zero
+  std::string decimal;  // to 6 digits; "0" only for what cannot be told from zero
   double ulps;          // the lane's error, in ulps of the exact number without limits of the exponent
 };
 
 struct ExactStep {
   Beside left, right;
-  bool held;  // by the exact numbers
+  Beside difference;  // left less right
+  bool held;          // by the exact numbers
 };
 
 // The exact values of a lane's run, step by step, along the path that the lane took.

@@ -110,6 +110,7 @@ LaneExplanation explain_lane(const Lane& lane, Verdict verdict, const Pair& pair
       .lane = &lane,
       .verdict = verdict,
       .cause = cause_of(lane, pair, truth, algorithm.exactly),
+      .exactly = algorithm.exactly,
       .evidence = Evidence::none,
       .steps = {},
       .contractions = {},

@@ -48,6 +48,7 @@ struct LaneExplanation {
   const Lane* lane;
   Verdict verdict;
   Cause cause;
+  Exactly exactly;          // what the algorithm says in exact arithmetic
   Evidence evidence;        // how well the steps are known to be the lane's own
   std::vector<Step> steps;  // in order: values and comparisons of the policy's, and all comparisons that went wrong
   int first_wrong = -1;     // step; -1 when every comparison went as in exact arithmetic

@@ -196,6 +196,8 @@ TEST(Explain, EveryWrongLaneHasItsAccount) {
         ++wrong;
         causes.insert(lane.cause);
         EXPECT_NE(lane.verdict, explanation.truth.verdict);
+        EXPECT_TRUE(lane.exactly.settled) << lane.lane->id << ' ' << stratum.id << ' ' << i;
+        EXPECT_EQ(lane.exactly.verdict == explanation.truth.verdict, lane.cause != Cause::logic);
         EXPECT_GE(lane.orders.wrong, 1);
         EXPECT_GE(lane.mirrored.wrong, 1);
         EXPECT_GE(lane.scalings.wrong, 1);

@@ -77,7 +77,8 @@ std::string effect(const LaneExplanation& lane) {
 
 std::string reason(const LaneExplanation& lane) {
   const std::string effect_text = effect(lane);
-  const std::string then = effect_text.empty() ? "" : ", which " + effect_text;
+  const std::string replayed = lane.evidence <= Evidence::hash ? "" : "in a replay with the same verdict ";
+  const std::string then = effect_text.empty() ? "" : ", which " + replayed + effect_text;
   const std::string_view single = lane.lane->scalar == Scalar::f32 ? "float32" : "float64";
   switch (lane.cause) {
     case Cause::logic:
@@ -92,7 +93,7 @@ std::string reason(const LaneExplanation& lane) {
     case Cause::underflow:
       return fmt::format("an intermediate result is too small for {}{}", single, then);
     default:
-      return effect_text.empty() ? "rounding" : "rounding " + effect_text;
+      return effect_text.empty() ? "rounding" : "rounding " + replayed + effect_text;
   }
 }
 
@@ -149,12 +150,11 @@ nlohmann::ordered_json to_json(const WrongOf& count) { return {{"wrong", count.w
 }  // namespace
 
 std::string sentence(const Explanation& explanation, int algorithm) {
-  const LaneExplanation* first = nullptr;  // to be told of; of contracting lanes rather one whose sites are known
+  const LaneExplanation* first = nullptr;  // to be told of: rather one whose values are known to be its own
+  const auto known = [](const LaneExplanation& lane) { return lane.evidence <= Evidence::hash; };
   for (const LaneExplanation& lane : explanation.lanes) {
     if (lane.lane->algorithm != algorithm) continue;
-    if (!first || (first->cause == Cause::contraction && first->contractions.sites.empty() &&
-                   lane.cause == Cause::contraction && lane.lane->scalar == first->lane->scalar))
-      first = &lane;
+    if (!first || (!known(*first) && known(lane))) first = &lane;
   }
   if (!first) return "";
   std::string same, others;
@@ -187,6 +187,8 @@ nlohmann::ordered_json to_json(const LaneExplanation& lane) {
   nlohmann::ordered_json json{{"lane", lane.lane->id},
                               {"verdict", name(lane.verdict)},
                               {"cause", name(lane.cause)},
+                              {"exactly", name(lane.exactly.verdict)},
+                              {"exactly_settled", lane.exactly.settled},
                               {"evidence", name(lane.evidence)}};
   const auto step = [](int place) { return place < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(place); };
   json["first_wrong"] = step(lane.first_wrong);

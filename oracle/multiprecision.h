@@ -148,7 +148,8 @@ struct Ball {
     if (mpfr_nan_p(l.mid.get()) || mpfr_nan_p(r.mid.get())) return std::partial_ordering::unordered;
     const int sign = mpfr_cmp(l.mid.get(), r.mid.get());
     const long radius = either(l.radius, r.radius);
-    if (radius != kExact && !mpfr_inf_p(l.mid.get()) && !mpfr_inf_p(r.mid.get())) {
+    const bool finite = !mpfr_inf_p(l.mid.get()) && !mpfr_inf_p(r.mid.get());
+    if (radius != kExact && (finite || radius >= kUnknown)) {
       if (Ball(l.mid - r.mid, radius).can_be_zero()) {
         ++untold;
         return std::partial_ordering::equivalent;

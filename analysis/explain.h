@@ -76,7 +76,8 @@ struct Explanation {
 // Requires: lanes that run here, or have a twin. A pair with a coordinate that is not finite has no wrong lanes.
 Explanation explain(const Pair& pair, std::span<const Lane* const> lanes);
 
-// One English sentence on a wrong algorithm, for a bug report; empty when no lane of it is wrong.
+// One English sentence on a wrong algorithm, for a bug report; empty when no lane of it is wrong. It names the lanes
+// that are wrong alike, with the numbers of one of them.
 std::string sentence(const Explanation& explanation, int algorithm);
 
 // A sentence for each wrong algorithm, a line each.

@@ -79,19 +79,19 @@ std::string reason(const LaneExplanation& lane) {
   const std::string effect_text = effect(lane);
   const std::string replayed = lane.evidence <= Evidence::hash ? "" : "in a replay with the same verdict ";
   const std::string then = effect_text.empty() ? "" : ", which " + replayed + effect_text;
-  const std::string_view single = lane.lane->scalar == Scalar::f32 ? "float32" : "float64";
+  const std::string_view scalar = lane.lane->scalar == Scalar::f32 ? "float32" : "float64";
+  const std::string_view plural = lane.contractions.sites.size() > 1 ? "s" : "";
   switch (lane.cause) {
     case Cause::logic:
       return "the algorithm itself is wrong here, for in exact arithmetic it says the same";
     case Cause::contraction:
       if (lane.contractions.sites.empty()) return "the compiler fuses products into additions" + then;
-      return fmt::format("nvcc fuses the product{} into the addition{} at {}{}",
-                         lane.contractions.sites.size() > 1 ? "s" : "", lane.contractions.sites.size() > 1 ? "s" : "",
+      return fmt::format("nvcc fuses the product{} into the addition{} at {}{}", plural, plural,
                          list(lane.contractions.sites), then);
     case Cause::overflow:
-      return fmt::format("an intermediate result is too large for {}{}", single, then);
+      return fmt::format("an intermediate result is too large for {}{}", scalar, then);
     case Cause::underflow:
-      return fmt::format("an intermediate result is too small for {}{}", single, then);
+      return fmt::format("an intermediate result is too small for {}{}", scalar, then);
     default:
       return effect_text.empty() ? "rounding" : "rounding " + replayed + effect_text;
   }
@@ -102,12 +102,9 @@ std::string remedy(const LaneExplanation& lane) {
   if (lane.cause == Cause::logic) return "no arithmetic would help";
   if (lane.cause == Cause::overflow || lane.cause == Cause::underflow)
     return fmt::format("with exponents without limits its {} mantissa bits would be enough", own);
-  const std::string bits =
-      lane.bits_needed == 0     ? fmt::format("no mantissa of up to {} bits would be enough", kMostBits)
-      : lane.bits_needed == own ? fmt::format("its {} mantissa bits would be enough", own)
-                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
   if (lane.cause == Cause::contraction) return "without contraction it is right";
-  return bits;
+  return lane.bits_needed == 0 ? fmt::format("no mantissa of up to {} bits would be enough", kMostBits)
+                               : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
 }
 
 // Lanes that one account fits.

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 namespace graze {
@@ -73,6 +75,20 @@ Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth, const Exactly&
   return limited(true, true).first == RangeEvent::overflow ? Cause::overflow : Cause::underflow;
 }
 
+// Where more bits and wider exponents are both needed, the comparison that went wrong tells which failed first: a value
+// that is no number any more, or one lost for being less than the least normal number, is not for rounding to answer.
+Cause refined(const LaneExplanation& lane, const Pair& pair) {
+  const Step* told = lane.told();
+  if (lane.cause != Cause::rounding || !told) return lane.cause;
+  const RangeEvent first = decide_limited(lane.lane->algorithm, lane.lane->scalar, pair, {true, true}).first;
+  const double least =
+      lane.lane->scalar == Scalar::f32 ? double{std::numeric_limits<float>::min()} : std::numeric_limits<double>::min();
+  const Beside& difference = told->difference;
+  const bool lost = difference.lane == 0 && difference.decimal != "0" && std::abs(difference.exact) < least;
+  if (first == RangeEvent::none || (std::isfinite(difference.lane) && !lost)) return Cause::rounding;
+  return first == RangeEvent::overflow && !lost ? Cause::overflow : Cause::underflow;
+}
+
 // The path up to a comparison, which goes the other way.
 Path turned_at(const Path& path, std::size_t comparison) {
   Path turned(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(comparison) + 1);
@@ -120,6 +136,7 @@ LaneExplanation explain_lane(const Lane& lane, Verdict verdict, const Pair& pair
       .mirrored = wrong_of(lane, neighbours.mirrored, truth),
       .scalings = wrong_of(lane, neighbours.scalings, truth)};
   add_steps(result, pair, truth, algorithm.exactly);
+  result.cause = refined(result, pair);
   if (lane.target == Target::cuda_fma) result.contractions = blame(lane, pair);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
     const std::vector<Pair>& nudged = neighbours.nudged[c];

@@ -24,6 +24,8 @@ namespace graze {
 //   contraction  the same source without contraction, on the same kind of processor, is right
 //   overflow, underflow   the scalar's mantissa with exponents without limits is right (without contraction); the end
 //                of the exponents that alone makes it wrong, or if both or neither do, the one first left
+//                (also where longer mantissas are needed as well, but it is the range that made the comparison go
+//                wrong)
 //   rounding     otherwise
 enum class Cause { rounding, contraction, overflow, underflow, logic };
 std::string_view name(Cause cause);

@@ -117,6 +117,18 @@ TEST(Explain, AtAHugeScaleItOverflows) {
   EXPECT_FALSE(std::isfinite(lane.told()->left.lane));
 }
 
+// 24 bits would not do without limits either, but what the comparison was given is no number.
+TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
+  const Pair pair = generate(1, Stratum::extreme_scale, 2280);
+  const Explanation explanation = explain(pair, lanes_here());
+  const LaneExplanation& lane = lane_of(explanation, "interval_overlap/f32/cpu");
+  EXPECT_EQ(decide_limited(lane.lane->algorithm, Scalar::f32, pair, {false, false}).verdict, lane.verdict);
+  EXPECT_EQ(name(lane.cause), "overflow");
+  EXPECT_GT(lane.bits_needed, 24);
+  ASSERT_NE(lane.told(), nullptr);
+  EXPECT_TRUE(std::isnan(lane.told()->left.lane));
+}
+
 TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
   const Explanation explanation = explain(generate(3, Stratum::near_edge_edge, 100), lanes_here());
   const LaneExplanation& lane = lane_of(explanation, "moller_1997/f32/cpu");

@@ -100,11 +100,13 @@ std::string reason(const LaneExplanation& lane) {
 std::string remedy(const LaneExplanation& lane) {
   const int own = lane.lane->scalar == Scalar::f32 ? 24 : 53;
   if (lane.cause == Cause::logic) return "no arithmetic would help";
-  if (lane.cause == Cause::overflow || lane.cause == Cause::underflow)
-    return fmt::format("with exponents without limits its {} mantissa bits would be enough", own);
   if (lane.cause == Cause::contraction) return "without contraction it is right";
-  return lane.bits_needed == 0 ? fmt::format("no mantissa of up to {} bits would be enough", kMostBits)
-                               : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
+  const bool range = lane.cause == Cause::overflow || lane.cause == Cause::underflow;
+  const std::string bits =
+      lane.bits_needed == 0     ? fmt::format("no mantissa of up to {} bits would be enough", kMostBits)
+      : lane.bits_needed == own ? fmt::format("its {} mantissa bits would be enough", own)
+                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
+  return bits + (range ? " with exponents without limits" : "");
 }
 
 // Lanes that one account fits.

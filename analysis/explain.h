@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why lanes are wrong on a pair: what they computed beside what it should have been, and what would have helped.
+#pragma once
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/blame.h"
+#include "analysis/lane_trace.h"
+#include "analysis/neighbours.h"
+#include "core/lanes.h"
+#include "core/pair.h"
+#include "oracle/precise.h"
+#include "oracle/truth.h"
+
+namespace graze {
+
+// The first that holds:
+//   logic        the algorithm in exact arithmetic gives the wrong verdict too
+//   contraction  the same source without contraction, on the same kind of processor, is right
+//   overflow, underflow   the scalar's mantissa with exponents without limits is right (without contraction); the end
+//                of the exponents that alone makes it wrong, or if both or neither do, the one first left
+//                (also where longer mantissas are needed as well, but it is the range that made the comparison go
+//                wrong)
+//   rounding     otherwise
+enum class Cause { rounding, contraction, overflow, underflow, logic };
+std::string_view name(Cause cause);
+
+// A value that the algorithm asked its policy about, or a comparison.
+struct Step {
+  std::string line;                // "core/moller_1997.h:107"
+  std::string_view site;           // what the policy was asked about; empty for a comparison of the algorithm's own
+  std::string_view relation;       // empty for a value
+  Beside left, right, difference;  // a value is `left`
+  bool held = true;                // in the lane
+  bool holds = true;               // in exact arithmetic
+  bool wrong() const { return held != holds; }
+};
+
+// Of how many pairs with the same truth the lane is wrong.
+struct WrongOf {
+  int wrong, of;
+};
+
+struct LaneExplanation {
+  const Lane* lane;
+  Verdict verdict;
+  Cause cause;
+  Exactly exactly;          // what the algorithm says in exact arithmetic
+  Evidence evidence;        // how well the steps are known to be the lane's own
+  std::vector<Step> steps;  // in order: values and comparisons of the policy's, and all comparisons that went wrong
+  int first_wrong = -1;     // step; -1 when every comparison went as in exact arithmetic
+  int decisive = -1;   // first step that, had it alone gone right, would have made the verdict right; -1: no single
+  Blame contractions;  // of a cuda-fma lane whose verdict contraction changes
+  int bits_needed;     // least mantissa, from the lane's own on, with which and with any longer one of up to
+                       // kMostBits it is right; 0 without one, and where it would be luck (see explain.cpp)
+  std::array<bool, kCoordinates> matters;  // false: all its nudges leave the truth and the lane's verdict as they are
+  WrongOf orders, mirrored, scalings;      // see neighbours.h
+
+  // The comparison to tell of; null without one, and where the algorithm itself is to blame.
+  const Step* told() const {
+    const int step = decisive >= 0 ? decisive : first_wrong;
+    return step < 0 || cause == Cause::logic ? nullptr : &steps[static_cast<std::size_t>(step)];
+  }
+};
+
+struct Explanation {
+  Pair pair;
+  Truth truth;
+  std::vector<LaneExplanation> lanes;  // the wrong ones, in the given order
+};
+
+// Explains each of the lanes that is wrong on the pair; CUDA lanes by their twins. Deterministic.
+// Requires: lanes that run here, or have a twin. A pair with a coordinate that is not finite has no wrong lanes.
+Explanation explain(const Pair& pair, std::span<const Lane* const> lanes);
+
+// One English sentence on a wrong algorithm, for a bug report; empty when no lane of it is wrong. It names the lanes
+// that are wrong alike, with the numbers of one of them.
+std::string sentence(const Explanation& explanation, int algorithm);
+
+// A sentence for each wrong algorithm, a line each.
+std::vector<std::string> sentences(const Explanation& explanation);
+
+nlohmann::ordered_json to_json(const LaneExplanation& lane);
+nlohmann::ordered_json to_json(const Explanation& explanation);
+
+}  // namespace graze

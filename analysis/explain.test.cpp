@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each cause on a pair made for it, and laws of explanations over all strata.
+#include "analysis/explain.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "corpus/pair_format.h"
+#include "fuzz/strata.h"
+
+namespace graze {
+namespace {
+
+std::vector<const Lane*> lanes_here() {
+  std::vector<const Lane*> result;
+  for (const Lane& lane : lanes()) {
+    if (lane.is_cuda() ? twin_block(lane.algorithm, lane.scalar, lane.target) != nullptr : runs_on_this_cpu(lane))
+      result.push_back(&lane);
+  }
+  return result;
+}
+
+const LaneExplanation& lane_of(const Explanation& explanation, std::string_view id) {
+  for (const LaneExplanation& lane : explanation.lanes) {
+    if (lane.lane->id == id) return lane;
+  }
+  throw std::runtime_error(std::string(id) + " is not wrong");
+}
+
+// The values that a replay shows are the lane's: without contraction they must be, for CUDA by hash, and for the host's
+// contraction all that can be asked is the verdict.
+TEST(Replay, IsTheLanesOwnRun) {
+  for (const Lane* lane : lanes_here()) {
+    int pairs = 0, known = 0;
+    for (const StratumInfo& stratum : kStrata) {
+      for (std::uint64_t i = 0; i < 400; ++i, ++pairs) {
+        const Pair pair = generate(7, stratum.stratum, i);
+        const Replay run = replay(*lane, pair);
+        known += run.evidence != Evidence::none && run.run.verdict == decide_lane(*lane, pair);
+        if (lane->target == Target::cuda_fma) {
+          EXPECT_NE(run.evidence, Evidence::source);
+          known -= run.evidence == Evidence::verdict;
+        }
+      }
+    }
+    const bool by_rule = lane->target == Target::cpu_fma || lane->target == Target::cuda_fma;
+    EXPECT_GE(known, by_rule ? pairs - pairs / (lane->is_cuda() ? 1000 : 50) : pairs) << lane->id;
+  }
+}
+
+// Led down its own path a run is itself; led astray it is not.
+TEST(Replay, CanBeLed) {
+  const Lane& lane = lanes()[0];
+  const Pair pair = generate(7, Stratum::near_edge_edge, 3);
+  const Trace<double> run = run_led(lane, pair, Contraction::none, {});
+  EXPECT_EQ(path_of(run_led(lane, pair, Contraction::none, path_of(run))), path_of(run));
+  Path astray = path_of(run);
+  ASSERT_GT(astray.size(), 3u);
+  astray.resize(3);
+  astray[2] = !astray[2];
+  const Trace<double> other = run_led(lane, pair, Contraction::none, astray);
+  EXPECT_NE(path_of(other), path_of(run));
+  int comparisons = 0;
+  for (const Seen<double>& seen : other.seen) {
+    if (!seen.compared) continue;
+    ++comparisons;
+    EXPECT_EQ(seen.taken == seen.held, comparisons != 3);
+  }
+}
+
+Pair scaled(Pair pair, float factor) {
+  for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] *= factor;
+  return pair;
+}
+
+// A vertex 2^-12 above the face.
+const Pair kNearContact{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0x1p-12f}, {1, 2, 4}, {2, 1, 4}}};
+
+TEST(Explain, AlgorithmsThatAreWrongExactlyAreSoByLogic) {
+  Pair figure{};
+  for (const Entry& entry : read_pairs(GRAZE_SOURCE_DIR "/corpus/classic/thesis_2012.pairs")) {
+    if (*field(entry, "name") == "thesis_2012_figure_3_4") figure = entry.pair;
+  }
+  const Explanation explanation = explain(figure, lanes_here());
+  ASSERT_GE(explanation.lanes.size(), 2u);
+  for (const LaneExplanation& lane : explanation.lanes) {
+    EXPECT_EQ(lane.lane->info->id, "projected_sat");
+    EXPECT_EQ(name(lane.cause), "logic") << lane.lane->id;
+    EXPECT_EQ(lane.bits_needed, 0);
+    EXPECT_EQ(lane.orders.of, 72);
+    EXPECT_EQ(lane.mirrored.wrong, 8);
+  }
+  EXPECT_NE(sentence(explanation, 0).find("the algorithm itself is wrong"), std::string::npos)
+      << sentence(explanation, 0);
+}
+
+TEST(Explain, ANearContactAtATinyScaleUnderflows) {
+  EXPECT_TRUE(explain(kNearContact, lanes_here()).lanes.empty());
+  const Explanation explanation = explain(scaled(kNearContact, 1e-30f), lanes_here());
+  const LaneExplanation& lane = lane_of(explanation, "guigue_devillers_2003/f32/cpu");
+  EXPECT_EQ(name(lane.cause), "underflow");
+  EXPECT_EQ(name(lane_of(explanation, "separating_axes/f32/cuda-fma").cause), "underflow");
+  ASSERT_NE(lane.told(), nullptr);
+  EXPECT_EQ(lane.told()->left.lane, 0);
+  EXPECT_GT(lane.told()->left.exact, 0);
+  EXPECT_EQ(lane.bits_needed, 24);
+  EXPECT_GT(lane.scalings.wrong, 0);
+  EXPECT_LT(lane.scalings.wrong, lane.scalings.of);
+}
+
+TEST(Explain, AtAHugeScaleItOverflows) {
+  const Explanation explanation = explain(scaled(kNearContact, 1e30f), lanes_here());
+  const LaneExplanation& lane = lane_of(explanation, "moller_1997/f32/cpu");
+  EXPECT_EQ(name(lane.cause), "overflow");
+  ASSERT_NE(lane.told(), nullptr);
+  EXPECT_FALSE(std::isfinite(lane.told()->left.lane));
+}
+
+// 24 bits would not do without limits either, but what the comparison was given is no number.
+TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
+  const Pair pair = generate(1, Stratum::extreme_scale, 2280);
+  const Explanation explanation = explain(pair, lanes_here());
+  const LaneExplanation& lane = lane_of(explanation, "interval_overlap/f32/cpu");
+  EXPECT_EQ(decide_limited(lane.lane->algorithm, Scalar::f32, pair, {false, false}).verdict, lane.verdict);
+  EXPECT_EQ(name(lane.cause), "overflow");
+  EXPECT_GT(lane.bits_needed, 24);
+  ASSERT_NE(lane.told(), nullptr);
+  EXPECT_TRUE(std::isnan(lane.told()->left.lane));
+}
+
+TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
+  const Explanation explanation = explain(generate(3, Stratum::near_edge_edge, 100), lanes_here());
+  const LaneExplanation& lane = lane_of(explanation, "moller_1997/f32/cpu");
+  EXPECT_EQ(name(lane.cause), "rounding");
+  EXPECT_GT(lane.bits_needed, 24);
+  EXPECT_LE(lane.bits_needed, 53);
+  ASSERT_GE(lane.decisive, 0);
+  const Step& step = lane.steps[static_cast<std::size_t>(lane.decisive)];
+  EXPECT_TRUE(step.wrong());
+  EXPECT_EQ(step.line.substr(0, 20), "core/moller_1997.h:1");
+  EXPECT_EQ(step.site, "separation");
+  EXPECT_NE(sentence(explanation, lane.lane->algorithm).find(": rounding turns the gap between two interval ends"),
+            std::string::npos);
+}
+
+// Near-coplanar pairs on which cuda-fma and cuda-nofma differ: the sites to blame make the difference, and no fewer do.
+TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
+  int flips = 0;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const Pair pair = generate(5, Stratum::coplanar_rounded, i);
+    for (const LaneExplanation& lane : explain(pair, lanes_here()).lanes) {
+      const Lane& plain = lanes()[static_cast<std::size_t>(lane.lane->index) - (lane.lane->is_cuda() ? 1 : 0)];
+      if (lane.lane->target != Target::cuda_fma || decide_lane(plain, pair) == lane.verdict) continue;
+      ++flips;
+      EXPECT_TRUE(lane.cause == Cause::contraction || lane.cause == Cause::logic) << lane.lane->id;
+      const std::span<const ContractionSite> all = contraction_sites(lane.lane->algorithm, lane.lane->scalar);
+      std::vector<std::size_t> blamed;
+      for (std::size_t s = 0; s < all.size(); ++s) {
+        for (const ContractionSite& site : lane.contractions.sites) {
+          if (site.ptx_line == all[s].ptx_line) blamed.push_back(s);
+        }
+      }
+      ASSERT_EQ(blamed.size(), lane.contractions.sites.size());
+      ASSERT_FALSE(blamed.empty());
+      const auto verdict_without = [&](std::size_t spared) {
+        std::vector<std::uint64_t> fused(all.size() / 64 + 1);
+        for (std::size_t s : blamed) fused[s / 64] |= std::uint64_t{s != spared} << (s % 64);
+        return decide_fusing(lane.lane->algorithm, lane.lane->scalar, pair, fused);
+      };
+      EXPECT_EQ(verdict_without(all.size()), lane.verdict);
+      for (std::size_t s : blamed) EXPECT_NE(verdict_without(s), lane.verdict);
+      for (const ContractionSite& site : lane.contractions.sites) {
+        EXPECT_EQ(std::string_view(site.at.file).substr(0, 5), "core/");
+        EXPECT_GT(site.at.line, 0);
+      }
+    }
+  }
+  EXPECT_GT(flips, 20);
+}
+
+TEST(Explain, ASentenceTellsOfACoplanarFlip) {
+  std::vector<const Lane*> cuda;
+  for (const Lane* lane : lanes_here()) {
+    if (lane->is_cuda()) cuda.push_back(lane);
+  }
+  const Explanation explanation = explain(generate(1, Stratum::coplanar_rounded, 10), cuda);
+  const std::string text =
+      sentence(explanation, lane_of(explanation, "guigue_devillers_2003/f32/cuda-fma").lane->algorithm);
+  for (const char* part :
+       {"guigue_devillers_2003/f32 (cuda-fma) says disjoint, but the triangles meet in a segment, 1.23e-09 deep: "
+        "nvcc fuses the product into the addition at core/vec3.h:",
+        "which turns an orientation of exactly -4.64625e-18 into ",
+        "so that the comparison at core/guigue_devillers_2003.h:131 goes the wrong way; "
+        "without contraction it is right."})
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+// Whatever the pair: what is wrong has a cause, and if not by logic a comparison that went wrong.
+TEST(Explain, EveryWrongLaneHasItsAccount) {
+  std::set<Cause> causes;
+  int wrong = 0, decisive = 0, unknown = 0;
+  for (const StratumInfo& stratum : kStrata) {
+    for (std::uint64_t i = 0; i < 12; ++i) {
+      const Pair pair = generate(9, stratum.stratum, i);
+      const Explanation explanation = explain(pair, lanes_here());
+      for (const LaneExplanation& lane : explanation.lanes) {
+        ++wrong;
+        causes.insert(lane.cause);
+        EXPECT_NE(lane.verdict, explanation.truth.verdict);
+        EXPECT_TRUE(lane.exactly.settled) << lane.lane->id << ' ' << stratum.id << ' ' << i;
+        EXPECT_EQ(lane.exactly.verdict == explanation.truth.verdict, lane.cause != Cause::logic);
+        EXPECT_GE(lane.orders.wrong, 1);
+        EXPECT_GE(lane.mirrored.wrong, 1);
+        EXPECT_GE(lane.scalings.wrong, 1);
+        EXPECT_FALSE(sentence(explanation, lane.lane->algorithm).empty());
+        unknown += lane.evidence == Evidence::none;
+        if (lane.cause == Cause::logic || lane.evidence == Evidence::none) continue;
+        ASSERT_NE(lane.told(), nullptr) << lane.lane->id << ' ' << stratum.id << ' ' << i;
+        EXPECT_TRUE(lane.told()->wrong());
+        decisive += lane.decisive >= 0;
+      }
+    }
+  }
+  EXPECT_GT(wrong, 500);
+  EXPECT_GT(decisive, wrong / 3);
+  EXPECT_LT(unknown, wrong / 50);
+  EXPECT_GE(causes.size(), 4u);
+}
+
+TEST(Explain, TheSamePairGivesTheSameBytes) {
+  for (const Stratum stratum : {Stratum::extreme_scale, Stratum::coplanar_rounded, Stratum::degenerate}) {
+    for (std::uint64_t i = 0; i < 5; ++i) {
+      const Pair pair = generate(2, stratum, i);
+      EXPECT_EQ(to_json(explain(pair, lanes_here())).dump(), to_json(explain(pair, lanes_here())).dump());
+    }
+  }
+}
+
+TEST(Explain, WithoutATruthThereIsNothingWrong) {
+  Pair pair = kNearContact;
+  pair.a[1].y = NAN;
+  EXPECT_TRUE(explain(pair, lanes_here()).lanes.empty());
+}
+
+TEST(Neighbours, AreExactImages) {
+  const Pair pair = generate(1, Stratum::uniform, 1);
+  EXPECT_EQ(orders(pair).size(), 72u);
+  EXPECT_EQ(mirrored(pair).size(), 8u);
+  EXPECT_EQ(scalings(pair).size(), 2u * kMostScaling + 1);
+  for (const std::vector<Pair>& images : {orders(pair), mirrored(pair), scalings(pair)}) {
+    std::set<std::string> distinct;
+    for (const Pair& image : images) {
+      EXPECT_EQ(cgal_verdict(image), cgal_verdict(pair));
+      distinct.emplace(reinterpret_cast<const char*>(&image), sizeof image);
+    }
+    EXPECT_EQ(distinct.size(), images.size());
+  }
+  Pair tiny = kNearContact;
+  tiny.a[0].x = 0x1.8p-100f;
+  EXPECT_LT(scalings(tiny).size(), 2u * kMostScaling + 1);
+}
+
+TEST(Neighbours, NudgesMoveOneCoordinateBothWays) {
+  for (int c = 0; c < kCoordinates; ++c) {
+    const std::vector<Pair> moved = nudged(kNearContact, c);
+    ASSERT_EQ(moved.size(), 4u);
+    for (const Pair& pair : moved) {
+      for (int i = 0; i < kCoordinates; ++i)
+        EXPECT_EQ(coordinates(pair)[i] != coordinates(kNearContact)[i], i == c) << c << ' ' << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// An explanation in words, and as JSON.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/explain.h"
+
+namespace graze {
+namespace {
+
+std::string phrase(const Truth& truth) {
+  if (truth.contact == Contact::none)
+    return fmt::format("are {:.3g} apart ({:.3g} ulps of the largest coordinate)", truth.margin, truth.margin_ulps);
+  const std::string deep = truth.margin < 0 ? fmt::format(", {:.3g} deep", -truth.margin) : "";
+  switch (truth.contact) {
+    case Contact::point:
+      return "meet in a point" + deep;
+    case Contact::segment:
+      return "meet in a segment" + deep;
+    default:
+      return "overlap in their common plane";
+  }
+}
+
+std::string words(const ContractionSite& site) {
+  const std::string at = fmt::format("{}:{}", site.at.file, site.at.line);
+  const bool inlined =
+      site.from.line > 0 && *site.from.file != '\0' && std::string_view(site.from.file).starts_with("core/");
+  return inlined ? fmt::format("{} (inlined at {}:{})", at, site.from.file, site.from.line) : at;
+}
+
+// "A", "A and B", "A, B and 3 more": equal ones once.
+std::string list(const std::vector<ContractionSite>& sites) {
+  std::vector<std::string> names;
+  for (const ContractionSite& site : sites) {
+    if (std::find(names.begin(), names.end(), words(site)) == names.end()) names.push_back(words(site));
+  }
+  constexpr std::size_t kMost = 3;
+  const std::size_t more = names.size() > kMost ? names.size() - kMost : 0;
+  std::string result = names.front();
+  for (std::size_t i = 1; i < names.size() - more; ++i) {
+    result += (more == 0 && i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return more == 0 ? result : fmt::format("{} and {} more", result, more);
+}
+
+// What the compared value is: the last value of the policy's that it equals, or else what the policy was asked.
+std::string_view what(const LaneExplanation& lane, const Step& told) {
+  const auto in_words = [](std::string_view site) -> std::string_view {
+    return site == "plane_distance" ? "a signed distance"
+           : site == "parallel"     ? "a component of the normals' cross product"
+           : site == "orientation"  ? "an orientation"
+                                    : "the gap between two interval ends";
+  };
+  if (!told.site.empty()) return in_words(told.site);
+  for (const Step& step : lane.steps) {
+    if (&step == &told) break;
+    if (step.relation.empty() && step.left.lane == told.left.lane && step.left.decimal == told.left.decimal &&
+        told.right.decimal == "0")
+      return in_words(step.site);
+  }
+  return told.right.decimal == "0" && told.right.lane == 0 ? "a number" : "the difference of two numbers";
+}
+
+// "which turns a signed distance of exactly 0 into 1.2e-09, so that the comparison at … goes the wrong way"
+std::string effect(const LaneExplanation& lane) {
+  const Step* told = lane.told();
+  if (!told) return "";
+  const std::string into = std::isfinite(told->difference.lane) ? fmt::format("{:.6g}", told->difference.lane)
+                           : std::isnan(told->difference.lane)  ? "NaN"
+                                                                : "infinity";
+  return fmt::format("turns {} of exactly {} into {}, so that the comparison at {} goes the wrong way",
+                     what(lane, *told), told->difference.decimal, into, told->line);
+}
+
+std::string reason(const LaneExplanation& lane) {
+  const std::string effect_text = effect(lane);
+  const std::string replayed = lane.evidence <= Evidence::hash ? "" : "in a replay with the same verdict ";
+  const std::string then = effect_text.empty() ? "" : ", which " + replayed + effect_text;
+  const std::string_view scalar = lane.lane->scalar == Scalar::f32 ? "float32" : "float64";
+  const std::string_view plural = lane.contractions.sites.size() > 1 ? "s" : "";
+  switch (lane.cause) {
+    case Cause::logic:
+      return "the algorithm itself is wrong here, for in exact arithmetic it says the same";
+    case Cause::contraction:
+      if (lane.contractions.sites.empty()) return "the compiler fuses products into additions" + then;
+      return fmt::format("nvcc fuses the product{} into the addition{} at {}{}", plural, plural,
+                         list(lane.contractions.sites), then);
+    case Cause::overflow:
+      return fmt::format("an intermediate result is too large for {}{}", scalar, then);
+    case Cause::underflow:
+      return fmt::format("an intermediate result is too small for {}{}", scalar, then);
+    default:
+      return effect_text.empty() ? "rounding" : "rounding " + replayed + effect_text;
+  }
+}
+
+std::string remedy(const LaneExplanation& lane) {
+  const int own = lane.lane->scalar == Scalar::f32 ? 24 : 53;
+  if (lane.cause == Cause::logic) return "no arithmetic would help";
+  if (lane.cause == Cause::contraction) return "without contraction it is right";
+  const bool range = lane.cause == Cause::overflow || lane.cause == Cause::underflow;
+  const std::string bits =
+      lane.bits_needed == 0     ? fmt::format("no mantissa of up to {} bits would be enough", kMostBits)
+      : lane.bits_needed == own ? fmt::format("its {} mantissa bits would be enough", own)
+                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
+  return bits + (range ? " with exponents without limits" : "");
+}
+
+// Lanes that one account fits.
+bool alike(const LaneExplanation& l, const LaneExplanation& r) {
+  const auto line = [](const LaneExplanation& lane) { return lane.told() ? lane.told()->line : ""; };
+  return l.lane->scalar == r.lane->scalar && l.verdict == r.verdict && l.cause == r.cause && line(l) == line(r) &&
+         l.contractions.sites.empty() == r.contractions.sites.empty();
+}
+
+nlohmann::ordered_json number(double x) {
+  if (std::isfinite(x)) return x;
+  return std::isnan(x) ? "nan" : x < 0 ? "-inf" : "inf";
+}
+
+nlohmann::ordered_json to_json(const Beside& beside) {
+  return {{"lane", number(beside.lane)}, {"exact", beside.decimal}, {"ulps", number(beside.ulps)}};
+}
+
+nlohmann::ordered_json to_json(const Step& step) {
+  nlohmann::ordered_json json{{"line", step.line}, {"site", step.site}};
+  if (step.relation.empty()) {
+    json["value"] = to_json(step.left);
+    return json;
+  }
+  json["left"] = to_json(step.left);
+  json["relation"] = step.relation;
+  json["right"] = to_json(step.right);
+  json["difference"] = to_json(step.difference);
+  json["held"] = step.held;
+  json["holds"] = step.holds;
+  return json;
+}
+
+nlohmann::ordered_json to_json(const SourceLine& line) {
+  return line.line > 0 ? nlohmann::ordered_json(fmt::format("{}:{}", line.file, line.line)) : nullptr;
+}
+
+nlohmann::ordered_json to_json(const WrongOf& count) { return {{"wrong", count.wrong}, {"of", count.of}}; }
+
+}  // namespace
+
+std::string sentence(const Explanation& explanation, int algorithm) {
+  const LaneExplanation* first = nullptr;  // to be told of: rather one whose values are known to be its own
+  const auto known = [](const LaneExplanation& lane) { return lane.evidence <= Evidence::hash; };
+  for (const LaneExplanation& lane : explanation.lanes) {
+    if (lane.lane->algorithm != algorithm) continue;
+    if (!first || (!known(*first) && known(lane))) first = &lane;
+  }
+  if (!first) return "";
+  std::string same, others;
+  for (const LaneExplanation& lane : explanation.lanes) {
+    if (lane.lane->algorithm != algorithm) continue;
+    const std::string_view target = name(lane.lane->target);
+    if (alike(*first, lane)) {
+      same += fmt::format("{}{}", same.empty() ? "" : ", ", target);
+    } else {
+      others +=
+          fmt::format("{}{}/{} ({})", others.empty() ? "" : ", ", name(lane.lane->scalar), target, name(lane.cause));
+    }
+  }
+  const Lane& lane = *first->lane;
+  const std::string also = others.empty() ? "" : "; also wrong: " + others;
+  return fmt::format("{}/{} ({}) says {}, but the triangles {}: {}; {}{}.", lane.info->id, name(lane.scalar), same,
+                     name(first->verdict), phrase(explanation.truth), reason(*first), remedy(*first), also);
+}
+
+std::vector<std::string> sentences(const Explanation& explanation) {
+  std::vector<std::string> result;
+  for (const LaneExplanation& lane : explanation.lanes) {
+    const std::string text = sentence(explanation, lane.lane->algorithm);
+    if (result.empty() || result.back() != text) result.push_back(text);
+  }
+  return result;
+}
+
+nlohmann::ordered_json to_json(const LaneExplanation& lane) {
+  nlohmann::ordered_json json{{"lane", lane.lane->id},
+                              {"verdict", name(lane.verdict)},
+                              {"cause", name(lane.cause)},
+                              {"exactly", name(lane.exactly.verdict)},
+                              {"exactly_settled", lane.exactly.settled},
+                              {"evidence", name(lane.evidence)}};
+  const auto step = [](int place) { return place < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(place); };
+  json["first_wrong"] = step(lane.first_wrong);
+  json["decisive"] = step(lane.decisive);
+  json["steps"] = nlohmann::ordered_json::array();
+  for (const Step& s : lane.steps) json["steps"].push_back(to_json(s));
+  json["contractions"] = nlohmann::ordered_json::array();
+  for (const ContractionSite& site : lane.contractions.sites) {
+    json["contractions"].push_back(
+        {{"at", to_json(site.at)}, {"from", to_json(site.from)}, {"by", site.by_ptxas ? "ptxas" : "front end"}});
+  }
+  json["contractions_smallest"] = lane.contractions.smallest;
+  json["bits_needed"] = lane.bits_needed == 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(lane.bits_needed);
+  json["matters"] = lane.matters;
+  json["orders"] = to_json(lane.orders);
+  json["mirrored"] = to_json(lane.mirrored);
+  json["scalings"] = to_json(lane.scalings);
+  return json;
+}
+
+nlohmann::ordered_json to_json(const Explanation& explanation) {
+  const Truth& truth = explanation.truth;
+  nlohmann::ordered_json json{{"truth",
+                               {{"verdict", name(truth.verdict)},
+                                {"contact", name(truth.contact)},
+                                {"margin", number(truth.margin)},
+                                {"margin_ulps", number(truth.margin_ulps)}}},
+                              {"sentences", sentences(explanation)},
+                              {"lanes", nlohmann::ordered_json::array()}};
+  for (const LaneExplanation& lane : explanation.lanes) json["lanes"].push_back(to_json(lane));
+  return json;
+}
+
+}  // namespace graze

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/lane_trace.h"
+
+#include <stdexcept>
+
+#include "cuda/trace.h"
+#include "cuda/twin.h"
+
+namespace graze {
+namespace {
+
+// The hash of cuda/trace.h, of a run written down.
+template <class Real>
+std::uint64_t trace_hash(const Trace<double>& run) {
+  std::uint64_t hash = 0;
+  const TracePolicy policy{&hash};
+  for (const Seen<double>& seen : run.seen) {
+    if (!seen.site) continue;
+    policy.fold(static_cast<Real>(seen.left));
+    if (seen.compared) policy.fold(static_cast<Real>(seen.right));
+  }
+  return hash ^ static_cast<std::uint64_t>(run.verdict);
+}
+
+template <class Real>
+Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Path& lead) {
+  if (rule == Contraction::nvcc) return run_traced<Real, Contraction::nvcc>(algorithm, pair, lead);
+  if (rule == Contraction::left) return run_traced<Real, Contraction::left>(algorithm, pair, lead);
+  return run_traced<Real>(algorithm, pair, lead);
+}
+
+// How well the run of a contracting lane is known to be its own.
+Evidence evidence(const Lane& lane, const Pair& pair, const Trace<double>& run) {
+  if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
+  const TraceBlock twin = twin_trace(lane.algorithm, lane.scalar, lane.target);
+  if (!twin) return Evidence::verdict;
+  std::uint64_t hash = 0;
+  twin(&pair, 1, &hash);
+  return hash == (lane.scalar == Scalar::f32 ? trace_hash<float>(run) : trace_hash<double>(run)) ? Evidence::hash
+                                                                                                 : Evidence::verdict;
+}
+
+}  // namespace
+
+std::string_view name(Evidence evidence) {
+  constexpr std::string_view kNames[] = {"source", "hash", "verdict", "none"};
+  return kNames[static_cast<int>(evidence)];
+}
+
+Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead) {
+  return lane.scalar == Scalar::f32 ? run_in<float>(lane.algorithm, pair, rule, lead)
+                                    : run_in<double>(lane.algorithm, pair, rule, lead);
+}
+
+Replay replay(const Lane& lane, const Pair& pair) {
+  if (lane.target == Target::cpu || lane.target == Target::cuda_nofma)
+    return {Contraction::none, Evidence::source, run_led(lane, pair, Contraction::none, {})};
+  Replay best;
+  for (const Contraction rule : {Contraction::nvcc, Contraction::left}) {
+    Trace<double> run = run_led(lane, pair, rule, {});
+    const Evidence found = evidence(lane, pair, run);
+    if (found < best.evidence || best.run.seen.empty()) best = {rule, found, std::move(run)};
+  }
+  return best;
+}
+
+Verdict decide_lane(const Lane& lane, const Pair& pair) {
+  const DecideBlock block = lane.decide ? lane.decide : twin_block(lane.algorithm, lane.scalar, lane.target);
+  if (!block) throw std::invalid_argument(lane.id + ": expected a host lane or a twin");
+  std::uint64_t intersects = 0, declined = 0;
+  block(&pair, 1, &intersects, &declined);
+  return declined & 1 ? Verdict::declined : intersects & 1 ? Verdict::intersects : Verdict::disjoint;
+}
+
+}  // namespace graze

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze explain`: why each wrong lane is wrong on a case, in numbers and in one sentence an algorithm.
+#include "analysis/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "cli/cases.h"
+#include "cli/commands.h"
+#include "reports/terminal.h"
+
+namespace graze {
+namespace {
+
+std::string words(const Beside& beside) {
+  const std::string error = std::isinf(beside.ulps) ? "" : fmt::format("  {:.3g} ulps", beside.ulps);
+  return fmt::format("{:<14.7g} exact {:<14}{}", beside.lane, beside.decimal, error);
+}
+
+void print_step(const Step& step) {
+  fmt::print("      {:<34} {:<15}", step.line, step.site);
+  if (step.relation.empty()) {
+    fmt::print("{}\n", words(step.left));
+    return;
+  }
+  fmt::print("{:.7g} {} {:.7g} is {}; exact {} {} {} is {}; difference {}{}\n", step.left.lane, step.relation,
+             step.right.lane, step.held, step.left.decimal, step.relation, step.right.decimal, step.holds,
+             words(step.difference), step.wrong() ? "  WRONG" : "");
+}
+
+// The values up to the comparison to tell of, or all; at most the last kMost of them.
+void print_steps(const LaneExplanation& lane) {
+  constexpr int kMost = 12;
+  const Step* told = lane.told();
+  const int end = told ? static_cast<int>(told - lane.steps.data()) + 1 : static_cast<int>(lane.steps.size());
+  const int begin = std::max(0, end - kMost);
+  fmt::print("    values{}:{}\n",
+             lane.evidence == Evidence::source ? ""
+             : lane.evidence == Evidence::hash ? " (contracted by a rule; they have the hash of the lane's twin)"
+             : lane.evidence == Evidence::verdict
+                 ? " (contracted by a rule; only the verdict is known to be the lane's)"
+                 : ": unknown, no rule of contraction replays this lane here",
+             begin > 0 ? fmt::format(" ({} before, see --json)", begin) : "");
+  for (int i = begin; i < end; ++i) print_step(lane.steps[static_cast<std::size_t>(i)]);
+  if (lane.first_wrong < 0 && lane.evidence != Evidence::none)
+    fmt::print("      every comparison goes as in exact arithmetic\n");
+}
+
+// "a[0].x b[2].z"
+std::string free_coordinates(const LaneExplanation& lane) {
+  std::string names;
+  for (int c = 0; c < kCoordinates; ++c) {
+    if (lane.matters[static_cast<std::size_t>(c)]) continue;
+    names += fmt::format(" {}[{}].{}", c < 9 ? 'a' : 'b', c / 3 % 3, "xyz"[c % 3]);
+  }
+  return names.empty() ? " none" : names;
+}
+
+void print_lane(const LaneExplanation& lane, const LaneExplanation* before) {
+  fmt::print("  {}: {}, cause: {}\n", lane.lane->id, name(lane.verdict), name(lane.cause));
+  const auto steps = [](const LaneExplanation& l) { return to_json(l)["steps"]; };
+  if (before && before->lane->algorithm == lane.lane->algorithm && before->lane->scalar == lane.lane->scalar &&
+      lane.evidence == Evidence::source && steps(*before) == steps(lane)) {
+    fmt::print("    values: those of {}\n", before->lane->id);
+  } else {
+    print_steps(lane);
+  }
+  if (!lane.contractions.sites.empty()) {
+    fmt::print("    contractions, {}:\n", lane.contractions.smallest ? "the smallest set that makes the difference"
+                                                                     : "none of which can be spared");
+    for (const ContractionSite& site : lane.contractions.sites) {
+      fmt::print("      {}:{}, inlined at {}:{}, by {}\n", site.at.file, site.at.line, site.from.file, site.from.line,
+                 site.by_ptxas ? "ptxas" : "nvcc's front end");
+    }
+  }
+  fmt::print("    mantissa bits it would have needed: {}\n", lane.cause == Cause::logic ? "no number of bits helps"
+                                                             : lane.bits_needed == 0
+                                                                 ? fmt::format("more than {}", kMostBits)
+                                                                 : fmt::format("{}", lane.bits_needed));
+  fmt::print("    coordinates that do not matter:{}\n", free_coordinates(lane));
+  fmt::print("    wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}\n",
+             lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
+             lane.scalings.of, kMostScaling, kMostScaling);
+}
+
+struct ExplainOptions {
+  std::string name;
+  std::vector<std::string> globs;
+  bool json = false;
+};
+
+void explain_cases(const ExplainOptions& options) {
+  const Bench bench = make_bench(options.globs, Executor::twin);
+  for (const Entry& entry : read_cases(options.name)) {
+    const Explanation explanation = explain(entry.pair, bench.lanes);
+    if (options.json) {
+      nlohmann::ordered_json line{{"case", options.name}, {"line", entry.line}};
+      line.update(to_json(explanation));
+      line["cuda"] = cuda_evidence(bench);
+      fmt::print("{}\n", line.dump());
+      continue;
+    }
+    fmt::print("{}{}\n", options.name, entry.line > 0 ? fmt::format(":{}", entry.line) : "");
+    std::fflush(stdout);
+    print_pair(std::cout, entry.pair, explanation.truth, bench.lanes, decide(bench, entry.pair));
+    std::cout.flush();
+    const LaneExplanation* before = nullptr;
+    for (const LaneExplanation& lane : explanation.lanes) {
+      print_lane(lane, before);
+      if (lane.lane->target == Target::cpu) before = &lane;
+    }
+    if (explanation.lanes.empty()) {
+      fmt::print("  {}\n", explanation.truth.verdict == Verdict::declined
+                               ? "nothing to explain: a coordinate is not finite, and no verdict is right"
+                               : "nothing to explain: no lane is wrong");
+    }
+    for (const std::string& text : sentences(explanation)) fmt::print("  {}\n", text);
+  }
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "explain",
+      "Say why lanes are wrong on a case: their values beside the exact ones, the cause, and what would help");
+  command->footer("Example: graze explain near_edge_edge:1:7");
+  auto options = std::make_shared<ExplainOptions>();
+  command->add_option("case", options->name, "A file of pairs, or STRATUM:SEED:INDEX")->required();
+  add_globs(*command, "--lanes", options->globs, "Only lanes that match a pattern");
+  command->add_flag("--json", options->json, "One JSON object a line, with all values");
+  command->callback([options, &status] {
+    explain_cases(*options);
+    status = 0;
+  });
+}
+
+}  // namespace graze

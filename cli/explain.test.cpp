@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze explain` as users meet it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class ExplainCommand : public testing::Test {
+ protected:
+  Shell shell{std::string("explain-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
+};
+
+TEST_F(ExplainCommand, SaysWhyInOneSentenceAnAlgorithm) {
+  const Ran ran = shell("graze explain coplanar_rounded:1:3 --lanes '*/f32/cuda-*'");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("cause: contraction"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("interval_overlap/f32 (cuda-fma) says disjoint, but"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" is false; exact "), std::string::npos) << ran.out;
+  EXPECT_EQ(ran.err, "");
+}
+
+TEST_F(ExplainCommand, JsonIsOneObjectACaseAndTheSameBytesTwice) {
+  const std::string command =
+      "graze fuzz --pairs 20000 --strata 'extreme_scale,lattice' --out c > /dev/null; cat $(ls c/cases/*.pairs | head "
+      "-n 2) "
+      "| grep -v '^graze-pairs' > some.pairs; graze explain some.pairs --json";
+  const Ran ran = shell(command);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  std::istringstream lines(ran.out);
+  std::string line;
+  int count = 0;
+  for (; std::getline(lines, line); ++count) {
+    const Json object = Json::parse(line);
+    EXPECT_EQ(object["case"], "some.pairs");
+    ASSERT_FALSE(object["lanes"].empty());
+    EXPECT_FALSE(object["sentences"].empty());
+    for (const Json& lane : object["lanes"]) {
+      EXPECT_EQ(lane["matters"].size(), 18u);
+      EXPECT_EQ(lane["orders"]["of"], 72);
+      EXPECT_FALSE(lane["cause"].get<std::string>().empty());
+    }
+  }
+  EXPECT_GE(count, 2);
+  EXPECT_EQ(shell("graze explain some.pairs --json").out, ran.out);
+}
+
+TEST_F(ExplainCommand, SaysWhenThereIsNothingToExplain) {
+  EXPECT_NE(shell("graze explain uniform:1:1").out.find("no lane is wrong"), std::string::npos);
+  const Ran nan = shell("echo 'nan 0 0 4 0 0 0 4 0  1 1 0 1 2 4 2 1 4' > nan.pairs; graze explain nan.pairs");
+  EXPECT_EQ(nan.status, 0);
+  EXPECT_NE(nan.out.find("not finite"), std::string::npos);
+}
+
+TEST_F(ExplainCommand, WrongUseGetsOneLine) {
+  for (const auto& [command, status] : {std::pair{"graze explain", 2},
+                                        {"graze explain nowhere:1:3", 2},
+                                        {"graze explain missing.pairs", 1},
+                                        {"graze explain uniform:1:1 --lanes x", 2}}) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, status) << command;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+}  // namespace
+}  // namespace graze

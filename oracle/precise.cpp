@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/precise.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "oracle/multiprecision.h"
+
+namespace graze {
+namespace {
+
+int mantissa_bits(Scalar scalar) { return scalar == Scalar::f32 ? 24 : 53; }
+
+// MPFR's exponents while it lives: 0.5 2^emin is the least positive number, and all are below 2^emax.
+struct ExponentRange {
+  mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
+
+  ExponentRange(Scalar scalar, Limits limits) {
+    if (limits.upper) mpfr_set_emax(scalar == Scalar::f32 ? 128 : 1024);
+    if (limits.lower) mpfr_set_emin(scalar == Scalar::f32 ? -148 : -1073);
+    Multi::subnormals = limits.lower;
+    Multi::first_event = 0;
+  }
+  ~ExponentRange() {
+    mpfr_set_emin(emin);
+    mpfr_set_emax(emax);
+    Multi::subnormals = false;
+  }
+};
+
+template <std::size_t... i>
+Verdict decide_in_multi(int algorithm, const Pair& pair, std::index_sequence<i...>) {
+  using Decide = Verdict (*)(const Pair&);
+  constexpr Decide kDecide[] = {decide_widened<std::tuple_element_t<i, Algorithms>, Multi>...};
+  return kDecide[algorithm](pair);
+}
+
+Trace<Ball> run_exactly(int algorithm, const Pair& pair, int bits, const Path& lead = {}) {
+  Multi::precision = bits;
+  Ball::untold = 0;
+  return run_traced<Ball>(algorithm, pair, lead);
+}
+
+Beside beside(double lane, const Ball& exact, int bits) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const mpfr_srcptr x = exact.mid.get();
+  if (!mpfr_nan_p(x) && exact.can_be_zero()) return {lane, 0, "0", lane == 0 ? 0 : kInfinity};
+  char decimal[64];
+  mpfr_snprintf(decimal, sizeof decimal, "%.6Rg", x);
+  const double rounded = mpfr_get_d(x, MPFR_RNDN);
+  if (!mpfr_number_p(x) || !std::isfinite(lane)) {
+    const bool same = !mpfr_number_p(x) && (lane == rounded || (std::isnan(lane) && std::isnan(rounded)));
+    return {lane, rounded, decimal, same ? 0 : kInfinity};
+  }
+  Multi error = Multi(lane) - exact.mid;
+  mpfr_mul_2si(error.get(), error.get(), bits - static_cast<long>(mpfr_get_exp(x)), MPFR_RNDN);
+  return {lane, rounded, decimal, std::abs(mpfr_get_d(error.get(), MPFR_RNDN))};
+}
+
+}  // namespace
+
+Limited decide_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits) {
+  const ExponentRange range(scalar, limits);
+  Multi::precision = mantissa_bits(scalar);
+  const Verdict verdict = decide_in_multi(algorithm, pair, std::make_index_sequence<kAlgorithmCount>());
+  const int first = Multi::first_event;
+  return {verdict, first > 0 ? RangeEvent::overflow : first < 0 ? RangeEvent::underflow : RangeEvent::none};
+}
+
+Verdict decide_with_bits(int algorithm, const Pair& pair, int bits) {
+  Multi::precision = bits;
+  return decide_in_multi(algorithm, pair, std::make_index_sequence<kAlgorithmCount>());
+}
+
+int bits_needed(int algorithm, const Pair& pair, Verdict verdict, int least) {
+  int bits = kMostBits + 1;
+  while (bits > least && decide_with_bits(algorithm, pair, bits - 1) == verdict) --bits;
+  return bits > kMostBits ? 0 : bits;
+}
+
+Exactly decide_exactly(int algorithm, const Pair& pair) {
+  Trace<Ball> last;
+  long last_untold = 0;
+  constexpr int kLeast = 256, kMost = 16384;
+  for (int bits = kLeast;; bits *= 4) {
+    Trace<Ball> run = run_exactly(algorithm, pair, bits);
+    const long untold = Ball::untold;
+    const bool certain = untold == 0;
+    const bool settled = certain || (bits > kLeast && untold == last_untold && path_of(run) == path_of(last));
+    if (settled || bits == kMost) return {run.verdict, bits, certain, settled};
+    last = std::move(run);
+    last_untold = untold;
+  }
+}
+
+std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run, int bits) {
+  const Trace<Ball> exact = run_exactly(algorithm, pair, bits, path_of(run));
+  if (exact.seen.size() != run.seen.size()) throw std::logic_error("exact_steps: the run is of another algorithm");
+  const int mantissa = mantissa_bits(scalar);
+  std::vector<ExactStep> steps;
+  for (std::size_t i = 0; i < run.seen.size(); ++i) {
+    const Seen<double>& lane = run.seen[i];
+    const Seen<Ball>& seen = exact.seen[i];
+    steps.push_back({beside(lane.left, seen.left, mantissa), beside(lane.right, seen.right, mantissa),
+                     beside(lane.left - lane.right, seen.left - seen.right, mantissa), seen.held});
+  }
+  return steps;
+}
+
+}  // namespace graze

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "oracle/precise.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/multiprecision/gmp.hpp>
+
+#include "oracle/test_pairs.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+using namespace oracle_test;
+
+Verdict decide(const Lane& lane, const Pair& pair) {
+  std::uint64_t intersects = 0, declined = 0;
+  lane.decide(&pair, 1, &intersects, &declined);
+  return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
+}
+
+// MPFR with a format's mantissa and exponents, subnormals included, is that format.
+TEST(Precise, WithBothLimitsIsTheCpuLane) {
+  int overflows = 0, underflows = 0;
+  for (const Kind kind : kKinds) {
+    PairSource source(kind, 11);
+    for (int i = 0; i < 300; ++i) {
+      const Pair pair = source.next();
+      for (const Lane& lane : lanes()) {
+        if (lane.target != Target::cpu) continue;
+        const Limited limited = decide_limited(lane.algorithm, lane.scalar, pair, {true, true});
+        EXPECT_EQ(name(limited.verdict), name(decide(lane, pair))) << lane.id << hex(pair);
+        overflows += limited.first == RangeEvent::overflow;
+        underflows += limited.first == RangeEvent::underflow;
+      }
+    }
+  }
+  EXPECT_GT(overflows, 100);
+  EXPECT_GT(underflows, 100);
+}
+
+// The three algorithms without quotients and roots, on GMP's rationals: another library, and no error bounds.
+TEST(Precise, ExactlyIsWhatRationalsSay) {
+  using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
+  using Decide = Verdict (*)(const Pair&);
+  const std::pair<int, Decide> algorithms[] = {{2, decide_widened<Moller1997, Rational>},
+                                               {3, decide_widened<GuigueDevillers2003, Rational>},
+                                               {4, decide_widened<SeparatingAxes, Rational>}};
+  for (const Kind kind : kKinds) {
+    PairSource source(kind, 12);
+    for (int i = 0; i < 200; ++i) {
+      const Pair pair = source.next();
+      for (const auto& [algorithm, rational] : algorithms) {
+        const Exactly exactly = decide_exactly(algorithm, pair);
+        EXPECT_TRUE(exactly.settled) << algorithm << hex(pair);
+        EXPECT_EQ(name(exactly.verdict), name(rational(pair))) << algorithm << hex(pair);
+      }
+    }
+  }
+}
+
+// interval_overlap is right in exact arithmetic unless a triangle is degenerate; its roots and quotients never make an
+// exact contact exact in any number of bits, so that this shows how open comparisons are settled.
+TEST(Precise, ExactlySettlesRootsAndQuotients) {
+  int untold = 0;
+  for (const Kind kind : {Kind::uniform, Kind::near, Kind::touching, Kind::coplanar}) {
+    PairSource source(kind, 13);
+    for (int i = 0; i < 300; ++i) {
+      const Pair pair = source.next();
+      if (shape(pair).dimension_a < 2 || shape(pair).dimension_b < 2) continue;
+      const Exactly exactly = decide_exactly(1, pair);
+      EXPECT_TRUE(exactly.settled) << hex(pair);
+      EXPECT_EQ(name(exactly.verdict), name(cgal_verdict(pair))) << hex(pair);
+      untold += !exactly.certain;
+    }
+  }
+  EXPECT_GT(untold, 100);
+}
+
+TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
+  PairSource source(Kind::near, 14);
+  int more = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Pair pair = source.next();
+    const Verdict truth = cgal_verdict(pair);
+    const int bits = bits_needed(4, pair, truth, 24);
+    ASSERT_GE(bits, 24) << hex(pair);
+    if (bits > 24) {
+      ++more;
+      EXPECT_NE(decide_with_bits(4, pair, bits - 1), truth);
+    }
+    for (int p = bits; p < bits + 40; ++p) EXPECT_EQ(decide_with_bits(4, pair, p), truth);
+  }
+  EXPECT_GT(more, 0);
+}
+
+// A distance of 2^-180, which float32 has as 0: all 2^23 ulps of it are lost.
+TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
+  const Pair pair{{{0, 0, 0}, {0x1p-60f, 0, 0}, {0, 0x1p-60f, 0}}, {{0, 0, 0x1p-60f}, {1, 0, 1}, {0, 1, 2}}};
+  const Trace<double> run = run_traced<float>(2, pair);
+  const std::vector<ExactStep> steps = exact_steps(2, Scalar::f32, pair, run, 256);
+  ASSERT_EQ(steps.size(), run.seen.size());
+  const Beside& distance = steps[0].left;  // of b[0] to the plane of a, times the normal's length
+  EXPECT_EQ(distance.lane, 0);
+  EXPECT_EQ(distance.exact, 0x1p-180);
+  EXPECT_EQ(distance.ulps, 0x1p23);
+}
+
+}  // namespace
+}  // namespace graze

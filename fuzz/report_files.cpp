@@ -92,7 +92,7 @@ void append_timing(const std::filesystem::path& directory, const Json& run, cons
   Json timings = in ? Json::parse(in, nullptr, false) : Json();
   if (!timings.is_object() || !timings.contains("runs")) timings = {{"runs", Json::array()}};
   timings["runs"].push_back(run);
-  timings["oracle"] = oracle;
+  if (!oracle.is_null()) timings["oracle"] = oracle;
   write_whole(file, timings.dump(1) + "\n");
 }
 

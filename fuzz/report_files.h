@@ -24,6 +24,6 @@ std::string read_whole(const std::filesystem::path& file);
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
 // Adds a run to timings.json, the only file that depends on when, where and by which engine the campaign ran.
-void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle);
+void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle = {});
 
 }  // namespace graze

@@ -160,6 +160,7 @@ Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
   std::map<int, Algorithm> algorithms;
   std::optional<Neighbours> neighbours;
   for (const Lane* lane : lanes) {
+    if (lane->is_exact()) continue;
     const Verdict verdict = decide_lane(*lane, pair);
     if (verdict == right) continue;
     if (!neighbours) neighbours.emplace(pair, right);

@@ -14,7 +14,7 @@ namespace {
 
 std::vector<const Lane*> lanes_here() {
   std::vector<const Lane*> result;
-  for (const Lane& lane : lanes()) {
+  for (const Lane& lane : published_lanes()) {
     if (lane.is_cuda() ? twin_block(lane.algorithm, lane.scalar, lane.target) != nullptr : runs_on_this_cpu(lane))
       result.push_back(&lane);
   }
@@ -51,7 +51,7 @@ TEST(Replay, IsTheLanesOwnRun) {
 
 // Led down its own path a run is itself; led astray it is not.
 TEST(Replay, CanBeLed) {
-  const Lane& lane = lanes()[0];
+  const Lane& lane = published_lanes()[0];
   const Pair pair = generate(7, Stratum::near_edge_edge, 3);
   const Trace<double> run = run_led(lane, pair, Contraction::none, {});
   EXPECT_EQ(path_of(run_led(lane, pair, Contraction::none, path_of(run))), path_of(run));
@@ -150,7 +150,7 @@ TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
   for (std::uint64_t i = 0; i < 60; ++i) {
     const Pair pair = generate(5, Stratum::coplanar_rounded, i);
     for (const LaneExplanation& lane : explain(pair, lanes_here()).lanes) {
-      const Lane& plain = lanes()[static_cast<std::size_t>(lane.lane->index) - (lane.lane->is_cuda() ? 1 : 0)];
+      const Lane& plain = published_lanes()[static_cast<std::size_t>(lane.lane->index) - (lane.lane->is_cuda() ? 1 : 0)];
       if (lane.lane->target != Target::cuda_fma || decide_lane(plain, pair) == lane.verdict) continue;
       ++flips;
       EXPECT_TRUE(lane.cause == Cause::contraction || lane.cause == Cause::logic) << lane.lane->id;

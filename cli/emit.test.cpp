@@ -167,7 +167,7 @@ TEST(EmitCuda, ContractsAsItsLaneDoes) {
   const std::string explicit_ptx = "graze_twin_generator " GRAZE_LANE_PTX " --explicit lanes.ptx && ";
   // Segments, on which some lane of every algorithm is wrong, alike on host and device.
   shell("printf '0 0 0 4 0 0 2 0 0 1 0 1 1 0 4 1 0 2\\n0 0 0 4 0 0 2 0 0 1 0 0 1 0 4 1 0 2\\n' > p");
-  const std::string ids = shell("graze lanes | sed -n 's|^  \\([a-z0-9_]*\\)/f32/cpu .*|\\1|p'").out;
+  const std::string ids = shell("graze lanes | sed -n 's|^  \\([a-z0-9_]*\\)/f32/cpu .*|\\1|p' | grep -v exact").out;
   std::istringstream algorithms(ids);
   int index = 0;
   for (std::string id; algorithms >> id; ++index) {

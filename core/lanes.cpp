@@ -75,6 +75,8 @@ std::span<const Lane> lanes() {
   return table;
 }
 
+std::span<const Lane> published_lanes() { return lanes().first(std::size_t{2} * kAlgorithmCount * kTargetCount); }
+
 bool runs_on_this_cpu(const Lane& lane) {
 #if defined(__x86_64__)
   return lane.target != Target::cpu_fma || __builtin_cpu_supports("fma");

@@ -43,6 +43,9 @@ struct Lane {
 // All lanes, ordered by algorithm, scalar, target; the exact ones last.
 std::span<const Lane> lanes();
 
+// Those of published algorithms, which can be wrong: all but the exact ones.
+std::span<const Lane> published_lanes();
+
 // Whether this processor can run the host lane (cpu-fma needs FMA instructions).
 bool runs_on_this_cpu(const Lane& lane);
 

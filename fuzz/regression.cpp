@@ -22,8 +22,8 @@ constexpr std::string_view kOwnFields[] = {"name",      "truth", "contact", "sta
 std::string text_of(const Marks& marks) {
   std::string text;
   for (std::size_t first = 0; first < marks.size(); first += kLanesOfAlgorithm) {
-    text +=
-        fmt::format("{}{}:{}", first > 0 ? "," : "", lanes()[first].info->id, marks.substr(first, kLanesOfAlgorithm));
+    text += fmt::format("{}{}:{}", first > 0 ? "," : "", published_lanes()[first].info->id,
+                        marks.substr(first, kLanesOfAlgorithm));
   }
   return text;
 }
@@ -61,12 +61,13 @@ struct Line {
 
   // An algorithm that the text does not name did not run; one that is none any more is an error.
   Marks marks() const {
-    Marks marks(lanes().size(), '_');
+    Marks marks(published_lanes().size(), '_');
     std::istringstream parts(text("lanes"));
     for (std::string part; std::getline(parts, part, ',');) {
       const std::string id = part.substr(0, part.find(':')), own = part.substr(std::min(id.size() + 1, part.size()));
-      const auto lane = std::find_if(lanes().begin(), lanes().end(), [&](const Lane& l) { return l.info->id == id; });
-      if (lane == lanes().end()) fail("an algorithm in lanes", '\'' + id + '\'');
+      const auto lane = std::find_if(published_lanes().begin(), published_lanes().end(),
+                                     [&](const Lane& l) { return l.info->id == id; });
+      if (lane == published_lanes().end()) fail("an algorithm in lanes", '\'' + id + '\'');
       if (own.size() != kLanesOfAlgorithm || own.find_first_not_of(".+-?_~") != own.npos)
         fail(fmt::format("{} marks of {} in lanes", kLanesOfAlgorithm, id), '\'' + own + '\'');
       marks.replace(static_cast<std::size_t>(lane->index), kLanesOfAlgorithm, own);
@@ -119,7 +120,8 @@ RegressionCorpus read_regressions(const std::filesystem::path& file) {
                      line.count(),      line.marks(), line.text("first"), line.text("last")};
     c.other = other_fields(entry);
     const std::string& signature = line.text("signature");
-    if (std::none_of(lanes().begin(), lanes().end(), [&](auto& l) { return l.info->id == algorithm_of(signature); }))
+    if (std::none_of(published_lanes().begin(), published_lanes().end(),
+                     [&](auto& l) { return l.info->id == algorithm_of(signature); }))
       line.fail("the signature of an algorithm's failure", '\'' + signature + '\'');
     if (!corpus.emplace(signature, std::move(c)).second) line.fail("every signature once", "a second " + signature);
   }
@@ -149,16 +151,19 @@ void write_regressions(const std::filesystem::path& file, const RegressionCorpus
 }
 
 Replay replay(const Pair& pair, std::span<const Lane* const> run, const DecideLanes& decide) {
-  Replay result{truth(pair), Marks(lanes().size(), '_')};
+  Replay result{truth(pair), Marks(published_lanes().size(), '_')};
   for (int r = 0; r < kReplays; ++r) {
     std::vector<const Lane*> apart;
     const std::vector<Verdict> verdicts = decide(pair, apart);
     for (std::size_t l = 0; l < run.size(); ++l) {
+      if (run[l]->is_exact()) continue;
       char& known = result.marks[static_cast<std::size_t>(run[l]->index)];
       const char now = mark(verdicts[l], result.truth.verdict);
       known = r == 0 || known == now ? now : '~';
     }
-    for (const Lane* lane : apart) result.marks[static_cast<std::size_t>(lane->index)] = '~';
+    for (const Lane* lane : apart) {
+      if (!lane->is_exact()) result.marks[static_cast<std::size_t>(lane->index)] = '~';
+    }
   }
   return result;
 }
@@ -167,7 +172,7 @@ CaseState state_after(CaseState before, const std::string& signature, const Mark
   if (before == CaseState::flaky || now.find('~') != now.npos) return CaseState::flaky;
   const std::string id = algorithm_of(signature), seen = signature.substr(signature.rfind(':') + 1);
   bool all_right = true;
-  for (const Lane& lane : lanes()) {
+  for (const Lane& lane : published_lanes()) {
     const char m = now[static_cast<std::size_t>(lane.index)];
     if (lane.info->id != id) continue;
     if (m != '.' && m != '_') return CaseState::failing;

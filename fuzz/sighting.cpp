@@ -36,7 +36,7 @@ std::vector<Signature> signatures_of(const Pair& pair, const Replay& seen) {
   const Bucket bucket = margin_bucket(pair, seen.truth.verdict);
   std::vector<Signature> result;
   for (std::size_t first = 0; first < seen.marks.size(); first += 2 * kTargetCount) {
-    Signature s{seen.truth.contact, hulls, bucket, lanes()[first].algorithm, {}};
+    Signature s{seen.truth.contact, hulls, bucket, published_lanes()[first].algorithm, {}};
     for (std::size_t i = 0; i < s.marks.size(); ++i) s.marks[i] = seen.marks[first + i];
     result.push_back(s);
   }

@@ -26,7 +26,7 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
     PairSource source(kind, 11);
     for (int i = 0; i < 300; ++i) {
       const Pair pair = source.next();
-      for (const Lane& lane : lanes()) {
+      for (const Lane& lane : published_lanes()) {
         if (lane.target != Target::cpu) continue;
         const Limited limited = decide_limited(lane.algorithm, lane.scalar, pair, {true, true});
         EXPECT_EQ(name(limited.verdict), name(decide(lane, pair))) << lane.id << hex(pair);

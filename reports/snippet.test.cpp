@@ -23,7 +23,7 @@ std::string contents(const std::filesystem::path& file) {
 }
 
 TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
-  for (const Lane& lane : lanes()) {
+  for (const Lane& lane : published_lanes()) {
     const std::string id(lane.info->id), source = amalgamated_source(id);
     EXPECT_EQ(source.find("#include \""), source.npos) << id;
     const std::string header = contents(std::string(GRAZE_SOURCE_DIR) + "/core/" + id + ".h");
@@ -39,12 +39,12 @@ TEST(Snippet, HoldsNothingItDoesNotNeed) {
 }
 
 TEST(Snippet, ANameCannotEndItsComment) {
-  SnippetCase found{"x\nsystem(\"rm\")\r#", {}, Verdict::intersects, &lanes()[0], Verdict::disjoint};
+  SnippetCase found{"x\nsystem(\"rm\")\r#", {}, Verdict::intersects, &published_lanes()[0], Verdict::disjoint};
   for (std::size_t k = 0; k < std::size(kSnippetKinds); ++k) {
     const auto kind = static_cast<SnippetKind>(k);
-    if (kind == SnippetKind::cuda) found.lane = &lanes()[3];
+    if (kind == SnippetKind::cuda) found.lane = &published_lanes()[3];
     const std::string text = snippet(kind, found);
-    found.lane = &lanes()[0];
+    found.lane = &published_lanes()[0];
     EXPECT_NE(text.find("x?system(\"rm\")?#"), std::string::npos) << kSnippetKinds[k];
     EXPECT_EQ(text.find('\r'), std::string::npos);
   }

@@ -417,9 +417,8 @@ GRAZE_HD inline Vec<Two> both(const Vec<float>& l, const Vec<float>& r) {
   return {Two{double(l.x), double(r.x)}, Two{double(l.y), double(r.y)}, Two{double(l.z), double(r.z)}};
 }
 
-// A bound of the error of every determinant of the pair: each is a sum of six products of a difference in x, one in y
-// and one in z, none of them larger than the extent of the pair.
-GRAZE_HD inline double determinant_error(const float* a, const float* b) {
+// The extent of the pair in each axis, each rounded once.
+GRAZE_HD inline Vec<double> extent_of(const float* a, const float* b) {
   double extent[3];
   for (int axis = 0; axis < 3; ++axis) {
     float low = a[axis], high = a[axis];
@@ -431,12 +430,36 @@ GRAZE_HD inline double determinant_error(const float* a, const float* b) {
     }
     extent[axis] = static_cast<double>(high) - static_cast<double>(low);
   }
-  return 6 * kDeterminantError * extent[0] * extent[1] * extent[2];
+  return {extent[0], extent[1], extent[2]};
+}
+
+// A bound of the error of every determinant of the pair: each is a sum of six products of a difference in x, one in y
+// and one in z, none of them larger than the extent of the pair.
+GRAZE_HD inline double determinant_error(const Vec<double>& extent) {
+  return 6 * kDeterminantError * extent.x * extent.y * extent.z;
+}
+
+// Whether both are triangles beyond doubt: a component of a normal is the difference of two products of differences.
+GRAZE_HD inline bool both_proper(const float* a, const float* b) {
+  const Vec<double> extent = extent_of(a, b);
+  const double error_x = 2 * kDeterminantError * extent.y * extent.z,
+               error_y = 2 * kDeterminantError * extent.z * extent.x,
+               error_z = 2 * kDeterminantError * extent.x * extent.y;
+  bool proper = true;
+  const float* const triangles[2] = {a, b};
+  for (const float* v : triangles) {
+    const Vec<double> u{double(v[3]) - v[0], double(v[4]) - v[1], double(v[5]) - v[2]};
+    const Vec<double> w{double(v[6]) - v[0], double(v[7]) - v[1], double(v[8]) - v[2]};
+    const Vec<double> n = cross<double>(u, w);
+    proper = proper &&
+             (n.x > error_x || n.x < -error_x || n.y > error_y || n.y < -error_y || n.z > error_z || n.z < -error_z);
+  }
+  return proper;
 }
 
 // The same decision in doubles, with one bound for all: unsure wherever a determinant is smaller.
 GRAZE_HD inline Answer by_planes_quickly(const float* a, const float* b) {
-  const double error = determinant_error(a, b);
+  const double error = determinant_error(extent_of(a, b));
   const Two bound = {error, error};
   const Vec<Two> v[3] = {both(vertex(a, 0), vertex(b, 0)), both(vertex(a, 1), vertex(b, 1)),
                          both(vertex(a, 2), vertex(b, 2))};
@@ -668,11 +691,25 @@ GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = n
   return result;
 }
 
+namespace detail {
+
+// The relation of pairs in general position: they cross, or a plane or an edge of both parts them.
+// Returns: false when that is not beyond doubt.
+GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r) {
+  const Answer answer = by_planes_quickly(a, b);
+  r = answer == Answer::crosses ? Relation{true, 1, -1, 2, 2, false} : Relation{};
+  // A determinant that is certainly not zero parts them: they are not coplanar.
+  return answer == Answer::crosses || (answer == Answer::disjoint && both_proper(a, b));
+}
+
+}  // namespace detail
+
 // Contact, margin's sign and shape as well.
 // Requires: finite coordinates.   Exact: always.
 GRAZE_HD inline Relation relation(const float* a, const float* b) {
   using namespace detail;
-  if (by_planes_quickly(a, b) == Answer::crosses) return {true, 1, -1, 2, 2, false};
+  Relation r;
+  if (relate_quickly(a, b, r)) return r;
   const Grid grid = grid_of(a, b);
   return grid.bits <= 15   ? by_axes(triangles<DoubleNumbers>(a, b))
          : grid.bits <= 30 ? by_axes(triangles<NarrowNumbers>(a, b, grid.exponent))

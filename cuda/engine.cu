@@ -10,9 +10,10 @@
 namespace graze {
 namespace {
 
-constexpr std::uint32_t kBlockPairs = 1u << 20;  // decided together; a multiple of kThreads
+constexpr std::uint32_t kBlockPairs = 1u << 22;  // decided together; a multiple of kThreads
 constexpr std::uint32_t kSignatures = 1u << 18;  // a million pairs of all strata make six thousand
-constexpr std::uint32_t kMostUndecided = 1u << 24;
+constexpr std::uint32_t kMostUndecided = 1u << 26;
+constexpr int kBlocksBetweenLooks = 8;
 
 class CudaEngine final : public Engine {
  public:
@@ -22,14 +23,21 @@ class CudaEngine final : public Engine {
 
   EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) override {
     check(cudaSetDevice(ordinal_));
+    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // else each kernel with a stack of its own size waits for it
     EngineBlock block = begin();
-    for (std::uint64_t done = 0; done < count; done += kBlockPairs) {
+    std::uint64_t done = 0;
+    for (int b = 1; done < count; ++b) {
       block.pairs.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, count - done));
       block.pairs.stride = block.pairs.count;
       block.first = first + done;
       judge(block, seed, stratum);
+      done += block.pairs.count;
+      if (b % kBlocksBetweenLooks == 0 && left_to_host(block) > kMostUndecided - kBlocksBetweenLooks * kBlockPairs)
+        break;
     }
-    return fetch(block);
+    EngineResult result = fetch(block);
+    result.done = done;
+    return result;
   }
 
  private:
@@ -82,6 +90,12 @@ class CudaEngine final : public Engine {
     }
     check(cudaMemsetAsync(block.left.count, 0, 2 * sizeof(std::uint32_t), nullptr));
     launch_engine(block, nullptr);
+  }
+
+  std::uint32_t left_to_host(const EngineBlock& block) {
+    std::uint32_t count;
+    check(cudaMemcpy(&count, block.undecided.count, sizeof count, cudaMemcpyDeviceToHost));
+    return count;
   }
 
   EngineResult fetch(const EngineBlock& block) {

@@ -29,6 +29,7 @@ struct EngineSignature {
 
 // What a run found. Pairs whose bucket the device cannot decide are in `undecided`, and counted nowhere else.
 struct EngineResult {
+  std::uint64_t done = 0;  // pairs of the run: fewer than asked for when `undecided` was about to overflow
   // By bucket plus kBucketMost: pairs, intersecting ones, then of each lane: false positives, false negatives,
   // declined, differing from the cpu lane (always 0 here: no cpu lane runs).
   std::vector<std::uint64_t> counts;

@@ -32,7 +32,7 @@ __device__ Pair pair_of(const float* c) {
           {{c[9], c[10], c[11]}, {c[12], c[13], c[14]}, {c[15], c[16], c[17]}}};
 }
 
-__global__ void __launch_bounds__(kThreads) measure_margins(EngineBlock block) {
+__global__ void __launch_bounds__(kThreads, 2) measure_margins(EngineBlock block) {
   __shared__ std::uint32_t gathered, first;
   if (threadIdx.x == 0) gathered = 0;
   __syncthreads();
@@ -144,8 +144,8 @@ __global__ void __launch_bounds__(kThreads) relate(EngineBlock block) {
     float c[kCoordinates];
     for (std::uint32_t k = 0; k < kCoordinates; ++k)
       c[k] = block.left.coordinates[std::size_t{k} * block.left.stride + at];
-    Relation r{true, 1, -1, 2, 2, false};
-    if (numbers::by_planes_quickly(c, c + 9) != numbers::Answer::crosses) {
+    Relation r;
+    if (!numbers::relate_quickly(c, c + 9, r)) {
       const numbers::Grid grid = numbers::grid_of(c, c + 9);
       if (grid.bits <= 15) {
         r = by_axes(numbers::triangles<numbers::DoubleNumbers>(c, c + 9));

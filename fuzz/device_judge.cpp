@@ -58,21 +58,26 @@ void add(const EngineResult& found, int source, int lanes, BatchResult& result) 
 
 BatchResult DeviceJudge::judge(int source, std::uint64_t first, std::uint64_t count) {
   const std::size_t engines = campaign_.engines.size();
-  std::vector<std::future<EngineResult>> runs;
+  std::vector<std::future<std::vector<EngineResult>>> runs;
   for (std::size_t e = 0; e < engines; ++e) {
     const std::uint64_t begin = count * e / engines, end = count * (e + 1) / engines;
     runs.push_back(std::async(std::launch::async, [&, e, begin, end] {
-      return campaign_.engines[e]->run(campaign_.seed, campaign_.sources[static_cast<std::size_t>(source)].stratum,
-                                       first + begin, end - begin);
+      std::vector<EngineResult> parts;
+      for (std::uint64_t at = begin; at < end; at += parts.back().done) {
+        parts.push_back(campaign_.engines[e]->run(
+            campaign_.seed, campaign_.sources[static_cast<std::size_t>(source)].stratum, first + at, end - at));
+      }
+      return parts;
     }));
   }
   const std::vector<const Lane*>& lanes = campaign_.bench->lanes;
   BatchResult result{Tally(cpu_twins(lanes))};
   std::vector<std::uint64_t> undecided;
-  for (std::future<EngineResult>& run : runs) {
-    const EngineResult found = run.get();
-    add(found, source, static_cast<int>(lanes.size()), result);
-    undecided.insert(undecided.end(), found.undecided.begin(), found.undecided.end());
+  for (auto& run : runs) {
+    for (const EngineResult& found : run.get()) {
+      add(found, source, static_cast<int>(lanes.size()), result);
+      undecided.insert(undecided.end(), found.undecided.begin(), found.undecided.end());
+    }
   }
   confirm(source, result);
   constexpr std::size_t kAtOnce = 65536;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "core/exact.h"
 #include "core/margin.h"
 #include "cuda/twin.h"
 #include "fuzz/moves.h"
@@ -55,9 +56,9 @@ void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
 }  // namespace
 
 Judged judge(const Pair& pair) {
-  const Verdict verdict = cgal_verdict(pair);
-  const Bucket bucket = verdict == Verdict::disjoint ? Bucket{1} : margin_bucket(pair, verdict);
-  return {verdict, gmp_contact(pair), shape(pair), (bucket > 0) - (bucket < 0)};
+  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
+  return {r.intersects ? Verdict::intersects : Verdict::disjoint, static_cast<Contact>(r.contact + 1),
+          Shape{r.dimension_a, r.dimension_b, r.coplanar}, r.margin_sign};
 }
 
 std::vector<Failure> failures_of(const Bench& bench, const Pair& pair) {

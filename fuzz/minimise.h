@@ -11,7 +11,7 @@
 
 namespace graze {
 
-// What the oracle says of a pair that must stay when it shrinks: all of its signature but the margin's size. Shrinking
+// What is true of a pair and must stay when it shrinks: all of its signature but the margin's size. Shrinking
 // runs to the threshold, so a margin that had to keep its size would keep the coordinates long; its sign says whether
 // the pair is apart, touches or overlaps.
 struct Judged {
@@ -22,6 +22,7 @@ struct Judged {
   bool operator==(const Judged&) const = default;
 };
 
+// By the exact decision of core/exact.h; the oracle confirms the results (see confirm).
 // Requires: finite coordinates.   Exact: always.
 Judged judge(const Pair& pair);
 

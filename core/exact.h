@@ -5,10 +5,11 @@
 //
 // Two decisions, each written once over the numbers it computes with:
 //   by_planes  Guigue and Devillers 2003: the sides of the vertices, then two orientations. For pairs in general
-//   position. by_axes    separating axes of the Minkowski difference D = { x - y : x in a, y in b }, which holds the
-//   origin
+//              position.
+//   by_axes    separating axes of the Minkowski difference D = { x - y : x in a, y in b }, which holds the origin
 //              exactly when a and b meet. Proper, coplanar and degenerate pairs alike.
-// and four kinds of numbers, tried in this order. Each is exact or says that it is not:
+// and four kinds of numbers, each exact or saying that it is not. First doubles with one error bound for all; what it
+// leaves open goes to the smallest exact kind that holds the pair, wide ones only after a tighter bound of each value.
 //   bounded    doubles with an error bound. A determinant of three differences, each rounded once, is off by at most
 //              (7 + 56 e) e sum |products|, e = 2^-53 (Shewchuk 1997, orient3d stage A); contraction only removes
 //              roundings. No overflow or underflow: differences of floats lie between 2^-149 and 2^129, or are zero.

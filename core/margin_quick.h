@@ -8,6 +8,13 @@
 #include "core/exact.h"
 #include "core/margin.h"
 
+// Loops over registers, which have no indices.
+#ifdef __CUDA_ARCH__
+#define GRAZE_UNROLL _Pragma("unroll")
+#else
+#define GRAZE_UNROLL
+#endif
+
 namespace graze {
 inline namespace GRAZE_FP {
 namespace margin_quick {
@@ -41,18 +48,25 @@ struct Features {
   int i, j;
 };
 
+// The nearest features so far, the square of their distance, and of the next nearest.
 template <class Real>
-GRAZE_HD void consider(Real squared, bool valid, const Features& features, Real& best, Features& found) {
-  const bool better = valid && squared < best;
-  best = better ? squared : best;
-  found.kind = better ? features.kind : found.kind;
-  found.i = better ? features.i : found.i;
-  found.j = better ? features.j : found.j;
-}
+struct Nearest {
+  Features features = {Kind::vertices, 0, 0};
+  Real squared = INFINITY, next = INFINITY;
+
+  GRAZE_HD void consider(Real at, bool valid, const Features& candidate) {
+    const bool better = valid && at < squared;
+    next = better ? squared : valid && at < next ? at : next;
+    squared = better ? at : squared;
+    features.kind = better ? candidate.kind : features.kind;
+    features.i = better ? candidate.i : features.i;
+    features.j = better ? candidate.j : features.j;
+  }
+};
 
 // The features that are nearest, up to rounding and the error of a reciprocal: a guess.
 template <class Real>
-GRAZE_HD Features seem_nearest(const Corners<Real>& a, const Corners<Real>& b) {
+GRAZE_HD Nearest<Real> seem_nearest(const Corners<Real>& a, const Corners<Real>& b) {
   Corners<Real> edge_a, edge_b;
   Real length_a[3], length_b[3], per_a[3], per_b[3];  // squares, and their reciprocals
   for (int i = 0; i < 3; ++i) {
@@ -66,31 +80,30 @@ GRAZE_HD Features seem_nearest(const Corners<Real>& a, const Corners<Real>& b) {
   const Vec3<Real> normal_a = cross(edge_a[0], edge_a[1]), normal_b = cross(edge_b[0], edge_b[1]);
   const Real n2_a = dot(normal_a, normal_a), n2_b = dot(normal_b, normal_b);
   const Real per_normal_a = reciprocal(n2_a), per_normal_b = reciprocal(n2_b);
-  Real best = INFINITY;
-  Features found = {Kind::vertices, 0, 0};
+  Nearest<Real> nearest;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const Vec3<Real> w = b[j] - a[i], across_a = cross(w, edge_a[i]), across_b = cross(w, edge_b[j]);
-      consider(dot(w, w), true, {Kind::vertices, i, j}, best, found);
+      nearest.consider(dot(w, w), true, {Kind::vertices, i, j});
       const Real at_a = dot(w, edge_a[i]), at_b = -dot(w, edge_b[j]);
-      consider(dot(across_a, across_a) * per_a[i], at_a > 0 && at_a < length_a[i], {Kind::edge_a, i, j}, best, found);
-      consider(dot(across_b, across_b) * per_b[j], at_b > 0 && at_b < length_b[j], {Kind::edge_b, i, j}, best, found);
+      nearest.consider(dot(across_a, across_a) * per_a[i], at_a > 0 && at_a < length_a[i], {Kind::edge_a, i, j});
+      nearest.consider(dot(across_b, across_b) * per_b[j], at_b > 0 && at_b < length_b[j], {Kind::edge_b, i, j});
       const Vec3<Real> n = cross(edge_a[i], edge_b[j]);
       const Real n2 = dot(n, n), s = dot(across_b, n), t = dot(across_a, n), gap = dot(w, n);
-      consider(gap * gap * reciprocal(n2), s > 0 && t > 0 && s < n2 && t < n2, {Kind::edges, i, j}, best, found);
+      nearest.consider(gap * gap * reciprocal(n2), s > 0 && t > 0 && s < n2 && t < n2, {Kind::edges, i, j});
       if (i == 0) {  // a vertex of b over a
         const Real u = -dot(cross(w, edge_a[2]), normal_a), v = dot(cross(edge_a[0], w), normal_a);
         const Real height = dot(w, normal_a);
-        consider(height * height * per_normal_a, u >= 0 && v >= 0 && u + v <= n2_a, {Kind::face_a, 0, j}, best, found);
+        nearest.consider(height * height * per_normal_a, u >= 0 && v >= 0 && u + v <= n2_a, {Kind::face_a, 0, j});
       }
       if (j == 0) {  // a vertex of a over b; w points away from it
         const Real u = dot(cross(w, edge_b[2]), normal_b), v = -dot(cross(edge_b[0], w), normal_b);
         const Real height = dot(w, normal_b);
-        consider(height * height * per_normal_b, u >= 0 && v >= 0 && u + v <= n2_b, {Kind::face_b, i, 0}, best, found);
+        nearest.consider(height * height * per_normal_b, u >= 0 && v >= 0 && u + v <= n2_b, {Kind::face_b, i, 0});
       }
     }
   }
-  return found;
+  return nearest;
 }
 
 // The triangle from vertex number `first` on; without indexing, which on a device would move registers to memory.
@@ -245,9 +258,7 @@ GRAZE_HD void depth_along(const Corners<Real>& a, const Corners<Real>& b, int ax
 // Calls visit(k, overlap along axis k), for all axes of core/margin.h.
 template <class Real, class Visit>
 GRAZE_HD void for_each_axis(const Corners<Real>& a, const Corners<Real>& b, const Visit& visit) {
-#ifdef __CUDA_ARCH__
-#pragma unroll
-#endif
+  GRAZE_UNROLL
   for (int k = 0; k < kNormalA; ++k) {
     const int i = k / 3, j = k % 3;
     visit(k, overlap_along({a[i], a[(i + 1) % 3], a[(i + 2) % 3]}, {b[j], b[(j + 1) % 3], b[(j + 2) % 3]}, true));
@@ -256,7 +267,7 @@ GRAZE_HD void for_each_axis(const Corners<Real>& a, const Corners<Real>& b, cons
   visit(kNormalB, overlap_along(b, a, false));
 }
 
-// lo <= depth <= hi, in single precision but for the axes that it leaves.
+// lo <= depth <= hi, in single precision but for the axes that it leaves; of many, none is looked at, and lo is 0.
 GRAZE_HD inline void depth_in_single(const Corners<float>& a, const Corners<float>& b, const Vec3<float>& extent,
                                      float& lo, float& hi) {
   const AxisErrors<float> errors(extent * 1.0001f, 0x1p-24);
@@ -271,10 +282,14 @@ GRAZE_HD inline void depth_in_single(const Corners<float>& a, const Corners<floa
   });
   depth_along(a, b, first, errors_in_double, lo, hi);
   unsigned left = 0;
-#ifdef __CUDA_ARCH__
-#pragma unroll
-#endif
-  for (int k = 0; k < kSeparatingAxes; ++k) left |= (k != first && !(lowest[k] >= lo) ? 1u : 0u) << k;
+  int count = 0;
+  GRAZE_UNROLL
+  for (int k = 0; k < kSeparatingAxes; ++k) {
+    const bool open = k != first && !(lowest[k] >= lo);
+    left |= (open ? 1u : 0u) << k;
+    count += open;
+  }
+  if (count > 3) lo = 0;
   while (left != 0 && lo > 0) {
     const int k = exact::detail::trailing_zeros(left);
     left &= left - 1;
@@ -325,7 +340,10 @@ GRAZE_HD inline bool bucket_by_single(const Pair& pair, Verdict verdict, Bucket&
   if (!fits_single(extent)) return false;
   MarginBounds bounds;
   if (verdict == Verdict::disjoint) {
-    bounds = distance_bounds(pair.a, pair.b, seem_nearest(pair.a, pair.b));
+    const Nearest<float> nearest = seem_nearest(pair.a, pair.b);
+    const auto largest = static_cast<float>(greater(extent.x, greater(extent.y, extent.z)));
+    if (nearest.next < 0x1p-44f * largest * largest) return false;  // rounding may have chosen
+    bounds = distance_bounds(pair.a, pair.b, nearest.features);
   } else {
     float lo, hi;
     depth_in_single(pair.a, pair.b, {float(extent.x), float(extent.y), float(extent.z)}, lo, hi);
@@ -350,7 +368,7 @@ GRAZE_HD inline bool bucket_by_double(const Pair& pair, Verdict verdict, Bucket&
   }
   MarginBounds bounds;
   if (verdict == Verdict::disjoint) {
-    bounds = distance_bounds(a, b, seem_nearest(a, b));
+    bounds = distance_bounds(a, b, seem_nearest(a, b).features);
   } else {
     float lo, hi;
     depth_in_double(a, b, extent * scale, lo, hi);

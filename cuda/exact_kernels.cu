@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Four kernels: one thread a pair for the first attempt, which needs few registers; then the pairs that it left, where
-// floats or doubles hold all determinants; then those that this left, on 128-bit integers; then those that these left,
-// on wide integers. Hard pairs are listed, so that a warp does not wait for one of them in 32.
+// floats or doubles hold all determinants; then those that this left, on 128-bit integers; then those that these
+// left, on wide integers. Hard pairs are listed, so that a warp does not wait for one of them in 32.
 #include "cuda/exact_kernels.h"
 
 #include "cuda/kernels.h"
@@ -108,10 +108,11 @@ constexpr int kBlocksForLeft = 1024;
 void DeviceExact::decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
                          unsigned long long* stages, cudaStream_t stream) {
   if (pairs.count == 0) return;
-  std::uint32_t* counts = counts_.at_least(3);
-  Places left[3];
-  for (int k = 0; k < 3; ++k) left[k] = {places_[k].at_least(pairs.count), counts + k};
-  check(cudaMemsetAsync(counts, 0, 3 * sizeof *counts, stream));
+  constexpr int kLists = 3;
+  std::uint32_t* counts = counts_.at_least(kLists);
+  Places left[kLists];
+  for (int k = 0; k < kLists; ++k) left[k] = {places_[k].at_least(pairs.count), counts + k};
+  check(cudaMemsetAsync(counts, 0, kLists * sizeof *counts, stream));
   decide_most<<<(pairs.count + kThreads - 1) / kThreads, kThreads, 0, stream>>>(pairs, left[0], intersects, declined,
                                                                                 stages);
   decide_left<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);

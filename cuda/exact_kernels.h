@@ -18,7 +18,15 @@ struct Places {
   std::uint32_t* at;
   std::uint32_t* count;
 
-  __device__ void add(std::uint32_t place) const { at[atomicAdd(count, 1u)] = place; }
+  // One atomic operation for all threads of a warp that add to this list: they all meet at one address.
+  __device__ void add(std::uint32_t place) const {
+    const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(count));
+    const unsigned lane = threadIdx.x % 32, leader = static_cast<unsigned>(__ffs(static_cast<int>(together)) - 1);
+    std::uint32_t first = 0;
+    if (lane == leader) first = atomicAdd(count, static_cast<unsigned>(__popc(together)));
+    first = __shfl_sync(together, first, static_cast<int>(leader));
+    at[first + static_cast<unsigned>(__popc(together & ((1u << lane) - 1)))] = place;
+  }
 };
 
 // The coordinates of pair i.

@@ -18,22 +18,22 @@ struct Grain {
 };
 
 // Functions, as device code cannot refer to constants of class type.
-GRAZE_HD inline Grain real_grain() { return {0, 0, 0}; }
-GRAZE_HD inline Grain small_grain() { return {4, 2, 3}; }
+GRAZE_INLINE Grain real_grain() { return {0, 0, 0}; }
+GRAZE_INLINE Grain small_grain() { return {4, 2, 3}; }
 
 // Coordinates use all 24 bits of a float; products of three differences need 60 to 75.
-GRAZE_HD inline Grain wide_grain(Draws& draws) { return {(1 << 23) - 2, 1 << draws.between(14, 19), 8}; }
+GRAZE_INLINE Grain wide_grain(Draws& draws) { return {(1 << 23) - 2, 1 << draws.between(14, 19), 8}; }
 
-GRAZE_HD inline Vec draw_place(Draws& draws, const Grain& grain) {
+GRAZE_INLINE Vec draw_place(Draws& draws, const Grain& grain) {
   return grain.place > 0 ? draws.integers(grain.place) : draws.reals() * 0.5;
 }
-GRAZE_HD inline Vec draw_step(Draws& draws, const Grain& grain) {
+GRAZE_INLINE Vec draw_step(Draws& draws, const Grain& grain) {
   return grain.place > 0 ? draws.integers(grain.step) : draws.reals();
 }
-GRAZE_HD inline Vec draw_arm(Draws& draws, const Grain& grain) {
+GRAZE_INLINE Vec draw_arm(Draws& draws, const Grain& grain) {
   return grain.place > 0 ? draws.integers(grain.step * grain.weight) : draws.reals();
 }
-GRAZE_HD inline double draw_weight(Draws& draws, const Grain& grain) {
+GRAZE_INLINE double draw_weight(Draws& draws, const Grain& grain) {
   return grain.place > 0 ? 1.0 + draws.below(static_cast<std::uint32_t>(grain.weight)) : draws.positive();
 }
 
@@ -47,8 +47,8 @@ struct Shape {
 
 // The third vertex, seen from p: anywhere on that side; a sliver's stands beside the edge, which runs from e * low
 // to e * high.
-GRAZE_HD inline Vec draw_third(Draws& draws, const Grain& grain, const Shape& shape, const Vec& side, const Vec& e,
-                               double low, double high) {
+GRAZE_INLINE Vec draw_third(Draws& draws, const Grain& grain, const Shape& shape, const Vec& side, const Vec& e,
+                            double low, double high) {
   const Vec arm = toward(side, draw_arm(draws, grain));
   if (!shape.sliver) return arm;
   const double foot = shape.needle ? high : low + draws.positive() * (high - low);
@@ -56,8 +56,8 @@ GRAZE_HD inline Vec draw_third(Draws& draws, const Grain& grain, const Shape& sh
 }
 
 // A triangle with its vertex [0] at p.
-GRAZE_HD inline void put_vertex(Draws& draws, const Grain& grain, const Shape& shape, const Vec& p, const Vec& side,
-                                Vec (&triangle)[3]) {
+GRAZE_INLINE void put_vertex(Draws& draws, const Grain& grain, const Shape& shape, const Vec& p, const Vec& side,
+                             Vec (&triangle)[3]) {
   const Vec arm = toward(side, draw_arm(draws, grain));
   triangle[0] = p;
   triangle[1] = p + arm;
@@ -65,8 +65,8 @@ GRAZE_HD inline void put_vertex(Draws& draws, const Grain& grain, const Shape& s
 }
 
 // A triangle whose edge [0][1] passes through p along e.
-GRAZE_HD inline void put_edge(Draws& draws, const Grain& grain, const Shape& shape, const Vec& p, const Vec& e,
-                              const Vec& side, Vec (&triangle)[3]) {
+GRAZE_INLINE void put_edge(Draws& draws, const Grain& grain, const Shape& shape, const Vec& p, const Vec& e,
+                           const Vec& side, Vec (&triangle)[3]) {
   const double back = draw_weight(draws, grain);
   const double forth = draw_weight(draws, grain);
   triangle[0] = p - e * back;
@@ -75,8 +75,8 @@ GRAZE_HD inline void put_edge(Draws& draws, const Grain& grain, const Shape& sha
 }
 
 // A triangle in the plane of s and t with p inside: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) is zero.
-GRAZE_HD inline void put_face(Draws& draws, const Grain& grain, const Vec& p, const Vec& s, const Vec& t,
-                              Vec (&triangle)[3]) {
+GRAZE_INLINE void put_face(Draws& draws, const Grain& grain, const Vec& p, const Vec& s, const Vec& t,
+                           Vec (&triangle)[3]) {
   const double w0 = draw_weight(draws, grain);
   const double w1 = draw_weight(draws, grain);
   const double w2 = draw_weight(draws, grain);
@@ -95,8 +95,8 @@ struct Contact {
 };
 
 // Real coordinates stay within ±5/2.
-GRAZE_HD inline Contact draw_contact(Draws& draws, Touch touch, const Grain& grain, const Shape& shape_a = {},
-                                     const Shape& shape_b = {}) {
+GRAZE_INLINE Contact draw_contact(Draws& draws, Touch touch, const Grain& grain, const Shape& shape_a = {},
+                                  const Shape& shape_b = {}) {
   Contact contact;
   const Vec p = draw_place(draws, grain);
   const Vec u = draw_step(draws, grain);
@@ -134,7 +134,7 @@ struct Push {
   int ulps;
 };
 
-GRAZE_HD inline Push draw_push(Draws& draws) {
+GRAZE_INLINE Push draw_push(Draws& draws) {
   if (draws.coin()) {
     const double sign = draws.sign();
     return {sign * power_of_two(-draws.between(1, 40)), 0, 0};
@@ -143,7 +143,7 @@ GRAZE_HD inline Push draw_push(Draws& draws) {
 }
 
 // Rounds the draft, moves b[0] by the push's ulps, and shuffles.
-GRAZE_HD inline Pair finished(Draws& draws, const Draft& draft, const Push& push) {
+GRAZE_INLINE Pair finished(Draws& draws, const Draft& draft, const Push& push) {
   Pair pair = rounded(draft);
   Vec3<float>& v = pair.b[0];
   v = {push.axis == 0 ? nudged(v.x, push.ulps) : v.x, push.axis == 1 ? nudged(v.y, push.ulps) : v.y,
@@ -151,17 +151,17 @@ GRAZE_HD inline Pair finished(Draws& draws, const Draft& draft, const Push& push
   return shuffled(draws, pair);
 }
 
-GRAZE_HD inline Pair near_contact(Draws& draws, Touch touch, const Shape& shape_a = {}, const Shape& shape_b = {}) {
+GRAZE_INLINE Pair near_contact(Draws& draws, Touch touch, const Shape& shape_a = {}, const Shape& shape_b = {}) {
   Contact contact = draw_contact(draws, touch, real_grain(), shape_a, shape_b);
   const Push push = draw_push(draws);
   move(contact.draft.b, contact.away * push.gap);
   return finished(draws, contact.draft, push);
 }
 
-GRAZE_HD inline Touch draw_touch(Draws& draws) { return static_cast<Touch>(draws.below(4)); }
+GRAZE_INLINE Touch draw_touch(Draws& draws) { return static_cast<Touch>(draws.below(4)); }
 
 // Half touch exactly; a quarter each has one coordinate of b[0] one unit above or below.
-GRAZE_HD inline Pair exact_contact(Draws& draws) {
+GRAZE_INLINE Pair exact_contact(Draws& draws) {
   const Touch touch = static_cast<Touch>(draws.below(3));  // two equal vertices are for shared_vertex
   const Grain grain = wide_grain(draws);
   Contact contact = draw_contact(draws, touch, grain);

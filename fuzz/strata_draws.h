@@ -10,6 +10,13 @@
 
 #include "core/pair.h"
 
+// Inlined on a device, a pair's draws keep their state in registers, and their number is known to the compiler.
+#ifdef __CUDACC__
+#define GRAZE_INLINE __host__ __device__ __forceinline__
+#else
+#define GRAZE_INLINE inline
+#endif
+
 namespace graze {
 inline namespace GRAZE_FP {
 namespace strata {
@@ -30,7 +37,7 @@ struct Draws {
         counter{{static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), stratum, 0}},
         block{} {}
 
-  GRAZE_HD std::uint32_t word() {
+  GRAZE_INLINE std::uint32_t word() {
     if (used == 4) {
       block = philox4x32_R(10, counter, key);
       ++counter.v[3];
@@ -40,41 +47,43 @@ struct Draws {
   }
 
   // 0 … n-1. The bias, n / 2^32, is of no consequence here.
-  GRAZE_HD std::uint32_t below(std::uint32_t n) {
+  GRAZE_INLINE std::uint32_t below(std::uint32_t n) {
     return static_cast<std::uint32_t>(static_cast<std::uint64_t>(word()) * n >> 32);
   }
 
-  GRAZE_HD bool coin() { return below(2) != 0; }
+  GRAZE_INLINE bool coin() { return below(2) != 0; }
 
   // -reach … reach.
-  GRAZE_HD int integer(int reach) { return static_cast<int>(below(2 * static_cast<std::uint32_t>(reach) + 1)) - reach; }
+  GRAZE_INLINE int integer(int reach) {
+    return static_cast<int>(below(2 * static_cast<std::uint32_t>(reach) + 1)) - reach;
+  }
 
   // low … high.
-  GRAZE_HD int between(int low, int high) {
+  GRAZE_INLINE int between(int low, int high) {
     return low + static_cast<int>(below(static_cast<std::uint32_t>(high - low + 1)));
   }
 
-  GRAZE_HD double sign() { return coin() ? 1.0 : -1.0; }
+  GRAZE_INLINE double sign() { return coin() ? 1.0 : -1.0; }
 
   // [-1, 1) in steps of 2^-31.
-  GRAZE_HD double real() { return static_cast<std::int32_t>(word()) * 0x1p-31; }
+  GRAZE_INLINE double real() { return static_cast<std::int32_t>(word()) * 0x1p-31; }
 
   // (0, 1] in steps of 2^-32.
-  GRAZE_HD double positive() { return (word() + 1.0) * 0x1p-32; }
+  GRAZE_INLINE double positive() { return (word() + 1.0) * 0x1p-32; }
 
   // [-1, 1) in steps of 2^-23: every value is a float.
-  GRAZE_HD float real_float() { return static_cast<float>(static_cast<std::int32_t>(word()) >> 8) * 0x1p-23f; }
+  GRAZE_INLINE float real_float() { return static_cast<float>(static_cast<std::int32_t>(word()) >> 8) * 0x1p-23f; }
 
-  GRAZE_HD Vec reals() { return {real(), real(), real()}; }
+  GRAZE_INLINE Vec reals() { return {real(), real(), real()}; }
 
-  GRAZE_HD Vec integers(int reach) {
+  GRAZE_INLINE Vec integers(int reach) {
     return {static_cast<double>(integer(reach)), static_cast<double>(integer(reach)),
             static_cast<double>(integer(reach))};
   }
 };
 
 // 2^exponent, for exponents of normal doubles.
-GRAZE_HD inline double power_of_two(int exponent) {
+GRAZE_INLINE double power_of_two(int exponent) {
   const std::uint64_t bits = static_cast<std::uint64_t>(exponent + 1023) << 52;
   double power;
   memcpy(&power, &bits, sizeof power);
@@ -83,7 +92,7 @@ GRAZE_HD inline double power_of_two(int exponent) {
 
 // The float that many steps above x, or below; through zero and the subnormals.
 // Requires: no step past the largest float.
-GRAZE_HD inline float nudged(float x, int ulps) {
+GRAZE_INLINE float nudged(float x, int ulps) {
   constexpr std::uint32_t kSign = 0x80000000u;
   std::uint32_t bits;
   memcpy(&bits, &x, sizeof bits);
@@ -94,18 +103,16 @@ GRAZE_HD inline float nudged(float x, int ulps) {
   return x;
 }
 
-GRAZE_HD inline Vec unit_axis(int axis) {
-  return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
-}
+GRAZE_INLINE Vec unit_axis(int axis) { return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0}; }
 
 // v scaled so that its largest component is ±1; an axis if v is zero.
-GRAZE_HD inline Vec normalised(const Vec& v) {
+GRAZE_INLINE Vec normalised(const Vec& v) {
   const double largest = magnitude(component(v, dominant_axis(v)));
   return largest > 0 ? v * (1 / largest) : unit_axis(0);
 }
 
 // Either v or -v, whichever points to the side of `direction`.
-GRAZE_HD inline Vec toward(const Vec& direction, const Vec& v) { return v * (dot(direction, v) < 0 ? -1.0 : 1.0); }
+GRAZE_INLINE Vec toward(const Vec& direction, const Vec& v) { return v * (dot(direction, v) < 0 ? -1.0 : 1.0); }
 
 // A pair before rounding.
 struct Draft {
@@ -113,20 +120,20 @@ struct Draft {
   Vec b[3];
 };
 
-GRAZE_HD inline void move(Vec (&triangle)[3], const Vec& by) {
+GRAZE_INLINE void move(Vec (&triangle)[3], const Vec& by) {
   for (Vec& vertex : triangle) vertex = vertex + by;
 }
 
 // Scales each axis by its factor.
-GRAZE_HD inline void scale(Vec (&triangle)[3], const Vec& by) {
+GRAZE_INLINE void scale(Vec (&triangle)[3], const Vec& by) {
   for (Vec& vertex : triangle) vertex = {vertex.x * by.x, vertex.y * by.y, vertex.z * by.z};
 }
 
-GRAZE_HD inline Vec3<float> rounded(const Vec& v) {
+GRAZE_INLINE Vec3<float> rounded(const Vec& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-GRAZE_HD inline Pair rounded(const Draft& draft) {
+GRAZE_INLINE Pair rounded(const Draft& draft) {
   Pair pair;
   for (int i = 0; i < 3; ++i) {
     pair.a[i] = rounded(draft.a[i]);
@@ -136,7 +143,7 @@ GRAZE_HD inline Pair rounded(const Draft& draft) {
 }
 
 // The pair in one of its 72 orders, so that no algorithm sees a stratum's contacts in one order only.
-GRAZE_HD inline Pair shuffled(Draws& draws, const Pair& pair) {
+GRAZE_INLINE Pair shuffled(Draws& draws, const Pair& pair) {
   const std::uint32_t order = draws.below(72);
   const bool swap = order % 2 != 0;
   const int turn_a = static_cast<int>(order / 2 % 3), turn_b = static_cast<int>(order / 6 % 3);

@@ -88,7 +88,7 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
   }
   const bool touching = GetParam().stratum == Stratum::shared_vertex || GetParam().stratum == Stratum::shared_edge;
   EXPECT_TRUE(touching || by_double > 3'000u) << by_double;
-  EXPECT_TRUE(!GetParam().id.starts_with("near_") || by_single > 8'000u) << by_single;
+  EXPECT_TRUE(!GetParam().id.starts_with("near_") || by_single > 5'000u) << by_single;
   RecordProperty("by_single", static_cast<int>(by_single));
   RecordProperty("by_double", static_cast<int>(by_double));
   EXPECT_TRUE(GetParam().stratum == Stratum::mixed_scale || undecided < 20u) << undecided;

@@ -5,8 +5,6 @@
 #include <map>
 #include <string_view>
 
-#include "fuzz/regression.h"
-
 namespace graze {
 namespace {
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <tuple>
 
 #include "analysis/lane_trace.h"
 #include "core/exact.h"
@@ -114,7 +115,7 @@ MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* c
   const std::size_t side = places.size();
   Panels panels(lanes);
   MovedCoordinates best{0, 1};
-  std::pair<std::size_t, std::size_t> most{};
+  std::tuple<bool, std::size_t, std::size_t> most{};
   for (int vertex = 0; vertex < kCoordinates; vertex += 3) {
     for (const MovedCoordinates& moved :
          {MovedCoordinates{vertex, vertex + 1}, {vertex, vertex + 2}, {vertex + 1, vertex + 2}}) {
@@ -131,7 +132,9 @@ MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* c
           down += i >= side && panel[i] != panel[i - side];
         }
       }
-      const std::pair changes{std::min(across, down), across + down};
+      const bool by_zero = coordinates(pair)[moved.x] == 0 || coordinates(pair)[moved.y] == 0;
+      const std::size_t fewer = std::min(across, down);
+      const std::tuple changes{fewer > 0 && !by_zero, fewer, across + down};
       if (changes <= most) continue;
       most = changes;
       best = moved;

@@ -55,7 +55,8 @@ Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row);
 
 // The two coordinates of one vertex along which verdicts change most: of a few cells, close ones and far ones, those
 // are counted that differ from the one before, in the truth and in each lane; the fewer of both directions decides,
-// then the sum, then the order of the coordinates.
+// then the sum, then the order of the coordinates. Around zero an ulp is 2^-149, which says little: a zero moves only
+// where nothing changes in both directions without one.
 // Requires: finite coordinates; lanes that run here, or have a twin.
 MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* const> lanes);
 

@@ -94,12 +94,15 @@ TEST(UlpMap, EachCellIsWhatItsPairGets) {
 
 TEST(UlpMap, CoordinatesAreTheFirstThatChangeVerdictsMost) {
   Pair pair = kOnTheDiagonal;
-  EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{0, 1}));  // on a's edge
-  std::swap(pair.a[0], pair.a[2]);                                       // which does not reach the edge
-  EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{3, 4}));
-  std::swap(pair.b[0], pair.b[2]);
-  std::swap(pair.a, pair.b);
+  EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{3, 4}));  // of a's edge, the end that is not at zero
+  std::swap(pair.a[1], pair.a[2]);
   EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{6, 7}));
+  pair = kOnTheDiagonal;
+  std::swap(pair.a, pair.b);
+  EXPECT_EQ(liveliest_coordinates(pair, {}), (MovedCoordinates{0, 1}));
+  // Two vertices meet in zero, and no other can change that.
+  pair = {{{0.5f, 0.5f, 1}, {0, 0, 0}, {-0.5f, 0.5f, 1}}, {{1, 0, 0}, {1, -1, 0}, {0, 0, 0}}};
+  EXPECT_EQ(liveliest_coordinates(pair, {}).x / 3, 1);
 }
 
 TEST(UlpMap, NamesCoordinatesAsTheyAreWritten) {

@@ -17,6 +17,8 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
+#include "fuzz/cards.h"
+#include "fuzz/case_facts.h"
 #include "fuzz/minimised_cases.h"
 #include "fuzz/report_files.h"
 #include "reports/terminal.h"
@@ -142,7 +144,13 @@ void minimize_directory(MinimizeOptions options) {
                grouped(files.size()), left);
   });
   if (on_terminal) fmt::print(stderr, "\r\033[K");
+  // What a report tells of the cases on its cards.
+  const std::vector<std::size_t> cards = carded_signatures(summary);
+  tbb::parallel_for(std::size_t{0}, cards.size(), [&](std::size_t i) {
+    store_facts(bench, directory / summary["signatures"][cards[i]]["case"].get<std::string>());
+  });
   print_directory(options.name, all);
+  if (!cards.empty()) fmt::print("Explained {} of them there, for `graze report {}`\n", cards.size(), options.name);
 
   std::vector<double> times;
   for (const Done& done : all) {

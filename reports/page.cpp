@@ -6,9 +6,10 @@
 namespace graze {
 namespace {
 
-constexpr std::string_view kPageTemplate =
+constexpr char kText[] =
 #include "page_template.inc"
     ;
+constexpr std::string_view kPageTemplate(kText, sizeof kText - 1);
 
 }  // namespace
 

@@ -6,6 +6,8 @@ import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
+const kStrata = 'thesis,near_edge_edge,coplanar_wide,exact_contact,far_from_origin,extreme_scale';
+
 export default function make_report() {
   const { GRAZE, GRAZE_REPORT } = process.env;
   if (GRAZE_REPORT) {
@@ -15,8 +17,8 @@ export default function make_report() {
   if (!GRAZE) throw new Error('GRAZE: expected the path of the graze binary, found nothing');
   const folder = mkdtempSync(join(tmpdir(), 'graze-page-'));
   const run = (...args: string[]) => execFileSync(GRAZE, args, { cwd: folder, stdio: ['ignore', 'ignore', 'inherit'] });
-  run('fuzz', '--pairs', '20000', '--seed', '1', '--executor', 'twin', '--out', 'campaign');
-  run('minimize', 'campaign');
+  run('fuzz', '--pairs', '1500', '--seed', '1', '--strata', kStrata, '--executor', 'twin', '--out', 'campaign');
+  run('minimize', 'campaign', '--executor', 'twin');
   run('report', 'campaign');
   process.env.GRAZE_REPORT = join(folder, 'campaign', 'report.html');
   return () => rmSync(folder, { recursive: true });

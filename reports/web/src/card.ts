@@ -9,15 +9,15 @@ type Card = Report['cards'][number];
 type Signature = Report['signatures'][number];
 
 const kHulls = ['point', 'segment', 'triangle'];
-export const hulls = (dimensions: string) => {
+export function hulls(dimensions: string, how = '') {
   const [a, b] = [...dimensions].map((d) => kHulls[Number(d)] ?? d);
-  return a === b ? `two ${a}s` : `${a} and ${b}`;
-};
+  return a === b ? `two ${how}${a}s` : `a ${how}${a} and a ${b}`;
+}
 const kContacts: Record<string, string> = { none: 'apart', point: 'meeting in a point', segment: 'meeting in a segment', area: 'meeting in an area' };
 
 export function signature_words(signature: Signature): string {
   const { contact, dimensions, coplanar, margin } = signature;
-  return `${coplanar ? 'coplanar ' : ''}${hulls(dimensions)} ${kContacts[contact] ?? contact}, margin ${margin_words(margin)}`;
+  return `${hulls(dimensions, coplanar ? 'coplanar ' : '')} ${kContacts[contact] ?? contact}, margin ${margin_words(margin)}`;
 }
 
 // "-2^-3" as "2⁻³ ulps deep", "2^4" as "2⁴ ulps"
@@ -32,7 +32,7 @@ function coordinates({ pair }: Card) {
     [0, 1, 2].map((k) => h('td', { class: 'number' }, h('span', {}, pair.decimal[first + k]), h('code', {}, pair.hex[first + k]))));
   const text = pair.hex.join(' ');
   return h('div', { class: 'coordinates' },
-    h('div', { class: 'scroller', tabindex: 0, role: 'region', 'aria-label': 'Coordinates' }, h('table', { class: 'plain' }, h('caption', {}, 'Coordinates, decimal and hex'),
+    h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Coordinates' }, h('table', { class: 'plain' }, h('caption', {}, 'Coordinates, decimal and hex'),
       h('thead', {}, h('tr', {}, h('td', {}), ['x', 'y', 'z'].map((axis) => h('th', { scope: 'col' }, axis)))),
       h('tbody', {}, [0, 1, 2].map((i) => row(`a[${i}]`, 3 * i)), [0, 1, 2].map((i) => row(`b[${i}]`, 9 + 3 * i))))),
     h('p', { class: 'inline-copy' }, 'All 18 as hex floats, for ', h('code', {}, 'graze check -'), ' ', copy_button(text, 'the coordinates')));
@@ -48,7 +48,7 @@ function verdicts(report: Report, card: Card) {
     rows.get(name)!.set(lane.target, verdict);
     if (!targets.includes(lane.target)) targets.push(lane.target);
   }
-  return h('div', { class: 'scroller', tabindex: 0, role: 'region', 'aria-label': 'Verdicts' }, h('table', { class: 'plain verdicts' },
+  return h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' }, h('table', { class: 'plain verdicts' },
     h('caption', {}, 'Verdict of every lane, wrong ones marked'),
     h('thead', {}, h('tr', {}, h('td', {}), targets.map((target) => h('th', { scope: 'col' }, target)))),
     h('tbody', {}, [...rows].map(([name, by_target]) => h('tr', {}, h('th', { scope: 'row' }, breakable(name)), targets.map((target) => {
@@ -67,6 +67,21 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
       h('figcaption', {}, name === 'truth' ? 'truth' : breakable(name.split('/').slice(1).join('/')))))));
 }
 
+// One text at a time, chosen by its button.
+function snippets(card: Card) {
+  const shown = h('div', {});
+  const buttons = card.snippets.map(({ label, text }) => {
+    const button = h('button', { type: 'button', 'aria-pressed': 'false', onclick: () => {
+      const open = button.getAttribute('aria-pressed') === 'true';
+      buttons.forEach((other) => other.setAttribute('aria-pressed', 'false'));
+      button.setAttribute('aria-pressed', String(!open));
+      shown.replaceChildren(...(open ? [] : [code_block(text, `the ${label} snippet`)]));
+    } }, label);
+    return button;
+  });
+  return h('div', { class: 'snippets' }, h('h4', {}, 'For a bug report'), h('div', { class: 'chips' }, buttons), shown);
+}
+
 // The inside of a card, made when it is opened.
 export function card_body(report: Report, card: Card, signature: Signature) {
   const { truth } = card;
@@ -78,14 +93,13 @@ export function card_body(report: Report, card: Card, signature: Signature) {
       h('div', { class: 'card-facts' },
         h('p', { class: 'truth' }, h('b', {}, `Truth: ${truth.verdict}`), `, ${where}${ulps}`),
         h('ul', { class: 'sentences' }, card.sentences.map((sentence) => h('li', {}, sentence))),
-        verdicts(report, card))),
-    coordinates(card),
-    card.maps && ulp_maps(card.maps),
-    h('div', { class: 'commands' }, card.commands.map(({ label, text }) => h('div', {}, h('p', { class: 'label' }, label), code_block(text, `the ${label} command`)))),
-    card.snippets.length > 0 && h('div', { class: 'snippets' }, h('h4', {}, 'For a bug report'),
-      card.snippets.map(({ label, text }) => lazy_details([label], () => code_block(text, `the ${label} snippet`)).details)),
+        coordinates(card))),
+    h('div', { class: card.maps ? 'card-top' : '' }, h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)), card.maps && ulp_maps(card.maps)),
+    h('h4', {}, 'Again'),
+    h('div', { class: 'commands' }, card.commands.map(({ label, text }) => [h('span', { class: 'label' }, label), code_block(text, `the ${label} command`)])),
+    card.snippets.length > 0 && snippets(card),
     h('p', { class: 'small' }, card.minimised ? `Minimised from ${card.from}; ` : `Not minimised, as drawn: ${card.from}; `, 'stored in ', h('code', {}, card.file),
-      '; signature ', h('code', {}, ...breakable(signature.key)), '.'));
+      '; signature ', h('code', {}, ...breakable(signature.key))));
 }
 
 export function card_element(report: Report, card: Card, number: number) {

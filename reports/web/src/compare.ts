@@ -17,7 +17,7 @@ function rates_table(compare: Compare) {
     { label: 'Stratum', cell: (c) => c.stratum, order: (c) => c.stratum },
     { label: 'Before', numeric: true, cell: (c) => cell(c.before), order: (c) => c.before.share },
     { label: 'After', numeric: true, cell: (c) => cell(c.after), order: (c) => c.after.share },
-    { label: 'Change', numeric: true, cell: (c) => (c.after.share === c.before.share ? '0' : `${c.after.share > c.before.share ? '+' : '−'}${percent(Math.abs(c.after.share - c.before.share))}`), order: (c) => c.after.share - c.before.share },
+    { label: 'Change', numeric: true, cell: (c) => (c.after.share === c.before.share ? '0' : `${c.after.share > c.before.share ? '+' : '−'}${percent(Math.abs(c.after.share - c.before.share)).replace('%', 'points')}`), order: (c) => c.after.share - c.before.share },
     { label: 'Intervals', cell: (c) => (c.changed ? h('b', {}, 'apart') : 'overlap'), order: (c) => Number(c.changed), descending_first: true },
   ], { caption: 'Share wrong before and after', class: 'plain', page: 60 });
   const all = h('input', { type: 'checkbox', onchange: () => update() });
@@ -42,7 +42,7 @@ export function compare_section(report: Report) {
   const side = (name: string, run: Report['run']) =>
     h('div', {}, h('dt', {}, name), h('dd', {}, `${count(run.pairs)} pairs, seed ${run.seed}; ${build_words(run).join(', ')}`));
   return section('compare', 'Compared with another campaign',
-    h('dl', { class: 'facts' }, side('Before', compare.other), side('After', report.run)),
+    h('dl', { class: 'facts both' }, side('Before', compare.other), side('After', report.run)),
     h('h3', {}, 'Rates'), rates_table(compare),
     h('div', { class: 'two' }, signatures_table('Signatures gained', compare.gained), signatures_table('Signatures lost', compare.lost)));
 }

@@ -32,6 +32,11 @@ export function breakable(id: string): Child[] {
   return id.split(/(?<=[_/])/).flatMap((part, i) => (i ? [h('wbr', {}), part] : [part]));
 }
 
+// A sentence in which `…` is code.
+export function sentence(text: string): Child[] {
+  return text.split('`').map((part, i) => (i % 2 ? h('code', {}, part) : part));
+}
+
 async function to_clipboard(text: string) {
   try {
     await navigator.clipboard.writeText(text);

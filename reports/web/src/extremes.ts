@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heat maps of the error rate over the size of the coordinates, and over how far from the origin a pair lies.
 import * as Plot from '@observablehq/plot';
+import { kChartStyle, named } from './chart';
 import { h, lazy_details, on_width, section } from './dom';
 import { in_full, percent, power_of_two } from './format';
 import { heat_fill, heat_legend } from './heat';
@@ -42,18 +43,17 @@ export function extremes_section(report: Report) {
     for (let e = Math.ceil(from / every) * every; e <= to; e += every) ticks.push(e);
     const plot = Plot.plot({
       width, height: lanes.length * (small ? 34 : 24) + 66, marginLeft: small ? 4 : 210, marginRight: 14, marginTop: 8, marginBottom: 46,
-      style: { background: 'none', fontFamily: 'inherit', fontSize: '12px' },
+      style: kChartStyle,
       x: { domain: [from, to], ticks, tickFormat: power_of_two, label: small ? short : axis, labelAnchor: 'center', labelArrow: 'none', labelOffset: 40 },
       y: { domain: lanes, label: null, padding: 0.12, axis: small ? null : 'left', tickSize: 0 },
       marks: [
-        Plot.rect(cells, { x1: 'from', x2: 'to', y: 'name', fill: (c: Cell) => heat_fill(c.wrong.share), insetTop: small ? 15 : 0 }),
+        Plot.rect(cells, { x1: 'from', x2: 'to', y: 'name', fill: (c: Cell) => heat_fill(c.wrong.share), insetTop: small ? 15 : 0, shapeRendering: 'crispEdges' }),
         ...(small ? [Plot.text(lanes, { y: (name: string) => name, x: from, text: (name: string) => name, textAnchor: 'start', dy: -8, fontSize: 11 })] : []),
         Plot.tip(cells, Plot.pointer({ x: (c: Cell) => (c.from + c.to) / 2, y: 'name', title: 'words', maxRadius: 30 })),
       ],
     });
-    plot.setAttribute('role', 'img');
-    plot.setAttribute('aria-label', `${title}: heat map of the share of wrong verdicts, ${lanes.length} lanes; as a table below`);
-    element.replaceChildren(cells.length ? plot : h('p', { class: 'empty' }, 'No lane is chosen.'));
+    const label = `${title}: heat map of the share of wrong verdicts, ${lanes.length} lanes; as a table below`;
+    element.replaceChildren(cells.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen.'));
   }
 
   const redraw = () => figures.forEach((one) => one.element.clientWidth && draw(one, one.element.clientWidth));
@@ -63,7 +63,7 @@ export function extremes_section(report: Report) {
     h('p', {}, 'Where numbers are very large, very small, or far from the origin. Blank: no pair of the campaign lies there.'),
     picker.element, heat_legend(),
     figures.map(({ kind, title, says, element }) => [
-      h('h3', {}, title), h('p', {}, says), element,
+      h('div', { class: 'kept' }, h('h3', {}, title), h('p', {}, says), element),
       lazy_details(['The numbers as a table'], () => {
         const table = sortable_table<Cell>([
           { label: 'Lane', cell: (c) => c.name, order: (c) => c.lane },

@@ -26,7 +26,7 @@ export function bare_percent(share: number): string {
   if (percent === 0 || percent === 100) return String(percent);
   if (percent < 0.001) return '<0.001';
   if (percent > 99.9) return '>99.9';
-  return percent >= 10 ? percent.toFixed(1) : String(Number(percent.toFixed(percent >= 1 ? 2 : 3)));
+  return percent.toFixed(percent >= 10 ? 1 : percent >= 1 ? 2 : 3);
 }
 
 export function percent(share: number): string {

@@ -36,7 +36,7 @@ function rules(dark: boolean) {
     const t = step / (kSteps - 1);
     const colour = interpolateMagma(dark ? 0.2 + 0.78 * t : 0.98 - 0.8 * t);
     properties += `--h${step}:${colour};`;
-    classes += `.h${step}{background:var(--h${step});color:${luminance(colour) > 0.179 ? '#111' : '#fff'}}`;
+    classes += `.h${step}{background:var(--h${step});color:${luminance(colour) > 0.179 ? '#000' : '#fff'}}`;
   }
   return `:root{${properties}}${classes}`;
 }

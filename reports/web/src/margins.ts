@@ -2,6 +2,7 @@
 // Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold from which on no
 // error was seen.
 import * as Plot from '@observablehq/plot';
+import { kChartStyle, named } from './chart';
 import { breakable, choice, h, lazy_details, on_width, section } from './dom';
 import { count, figure, in_full, percent, power_of_two } from './format';
 import { lane_picker } from './lane_picker';
@@ -68,7 +69,7 @@ export function margins_section(report: Report) {
   function draw(width: number) {
     const all = dots(), small = width < 560;
     const ticks = [0];
-    for (let e = Math.ceil(lowest / 8) * 8; e <= highest; e += small ? 16 : 8) ticks.push(place('disjoint', e), place('intersects', e));
+    for (let e = Math.ceil((lowest + (small ? 8 : 0)) / 16) * 16; e <= highest; e += small ? 16 : 8) ticks.push(place('disjoint', e), place('intersects', e));
     const exponent_at = (x: number) => Math.abs(x) + lowest - kGap;
     const decades = Array.from({ length: -floor + 1 }, (_, i) => floor + i);
     const style = (lane: number) => report.lanes[lane];
@@ -83,7 +84,7 @@ export function margins_section(report: Report) {
       for (const side of ['intersects', 'disjoint']) {
         const own = all.filter((dot) => dot.lane === lane && dot.side === side);
         marks.push(
-          Plot.areaY(own, { x: 'x', y1: (d: Dot) => y(d.share.low), y2: (d: Dot) => y(d.share.high), fill: stroke, fillOpacity: lanes.length > 8 ? 0.07 : 0.14 }),
+          Plot.areaY(own, { x: 'x', y1: (d: Dot) => y(d.share.low), y2: (d: Dot) => y(d.share.high), fill: stroke, fillOpacity: lanes.length > 8 ? 0.06 : 0.1 }),
           Plot.lineY(own, { x: 'x', y: (d: Dot) => (log && !d.share.count ? NaN : y(d.share.share)), stroke, strokeWidth, strokeDasharray: dash, strokeLinejoin: 'round' }),
           Plot.dot(log ? own.filter((d) => !d.share.count) : [], { x: 'x', y: none, r: 1.6, fill: stroke }));
       }
@@ -102,16 +103,15 @@ export function margins_section(report: Report) {
     marks.push(Plot.tip(all, Plot.pointer({ x: 'x', y: (d: Dot) => y(d.share.share), title: 'words', maxRadius: 30 })));
     const plot = Plot.plot({
       width, height: small ? 320 : 420, marginLeft: 58, marginRight: 12, marginBottom: 50, marginTop: 26,
-      style: { background: 'none', fontFamily: 'inherit', fontSize: '12px' },
+      style: kChartStyle,
       x: { domain: [-reach, reach], ticks, tickFormat: (x: number) => (x === 0 ? '0' : power_of_two(exponent_at(x))), label: small ? 'margin, ulps: ← deep · apart →' : 'exact margin in ulps of the largest coordinate:  ← deeper inside  ·  farther apart →', labelAnchor: 'center', labelArrow: 'none', labelOffset: 42 },
       y: log
         ? { domain: [none, 0], grid: true, ticks: [none, ...decades], tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`), label: 'share wrong', labelArrow: 'none' }
         : { domain: [0, 100], grid: true, tickFormat: (v: number) => `${v} %`, label: 'share wrong', labelArrow: 'none' },
       marks,
     });
-    plot.setAttribute('role', 'img');
-    plot.setAttribute('aria-label', `Share of wrong verdicts against the exact margin, of ${lanes.length} lanes; the table below has the thresholds`);
-    figure_element.replaceChildren(all.length ? plot : h('p', { class: 'empty' }, 'No lane is chosen, or it has no figures here.'));
+    const label = `Share of wrong verdicts against the exact margin, of ${lanes.length} lanes; the table below has the thresholds`;
+    figure_element.replaceChildren(all.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen, or it has no figures here.'));
     thresholds.show(report.thresholds.filter((t) => picker.lanes().includes(t.lane)));
   }
 

@@ -6,7 +6,7 @@ const kTerms: [string, Child[]][] = [
   ['Pair', ['Two triangles of 18 float32 numbers. The stored bits are the question: nothing rounds them again.']],
   ['Triangle', ['The closed convex hull of its three points, so a degenerate one is a segment or a point.']],
   ['Intersects', ['The two sets share at least one point: touching counts. A ', h('i', {}, 'contact'), ' is a point, a segment or an area.']],
-  ['Lane', ['One way to decide a pair: algorithm/scalar/target. ', h('code', {}, 'cpu'), ' rounds every operation; ', h('code', {}, 'cpu-fma'), ' and ', h('code', {}, 'cuda-fma'), ' let the compiler fuse a product and an addition into one rounding (contraction); ', h('code', {}, 'cuda-nofma'), ' is nvcc with -fmad=false.']],
+  ['Lane', ['One way to decide a pair: algorithm/scalar/target. ', h('code', {}, 'cpu'), ' rounds every operation; ', h('code', {}, 'cpu-fma'), ' and ', h('code', {}, 'cuda-fma'), ' let the compiler fuse a product and an addition into one rounding (contraction); ', h('code', {}, 'cuda-nofma'), ' is nvcc with ', h('code', {}, '-fmad=false'), '.']],
   ['Twin', ['A replay of a CUDA kernel’s PTX on the CPU, contractions and all, with the same bits. ', '“Proven” means that it was compared with the device on the number of pairs given, without a difference.']],
   ['Stratum', ['A named generator of pairs, a pure function of seed and index. Each is hard in its own way; shares over all strata depend on the mix and say nothing of your data, shares within a stratum do.']],
   ['Truth', ['CGAL’s exact kernel decides; an independent decision on integers of any size (GMP) confirms every disagreement that is kept. If the two ever part, the campaign stops.']],

@@ -12,7 +12,7 @@ function node(name: string, attributes: Record<string, string | number>, text = 
 }
 
 export function svg_projection(shape: Shape, view: View, width: number, height: number): SVGSVGElement {
-  const at = (p: Vec) => project(p, view, width, height);
+  const at = (p: Vec) => project(shape, p, view, width, height);
   const path = (points: Vec[]) => points.map((p) => { const { x, y } = at(p); return `${x.toFixed(1)},${y.toFixed(1)}`; }).join(' ');
   const depth = (points: Vec[]) => points.reduce((sum, p) => sum + at(p).depth, 0);
   const svg = node('svg', { viewBox: `0 0 ${width} ${height}`, 'aria-hidden': 'true' }) as SVGSVGElement;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was run, and the answer in sentences.
-import { breakable, code_block, h, lazy_details, section, type Child } from './dom';
+import { breakable, code_block, h, lazy_details, section, sentence, type Child } from './dom';
 import { count, percent } from './format';
 import type { Report } from './report';
 import { sortable_table } from './sortable_table';
@@ -59,9 +59,9 @@ export function run_section(report: Report) {
     h('p', { class: 'label' }, 'This page again, from the stored results'), code_block(run.map_command, 'the report’s command'),
     lazy_details([`${report.strata.length} strata`], () => strata_table(report), { class: 'more-facts' }).details,
     lazy_details([`${report.lanes.length} lanes`], () => lanes_table(report), { class: 'more-facts' }).details,
-    report.missing.length > 0 && h('div', { class: 'notice' }, h('strong', {}, 'What this report lacks'), h('ul', {}, report.missing.map((text) => h('li', {}, text)))));
+    report.missing.length > 0 && h('div', { class: 'notice' }, h('strong', {}, 'What this report lacks'), h('ul', {}, report.missing.map((text) => h('li', {}, sentence(text))))));
 }
 
 export function answer_section(report: Report) {
-  return section('answer', 'The answer', h('ol', { class: 'answer' }, report.answer.map((sentence) => h('li', {}, sentence))));
+  return section('answer', 'The answer', h('ol', { class: 'answer' }, report.answer.map((text) => h('li', {}, sentence(text)))));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two lanes of one algorithm beside each other: what the compiler's contraction and the precision change.
 import { choice, h, section } from './dom';
-import { count, in_full, percent } from './format';
+import { in_full, percent } from './format';
 import { heat_class } from './heat';
 import type { Report, Share } from './report';
 import { sortable_table } from './sortable_table';
@@ -22,7 +22,7 @@ function differs_cell(differs: Share | null, must_be_equal: boolean) {
   if (!differs) return h('td', { class: 'number', title: 'Not counted pair by pair' }, '–');
   const equal = differs.count === 0;
   return h('td', { class: `number ${must_be_equal ? (equal ? 'good' : 'bad') : ''}`, title: in_full(differs) },
-    equal ? (must_be_equal ? '✓ equal' : '0') : `${must_be_equal ? '✗ ' : ''}${count(differs.count)} (${percent(differs.share)})`);
+    equal ? (must_be_equal ? '✓ equal' : '0') : `${must_be_equal ? '✗ ' : ''}${percent(differs.share)}`);
 }
 
 // The part of a lane's name in which the two do not differ.
@@ -44,7 +44,7 @@ export function side_by_side_section(report: Report) {
       { label: 'Algorithm', cell: (side) => common(report, side), order: (side) => rows.indexOf(side) },
       { label: `${own(rows[0].left)}, wrong`, numeric: true, cell: (side) => { const s = of(side); return s ? share_cell(s.left_wrong) : '–'; }, order: (side) => of(side)?.left_wrong.share ?? -1 },
       { label: `${own(rows[0].right)}, wrong`, numeric: true, cell: (side) => { const s = of(side); return s ? share_cell(s.right_wrong) : '–'; }, order: (side) => of(side)?.right_wrong.share ?? -1 },
-      ...(measured ? [{ label: 'Other verdict', numeric: true, cell: (side: Side) => differs_cell(of(side)?.differs ?? null, equal), order: (side: Side) => of(side)?.differs?.share ?? -1 }] : []),
+      ...(measured ? [{ label: 'Differ', title: 'Pairs on which the two give another verdict', numeric: true, cell: (side: Side) => differs_cell(of(side)?.differs ?? null, equal), order: (side: Side) => of(side)?.differs?.share ?? -1 }] : []),
     ], { caption: title, class: 'plain beside' });
     const show = () => table.show(rows);
     show();

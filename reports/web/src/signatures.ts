@@ -45,7 +45,7 @@ export function signatures_section(report: Report) {
     { label: 'Margin', numeric: true, cell: (s) => margin_words(s.margin), order: (s) => margin_order(s.margin) },
     { label: 'Lanes f32 · f64', title: 'Marks of the lanes: + false positive, − false negative, ? declined, . right', cell: marks, order: (s) => s.marks },
     { label: 'Card', cell: (s) => (s.card === null ? '' : h('button', { type: 'button', class: 'link', onclick: () => show_card(s.card!) }, `card ${s.card + 1}`)), order: (s) => s.card ?? Infinity },
-  ], { caption: 'Signatures', class: 'plain signatures', page: 12 });
+  ], { caption: 'Signatures listed', class: 'plain signatures', page: 12 });
 
   let text = '', algorithm = '';
   const shown = h('p', { class: 'readout', 'aria-live': 'polite' });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing of a card, to be turned by dragging and by keys.
 import { choice, h } from './dom';
-import { good_view, shape_of, type Frame, type View } from './drawing';
+import { good_frame, good_view, shape_of, type Frame, type View } from './drawing';
 import { svg_projection } from './projection';
 import type { Report } from './report';
 import { has_webgl, picture, type Picture } from './view3d';
@@ -10,7 +10,8 @@ const kTurn = Math.PI / 18;
 const kSteepest = Math.PI / 2 - 1e-3;
 
 export function stage(card: Report['cards'][number]): HTMLElement {
-  let shape = shape_of(card, 'both'), view = good_view(shape), visible = false;
+  const frame = good_frame(card);
+  let shape = shape_of(card, frame), view = good_view(shape), visible = false;
   let drawn: Picture | null = null;
   const canvas = h('canvas', {}), paper = h('div', { class: 'paper' });
   const note = h('span', { class: 'scale-note' });
@@ -93,7 +94,7 @@ export function stage(card: Report['cards'][number]): HTMLElement {
     h('button', { type: 'button', 'aria-label': label, title: label, onclick: () => { action(); draw_paper(); } }, text);
   return h('figure', { class: 'stage' }, board,
     h('div', { class: 'stage-tools' },
-      choice('Frame', [['both', 'both triangles'], ['a', 'triangle a'], ['b', 'triangle b']], 'both', (value) => look_at(value as Frame)),
+      choice('Frame', [['both', 'both triangles'], ['a', 'triangle a'], ['b', 'triangle b']], frame, (value) => look_at(value as Frame)),
       button('−', 'Zoom out', () => set({ zoom: view.zoom / 1.25 })), button('+', 'Zoom in', () => set({ zoom: view.zoom * 1.25 })),
       button('Reset', 'Reset the view', reset)),
     h('figcaption', {},

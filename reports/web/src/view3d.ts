@@ -103,7 +103,7 @@ export function picture(shape: Shape): Picture {
     if (gl.domElement.width !== canvas.width || gl.domElement.height !== canvas.height) gl.setSize(canvas.width, canvas.height, false);
     for (const { material, name } of coloured) material.color.set(style_colour(name));
     for (const line of lines) line.material.linewidth = line.width * ratio;
-    const half = half_height(view), { eye } = axes(view);
+    const half = half_height(shape, view), { eye } = axes(view);
     Object.assign(camera, { left: (-half * width) / height, right: (half * width) / height, top: half, bottom: -half, near: 0.1, far: 2e4 });
     const far = 1e4;  // parts outside the frame may lie far in front of it
     camera.position.set(far * eye[0], far * eye[1], far * eye[2]);
@@ -122,7 +122,7 @@ export function picture(shape: Shape): Picture {
     context.save();
     context.scale(ratio, ratio);
     if (shape.contact.length === 1) {
-      const { x, y } = project(shape.contact[0], view, width, height);
+      const { x, y } = project(shape, shape.contact[0], view, width, height);
       context.beginPath();
       context.arc(x, y, 5, 0, 2 * Math.PI);
       context.fillStyle = style_colour('--contact');

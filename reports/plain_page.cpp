@@ -26,11 +26,11 @@ constexpr const char* kHead = R"(<!DOCTYPE html>
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 0 auto; padding: 1rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { padding: 0.2rem 0.5rem; border: 1px solid #8886; text-align: left; }
+th, td { padding: 0.2rem 0.5rem; border: 1px solid #8886; text-align: left; white-space: nowrap; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; }
 pre { overflow-x: auto; border: 1px solid #8886; padding: 0.5rem; }
 svg { max-width: 100%; } svg text { font-size: 9px; fill: currentColor; }
-figure { display: inline-block; margin: 0.5rem; }
+figure { display: inline-block; vertical-align: top; width: 20rem; margin: 0.5rem; }
 </style>
 </head>
 <body>

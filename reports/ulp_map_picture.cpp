@@ -166,10 +166,18 @@ nlohmann::ordered_json to_json(const UlpMap& map) {
   nlohmann::ordered_json panels = nlohmann::ordered_json::array();
   for (const UlpPanel& panel : map.panels)
     panels.push_back({{"name", panel.name()}, {"png", base64(panel_png(panel))}});
+  nlohmann::ordered_json legend = nlohmann::ordered_json::array();
+  const std::array<bool, kCellKinds> found = kinds_in(map);
+  for (std::size_t kind = 0; kind < kCellKinds; ++kind) {
+    const auto& [red, green, blue] = kPalette[kind];
+    if (found[kind])
+      legend.push_back({{"colour", fmt::format("#{:02x}{:02x}{:02x}", red, green, blue)}, {"means", kCellNames[kind]}});
+  }
   return {{"title", fmt::format("{} and {} moved by up to {} ulps", x, y, kMapCentre)},
           {"x", x},
           {"y", y},
           {"size", kMapSize},
+          {"legend", legend},
           {"pair", hex(map.pair)},
           {"panels", panels}};
 }

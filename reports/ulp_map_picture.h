@@ -17,8 +17,8 @@ std::string panel_png(const UlpPanel& panel);
 // lanes a row; below what the coordinates and colours are.
 std::string sheet_png(const UlpMap& map);
 
-// {"title", "x", "y", "size", "panels": [{"name", "png"}]} as a report's page wants it, PNGs in base64; and "pair", its
-// 18 coordinates in hex.
+// {"title", "x", "y", "size", "legend": [{"colour", "means"}], "panels": [{"name", "png"}]} as a report's page wants
+// it, PNGs in base64; and "pair", its 18 coordinates in hex.
 nlohmann::ordered_json to_json(const UlpMap& map);
 
 // Whether that is of this pair.

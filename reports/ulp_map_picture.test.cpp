@@ -85,6 +85,7 @@ TEST(UlpMapPicture, JsonIsThePairsOwn) {
   const nlohmann::ordered_json json = to_json(striped(2));
   EXPECT_EQ(json["x"], "b[0].x");
   EXPECT_EQ(json["size"], kMapSize);
+  EXPECT_EQ(json["legend"][0], (nlohmann::ordered_json{{"colour", "#eeeeee"}, {"means", "disjoint"}}));
   ASSERT_EQ(json["panels"].size(), 3u);
   EXPECT_EQ(json["panels"][0]["name"], "truth");
   EXPECT_EQ(json["panels"][1]["name"], lanes()[0].id);

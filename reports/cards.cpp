@@ -12,6 +12,7 @@
 #include "fuzz/report_files.h"
 #include "oracle/common_set.h"
 #include "reports/snippet.h"
+#include "reports/ulp_map_picture.h"
 
 namespace graze {
 namespace {
@@ -169,10 +170,28 @@ Json snippets_of(const CampaignCounts& counts, const Entry& entry, const Key& ke
 
 // Cards that lack something.
 struct Lacking {
-  std::size_t minimised = 0, explained = 0, mapped = 0;
+  std::size_t minimised = 0, explained = 0, mapped = 0, room = 0;
 };
 
-Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& found,
+// The maps stored with a case, as far as there is room for them; null without.
+Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size_t& room, Lacking& lacking) {
+  const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
+  Json maps = Json::parse(read_whole(file), nullptr, false);
+  if (!is_map_of(maps, pair)) {
+    ++lacking.mapped;
+    return nullptr;
+  }
+  maps.erase("pair");
+  const std::size_t size = maps.dump().size();
+  if (size > room) {
+    ++lacking.room;
+    return nullptr;
+  }
+  room -= size;
+  return maps;
+}
+
+Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& found, std::size_t& room,
              Lacking& lacking) {
   const std::string file = found["case"];
   const std::vector<Entry> entries = read_pairs(directory / file);
@@ -181,12 +200,9 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
   const Key key = parts_of(found["key"]);
   const Verdict truth = verdict_of(text_of(entry, "truth"));
   const std::optional<Json> facts = stored(facts_file(directory / file), entry.pair);
-  std::optional<Json> maps = stored(std::filesystem::path(directory / file).replace_extension(".map.json"), entry.pair);
   const bool minimised = field(entry, "kind") != nullptr;
   lacking.minimised += !minimised;
   lacking.explained += !facts;
-  lacking.mapped += !maps;
-  if (maps) maps->erase("pair");
   const std::string from = origin(entry);
   const Json verdicts = verdicts_of(counts, key, truth, facts);
   return {{"signature", nullptr},
@@ -202,7 +218,7 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
           {"drawing", drawing_of(entry.pair)},
           {"verdicts", verdicts},
           {"sentences", facts ? facts->at("sentences") : Json::array()},
-          {"maps", maps ? *maps : Json()},
+          {"maps", maps_of(directory / file, entry.pair, room, lacking)},
           {"commands", commands_of(entry, key, from)},
           {"snippets", snippets_of(counts, entry, key, truth, verdicts, from)}};
 }
@@ -224,34 +240,54 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
     missing.push_back(
         fmt::format("{} of {} cards have no ulp map: `graze minimize DIR` stores it.", lacking.mapped, cards));
   }
+  if (lacking.room != 0) {
+    missing.push_back(fmt::format("{} of {} cards show no ulp map, for want of room in one file; `graze map` draws it.",
+                                  lacking.room, cards));
+  }
 }
 
 }  // namespace
 
+Json signature_rows(const CampaignCounts& counts, const Json& summary) {
+  Json rows = Json::array();
+  for (const Json& found : summary["signatures"]) {
+    if (!found["key"].get<std::string>().starts_with("executors/")) rows.push_back(signature_row(counts, found));
+  }
+  return rows;
+}
+
 void add_signatures(Json& report, const std::filesystem::path& directory, const Json& summary,
                     const CampaignCounts& counts) {
-  report["signature_count"] = 0;
-  Json &rows = report["signatures"] = Json::array(), &cards = report["cards"] = Json::array();
   const std::vector<std::size_t> carded = carded_signatures(summary);
+  Json rows = Json::array(), cards = Json::array();
+  std::size_t count = 0, room = kMostMapBytes;
   Lacking lacking;
   for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
     const Json& found = summary["signatures"][place];
     const std::string key = found["key"];
     if (key.starts_with("executors/")) {
       report["missing"].push_back(
-          fmt::format("On {} pairs {} gave another verdict on the device than by its twin: one of "
-                      "the two is not what it should be.",
+          fmt::format("On {} pairs {} gave another verdict on the device than by its twin: one of the two is wrong.",
                       found["count"].dump(), key.substr(key.find('/') + 1)));
       continue;
     }
+    ++count;
+    const bool has_card = std::binary_search(carded.begin(), carded.end(), place);
+    if (count > kMostSignatures && !has_card) continue;
     rows.push_back(signature_row(counts, found));
-    if (!std::binary_search(carded.begin(), carded.end(), place)) continue;
+    if (!has_card) continue;
     rows.back()["card"] = cards.size();
-    cards.push_back(card_of(directory, counts, found, lacking));
+    cards.push_back(card_of(directory, counts, found, room, lacking));
     cards.back()["signature"] = rows.size() - 1;
   }
-  report["signature_count"] = rows.size();
+  if (rows.size() < count) {
+    report["missing"].push_back(
+        fmt::format("The table shows the commonest {} of {} signatures; signatures.csv has all.", rows.size(), count));
+  }
   say_what_is_missing(report["missing"], lacking, cards.size());
+  report["signature_count"] = count;
+  report["signatures"] = std::move(rows);
+  report["cards"] = std::move(cards);
 }
 
 }  // namespace graze

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports/csv.h"
 
+#include "reports/cards.h"
 #include "reports/report.h"
 #include "reports/tables.h"
 
@@ -91,9 +92,9 @@ std::string extremes_csv(const Json& report) {
   return table.text;
 }
 
-std::string signatures_csv(const Json& report) {
+std::string signatures_csv(const Json& rows) {
   Table table("key,algorithm,count,share,contact,dimensions,coplanar,margin,marks");
-  for (const Json& row : report["signatures"]) {
+  for (const Json& row : rows) {
     table.row({row["key"], row["algorithm"], row["count"], row["share"], row["contact"], row["dimensions"],
                row["coplanar"], row["margin"], row["marks"]});
   }
@@ -122,12 +123,13 @@ std::string compare_csv(const Json& compare) {
 }  // namespace
 
 std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const Json& report) {
-  const CampaignCounts counts = counts_of(read_summary(directory));
+  const Json summary = read_summary(directory);
+  const CampaignCounts counts = counts_of(summary);
   std::vector<CsvTable> tables{{"rates.csv", rates_csv(report)},
                                {"margins.csv", margins_csv(counts)},
                                {"thresholds.csv", thresholds_csv(report)},
                                {"extremes.csv", extremes_csv(report)},
-                               {"signatures.csv", signatures_csv(report)}};
+                               {"signatures.csv", signatures_csv(signature_rows(counts, summary))}};
   if (!report["compare"].is_null()) tables.push_back({"compare.csv", compare_csv(report["compare"])});
   return tables;
 }

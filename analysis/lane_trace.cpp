@@ -64,11 +64,15 @@ Replay replay(const Lane& lane, const Pair& pair) {
   return best;
 }
 
-Verdict decide_lane(const Lane& lane, const Pair& pair) {
+DecideBlock block_of(const Lane& lane) {
   const DecideBlock block = lane.decide ? lane.decide : twin_block(lane.algorithm, lane.scalar, lane.target);
   if (!block) throw std::invalid_argument(lane.id + ": expected a host lane or a twin");
+  return block;
+}
+
+Verdict decide_lane(const Lane& lane, const Pair& pair) {
   std::uint64_t intersects = 0, declined = 0;
-  block(&pair, 1, &intersects, &declined);
+  block_of(lane)(&pair, 1, &intersects, &declined);
   return declined & 1 ? Verdict::declined : intersects & 1 ? Verdict::intersects : Verdict::disjoint;
 }
 

@@ -25,6 +25,9 @@ Replay replay(const Lane& lane, const Pair& pair);
 // The same in other circumstances: the algorithm in the lane's scalar and by that rule, led down the path.
 Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead);
 
+// The lane itself, on the host; for CUDA lanes the twin.   Throws: std::invalid_argument without either.
+DecideBlock block_of(const Lane& lane);
+
 // The lane's verdict: by the host, or for CUDA lanes by the twin.   Throws: std::invalid_argument without either.
 Verdict decide_lane(const Lane& lane, const Pair& pair);
 

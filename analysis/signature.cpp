@@ -34,4 +34,9 @@ std::string key(const Signature& s) {
                      std::string_view(s.marks.data(), s.marks.size()));
 }
 
+std::string algorithm_of(const std::string& key) {
+  const std::size_t colon = key.rfind(':'), slash = key.rfind('/', colon);
+  return key.substr(slash + 1, colon - slash - 1);
+}
+
 }  // namespace graze

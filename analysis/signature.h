@@ -36,6 +36,9 @@ Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict 
 // "point/22/skew/-2^-3/moller_1997:+-__..__": contact, dimensions, coplanar or skew, margin bucket, algorithm, marks.
 std::string key(const Signature& signature);
 
+// "moller_1997" of such a key.
+std::string algorithm_of(const std::string& key);
+
 // Calls visit(first, count) for each run of lanes of one algorithm, but for the exact lanes, which have no failures.
 // Requires: lanes in table order.
 template <class Visit>

@@ -171,7 +171,8 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
 }
 
 TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
-  for (const std::string verb : {"fuzz", "check", "repro", "explain", "lanes", "strata"}) {  // prove-twin needs a device
+  for (const std::string verb :
+       {"fuzz", "check", "repro", "explain", "lanes", "strata"}) {  // prove-twin needs a device
     const Ran help = shell("graze " + verb + " --help");
     EXPECT_EQ(help.status, 0);
     const std::size_t at = help.out.find("Example: ");

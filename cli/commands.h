@@ -18,6 +18,8 @@ void add_repro(CLI::App& app, int& status);
 void add_minimize(CLI::App& app, int& status);
 void add_corpus(CLI::App& app, int& status);
 void add_explain(CLI::App& app, int& status);
+void add_map(CLI::App& app, int& status);
+void add_report(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
 void add_prove_twin(CLI::App& app, int& status);

@@ -5,9 +5,9 @@
 
 #include <optional>
 
+#include "analysis/signature.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
-#include "fuzz/regression.h"
 #include "oracle/truth.h"
 
 namespace graze {

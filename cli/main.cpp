@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
   graze::add_minimize(app, status);
   graze::add_corpus(app, status);
   graze::add_explain(app, status);
+  graze::add_map(app, status);
+  graze::add_report(app, status);
   graze::add_lanes(app, status);
   graze::add_strata(app, status);
   graze::add_prove_twin(app, status);

@@ -14,9 +14,12 @@
 #include <mutex>
 #include <sstream>
 
+#include "cli/case_maps.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
+#include "fuzz/cards.h"
+#include "fuzz/case_facts.h"
 #include "fuzz/minimised_cases.h"
 #include "fuzz/report_files.h"
 #include "reports/terminal.h"
@@ -76,6 +79,7 @@ struct Done {
   bool minimised = false;   // now or before; otherwise no selected lane is wrong on it
   int magnitudes = 0;       // of the first result
   double milliseconds = 0;  // a case; 0 where it was done before
+  double map_seconds = 0;   // 0 without a map, and where it was done before
 };
 
 Done minimize_file(const Bench& bench, const fs::path& file, bool again) {
@@ -106,7 +110,10 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
   for (int n = 0; n <= magnitudes.back(); ++n)
     fmt::print(" {}: {}{}", n, grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))),
                n == magnitudes.back() ? "\n" : ",");
-  fmt::print("Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n", directory);
+  fmt::print(
+      "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
+      "and, for the signatures that `graze report` shows on cards, explanations and ulp maps\n",
+      directory);
 }
 
 void minimize_directory(MinimizeOptions options) {
@@ -119,10 +126,15 @@ void minimize_directory(MinimizeOptions options) {
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
   std::vector<fs::path> files;
-  for (const Json& row : summary["signatures"]) {
+  std::vector<std::string> to_map;  // of each, the signature whose card shows a map; empty for others
+  const std::vector<std::size_t> cards = carded_signatures(summary);
+  for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
+    const Json& row = summary["signatures"][place];
     // Pairs on which a device and its twin differ are kept too; they are nobody's failure.
-    if (!row["key"].get<std::string>().starts_with("executors/"))
-      files.push_back(directory / row["case"].get<std::string>());
+    const std::string key = row["key"];
+    if (key.starts_with("executors/")) continue;
+    files.push_back(directory / row["case"].get<std::string>());
+    to_map.push_back(std::binary_search(cards.begin(), cards.end(), place) ? key : "");
   }
 
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
@@ -135,6 +147,10 @@ void minimize_directory(MinimizeOptions options) {
   std::mutex mutex;
   tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
     all[i] = minimize_file(bench, files[i], options.again);
+    if (!to_map[i].empty()) store_facts(bench, files[i]);
+    const auto mapping = Clock::now();
+    if (all[i].minimised && !to_map[i].empty() && map_case(bench, files[i], to_map[i], options.again))
+      all[i].map_seconds = seconds_since(mapping);
     const std::lock_guard lock(mutex);
     if (++count % 16 != 0 || !on_terminal) return;
     const double left = seconds_since(start) / static_cast<double>(count) * static_cast<double>(files.size() - count);
@@ -145,12 +161,18 @@ void minimize_directory(MinimizeOptions options) {
   print_directory(options.name, all);
 
   std::vector<double> times;
+  int maps = 0;
+  double map_seconds = 0;
   for (const Done& done : all) {
     if (done.milliseconds > 0) times.push_back(done.milliseconds);
+    maps += done.map_seconds > 0;
+    map_seconds += done.map_seconds;
   }
   std::sort(times.begin(), times.end());
   append_timing(directory, {{"minimised", times.size()},
                             {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
+                            {"mapped", maps},
+                            {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / maps},
                             {"seconds", seconds_since(start)},
                             {"threads", threads}});
 }

@@ -33,6 +33,7 @@ struct EngineResult {
   // By bucket plus kBucketMost: pairs, intersecting ones, then of each lane: false positives, false negatives,
   // declined, differing from the cpu lane (always 0 here: no cpu lane runs).
   std::vector<std::uint64_t> counts;
+  std::vector<std::uint64_t> extreme_counts;  // the same by extreme_of plus kBucketMost; empty without an axis
   std::vector<EngineSignature> signatures;
   std::vector<std::uint64_t> undecided;  // indices, sorted
   std::uint64_t disagreements = 0;

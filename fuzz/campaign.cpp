@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/campaign.h"
 
+#include <fmt/format.h>
+#include <sys/utsname.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <optional>
 
 #include "build_info.h"
@@ -19,6 +22,19 @@ namespace {
 
 constexpr std::uint64_t kBatchPairs = 65536;                         // a transaction
 constexpr std::uint64_t kDeviceBatchPairs = std::uint64_t{1} << 32;  // a second or so on one device
+
+// The processor that this runs on.
+std::string machine_name() {
+  utsname system{};
+  uname(&system);
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t value = line.find(": ");
+    if (line.starts_with("model name") && value != line.npos)
+      return fmt::format("{}, {}", line.substr(value + 2), system.machine);
+  }
+  return system.machine;
+}
 
 // The next batch: of the source that is least far, so that a campaign cut short has seen all of them.
 struct Batch {
@@ -118,6 +134,7 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
                 {{"pairs", progress.done_here},
                  {"seconds", seconds()},
                  {"threads", threads},
+                 {"machine", machine_name()},
                  {"engine", campaign.engines.empty() ? "cpu" : "gpu"}},
                 outcome.oracle);
   return outcome;

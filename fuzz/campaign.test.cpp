@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin.h"
+#include "oracle/truth.h"
 
 namespace graze {
 namespace {
@@ -45,7 +46,7 @@ class CampaignTest : public testing::Test {
   Campaign campaign(const std::string& name, int threads, std::uint64_t pairs = 200'000) const {
     Campaign c;
     c.seed = 3;
-    c.sources = stratum_sources(c.seed, pairs, {"near_edge_edge", "degenerate"});
+    c.sources = stratum_sources(c.seed, pairs, {"near_edge_edge", "degenerate", "extreme_scale"});
     c.bench = &bench_;
     c.threads = threads;
     c.directory = root_ / name;
@@ -73,7 +74,7 @@ TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
 TEST_F(CampaignTest, SameBytesWhenInterruptedAfterEveryBatch) {
   const Json whole = run(campaign("whole", 2));
   Json part;
-  for (int i = 0; i < 4; ++i) part = run(campaign("parts", 2), 1);
+  for (int i = 0; i < 6; ++i) part = run(campaign("parts", 2), 1);
   EXPECT_EQ(part.dump(), whole.dump());
   EXPECT_EQ(lasting_files(root_ / "parts"), lasting_files(root_ / "whole"));
 }
@@ -103,6 +104,38 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
   const std::uint64_t disagreements = summary["disagreements"];
   EXPECT_GE(failures, disagreements);  // one a failing algorithm
   EXPECT_GE(oracle["gmp"].get<std::uint64_t>(), disagreements + (pairs - disagreements) / 1024 - 2);
+}
+
+TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
+  Campaign c = campaign("extremes", 2);
+  c.sources = stratum_sources(c.seed, 8000, {"extreme_scale", "far_from_origin", "degenerate"});
+  c.spec = campaign_spec(c);
+  const Json strata = run(c)["strata"];
+  EXPECT_FALSE(strata["degenerate"].contains("extremes"));
+  for (const Source& source : c.sources) {
+    if (source.axis == Axis::none) continue;
+    std::map<std::string, std::map<std::string, std::uint64_t>> expected;
+    for (std::uint64_t index = 0; index < source.pairs; ++index) {
+      const Pair pair = source.pair(index);
+      const bool truth = cgal_verdict(pair) == Verdict::intersects;
+      auto& cell = expected[std::to_string(exponent_of(source.axis, extreme_of(pair, source.axis)))];
+      ++cell["pairs"];
+      for (std::size_t l = 0; l < bench_.lanes.size(); ++l) {
+        std::uint64_t intersects = 0, declined = 0;
+        bench_.on_host[l](&pair, 1, &intersects, &declined);
+        if (declined || (intersects != 0) != truth) ++cell[bench_.lanes[l]->id];
+      }
+    }
+    const Json& extremes = strata[source.id]["extremes"];
+    ASSERT_EQ(extremes.size(), 1u);
+    std::map<std::string, std::map<std::string, std::uint64_t>> found;
+    for (const auto& [exponent, counts] : extremes[std::string(name(source.axis))].items()) {
+      for (const auto& [lane, wrong] : counts["wrong"].items()) found[exponent][lane] = wrong;
+      found[exponent]["pairs"] = counts["pairs"];
+    }
+    EXPECT_EQ(found, expected) << source.id;
+    EXPECT_GT(found.size(), 15u) << source.id;
+  }
 }
 
 TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
@@ -152,7 +185,7 @@ TEST_F(CampaignTest, ReportsEachDifferenceOfDeviceAndTwin) {
   const auto apart = std::find_if(summary["signatures"].begin(), summary["signatures"].end(),
                                   [](const Json& row) { return row["key"] == "executors/moller_1997/f32/cuda-fma"; });
   ASSERT_NE(apart, summary["signatures"].end());
-  EXPECT_EQ((*apart)["count"], 2);  // one a stratum
+  EXPECT_EQ((*apart)["count"], 3);  // one a stratum
   const auto cases = read_pairs(root_ / "apart" / (*apart)["case"].get<std::string>());
   EXPECT_EQ(*field(cases.at(0), "index"), "7");
   EXPECT_EQ(bench_.evidence(0).substr(0, 15), "device and twin");

@@ -32,17 +32,23 @@ Signature unpacked(SignatureBits bits) {
   return s;
 }
 
-void add(const EngineResult& found, int source, int lanes, BatchResult& result) {
+// Counts as EngineResult lays them out.
+void add(const std::vector<std::uint64_t>& counts, int lanes, Tally& tally) {
   const auto counter = [&](int c, int b) {
-    return found.counts[static_cast<std::size_t>(c * kBucketCount + b + kBucketMost)];
+    return counts[static_cast<std::size_t>(c * kBucketCount + b + kBucketMost)];
   };
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
     const auto bucket = static_cast<Bucket>(b);
-    result.tally.add(bucket, counter(0, b), counter(1, b));
-    result.device += counter(0, b);
+    tally.add(bucket, counter(0, b), counter(1, b));
     for (int l = 0; l < lanes; ++l)
-      result.tally.add(bucket, l, {counter(2 + 4 * l, b), counter(3 + 4 * l, b), counter(4 + 4 * l, b), 0});
+      tally.add(bucket, l, {counter(2 + 4 * l, b), counter(3 + 4 * l, b), counter(4 + 4 * l, b), 0});
   }
+}
+
+void add(const EngineResult& found, int source, int lanes, BatchResult& result) {
+  add(found.counts, lanes, result.tally);
+  if (!found.extreme_counts.empty()) add(found.extreme_counts, lanes, result.extremes);
+  for (int b = 0; b < kBucketCount; ++b) result.device += found.counts[static_cast<std::size_t>(b)];
   for (const EngineSignature& row : found.signatures) {
     SignatureCount one;
     one.count = row.count;

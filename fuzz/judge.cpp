@@ -61,6 +61,11 @@ class BlockJudge {
 
     const JudgedBlock block{pairs.size(), truth_, buckets_, views_};
     result.tally.add(block);
+    if (const Axis axis = campaign_.sources[static_cast<std::size_t>(source_)].axis; axis != Axis::none) {
+      extremes_.resize(pairs.size());
+      for (std::size_t i = 0; i < pairs.size(); ++i) extremes_[i] = extreme_of(pairs[i], axis);
+      result.extremes.add(JudgedBlock{pairs.size(), truth_, extremes_, views_});
+    }
     const Bits wrong = disagreements(block);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const std::uint64_t index = indices[i];
@@ -103,6 +108,7 @@ class BlockJudge {
   const std::vector<LaneBits>& device_bits_;
   Bits truth_;
   std::vector<Bucket> buckets_;
+  std::vector<std::int8_t> extremes_;
   std::vector<LaneBits> host_bits_;
   std::vector<LaneVerdicts> views_;
   std::vector<Verdict> verdicts_;

@@ -107,11 +107,6 @@ std::vector<std::pair<std::string, std::string>> other_fields(const Entry& entry
   return others;
 }
 
-std::string algorithm_of(const std::string& signature) {
-  const std::size_t colon = signature.rfind(':'), slash = signature.rfind('/', colon);
-  return signature.substr(slash + 1, colon - slash - 1);
-}
-
 RegressionCorpus read_regressions(const std::filesystem::path& file) {
   RegressionCorpus corpus;
   for (const Entry& entry : read_pairs(file)) {

@@ -42,9 +42,6 @@ struct RegressionCase {
 // The fields of an entry that say nothing which a case keeps itself.
 std::vector<std::pair<std::string, std::string>> other_fields(const Entry& entry);
 
-// "moller_1997" of the signature "point/22/skew/0/moller_1997:+-__..__".
-std::string algorithm_of(const std::string& signature);
-
 // By signature, as it was first seen.
 using RegressionCorpus = std::map<std::string, RegressionCase>;
 

@@ -59,10 +59,9 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
 }
 
 Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
-  std::vector<std::string> sources, lane_ids;
-  for (const Source& source : campaign.sources) sources.push_back(source.id);
+  std::vector<std::string> lane_ids;
   for (const Lane* lane : campaign.bench->lanes) lane_ids.push_back(lane->id);
-  Json results = store.results(sources, lane_ids);
+  Json results = store.results(campaign.sources, lane_ids);
 
   const auto by_key = store.signatures();
   std::vector<const std::pair<const std::string, SignatureCount>*> by_count;

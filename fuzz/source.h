@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/extreme.h"
 #include "core/pair.h"
 
 namespace graze {
@@ -15,7 +16,8 @@ struct Source {
   std::string id;
   std::uint64_t pairs = 0;  // how many of them the campaign takes: indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;
-  int stratum = -1;  // its place in kStrata; -1 for a mesh
+  int stratum = -1;        // its place in kStrata; -1 for a mesh
+  Axis axis = Axis::none;  // the stratum's
 };
 
 // The strata whose names match (all of them for an empty list), `pairs` shared evenly, the first ones taking the rest.

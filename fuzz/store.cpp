@@ -9,7 +9,7 @@ namespace graze {
 namespace {
 
 constexpr int kApplicationId = 0x67726173;  // "gras"
-constexpr int kFormat = 2;
+constexpr int kFormat = 3;
 
 constexpr const char* kSchema = R"(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -18,6 +18,10 @@ CREATE TABLE total(name TEXT PRIMARY KEY, count INTEGER NOT NULL) WITHOUT ROWID;
 CREATE TABLE margin(source INTEGER, bucket INTEGER, pairs INTEGER NOT NULL, intersects INTEGER NOT NULL,
   PRIMARY KEY(source, bucket)) WITHOUT ROWID;
 CREATE TABLE wrong(source INTEGER, lane INTEGER, bucket INTEGER, false_positive INTEGER NOT NULL, false_negative INTEGER NOT NULL,
+  declined INTEGER NOT NULL, differs_from_cpu INTEGER NOT NULL, PRIMARY KEY(source, lane, bucket)) WITHOUT ROWID;
+CREATE TABLE extreme(source INTEGER, bucket INTEGER, pairs INTEGER NOT NULL, intersects INTEGER NOT NULL,
+  PRIMARY KEY(source, bucket)) WITHOUT ROWID;
+CREATE TABLE extreme_wrong(source INTEGER, lane INTEGER, bucket INTEGER, false_positive INTEGER NOT NULL, false_negative INTEGER NOT NULL,
   declined INTEGER NOT NULL, differs_from_cpu INTEGER NOT NULL, PRIMARY KEY(source, lane, bucket)) WITHOUT ROWID;
 CREATE TABLE signature(id INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE, count INTEGER NOT NULL);
 CREATE TABLE kept(signature INTEGER, case_index INTEGER, source INTEGER, PRIMARY KEY(signature, case_index, source)) WITHOUT ROWID;
@@ -40,6 +44,30 @@ std::int64_t integer(const Database& database, const char* sql) {
 std::int64_t total(const Database& database, std::string_view name) {
   Statement query(database, "SELECT count FROM total WHERE name = ?");
   return query(name).step() ? query.integer(0) : 0;
+}
+
+// Adds the tally to two tables of its own: of pairs, and of the lanes' errors.
+void add_tally(const Database& database, const std::string& pairs, const std::string& wrong, int source,
+               const Tally& tally) {
+  Statement add_pairs(database, ("INSERT INTO " + pairs +
+                                 " VALUES(?1, ?2, ?3, ?4) ON CONFLICT DO UPDATE SET pairs = pairs + ?3, "
+                                 "intersects = intersects + ?4")
+                                    .c_str());
+  Statement add_wrong(database, ("INSERT INTO " + wrong +
+                                 " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO UPDATE SET false_positive = "
+                                 "false_positive + ?4, false_negative = false_negative + ?5, declined = declined + ?6, "
+                                 "differs_from_cpu = differs_from_cpu + ?7")
+                                    .c_str());
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    const Bucket bucket = static_cast<Bucket>(b);
+    if (tally.pairs(bucket) == 0) continue;
+    add_pairs(source, b, tally.pairs(bucket), tally.intersects(bucket)).run();
+    for (int l = 0; l < tally.lane_count(); ++l) {
+      const LaneCounts& lane = tally.lane(l, bucket);
+      if (lane.any())
+        add_wrong(source, l, b, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu).run();
+    }
+  }
 }
 
 // Names the first field in which two specs differ.
@@ -70,6 +98,7 @@ void SignatureCount::add(const SignatureCount& other) {
 
 void BatchResult::add(const BatchResult& other) {
   tally.add(other.tally);
+  extremes.add(other.extremes);
   for (const auto& [signature, found] : other.signatures) signatures[signature].add(found);
   for (const auto& [lane, found] : other.executors_apart) executors_apart[lane].add(found);
   disagreements += other.disagreements;
@@ -133,24 +162,8 @@ std::uint64_t Store::done(int source) const {
 void Store::commit(int source, std::uint64_t pairs, const BatchResult& result) {
   database_.execute("BEGIN IMMEDIATE");
   try {
-    Statement add_margin(database_,
-                         "INSERT INTO margin VALUES(?1, ?2, ?3, ?4) ON CONFLICT DO UPDATE SET pairs = pairs + ?3, "
-                         "intersects = intersects + ?4");
-    Statement add_wrong(
-        database_,
-        "INSERT INTO wrong VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7) ON CONFLICT DO UPDATE SET false_positive = "
-        "false_positive + ?4, "
-        "false_negative = false_negative + ?5, declined = declined + ?6, differs_from_cpu = differs_from_cpu + ?7");
-    for (int b = -kBucketMost; b <= kBucketMost; ++b) {
-      const Bucket bucket = static_cast<Bucket>(b);
-      if (result.tally.pairs(bucket) == 0) continue;
-      add_margin(source, b, result.tally.pairs(bucket), result.tally.intersects(bucket)).run();
-      for (int l = 0; l < result.tally.lane_count(); ++l) {
-        const LaneCounts& lane = result.tally.lane(l, bucket);
-        if (lane.any())
-          add_wrong(source, l, b, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu).run();
-      }
-    }
+    add_tally(database_, "margin", "wrong", source, result.tally);
+    add_tally(database_, "extreme", "extreme_wrong", source, result.extremes);
     Statement add_total(database_, "INSERT INTO total VALUES(?1, ?2) ON CONFLICT DO UPDATE SET count = count + ?2");
     add_total(std::string_view("disagreements"), result.disagreements).run();
     add_total(std::string_view("cgal"), result.cgal).run();
@@ -205,18 +218,23 @@ std::uint64_t Store::signature_count() const {
   return static_cast<std::uint64_t>(integer(database_, "SELECT count(*) FROM signature"));
 }
 
-Json Store::results(const std::vector<std::string>& sources, const std::vector<std::string>& lanes) const {
+Json Store::results(const std::vector<Source>& sources, const std::vector<std::string>& lanes) const {
   Json strata = Json::object();
-  for (const std::string& source : sources) {
+  for (const Source& source : sources) {
     Json& row =
-        strata[source] = {{"pairs", 0}, {"intersects", 0}, {"lanes", Json::object()}, {"margins", Json::object()}};
+        strata[source.id] = {{"pairs", 0}, {"intersects", 0}, {"lanes", Json::object()}, {"margins", Json::object()}};
     for (const std::string& lane : lanes)
       row["lanes"][lane] = {{"false_positive", 0}, {"false_negative", 0}, {"declined", 0}, {"differs_from_cpu", 0}};
+    if (source.axis != Axis::none) row["extremes"][std::string(name(source.axis))] = Json::object();
   }
+  const auto source_at = [&](const Statement& row) -> const Source& {
+    return sources.at(static_cast<std::size_t>(row.integer(0)));
+  };
   const auto add = [](Json& total, std::int64_t more) { total = total.get<std::int64_t>() + more; };
+  const auto errors = [](const Statement& row) { return row.integer(3) + row.integer(4) + row.integer(5); };
   Statement margins(database_, "SELECT source, bucket, pairs, intersects FROM margin ORDER BY source, bucket");
   while (margins.step()) {
-    Json& row = strata[sources.at(static_cast<std::size_t>(margins.integer(0)))];
+    Json& row = strata[source_at(margins).id];
     add(row["pairs"], margins.integer(2));
     add(row["intersects"], margins.integer(3));
     row["margins"][name_of_bucket(static_cast<Bucket>(margins.integer(1)))] = {{"pairs", margins.integer(2)},
@@ -226,15 +244,31 @@ Json Store::results(const std::vector<std::string>& sources, const std::vector<s
                   "SELECT source, lane, bucket, false_positive, false_negative, declined, differs_from_cpu FROM wrong "
                   "ORDER BY source, lane, bucket");
   while (wrong.step()) {
-    Json& row = strata[sources.at(static_cast<std::size_t>(wrong.integer(0)))];
+    Json& row = strata[source_at(wrong).id];
     const std::string& lane = lanes.at(static_cast<std::size_t>(wrong.integer(1)));
     Json& counts = row["lanes"][lane];
     add(counts["false_positive"], wrong.integer(3));
     add(counts["false_negative"], wrong.integer(4));
     add(counts["declined"], wrong.integer(5));
     add(counts["differs_from_cpu"], wrong.integer(6));
-    const std::int64_t errors = wrong.integer(3) + wrong.integer(4) + wrong.integer(5);
-    if (errors) row["margins"][name_of_bucket(static_cast<Bucket>(wrong.integer(2)))]["wrong"][lane] = errors;
+    if (errors(wrong))
+      row["margins"][name_of_bucket(static_cast<Bucket>(wrong.integer(2)))]["wrong"][lane] = errors(wrong);
+  }
+  const auto extreme = [&](const Source& source, std::int64_t bucket) -> Json& {
+    const int exponent = exponent_of(source.axis, static_cast<std::int8_t>(bucket));
+    return strata[source.id]["extremes"][std::string(name(source.axis))][std::to_string(exponent)];
+  };
+  Statement extremes(database_, "SELECT source, bucket, pairs FROM extreme ORDER BY source, bucket");
+  while (extremes.step())
+    extreme(source_at(extremes), extremes.integer(1)) = {{"pairs", extremes.integer(2)}, {"wrong", Json::object()}};
+  Statement extreme_wrong(database_,
+                          "SELECT source, lane, bucket, false_positive, false_negative, declined FROM extreme_wrong "
+                          "ORDER BY source, lane, bucket");
+  while (extreme_wrong.step()) {
+    if (errors(extreme_wrong) == 0) continue;
+    extreme(source_at(extreme_wrong),
+            extreme_wrong.integer(2))["wrong"][lanes.at(static_cast<std::size_t>(extreme_wrong.integer(1)))] =
+        errors(extreme_wrong);
   }
   return {{"strata", strata}, {"disagreements", total(database_, "disagreements")}};
 }

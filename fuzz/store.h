@@ -14,6 +14,7 @@
 #include "analysis/signature.h"
 #include "analysis/tally.h"
 #include "fuzz/database.h"
+#include "fuzz/source.h"
 
 namespace graze {
 
@@ -42,9 +43,10 @@ struct SignatureCount {
 
 // What one batch found; all of it adds.
 struct BatchResult {
-  explicit BatchResult(const Tally& empty) : tally(empty) {}
+  explicit BatchResult(const Tally& empty) : tally(empty), extremes(empty) {}
 
   Tally tally;
+  Tally extremes;  // by extreme_of; empty without an axis
   std::map<Signature, SignatureCount> signatures;
   std::map<std::string, SignatureCount> executors_apart;  // by lane: device and twin differ
   std::uint64_t disagreements = 0;                        // pairs on which some lane is wrong
@@ -71,7 +73,7 @@ class Store {
   Json oracle() const;
 
   // Of all that is committed: {"strata": …, "disagreements": …}, in a fixed order.
-  Json results(const std::vector<std::string>& sources, const std::vector<std::string>& lanes) const;
+  Json results(const std::vector<Source>& sources, const std::vector<std::string>& lanes) const;
 
   std::map<std::string, SignatureCount> signatures() const;
   std::uint64_t signature_count() const;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/extreme.h"
 #include "core/pair.h"
 
 namespace graze {
@@ -35,7 +36,8 @@ enum class Stratum : std::uint8_t {
 struct StratumInfo {
   Stratum stratum;
   std::string_view id;
-  std::string_view what;  // one line: what it draws, and what it is for
+  std::string_view what;   // one line: what it draws, and what it is for
+  Axis axis = Axis::none;  // what it varies besides the margin; campaigns count by that too
 };
 
 // One row a stratum, in the order of the enumeration.
@@ -59,9 +61,9 @@ inline constexpr StratumInfo kStrata[] = {
     {Stratum::degenerate, "degenerate", "segments and points against segments, points and triangles"},
     {Stratum::shared_vertex, "shared_vertex", "mesh neighbours with one vertex in common"},
     {Stratum::shared_edge, "shared_edge", "mesh neighbours with an edge in common"},
-    {Stratum::far_from_origin, "far_from_origin", "near contacts, offset by 1e2…1e7 times their size"},
+    {Stratum::far_from_origin, "far_from_origin", "near contacts, offset by 1e2…1e7 times their size", Axis::offset},
     {Stratum::extreme_scale, "extreme_scale",
-     "near and exact contacts scaled by 2^-149…2^126: overflow, underflow, subnormals"},
+     "near and exact contacts scaled by 2^-149…2^126: overflow, underflow, subnormals", Axis::scale},
     {Stratum::mixed_scale, "mixed_scale",
      "a triangle against one smaller by up to 2^40, or coordinates of very different scales"},
     {Stratum::lattice, "lattice",

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/ulp_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+
+#include "analysis/lane_trace.h"
+#include "core/exact.h"
+#include "fuzz/strata_draws.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+// The truth and the lanes on a block of pairs.
+class Panels {
+ public:
+  explicit Panels(std::span<const Lane* const> lanes) : lanes_{nullptr} {
+    for (const Lane* lane : lanes) {
+      if (!lane->is_exact()) lanes_.push_back(lane);
+    }
+    for (const Lane* lane : lanes_) blocks_.push_back(lane ? block_of(*lane) : nullptr);
+  }
+
+  const std::vector<const Lane*>& lanes() const { return lanes_; }  // the truth's is null
+
+  // Writes, for each panel, the cells of these pairs one after the other.
+  void judge(std::span<const Pair> pairs, std::span<std::vector<Cell>> cells) {
+    const std::size_t words = (pairs.size() + 63) / 64;
+    std::vector<Cell>& truth = cells.front();
+    const std::size_t first = truth.size();
+    for (const Pair& pair : pairs) truth.push_back(truth_of(pair));
+    for (std::size_t p = 1; p < blocks_.size(); ++p) {
+      intersects_.resize(words);
+      declined_.resize(words);
+      blocks_[p](pairs.data(), pairs.size(), intersects_.data(), declined_.data());
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const bool says = intersects_[i / 64] >> i % 64 & 1, none = declined_[i / 64] >> i % 64 & 1;
+        const Cell right = truth[first + i];
+        cells[p].push_back(right == Cell::not_finite             ? right
+                           : none                                ? Cell::declined
+                           : says == (right == Cell::intersects) ? right
+                           : says                                ? Cell::false_positive
+                                                                 : Cell::false_negative);
+      }
+    }
+  }
+
+ private:
+  static Cell truth_of(const Pair& pair) {
+    return !is_finite(pair)                                ? Cell::not_finite
+           : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Cell::intersects
+                                                           : Cell::disjoint;
+  }
+
+  std::vector<const Lane*> lanes_;
+  std::vector<DecideBlock> blocks_;
+  std::vector<std::uint64_t> intersects_, declined_;
+};
+
+// Throws: OracleApart.
+void confirm(const UlpMap& map, int cell) {
+  const int column = cell % kMapSize, row = cell / kMapSize;
+  const Pair pair = pair_at(map.pair, map.moved, column, row);
+  if (!is_finite(pair)) return;
+  const Cell found = map.panels.front().cells[static_cast<std::size_t>(cell)];
+  const bool intersects = found == Cell::intersects;
+  if ((cgal_verdict(pair) == Verdict::intersects) == intersects && (gmp_contact(pair) != Contact::none) == intersects)
+    return;
+  throw OracleApart(
+      fmt::format("the exact decision and the oracle differ in column {}, row {} of an ulp map over {} and {}", column,
+                  row, name_of_coordinate(map.moved.x), name_of_coordinate(map.moved.y)));
+}
+
+}  // namespace
+
+std::string name_of_coordinate(int coordinate) {
+  return fmt::format("{}[{}].{}", coordinate < 9 ? 'a' : 'b', coordinate / 3 % 3, "xyz"[coordinate % 3]);
+}
+
+std::optional<int> coordinate_of_name(std::string_view name) {
+  for (int c = 0; c < kCoordinates; ++c) {
+    if (name_of_coordinate(c) == name) return c;
+  }
+  return std::nullopt;
+}
+
+std::array<int, kCellKinds> UlpPanel::counts() const {
+  std::array<int, kCellKinds> counts{};
+  for (const Cell cell : cells) ++counts[static_cast<std::size_t>(cell)];
+  return counts;
+}
+
+Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row) {
+  Pair result = pair;
+  const auto move = [&](int coordinate, int ulps) {
+    float& c = coordinates(result)[coordinate];
+    if (ulps != 0) c = strata::nudged(c, ulps);  // a step of none would make +0 of -0
+  };
+  move(moved.x, column - kMapCentre);
+  move(moved.y, kMapCentre - row);
+  return result;
+}
+
+MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* const> lanes) {
+  // Columns and rows 2^k from the middle, to both sides.
+  std::vector<int> places{kMapCentre};
+  for (int away = 1; away < kMapCentre; away *= 2) {
+    places.insert(places.begin(), kMapCentre - away);
+    places.push_back(kMapCentre + away);
+  }
+  const std::size_t side = places.size();
+  Panels panels(lanes);
+  MovedCoordinates best{0, 1};
+  std::tuple<bool, std::size_t, std::size_t> most{};
+  for (int vertex = 0; vertex < kCoordinates; vertex += 3) {
+    for (const MovedCoordinates& moved :
+         {MovedCoordinates{vertex, vertex + 1}, {vertex, vertex + 2}, {vertex + 1, vertex + 2}}) {
+      std::vector<Pair> pairs;
+      for (const int row : places) {
+        for (const int column : places) pairs.push_back(pair_at(pair, moved, column, row));
+      }
+      std::vector<std::vector<Cell>> cells(panels.lanes().size());
+      panels.judge(pairs, cells);
+      std::size_t across = 0, down = 0;
+      for (const std::vector<Cell>& panel : cells) {
+        for (std::size_t i = 0; i < panel.size(); ++i) {
+          across += i % side > 0 && panel[i] != panel[i - 1];
+          down += i >= side && panel[i] != panel[i - side];
+        }
+      }
+      const bool by_zero = coordinates(pair)[moved.x] == 0 || coordinates(pair)[moved.y] == 0;
+      const std::size_t fewer = std::min(across, down);
+      const std::tuple changes{fewer > 0 && !by_zero, fewer, across + down};
+      if (changes <= most) continue;
+      most = changes;
+      best = moved;
+    }
+  }
+  return best;
+}
+
+UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved) {
+  if (!is_finite(pair)) throw std::invalid_argument("expected finite coordinates for an ulp map");
+  constexpr int kRowsAtOnce = 4;
+  Panels panels(lanes);
+  std::vector<std::vector<Cell>> cells(panels.lanes().size());
+  std::vector<Pair> pairs;
+  for (int row = 0; row < kMapSize; row += kRowsAtOnce) {
+    pairs.clear();
+    for (int i = 0; i < kRowsAtOnce * kMapSize; ++i)
+      pairs.push_back(pair_at(pair, moved, i % kMapSize, row + i / kMapSize));
+    panels.judge(pairs, cells);
+  }
+  UlpMap map{pair, moved, {}};
+  for (std::size_t p = 0; p < cells.size(); ++p) map.panels.push_back({panels.lanes()[p], std::move(cells[p])});
+  confirm(map, kMapCentre * kMapSize + kMapCentre);
+  for (int first = 0, k = 0; first < kMapSize * kMapSize; first += kMapSample, ++k)
+    confirm(map, first + 389 * k % kMapSample);  // in other columns each time
+  return map;
+}
+
+}  // namespace graze

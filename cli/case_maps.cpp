@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/case_maps.h"
+
+#include <algorithm>
+
+#include "analysis/signature.h"
+#include "corpus/pair_format.h"
+#include "fuzz/report_files.h"
+#include "reports/ulp_map_picture.h"
+
+namespace graze {
+namespace {
+
+// Whether the stored maps are these lanes' of this pair.
+bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
+  if (!is_map_of(maps, pair) || !maps.contains("panels") || maps["panels"].size() != lanes.size() + 1) return false;
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    if (maps["panels"][l + 1].value("name", "") != lanes[l]->id) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool map_case(const Bench& bench, const std::filesystem::path& case_file, const std::string& signature, bool again) {
+  const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
+  const Pair pair = read_pairs(case_file).at(0).pair;
+  std::vector<const Lane*> lanes;
+  std::copy_if(bench.lanes.begin(), bench.lanes.end(), std::back_inserter(lanes),
+               [&](const Lane* lane) { return lane->info->id == algorithm_of(signature); });
+  if (!again && is_current(Json::parse(read_whole(file), nullptr, false), pair, lanes)) return false;
+  const UlpMap map = ulp_map(pair, lanes, liveliest_coordinates(pair, lanes));
+  write_whole(file, to_json(map).dump(1) + "\n");
+  return true;
+}
+
+}  // namespace graze

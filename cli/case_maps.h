@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ulp maps of a campaign's cases, each stored beside its case as cases/HASH.maps.json for the report.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "fuzz/bench.h"
+
+namespace graze {
+
+// Maps the file's first case on the bench's lanes of the signature's algorithm, along the liveliest coordinates, unless
+// that is there already or `again`. Returns: whether it was done now.
+// Throws: OracleApart, std::runtime_error.
+bool map_case(const Bench& bench, const std::filesystem::path& case_file, const std::string& signature, bool again);
+
+}  // namespace graze

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze map`: a picture of the verdicts around a case when two of its coordinates move by single ulps.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "cli/cases.h"
+#include "cli/commands.h"
+#include "core/error.h"
+#include "fuzz/report_files.h"
+#include "reports/terminal.h"
+#include "reports/ulp_map_picture.h"
+
+namespace graze {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MapOptions {
+  std::string name, out = "map.png", x, y;
+  std::vector<std::string> globs;
+};
+
+int coordinate(const std::string& option, const std::string& name) {
+  const std::optional<int> found = coordinate_of_name(name);
+  if (!found) throw UsageError(option + ": expected a coordinate from a[0].x to b[2].z, found '" + name + "'");
+  return *found;
+}
+
+// Those asked for, if any.
+std::optional<MovedCoordinates> asked_for(const MapOptions& options) {
+  if (options.x.empty() && options.y.empty()) return std::nullopt;
+  if (options.x.empty() || options.y.empty()) throw UsageError("expected --x and --y together, found one of them");
+  const MovedCoordinates moved{coordinate("--x", options.x), coordinate("--y", options.y)};
+  if (moved.x == moved.y) throw UsageError("expected two coordinates, found " + options.x + " twice");
+  return moved;
+}
+
+// Whether no verdict changes in it.
+bool is_plain(const UlpMap& map) {
+  return std::all_of(map.panels.begin(), map.panels.end(), [](const UlpPanel& panel) {
+    return std::all_of(panel.cells.begin(), panel.cells.end(), [&](Cell cell) { return cell == panel.cells.front(); });
+  });
+}
+
+void print_counts(const UlpMap& map) {
+  const auto row = [](const std::string& name, const auto&... columns) {
+    fmt::print("  {:<38}", name);
+    (fmt::print("{:>16}", columns), ...);
+    fmt::print("\n");
+  };
+  row("", "disjoint", "intersects", "false positive", "false negative", "declined", "not finite");
+  for (const UlpPanel& panel : map.panels) {
+    const auto counts = panel.counts();
+    const auto count = [&](Cell cell) {
+      return grouped(static_cast<std::uint64_t>(counts[static_cast<std::size_t>(cell)]));
+    };
+    row(panel.name(), count(Cell::disjoint), count(Cell::intersects), count(Cell::false_positive),
+        count(Cell::false_negative), count(Cell::declined), count(Cell::not_finite));
+  }
+}
+
+// One picture, or one a panel where a directory is asked for.
+void write_pictures(const UlpMap& map, const fs::path& out) {
+  if (out.extension() == ".png") {
+    write_whole(out, sheet_png(map));
+  } else {
+    std::error_code error;
+    fs::create_directories(out, error);
+    if (error) throw UsageError(out.string() + ": expected a file.png or a directory, found: " + error.message());
+    for (const UlpPanel& panel : map.panels) {
+      std::string name = panel.name();
+      std::replace(name.begin(), name.end(), '/', '-');
+      write_whole(out / (name + ".png"), panel_png(panel));
+    }
+  }
+  fmt::print("Wrote {}\n", out.string());
+}
+
+void map_case(const MapOptions& options) {
+  const std::optional<MovedCoordinates> asked = asked_for(options);
+  const Bench bench = make_bench(options.globs, Executor::twin);
+  const Entry entry = read_cases(options.name).front();
+  if (!is_finite(entry.pair)) throw std::runtime_error(options.name + ": expected finite coordinates, found others");
+  const MovedCoordinates moved = asked ? *asked : liveliest_coordinates(entry.pair, bench.lanes);
+  const UlpMap map = ulp_map(entry.pair, bench.lanes, moved);
+  fmt::print("{}{}: {} x {} cells, {} to the right and {} upwards by an ulp each{}\n", options.name,
+             entry.line > 0 ? fmt::format(":{}", entry.line) : "", kMapSize, kMapSize, name_of_coordinate(moved.x),
+             name_of_coordinate(moved.y),
+             asked           ? ""
+             : is_plain(map) ? "; no verdict changes"
+                             : ", along which verdicts change most");
+  print_counts(map);
+  write_pictures(map, options.out);
+}
+
+}  // namespace
+
+void add_map(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand(
+      "map",
+      "Draw the verdicts around a case as two of its coordinates move by single ulps, a panel for the truth and "
+      "one a lane");
+  command->footer("Example: graze map mixed_scale:1:3 --lanes '*/f32/cpu'");
+  auto options = std::make_shared<MapOptions>();
+  command->add_option("case", options->name, "A file of pairs, the first of which is drawn, or STRATUM:SEED:INDEX")
+      ->required();
+  add_globs(*command, "--lanes", options->globs, "Only lanes that match a pattern");
+  command->add_option("--out", options->out, "The picture, or a directory for one picture a panel")
+      ->option_text("FILE.png|DIR")
+      ->capture_default_str();
+  command
+      ->add_option("--x", options->x, "The coordinate that moves to the right; by default chosen by how much changes")
+      ->option_text("b[0].x");
+  command->add_option("--y", options->y, "The coordinate that moves upwards")->option_text("b[0].y");
+  command->callback([options] { map_case(*options); });
+}
+
+}  // namespace graze

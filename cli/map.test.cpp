@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze map` as users meet it, and the maps that `graze minimize` leaves for a report.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze {
+namespace {
+
+class MapCommand : public testing::Test {
+ protected:
+  Shell shell{std::string("map-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
+
+  void expect_done(const std::string& command) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
+  }
+};
+
+TEST_F(MapCommand, CountsAndDrawsATruthThatALineCuts) {
+  std::ofstream(shell.folder / "edge.pairs") << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1\n";
+  const Ran ran = shell("graze map edge.pairs --lanes '*/f32/cpu' --x 'b[0].x' --y 'b[0].y' --out edge.png");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("edge.pairs:1: 256 x 256 cells, b[0].x to the right and b[0].y upwards"), std::string::npos);
+  EXPECT_EQ(ran.out.find("along which verdicts change most"), std::string::npos);
+  const std::size_t truth = ran.out.find("truth ");
+  ASSERT_NE(truth, std::string::npos) << ran.out;
+  const std::string line = ran.out.substr(truth, ran.out.find('\n', truth) - truth);
+  EXPECT_NE(line.find("32,640"), std::string::npos) << line;  // 256 * 255 / 2
+  EXPECT_NE(line.find("32,896"), std::string::npos) << line;
+  EXPECT_EQ(contents(shell.folder / "edge.png").substr(1, 3), "PNG");
+}
+
+TEST_F(MapCommand, SameBytesTwiceAndAPictureAPanelInADirectory) {
+  expect_done(
+      "graze map near_edge_edge:1:7 --lanes 'moller_1997/f32/*' --out a.png > a && "
+      "graze map near_edge_edge:1:7 --lanes 'moller_1997/f32/*' --out b.png > b && cmp a.png b.png && "
+      "sed s/b.png/a.png/ b | cmp a");
+  expect_done(
+      "graze map near_edge_edge:1:7 --lanes 'moller_1997/f32/cpu,exact/*' --out panels && "
+      "test \"$(cd panels; echo *)\" = 'moller_1997-f32-cpu.png truth.png'");
+}
+
+TEST_F(MapCommand, BadInputGetsOneLine) {
+  std::ofstream(shell.folder / "nan.pairs") << "nan 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1\n";
+  std::ofstream(shell.folder / "file");
+  for (const auto& [arguments, status, part] :
+       {std::tuple{"", 2, "case"},
+        {"missing.pairs", 1, "missing.pairs: expected"},
+        {"nan.pairs", 1, "nan.pairs: expected finite coordinates"},
+        {"lattice:1:1 --lanes nothing", 2, "found 'nothing'"},
+        {"lattice:1:1 --x 'b[0].x'", 2, "--x and --y together"},
+        {"lattice:1:1 --x 'b[0].x' --y 'b[0].x'", 2, "b[0].x twice"},
+        {"lattice:1:1 --x 'b[0].x' --y 'b[3].x'", 2,
+         "--y: expected a coordinate from a[0].x to b[2].z, found 'b[3].x'"},
+        {"lattice:1:1 --out file", 2, "file: expected a file.png or a directory"},
+        {"lattice:1:1 --out no/where.png > /dev/null", 1, "no/where.png"}}) {
+    const Ran ran = shell(std::string("graze map ") + arguments);
+    EXPECT_EQ(ran.status, status) << arguments << ran.err;
+    EXPECT_NE(ran.err.find(part), std::string::npos) << arguments << '\n' << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+TEST_F(MapCommand, HelpHasAnExampleThatRuns) {
+  const Ran help = shell("graze map --help");
+  const std::size_t at = help.out.find("Example: ");
+  ASSERT_NE(at, std::string::npos);
+  expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9) + " && test -s map.png");
+}
+
+TEST_F(MapCommand, MinimizeStoresTheMapsOfCardsOnceAndForItsPairs) {
+  expect_done(
+      "graze fuzz --seed 2 --pairs 120 --lanes '*/f32/*' --executor twin --strata near_edge_edge --out one > /dev/null "
+      "&& cp -r one two && graze minimize one --threads 1 > /dev/null && graze minimize two --threads 4 > /dev/null && "
+      "diff -r one/cases two/cases");
+  std::size_t maps = 0;
+  for (const auto& file : std::filesystem::directory_iterator(shell.folder / "one/cases")) {
+    if (!file.path().filename().string().ends_with(".maps.json")) continue;
+    ++maps;
+    const auto json = nlohmann::json::parse(contents(file.path()));
+    EXPECT_EQ(json["panels"][0]["name"], "truth");
+    EXPECT_EQ(json["panels"].size(), 5u) << file.path();  // and the f32 lanes of one algorithm
+  }
+  EXPECT_GT(maps, 10u);
+  EXPECT_LE(maps, 40u);
+  // What is there stays; what is missing, or another pair's, is made anew.
+  expect_done(
+      "cp -r one/cases before; touch -d 2000-01-01 one/cases/*.maps.json; set -- one/cases/*.maps.json; rm $1; cp $2 "
+      "$3; "
+      "graze minimize one > /dev/null && diff -r one/cases before && "
+      "test $(find one/cases -name '*.maps.json' -newermt 2001-01-01 | wc -l) = 2");
+}
+
+}  // namespace
+}  // namespace graze

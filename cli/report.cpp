@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze report`: a campaign as a page, and as data.
+#include "reports/report.h"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <memory>
+
+#include "cli/commands.h"
+#include "core/error.h"
+#include "fuzz/report_files.h"
+#include "reports/csv.h"
+#include "reports/page.h"
+
+namespace graze {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportOptions {
+  std::string directory, from, out;
+  std::vector<std::string> compare;
+};
+
+void say_what_the_page_is() {
+  if (!has_interactive_page()) fmt::print("The page is plain: this build had no Node (see reports/README.md)\n");
+}
+
+// NAME.html, NAME.json and tables in the directory.
+void write_report(const fs::path& directory, const Json& report, const char* name) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
+  write_whole(directory / fmt::format("{}.json", name), report_text(report));
+  write_whole(directory / fmt::format("{}.html", name), page(report));
+  std::string tables;
+  for (const CsvTable& table : csv_tables(directory, report)) {
+    write_whole(directory / table.name, table.text);
+    tables += fmt::format(", {}", table.name);
+  }
+  fmt::print("Wrote {0}/{1}.html, {1}.json{2}\n", directory.string(), name, tables);
+  for (const Json& sentence : report["missing"]) fmt::print("{}\n", sentence.get<std::string>());
+  say_what_the_page_is();
+}
+
+void report(const ReportOptions& options) {
+  const int named = !options.directory.empty() + !options.from.empty() + !options.compare.empty();
+  if (named != 1) throw UsageError(fmt::format("expected one of DIR, --compare and --from, found {}", named));
+  if (options.from.empty() != options.out.empty())
+    throw UsageError("expected --from and --out together, found one of them");
+  if (!options.from.empty()) {
+    write_whole(options.out, page(read_report(options.from)));
+    fmt::print("Wrote {}\n", options.out);
+    say_what_the_page_is();
+  } else if (!options.compare.empty()) {
+    Json after = make_report(options.compare[1]);
+    add_comparison(after, make_report(options.compare[0]));
+    write_report(options.compare[1], after, "compare");
+  } else {
+    write_report(options.directory, make_report(options.directory), "report");
+  }
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, int&) {
+  CLI::App* command =
+      app.add_subcommand("report", "Turn a campaign into one page that works offline, and into JSON and CSV tables");
+  command->footer("Example: graze report campaign");
+  auto options = std::make_shared<ReportOptions>();
+  command->add_option("directory", options->directory,
+                      "A campaign's directory, into which report.html, report.json and the tables go");
+  command
+      ->add_option(
+          "--compare", options->compare,
+          "Two campaigns: the report of the second, with what has changed since the first, as compare.html and "
+          "compare.json in its directory")
+      ->expected(2)
+      ->option_text("DIR1 DIR2");
+  command->add_option("--from", options->from, "A report.json, of which only the page is made, as --out");
+  command->add_option("--out", options->out, "Where that page goes");
+  command->callback([options] { report(*options); });
+}
+
+}  // namespace graze

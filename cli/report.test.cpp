@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze report` as users meet it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze {
+namespace {
+
+class Report : public testing::Test {
+ protected:
+  Shell shell{std::string("report-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
+  static constexpr const char* kFuzz =
+      "graze fuzz --pairs 3000 --lanes 'moller_1997/*,exact/f32/cpu' --executor twin "
+      "--strata 'near_edge_edge,degenerate,thesis' ";
+
+  void expect_error(const std::string& command, int status, const std::string& part) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
+    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+  void expect_done(const std::string& command) {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
+  }
+  nlohmann::json json(const char* file) { return nlohmann::json::parse(contents(shell.folder / file)); }
+};
+
+TEST_F(Report, SameBytesWhateverTheThreads) {
+  expect_done(std::string(kFuzz) + "--threads 1 --out one > /dev/null && graze minimize one && graze report one");
+  expect_done(std::string(kFuzz) + "--threads 2 --out two > /dev/null && graze minimize two && graze report two");
+  expect_done(
+      "for f in report.html report.json rates.csv margins.csv thresholds.csv extremes.csv signatures.csv; do "
+      "test -s one/$f && cmp one/$f two/$f || exit 1; done");
+  const nlohmann::json report = json("one/report.json");
+  ASSERT_GT(report["cards"].size(), 10u);
+  for (const auto& card : report["cards"]) {
+    EXPECT_EQ(card["minimised"], true);
+    EXPECT_EQ(card["sentences"].size(), 1u);
+    EXPECT_EQ(card["verdicts"].size(), report["lanes"].size());
+    // Its commands run, and see what the card says.
+    if (&card != &report["cards"][0]) continue;
+    for (const auto& command : card["commands"]) {
+      EXPECT_EQ(shell(command["text"].get<std::string>() + " > said").status, 0) << command["text"];
+    }
+  }
+  // The page, from its data.
+  expect_done("graze report --from one/report.json --out page.html && cmp page.html one/report.html");
+}
+
+TEST_F(Report, TheCommandItNamesRunsTheCampaignAgain) {
+  expect_done(std::string(kFuzz) + "--out one > /dev/null && graze report one");
+  expect_done(json("one/report.json")["run"]["command"].get<std::string>() + " > /dev/null");
+  const nlohmann::json one = json("one/summary.json"), again = json("campaign/summary.json");
+  EXPECT_EQ(one["spec"], again["spec"]);
+  EXPECT_EQ(one["strata"], again["strata"]);
+}
+
+TEST_F(Report, ComparesTwoCampaigns) {
+  expect_done(std::string(kFuzz) + "--seed 1 --out one > /dev/null");
+  expect_done(std::string(kFuzz) + "--seed 2 --out two > /dev/null && graze report --compare one two");
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "two/report.json"));
+  const nlohmann::json report = json("two/compare.json");
+  EXPECT_EQ(report["run"]["seed"], 2);
+  EXPECT_EQ(report["compare"]["other"]["seed"], 1);
+  EXPECT_EQ(report["compare"]["rates"].size(), report["rates"].size());
+  expect_done("test -s two/compare.html && test -s two/compare.csv");
+}
+
+TEST_F(Report, BadUseIsOneLine) {
+  expect_error("graze report", 2, "expected one of DIR, --compare and --from, found 0");
+  expect_error("graze report none", 2, "none: expected a campaign's directory with summary.json, found none");
+  expect_error("graze report --from x.json", 2, "expected --from and --out together");
+  expect_error("echo '{}' > x.json; graze report --from x.json --out y.html", 1, "x.json: expected a report");
+  expect_error("mkdir d; echo '{\"spec\": 1, \"strata\": 2}' > d/summary.json; graze report d", 1,
+               "d/summary.json: expected a campaign's summary, found something else");
+  expect_done(std::string(kFuzz) + "--out c > /dev/null");
+  expect_error("ulimit -f 40; graze report c", 1, "report.json.part: expected to write it");
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "c/report.json"));
+  expect_error("rm c/cases/*; graze report c", 1, "c/cases/");
+}
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// One hull as an intersection of half-spaces, by which the other, a polygon, is clipped: Sutherland and Hodgman 1974.
+#include "oracle/common_set.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "oracle/integer_pair.h"
+
+namespace graze {
+namespace {
+
+using Point = Vec3<mpq_class>;
+using Polygon = std::vector<Point>;  // in order; two points are a segment
+
+// The points x with dot(normal, x - at) >= 0.
+struct HalfSpace {
+  Point normal, at;
+  mpq_class height(const Point& x) const { return dot(normal, Point(x - at)); }
+};
+
+bool is_zero(const Point& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
+bool before(const Point& p, const Point& q) { return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z; }
+Point negative(const Point& v) { return {-v.x, -v.y, -v.z}; }
+
+// The hull's extreme points.
+Polygon hull_of(const Point (&p)[3]) {
+  if (!is_zero(cross(Point(p[1] - p[0]), Point(p[2] - p[0])))) return {p[0], p[1], p[2]};
+  const auto [low, high] = std::minmax_element(p, p + 3, before);
+  return *low == *high ? Polygon{*low} : Polygon{*low, *high};
+}
+
+void add_plane(std::vector<HalfSpace>& all, const Point& normal, const Point& at) {
+  all.push_back({normal, at});
+  all.push_back({negative(normal), at});
+}
+
+// Half-spaces whose intersection is the hull with these extreme points.
+std::vector<HalfSpace> half_spaces(const Polygon& hull) {
+  std::vector<HalfSpace> all;
+  if (hull.size() == 3) {
+    const Point normal = cross(Point(hull[1] - hull[0]), Point(hull[2] - hull[0]));
+    add_plane(all, normal, hull[0]);
+    for (std::size_t i = 0; i < 3; ++i) all.push_back({cross(normal, Point(hull[(i + 1) % 3] - hull[i])), hull[i]});
+    return all;
+  }
+  const Point axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  if (hull.size() == 1) {
+    for (const Point& axis : axes) add_plane(all, axis, hull[0]);
+    return all;
+  }
+  const Point along = hull[1] - hull[0];
+  for (const Point& axis : axes) add_plane(all, cross(axis, along), hull[0]);  // a zero normal excludes nothing
+  all.push_back({along, hull[0]});
+  all.push_back({negative(along), hull[1]});
+  return all;
+}
+
+Polygon clipped(const Polygon& polygon, const HalfSpace& half) {
+  Polygon kept;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Point &p = polygon[i], &q = polygon[(i + 1) % polygon.size()];
+    const mpq_class at_p = half.height(p), at_q = half.height(q);
+    if (at_p >= 0) kept.push_back(p);
+    if (at_p * at_q < 0) kept.push_back(p + Point(q - p) * mpq_class(at_p / (at_p - at_q)));
+  }
+  // A segment is walked there and back, which finds the same crossing twice.
+  Polygon distinct;
+  for (const Point& p : kept) {
+    if (std::find(distinct.begin(), distinct.end(), p) == distinct.end()) distinct.push_back(p);
+  }
+  return distinct;
+}
+
+struct Hulls {
+  Point a[3], b[3];
+  int exponent;
+};
+
+Hulls hulls_of(const Pair& pair) {
+  const Grid grid = grid_of(pair);
+  const LargePair whole = large_integers(pair, grid);
+  Hulls hulls{{}, {}, grid.exponent};
+  for (int i = 0; i < 3; ++i) {
+    hulls.a[i] = {whole.a[i].x, whole.a[i].y, whole.a[i].z};
+    hulls.b[i] = {whole.b[i].x, whole.b[i].y, whole.b[i].z};
+  }
+  return hulls;
+}
+
+std::vector<Vec3<double>> rounded(const Polygon& points, int exponent) {
+  const auto round = [exponent](const mpq_class& x) { return std::ldexp(x.get_d(), exponent); };
+  std::vector<Vec3<double>> result;
+  for (const Point& p : points) result.push_back({round(p.x), round(p.y), round(p.z)});
+  return result;
+}
+
+}  // namespace
+
+std::vector<Vec3<double>> common_set(const Pair& pair) {
+  const Hulls hulls = hulls_of(pair);
+  Polygon common = hull_of(hulls.a);
+  for (const HalfSpace& half : half_spaces(hull_of(hulls.b))) common = clipped(common, half);
+  return rounded(common, hulls.exponent);
+}
+
+std::vector<Vec3<double>> planes_line(const Pair& pair) {
+  const Hulls hulls = hulls_of(pair);
+  const auto normal_of = [](const Point(&p)[3]) { return cross(Point(p[1] - p[0]), Point(p[2] - p[0])); };
+  const Point na = normal_of(hulls.a), nb = normal_of(hulls.b), along = cross(na, nb);
+  if (is_zero(along)) return {};
+  // The point of both planes nearest to the origin.
+  const mpq_class da = dot(na, hulls.a[0]), db = dot(nb, hulls.b[0]);
+  const Point at = (cross(nb, along) * da + cross(along, na) * db) * mpq_class(1 / dot(along, along));
+
+  // The line is at + t along; from low to high it is in the box.
+  mpq_class low, high;
+  bool bounded = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    mpq_class least = component(hulls.a[0], axis), most = least;
+    for (int i = 0; i < 3; ++i) {
+      for (const Point& p : {hulls.a[i], hulls.b[i]}) {
+        least = std::min(least, component(p, axis));
+        most = std::max(most, component(p, axis));
+      }
+    }
+    const mpq_class margin = (most - least) / 10, speed = component(along, axis), start = component(at, axis);
+    least -= margin;
+    most += margin;
+    if (speed == 0) {
+      if (start < least || most < start) return {};
+      continue;
+    }
+    mpq_class in = (least - start) / speed, out = (most - start) / speed;
+    if (out < in) std::swap(in, out);
+    low = bounded ? std::max(low, in) : in;
+    high = bounded ? std::min(high, out) : out;
+    bounded = true;
+  }
+  if (high <= low) return {};
+  return rounded({at + along * low, at + along * high}, hulls.exponent);
+}
+
+}  // namespace graze

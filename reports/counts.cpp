@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/counts.h"
+
+#include <algorithm>
+
+namespace graze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+ReportLane lane_of(const std::string& id) {
+  const std::size_t first = id.find('/'), last = id.rfind('/');
+  ReportLane lane{id, id.substr(0, first), id.substr(first + 1, last - first - 1), id.substr(last + 1)};
+  const auto row = std::find_if(lanes().begin(), lanes().end(), [&](const Lane& l) { return l.id == id; });
+  if (row != lanes().end()) lane.row = &*row;
+  lane.exact = lane.row && lane.row->is_exact();
+  return lane;
+}
+
+// Adds a row {"pairs", "wrong": {lane: count}}.
+void add(WrongCounts& counts, const Json& row, const std::map<std::string, std::size_t>& place) {
+  counts.wrong.resize(place.size());
+  counts.pairs += row.at("pairs").get<std::uint64_t>();
+  for (const auto& [lane, wrong] : row.at("wrong").items()) counts.wrong[place.at(lane)] += wrong.get<std::uint64_t>();
+}
+
+void add(StratumCounts& counts, const Json& row, const std::map<std::string, std::size_t>& place) {
+  static const std::map<std::string, Bucket> buckets = [] {
+    std::map<std::string, Bucket> all;
+    for (int b = -kBucketMost; b <= kBucketMost; ++b)
+      all[name_of_bucket(static_cast<Bucket>(b))] = static_cast<Bucket>(b);
+    return all;
+  }();
+  counts.lanes.resize(place.size());
+  counts.pairs += row.at("pairs").get<std::uint64_t>();
+  counts.intersects += row.at("intersects").get<std::uint64_t>();
+  for (const auto& [lane, found] : row.at("lanes").items()) {
+    counts.lanes[place.at(lane)] +=
+        {found.at("false_positive"), found.at("false_negative"), found.at("declined"), found.at("differs_from_cpu")};
+  }
+  for (const auto& [bucket, found] : row.at("margins").items()) add(counts.margins[buckets.at(bucket)], found, place);
+  if (!row.contains("extremes")) return;
+  for (const auto& [axis, cells] : row["extremes"].items()) {
+    for (const auto& [exponent, found] : cells.items()) add(counts.extremes[axis][std::stoi(exponent)], found, place);
+  }
+}
+
+}  // namespace
+
+int CampaignCounts::find(std::string_view algorithm, std::string_view scalar, std::string_view target) const {
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    if (lanes[l].algorithm == algorithm && lanes[l].scalar == scalar && lanes[l].target == target)
+      return static_cast<int>(l);
+  }
+  return -1;
+}
+
+const StratumCounts* CampaignCounts::stratum(std::string_view id) const {
+  const auto found = std::find_if(strata.begin(), strata.end(), [&](const StratumCounts& s) { return s.id == id; });
+  return found == strata.end() ? nullptr : &*found;
+}
+
+CampaignCounts counts_of(const Json& summary) {
+  CampaignCounts counts;
+  counts.seed = summary.at("spec").at("seed");
+  counts.pairs = summary.at("spec").at("pairs");
+  counts.complete = summary.at("complete");
+  std::map<std::string, std::size_t> place;
+  for (const Json& id : summary.at("spec").at("lanes")) {
+    place.emplace(id.get<std::string>(), counts.lanes.size());
+    counts.lanes.push_back(lane_of(id));
+  }
+  for (ReportLane& lane : counts.lanes) {
+    if (lane.target != "cpu") lane.cpu = counts.find(lane.algorithm, lane.scalar, "cpu");
+  }
+  counts.total.lanes.resize(counts.lanes.size());
+  for (const auto& [id, row] : summary.at("strata").items()) {
+    StratumCounts& stratum = counts.strata.emplace_back();
+    stratum.id = id;
+    add(stratum, row, place);
+    add(counts.total, row, place);
+  }
+  return counts;
+}
+
+}  // namespace graze

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What summary.json counts, by stratum and over all of them: where a report's numbers come from.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/tally.h"
+#include "core/lanes.h"
+
+namespace graze {
+
+struct ReportLane {
+  std::string id, algorithm, scalar, target;
+  const Lane* row = nullptr;  // in this build's table; null where it has no such lane
+  bool exact = false;
+  int cpu = -1;  // place of the cpu lane of the same algorithm and scalar, if that is another one
+};
+
+struct WrongCounts {
+  std::uint64_t pairs = 0;
+  std::vector<std::uint64_t> wrong;  // of each lane: verdicts that are not the truth's
+};
+
+struct StratumCounts {
+  std::string id;
+  std::uint64_t pairs = 0, intersects = 0;
+  std::vector<LaneCounts> lanes;
+  std::map<Bucket, WrongCounts> margins;
+  std::map<std::string, std::map<int, WrongCounts>> extremes;  // by axis ("scale", "offset") and exponent
+
+  std::uint64_t wrong(std::size_t lane) const {
+    return lanes[lane].false_positive + lanes[lane].false_negative + lanes[lane].declined;
+  }
+};
+
+struct CampaignCounts {
+  std::uint64_t seed = 0, pairs = 0;  // pairs as asked for
+  bool complete = false;
+  std::vector<ReportLane> lanes;
+  std::vector<StratumCounts> strata;
+  StratumCounts total;  // id empty
+
+  // Place of a lane; -1 for none.
+  int find(std::string_view algorithm, std::string_view scalar, std::string_view target) const;
+  const StratumCounts* stratum(std::string_view id) const;
+};
+
+// Requires: what summary.json holds.   Throws: Json::exception otherwise.
+CampaignCounts counts_of(const nlohmann::ordered_json& summary);
+
+}  // namespace graze

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/csv.h"
+
+#include "reports/cards.h"
+#include "reports/report.h"
+#include "reports/tables.h"
+
+namespace graze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A cell of each: a number or a text as it is, nothing for null.
+std::string cell(const Json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  const std::string text = value;
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+struct Table {
+  std::string text;
+  explicit Table(const char* header) : text(std::string(header) + '\n') {}
+  void row(const std::vector<Json>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) text += (i == 0 ? "" : ",") + cell(cells[i]);
+    text += '\n';
+  }
+};
+
+// The cells of a share: count, of, share, low, high.
+void append(std::vector<Json>& cells, const Json& share) {
+  for (const char* key : {"count", "of", "share", "low", "high"})
+    cells.push_back(share.is_null() ? Json() : share[key]);
+}
+
+Json lane_id(const Json& report, const Json& row) { return report["lanes"][row["lane"].get<std::size_t>()]["id"]; }
+
+std::string rates_csv(const Json& report) {
+  Table table("lane,stratum,kind,count,of,share,low,high");  // stratum empty: all of them together
+  for (const Json& row : report["rates"]) {
+    const Json stratum = row["stratum"].is_null() ? Json() : report["strata"][row["stratum"].get<std::size_t>()]["id"];
+    for (const char* kind : {"false_positive", "false_negative", "wrong", "differs_from_cpu"}) {
+      if (row[kind].is_null()) continue;
+      std::vector<Json> cells{lane_id(report, row), stratum, kind};
+      append(cells, row[kind]);
+      table.row(cells);
+    }
+    table.row({lane_id(report, row), stratum, "declined", row["declined"], nullptr, nullptr, nullptr, nullptr});
+  }
+  return table.text;
+}
+
+std::string margins_csv(const CampaignCounts& counts) {
+  Table table("lane,stratum,side,exponent,count,of,share,low,high");
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    for (const StratumCounts& stratum : counts.strata) {
+      for (const auto& [bucket, found] : stratum.margins) {
+        std::vector<Json> cells{counts.lanes[l].id, stratum.id,
+                                bucket < 0   ? "intersects"
+                                : bucket > 0 ? "disjoint"
+                                             : "zero",
+                                bucket == 0 ? Json() : Json(exponent_of(bucket))};
+        append(cells, to_json(share_of(found.wrong[l], found.pairs)));
+        table.row(cells);
+      }
+    }
+  }
+  return table.text;
+}
+
+std::string thresholds_csv(const Json& report) {
+  Table table("lane,side,exponent,above,bound");
+  for (const Json& row : report["thresholds"]) {
+    for (const char* side : {"disjoint", "intersects"})
+      table.row({lane_id(report, row), side, row[side]["exponent"], row[side]["above"], row[side]["bound"]});
+  }
+  return table.text;
+}
+
+std::string extremes_csv(const Json& report) {
+  Table table("kind,lane,exponent,step,count,of,share,low,high");
+  for (const Json& row : report["extremes"]) {
+    for (const Json& found : row["cells"]) {
+      std::vector<Json> cells{row["kind"], lane_id(report, row), found["exponent"], row["step"]};
+      append(cells, found["wrong"]);
+      table.row(cells);
+    }
+  }
+  return table.text;
+}
+
+std::string signatures_csv(const Json& rows) {
+  Table table("key,algorithm,count,share,contact,dimensions,coplanar,margin,marks");
+  for (const Json& row : rows) {
+    table.row({row["key"], row["algorithm"], row["count"], row["share"], row["contact"], row["dimensions"],
+               row["coplanar"], row["margin"], row["marks"]});
+  }
+  return table.text;
+}
+
+std::string compare_csv(const Json& compare) {
+  Table table("what,lane,stratum,key,before,before_low,before_high,after,after_low,after_high,changed");
+  for (const Json& row : compare["rates"]) {
+    const Json &before = row["before"], &after = row["after"];
+    table.row({"rate", row["lane"], row["stratum"], nullptr, before["share"], before["low"], before["high"],
+               after["share"], after["low"], after["high"], row["changed"]});
+  }
+  const auto add = [&](const char* what) {
+    for (const Json& row : compare[what]) {
+      const bool gained = what == std::string_view("gained");
+      table.row({what, nullptr, nullptr, row["key"], gained ? Json() : row["count"], nullptr, nullptr,
+                 gained ? row["count"] : Json(), nullptr, nullptr, nullptr});
+    }
+  };
+  add("gained");
+  add("lost");
+  return table.text;
+}
+
+}  // namespace
+
+std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const Json& report) {
+  const Json summary = read_summary(directory);
+  const CampaignCounts counts = counts_of(summary);
+  std::vector<CsvTable> tables{{"rates.csv", rates_csv(report)},
+                               {"margins.csv", margins_csv(counts)},
+                               {"thresholds.csv", thresholds_csv(report)},
+                               {"extremes.csv", extremes_csv(report)},
+                               {"signatures.csv", signatures_csv(signature_rows(counts, summary))}};
+  if (!report["compare"].is_null()) tables.push_back({"compare.csv", compare_csv(report["compare"])});
+  return tables;
+}
+
+}  // namespace graze

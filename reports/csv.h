@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace graze {
+
+struct CsvTable {
+  std::string name, text;  // "rates.csv"; a header row, then rows as RFC 4180 has them
+};
+
+// rates, margins (of the strata one by one, from the campaign's directory), thresholds, extremes, signatures; and
+// compare, if the report has it.   Requires: a report of this campaign.
+std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const nlohmann::ordered_json& report);
+
+}  // namespace graze

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of a report: one HTML file that needs nothing else.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace graze {
+
+// Whether this build has the page of reports/web, which takes Node to build.
+bool has_interactive_page();
+
+// The report in the page of reports/web if this build has that, else in a plain one.
+std::string page(const nlohmann::ordered_json& report);
+
+// Tables and drawings without any script; says what it lacks.
+std::string plain_page(const nlohmann::ordered_json& report);
+
+// The report inside a template, in its <script type="application/json" id="report">.
+// Throws: std::logic_error for a text without that element.
+std::string filled(std::string_view page_template, const nlohmann::ordered_json& report);
+
+}  // namespace graze

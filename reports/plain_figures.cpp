@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/plain_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace graze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Point2 = std::array<double, 2>;
+
+// Points of the report seen along the diagonal of space, x to the lower right, y to the lower left, z up.
+class Isometric {
+ public:
+  Isometric(const std::vector<std::array<double, 3>>& points, double size) : size_(size) {
+    low_ = high_ = points.front();
+    for (const auto& p : points) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        low_[i] = std::min(low_[i], p[i]);
+        high_[i] = std::max(high_[i], p[i]);
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) extent_ = std::max(extent_, high_[i] - low_[i]);
+  }
+
+  Point2 operator()(const std::array<double, 3>& p) const {
+    std::array<double, 3> q{};  // in [-1/2, 1/2], with one scale for all three
+    for (std::size_t i = 0; i < 3; ++i)
+      q[i] = extent_ > 0 ? ((p[i] - low_[i]) - (high_[i] - low_[i]) / 2) / extent_ : 0;
+    const double scale = size_ * 0.55;
+    return {size_ / 2 + scale * (q[0] - q[1]) * std::sqrt(3) / 2, size_ / 2 + scale * ((q[0] + q[1]) / 2 - q[2])};
+  }
+
+ private:
+  double size_, extent_ = 0;
+  std::array<double, 3> low_{}, high_{};
+};
+
+std::string joined(const std::vector<Point2>& points) {
+  std::string text;
+  for (const Point2& p : points) text += fmt::format("{:.1f},{:.1f} ", p[0], p[1]);
+  return text;
+}
+
+std::array<double, 3> point_of(const Json& values, std::size_t first) {
+  return {values.at(first), values.at(first + 1), values.at(first + 2)};
+}
+
+}  // namespace
+
+std::string html(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string margin_chart(const Json& row) {
+  constexpr double kWidth = 320, kHeight = 110, kBase = 90, kTop = 8;
+  constexpr int kMost = 33;  // exponents -32…31, away from zero on both sides
+  const auto x_of = [](const Json& point) {
+    if (point["side"] == "zero") return kWidth / 2;
+    const double from_zero = (point["exponent"].get<double>() + kMost) / (2 * kMost) * (kWidth / 2 - 14) + 6;
+    return kWidth / 2 + (point["side"] == "disjoint" ? from_zero : -from_zero);
+  };
+  std::string svg = fmt::format(
+      "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" aria-label=\"share wrong against the "
+      "margin\"><path d=\"M0 {2}H{0}M{3} {4}V{2}\" stroke=\"currentColor\" stroke-opacity=\"0.4\"/>",
+      kWidth, kHeight, kBase, kWidth / 2, kTop);
+  for (const Json& point : row["points"]) {
+    const double share = point["wrong"]["share"], x = x_of(point), y = kBase - (kBase - kTop) * share;
+    svg += fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"{3}\" stroke-width=\"1.8\"/>", x, kBase,
+                       share > 0 ? std::min(y, kBase - 1) : kBase, point["side"] == "disjoint" ? "#0072b2" : "#d55e00");
+  }
+  return svg + fmt::format(
+                   "<text x=\"2\" y=\"104\">intersects, 2^31…2^-32 ulps</text><text x=\"{}\" y=\"104\" "
+                   "text-anchor=\"end\">disjoint, 2^-32…2^31</text></svg>",
+                   kWidth - 2);
+}
+
+std::string pair_drawing(const Json& card) {
+  constexpr double kSize = 220;
+  const Json &values = card["pair"]["value"], &contact = card["drawing"]["contact"];
+  std::vector<std::array<double, 3>> vertices;
+  for (std::size_t i = 0; i < 18; i += 3) vertices.push_back(point_of(values, i));
+  const Isometric view(vertices, kSize);
+  const auto triangle = [&](std::size_t first, const char* colour) {
+    return fmt::format("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.3\" stroke=\"{}\" stroke-width=\"1.5\"/>",
+                       joined({view(vertices[first]), view(vertices[first + 1]), view(vertices[first + 2])}), colour,
+                       colour);
+  };
+  std::string svg = fmt::format(
+      "<svg viewBox=\"0 0 {0} {0}\" width=\"{0}\" height=\"{0}\" role=\"img\" aria-label=\"both triangles\">{1}{2}",
+      kSize, triangle(0, "#0072b2"), triangle(3, "#e69f00"));
+  const Json& line = card["drawing"]["planes_line"];
+  if (!line.empty()) {
+    svg += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-dasharray=\"4 3\"/>",
+                       joined({view(point_of(line[0], 0)), view(point_of(line[1], 0))}));
+  }
+  std::vector<Point2> points;
+  for (const Json& p : contact) points.push_back(view(point_of(p, 0)));
+  if (points.size() > 1)
+    svg +=
+        fmt::format("<polygon points=\"{}\" fill=\"#d55e00\" stroke=\"#d55e00\" stroke-width=\"3\"/>", joined(points));
+  for (const Point2& p : points)
+    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\" fill=\"#d55e00\"/>", p[0], p[1]);
+  return svg + "</svg>";
+}
+
+}  // namespace graze

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Figures of the plain page as inline SVG, in the colours of their surroundings.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace graze {
+
+// A text with the characters escaped that HTML gives a meaning to.
+std::string html(const std::string& text);
+
+// Share wrong against the margin, of one row of the report's `margins`.
+std::string margin_chart(const nlohmann::ordered_json& row);
+
+// Both triangles, the contact and the line of both planes, in isometric view, of one of the report's cards.
+std::string pair_drawing(const nlohmann::ordered_json& card);
+
+}  // namespace graze

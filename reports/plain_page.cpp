@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/answer.h"
+#include "reports/page.h"
+#include "reports/plain_figures.h"
+#include "reports/terminal.h"
+
+namespace graze {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostRows = 500;  // of the signatures; signatures.csv has them all
+
+constexpr const char* kHead = R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8"/>
+<meta name="viewport" content="width=device-width, initial-scale=1"/>
+<title>Graze: discrepancy report</title>
+<style>
+:root { color-scheme: light dark; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 0 auto; padding: 1rem; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 0.85rem; }
+th, td { padding: 0.2rem 0.5rem; border: 1px solid #8886; text-align: left; white-space: nowrap; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; }
+pre { overflow-x: auto; border: 1px solid #8886; padding: 0.5rem; }
+svg { max-width: 100%; } svg text { font-size: 9px; fill: currentColor; }
+figure { display: inline-block; vertical-align: top; width: 20rem; margin: 0.5rem; }
+</style>
+</head>
+<body>
+)";
+
+std::string paragraph(const std::string& text) { return "<p>" + html(text) + "</p>\n"; }
+
+// A cell whose ground is the darker the larger the share; readable on light and dark.
+std::string share_cell(const Json& share) {
+  const double value = share["share"];
+  return fmt::format(
+      "<td class=\"number\" style=\"background: rgba(213, 94, 0, {:.3f})\" title=\"{} of {}, 95 % interval "
+      "{} to {}\">{}</td>",
+      0.75 * value, grouped(share["count"]), grouped(share["of"]), rate_words(share["low"]), rate_words(share["high"]),
+      rate_words(value));
+}
+
+std::string run_section(const Json& report) {
+  const Json& run = report["run"];
+  std::string text = "<h1>Graze: discrepancy report</h1>\n";
+  text += paragraph(
+      fmt::format("{} pairs, seed {}{}. Version {}, commit {}, {}; {}; {}.", grouped(run["pairs"]), run["seed"].dump(),
+                  run["complete"] ? "" : ", not finished", run["build"]["version"].get<std::string>(),
+                  run["build"]["commit"].get<std::string>(), run["build"]["compiler"].get<std::string>(),
+                  run["build"]["cuda"].is_null() ? "no nvcc" : run["build"]["cuda"].get<std::string>(),
+                  run["build"]["device"].is_null() ? "no device" : run["build"]["device"].get<std::string>()));
+  if (!run["machine"].is_null()) text += paragraph("Machine: " + run["machine"].get<std::string>());
+  text += "<pre>" + html(run["command"]) + "</pre>\n";
+  text += paragraph(
+      "This build had no Node, so the page lacks its interactive parts: sorting, filters, views that turn, "
+      "ulp maps and copy buttons. The same data is in the JSON file and the CSV tables beside it.");
+  for (const Json& sentence : report["missing"]) text += paragraph(sentence);
+  text += "<h2>The answer</h2>\n<ol>\n";
+  for (const Json& sentence : report["answer"]) text += "<li>" + html(sentence) + "</li>\n";
+  return text + "</ol>\n";
+}
+
+std::string league(const Json& report) {
+  std::string text = "<h2>Wrong verdicts by lane and stratum</h2>\n<div class=\"wide\"><table>\n<tr><th>lane</th>";
+  std::vector<Json> columns{nullptr};
+  text += "<th>all</th>";
+  for (std::size_t s = 0; s < report["strata"].size(); ++s) {
+    if (report["strata"][s]["pairs"] == 0) continue;
+    columns.push_back(s);
+    text += "<th>" + html(report["strata"][s]["id"]) + "</th>";
+  }
+  text += "</tr>\n";
+  for (std::size_t l = 0; l < report["lanes"].size(); ++l) {
+    text += "<tr><th>" + html(report["lanes"][l]["id"]) + "</th>";
+    for (const Json& column : columns) {
+      const auto row = std::find_if(report["rates"].begin(), report["rates"].end(),
+                                    [&](const Json& r) { return r["lane"] == l && r["stratum"] == column; });
+      text += row == report["rates"].end() ? "<td></td>" : share_cell((*row)["wrong"]);
+    }
+    text += "</tr>\n";
+  }
+  return text + "</table></div>\n";
+}
+
+std::string margin_section(const Json& report) {
+  std::string text = "<h2>Share wrong against the exact margin</h2>\n";
+  for (const Json& row : report["margins"]) {
+    const auto lane = row["lane"].get<std::size_t>();
+    const Json& threshold = report["thresholds"][lane];
+    const auto from = [&](const char* side) {
+      const Json& t = threshold[side];
+      return t["exponent"].is_null()
+                 ? std::string("never")
+                 : fmt::format("from 2^{} ulps (rate below {})", t["exponent"].dump(), rate_words(t["bound"]));
+    };
+    text += fmt::format(
+        "<figure>{}<figcaption>{}<br/>no error seen, disjoint: {}; intersecting: {}</figcaption></figure>\n",
+        margin_chart(row), html(report["lanes"][lane]["id"]), from("disjoint"), from("intersects"));
+  }
+  return text;
+}
+
+std::string extremes_section(const Json& report) {
+  std::string text;
+  for (const Json& row : report["extremes"]) {
+    const std::string kind = row["kind"];
+    if (text.find("<h2>Wrong verdicts over " + kind) == std::string::npos) {
+      text += (text.empty() ? "" : "</table></div>\n") + fmt::format("<h2>Wrong verdicts over {}</h2>\n", kind) +
+              "<div class=\"wide\"><table>\n<tr><th>lane</th>";
+      for (const Json& cell : row["cells"]) text += "<th>2^" + cell["exponent"].dump() + "</th>";
+      text += "</tr>\n";
+    }
+    text += "<tr><th>" + html(report["lanes"][row["lane"].get<std::size_t>()]["id"]) + "</th>";
+    for (const Json& cell : row["cells"]) text += share_cell(cell["wrong"]);
+    text += "</tr>\n";
+  }
+  return text.empty() ? "" : text + "</table></div>\n";
+}
+
+std::string card(const Json& report, const Json& found) {
+  const Json& signature = report["signatures"][found["signature"].get<std::size_t>()];
+  std::string text =
+      fmt::format("<h3>{}</h3>\n<figure>{}</figure>\n<pre>", html(signature["key"]), pair_drawing(found));
+  for (std::size_t i = 0; i < 18; ++i) {
+    const auto coordinate = [&](const char* kind) { return found["pair"][kind][i].get<std::string>(); };
+    if (i % 3 == 0) text += fmt::format("{}[{}]", i < 9 ? 'a' : 'b', i / 3 % 3);
+    text += fmt::format(" {} ({}){}", coordinate("decimal"), coordinate("hex"), i % 3 == 2 ? "\n" : "");
+  }
+  text += "</pre>\n" +
+          paragraph(fmt::format("{} pairs; truth: {}, contact {}, margin {} ulps.", grouped(signature["count"]),
+                                found["truth"]["verdict"].get<std::string>(),
+                                found["truth"]["contact"].get<std::string>(), found["truth"]["margin_ulps"].dump()));
+  std::string wrong;
+  for (const Json& row : found["verdicts"]) {
+    if (row["wrong"])
+      wrong += (wrong.empty() ? "" : ", ") + report["lanes"][row["lane"].get<std::size_t>()]["id"].get<std::string>();
+  }
+  text += paragraph("Wrong: " + wrong);
+  for (const Json& sentence : found["sentences"]) text += paragraph(sentence);
+  for (const Json& command : found["commands"]) text += "<pre>" + html(command["text"]) + "</pre>\n";
+  return text;
+}
+
+std::string signature_section(const Json& report) {
+  const std::size_t rows = std::min(report["signatures"].size(), kMostRows);
+  std::string text = fmt::format(
+      "<h2>Signatures</h2>\n<p>{} in all, the commonest {} here.</p>\n<div class=\"wide\"><table>\n"
+      "<tr><th>signature</th><th>pairs</th></tr>\n",
+      grouped(report["signature_count"]), grouped(rows));
+  for (std::size_t i = 0; i < rows; ++i) {
+    text += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td></tr>\n", html(report["signatures"][i]["key"]),
+                        grouped(report["signatures"][i]["count"]));
+  }
+  text += "</table></div>\n<h2>Cases</h2>\n";
+  for (const Json& found : report["cards"]) text += card(report, found);
+  return text;
+}
+
+std::string compare_section(const Json& compare) {
+  if (compare.is_null()) return "";
+  std::string text =
+      "<h2>What has changed</h2>\n<p>Since commit " + html(compare["other"]["build"]["commit"]) +
+      ": rates whose 95 % intervals are apart.</p>\n" +
+      "<div class=\"wide\"><table>\n<tr><th>lane</th><th>stratum</th><th>before</th><th>after</th></tr>\n";
+  for (const Json& row : compare["rates"]) {
+    if (!row["changed"]) continue;
+    text += "<tr><td>" + html(row["lane"]) + "</td><td>" + html(row["stratum"]) + "</td>" + share_cell(row["before"]) +
+            share_cell(row["after"]) + "</tr>\n";
+  }
+  text += "</table></div>\n";
+  for (const char* what : {"gained", "lost"}) {
+    text += fmt::format("<p>Signatures {}: {}</p>\n<ul>\n", what, grouped(compare[what].size()));
+    for (std::size_t i = 0; i < std::min(compare[what].size(), kMostRows); ++i)
+      text += "<li>" + html(compare[what][i]["key"]) + "</li>\n";
+    text += "</ul>\n";
+  }
+  return text;
+}
+
+constexpr const char* kDefinitions = R"(<h2>Definitions</h2>
+<p>A triangle is the closed convex hull of its three stored points; touching counts as intersecting. The truth is decided by
+exact arithmetic, twice. A lane is an algorithm in one precision on one target: cpu and cuda-nofma round every operation,
+cpu-fma and cuda-fma fuse products into additions as the compiler likes. The margin is the distance of a disjoint pair, minus
+the smallest translation that parts an intersecting one, and 0 where any push parts it; in float32 ulps of the largest
+coordinate. Intervals are Wilson's, of 95 % confidence. A signature is a way to fail: contact, dimensions of both hulls, skew or
+coplanar, margin, algorithm, and a mark for each of its lanes: + false positive, - false negative, . right, _ not run.</p>
+)";
+
+}  // namespace
+
+std::string plain_page(const Json& report) {
+  return kHead + run_section(report) + compare_section(report["compare"]) + league(report) + margin_section(report) +
+         extremes_section(report) + signature_section(report) + kDefinitions + "</body>\n</html>\n";
+}
+
+}  // namespace graze

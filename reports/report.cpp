@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "core/error.h"
+#include "corpus/pair_format.h"
+#include "fuzz/report_files.h"
+#include "fuzz/strata.h"
+#include "reports/answer.h"
+#include "reports/cards.h"
+#include "reports/tables.h"
+#include "reports/terminal.h"
+
+namespace graze {
+namespace {
+
+// The machines that the campaign ran on, as far as their names are known.
+Json machines(const std::filesystem::path& directory) {
+  const Json timings = Json::parse(read_whole(directory / "timings.json"), nullptr, false);
+  if (!timings.is_object() || !timings.contains("runs")) return nullptr;
+  std::set<std::string> names;
+  for (const Json& run : timings["runs"]) {
+    if (run.contains("machine") && run.value("pairs", 0.0) > 0) names.insert(run["machine"].get<std::string>());
+  }
+  return names.empty() ? Json() : Json(fmt::format("{}", fmt::join(names, "; ")));
+}
+
+Json run_of(const std::filesystem::path& directory, const Json& summary, const CampaignCounts& counts) {
+  Json build = Json::object();
+  for (const char* key : {"version", "commit", "compiler", "cuda", "device"})
+    build[key] = summary.at("build").value(key, Json());
+  return {{"seed", counts.seed},
+          {"pairs", counts.pairs},
+          {"complete", counts.complete},
+          {"command", campaign_command(summary)},
+          {"map_command", "graze report campaign"},
+          {"build", build},
+          {"machine", machines(directory)}};
+}
+
+Json strata_of(const CampaignCounts& counts) {
+  Json rows = Json::array();
+  for (const StratumCounts& stratum : counts.strata) {
+    const auto info =
+        std::find_if(std::begin(kStrata), std::end(kStrata), [&](const StratumInfo& s) { return s.id == stratum.id; });
+    rows.push_back(
+        {{"id", stratum.id},
+         {"describes", info != std::end(kStrata) ? info->what : "pairs of a mesh's triangles whose boxes overlap"},
+         {"pairs", stratum.pairs},
+         {"intersects", stratum.intersects}});
+  }
+  return rows;
+}
+
+Json lanes_of(const Json& summary, const CampaignCounts& counts) {
+  Json rows = Json::array();
+  const Json executors = summary.at("build").value("executors", Json::object());
+  for (const ReportLane& lane : counts.lanes) {
+    rows.push_back({{"id", lane.id},
+                    {"algorithm", lane.algorithm},
+                    {"scalar", lane.scalar},
+                    {"target", lane.target},
+                    {"paper", lane.row ? lane.row->info->paper : ""},
+                    {"evidence", executors.value(lane.id, Json())},
+                    {"exact", lane.exact}});
+  }
+  return rows;
+}
+
+Json missing_of(const CampaignCounts& counts) {
+  Json missing = Json::array();
+  if (!counts.complete) {
+    missing.push_back(
+        fmt::format("The campaign is not finished, {} of {} pairs are in it: the command that began it goes "
+                    "on with it.",
+                    grouped(counts.total.pairs), grouped(counts.pairs)));
+  }
+  if (counts.total.extremes.empty()) {
+    missing.push_back(
+        "No error rates over scale and offset: the strata that vary them, such as extreme_scale and "
+        "far_from_origin, were not drawn, or the campaign was made before they were counted.");
+  }
+  return missing;
+}
+
+Share share_in(const Json& row) { return share_of(row.at("count"), row.at("of")); }
+
+// A report's rates of wrong verdicts by names, in its order.
+std::vector<std::pair<std::pair<std::string, std::string>, Share>> wrong_by_name(const Json& report) {
+  std::vector<std::pair<std::pair<std::string, std::string>, Share>> rates;
+  for (const Json& row : report.at("rates")) {
+    const Json& stratum = row.at("stratum");
+    const std::string name =
+        stratum.is_null() ? "all strata" : report.at("strata").at(stratum.get<std::size_t>()).at("id");
+    rates.push_back(
+        {{report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id"), name}, share_in(row.at("wrong"))});
+  }
+  return rates;
+}
+
+// Signatures of one report that another does not have.
+Json only_in(const Json& report, const Json& other) {
+  std::set<std::string> known;
+  for (const Json& row : other.at("signatures")) known.insert(row.at("key"));
+  Json rows = Json::array();
+  for (const Json& row : report.at("signatures")) {
+    if (!known.contains(row.at("key").get<std::string>()))
+      rows.push_back({{"key", row.at("key")}, {"count", row.at("count")}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+Json read_summary(const std::filesystem::path& directory) {
+  Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
+  if (!summary.is_object() || !summary.contains("spec") || !summary.contains("strata"))
+    throw UsageError(directory.string() + ": expected a campaign's directory with summary.json, found none");
+  return summary;
+}
+
+Json make_report(const std::filesystem::path& directory) {
+  const Json summary = read_summary(directory);
+  try {
+    const CampaignCounts counts = counts_of(summary);
+    Json report = {{"format", 1},
+                   {"run", run_of(directory, summary, counts)},
+                   {"strata", strata_of(counts)},
+                   {"lanes", lanes_of(summary, counts)},
+                   {"answer", answer(counts)},
+                   {"rates", rates(counts)},
+                   {"side_by_side", side_by_side(counts)},
+                   {"margins", margins(counts)},
+                   {"thresholds", thresholds(counts)},
+                   {"extremes", extremes(counts)},
+                   {"signature_count", 0},
+                   {"signatures", nullptr},
+                   {"cards", nullptr},
+                   {"missing", missing_of(counts)},
+                   {"compare", nullptr}};
+    add_signatures(report, directory, summary, counts);
+    return report;
+  } catch (const Json::exception&) {
+    throw FormatError((directory / "summary.json").string() + ": expected a campaign's summary, found something else");
+  } catch (const std::out_of_range&) {
+    throw FormatError((directory / "summary.json").string() + ": expected a campaign's summary, found something else");
+  }
+}
+
+void add_comparison(Json& report, const Json& before) {
+  const auto then = wrong_by_name(before);
+  const std::map<std::pair<std::string, std::string>, Share> by_name(then.begin(), then.end());
+  Json rows = Json::array();
+  for (const auto& [name, now] : wrong_by_name(report)) {
+    const auto old = by_name.find(name);
+    if (old == by_name.end()) continue;
+    rows.push_back({{"lane", name.first},
+                    {"stratum", name.second},
+                    {"before", to_json(old->second)},
+                    {"after", to_json(now)},
+                    {"changed", now.apart(old->second)}});
+  }
+  report["compare"] = {{"other", before.at("run")},
+                       {"rates", rows},
+                       {"gained", only_in(report, before)},
+                       {"lost", only_in(before, report)}};
+}
+
+std::string report_text(const Json& report) {
+  std::string text = "{";
+  for (const auto& [key, value] : report.items()) {
+    text += fmt::format("{}\n\"{}\": ", text.size() > 1 ? "," : "", key);
+    if (!value.is_array() || value.empty()) {
+      text += value.dump();
+      continue;
+    }
+    for (std::size_t i = 0; i < value.size(); ++i) text += (i == 0 ? "[\n" : ",\n") + value[i].dump();
+    text += "\n]";
+  }
+  return text + "\n}\n";
+}
+
+Json read_report(const std::filesystem::path& file) {
+  Json report = Json::parse(read_whole(file), nullptr, false);
+  if (!report.is_object() || report.value("format", Json()) != 1 || !report.contains("rates"))
+    throw FormatError(file.string() + ": expected a report of `graze report`, found something else");
+  return report;
+}
+
+}  // namespace graze

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The report of a campaign: everything that the page shows, as reports/web/src/report.ts describes it, from what the
+// campaign and the minimiser stored. No lane runs here. The same campaign gives the same bytes.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace graze {
+
+// summary.json of a campaign's directory.   Throws: UsageError where there is none.
+nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
+
+// Throws: UsageError for a directory without a campaign; FormatError, std::runtime_error for damaged files.
+nlohmann::ordered_json make_report(const std::filesystem::path& directory);
+
+// The command that runs the whole campaign again.   Requires: what summary.json holds.
+std::string campaign_command(const nlohmann::ordered_json& summary);
+
+// Fills `compare`: what has changed since another campaign. Rates are compared by the names of lane and stratum.
+void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json& before);
+
+// The report as text: a line a row, so that two can be compared.
+std::string report_text(const nlohmann::ordered_json& report);
+
+// A report that was written before.   Throws: FormatError.
+nlohmann::ordered_json read_report(const std::filesystem::path& file);
+
+}  // namespace graze

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/tables.h"
+
+#include <fmt/format.h>
+
+namespace graze {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)); }
+
+// Calls visit(place, stratum) for each stratum that has pairs, and visit(null, total).
+template <class Visit>
+void for_each_stratum(const CampaignCounts& counts, Visit visit) {
+  for (std::size_t s = 0; s < counts.strata.size(); ++s) {
+    if (counts.strata[s].pairs != 0) visit(Json(s), counts.strata[s]);
+  }
+  if (counts.total.pairs != 0) visit(Json(), counts.total);
+}
+
+Json wrong_of(const StratumCounts& stratum, std::size_t lane) {
+  return to_json(share_of(stratum.wrong(lane), stratum.pairs));
+}
+
+}  // namespace
+
+Json to_json(const Share& share) {
+  return {{"count", share.count},
+          {"of", share.of},
+          {"share", rounded(share.share)},
+          {"low", rounded(share.low)},
+          {"high", rounded(share.high)}};
+}
+
+Json rates(const CampaignCounts& counts) {
+  Json rows = Json::array();
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    for_each_stratum(counts, [&](const Json& place, const StratumCounts& stratum) {
+      const LaneCounts& lane = stratum.lanes[l];
+      rows.push_back({{"lane", l},
+                      {"stratum", place},
+                      {"false_positive", to_json(share_of(lane.false_positive, stratum.pairs - stratum.intersects))},
+                      {"false_negative", to_json(share_of(lane.false_negative, stratum.intersects))},
+                      {"wrong", wrong_of(stratum, l)},
+                      {"declined", lane.declined},
+                      {"differs_from_cpu", nullptr}});
+      if (counts.lanes[l].cpu >= 0)
+        rows.back()["differs_from_cpu"] = to_json(share_of(lane.differs_from_cpu, stratum.pairs));
+    });
+  }
+  return rows;
+}
+
+std::optional<std::uint64_t> differs(const CampaignCounts& counts, const StratumCounts& stratum, std::size_t left,
+                                     std::size_t right) {
+  const int left_cpu = counts.lanes[left].cpu, right_cpu = counts.lanes[right].cpu;
+  // A lane that never differs from the cpu lane stands for it.
+  const bool stands_for_cpu = left_cpu >= 0 && left_cpu == right_cpu && stratum.lanes[left].differs_from_cpu == 0;
+  if (static_cast<int>(left) != right_cpu && !stands_for_cpu) return std::nullopt;
+  return stratum.lanes[right].differs_from_cpu;
+}
+
+Json side_by_side(const CampaignCounts& counts) {
+  Json rows = Json::array();
+  const auto add = [&](const char* kind, std::size_t left, int other) {
+    if (other < 0) return;
+    const auto right = static_cast<std::size_t>(other);
+    Json strata = Json::array();
+    for_each_stratum(counts, [&](const Json& place, const StratumCounts& stratum) {
+      const std::optional<std::uint64_t> count = differs(counts, stratum, left, right);
+      strata.push_back({{"stratum", place},
+                        {"left_wrong", wrong_of(stratum, left)},
+                        {"right_wrong", wrong_of(stratum, right)},
+                        {"differs", count ? to_json(share_of(*count, stratum.pairs)) : Json()}});
+    });
+    rows.push_back({{"kind", kind}, {"left", left}, {"right", right}, {"strata", std::move(strata)}});
+  };
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    const ReportLane& lane = counts.lanes[l];
+    if (lane.target == "cpu") add("cpu-nofma", l, counts.find(lane.algorithm, lane.scalar, "cuda-nofma"));
+    if (lane.target == "cuda-nofma") add("nofma-fma", l, counts.find(lane.algorithm, lane.scalar, "cuda-fma"));
+    if (lane.scalar == "f32") add("f32-f64", l, counts.find(lane.algorithm, "f64", lane.target));
+  }
+  return rows;
+}
+
+Json margins(const CampaignCounts& counts) {
+  Json rows = Json::array();
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    Json points = Json::array();
+    for (const auto& [bucket, found] : counts.total.margins) {
+      points.push_back({{"side", bucket < 0   ? "intersects"
+                                 : bucket > 0 ? "disjoint"
+                                              : "zero"},
+                        {"exponent", bucket == 0 ? Json() : Json(exponent_of(bucket))},
+                        {"wrong", to_json(share_of(found.wrong[l], found.pairs))}});
+    }
+    rows.push_back({{"lane", l}, {"stratum", nullptr}, {"points", std::move(points)}});
+  }
+  return rows;
+}
+
+Threshold threshold(const StratumCounts& counts, std::size_t lane, int side) {
+  Threshold result;
+  for (int b = kBucketMost; b > 0; --b) {
+    const auto found = counts.margins.find(static_cast<Bucket>(side * b));
+    if (found == counts.margins.end() || found->second.pairs == 0) continue;
+    if (found->second.wrong[lane] != 0) break;
+    result = {true, exponent_of(found->first), result.above + found->second.pairs};
+  }
+  return result;
+}
+
+Json thresholds(const CampaignCounts& counts) {
+  Json rows = Json::array();
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    Json row = {{"lane", l}};
+    for (const auto& [name, side] : {std::pair("disjoint", 1), std::pair("intersects", -1)}) {
+      const Threshold t = threshold(counts.total, l, side);
+      row[name] = {{"exponent", t.found ? Json(t.exponent) : Json()},
+                   {"above", t.above},
+                   {"bound", rounded(bound_of_none(t.above))}};
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Json extremes(const CampaignCounts& counts) {
+  Json rows = Json::array();
+  for (const auto& [axis, cells] : counts.total.extremes) {
+    for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+      Json row = {{"kind", axis}, {"step", axis == "scale" ? 4 : 1}, {"lane", l}, {"cells", Json::array()}};
+      for (const auto& [exponent, found] : cells) {
+        if (found.pairs != 0)
+          row["cells"].push_back({{"exponent", exponent}, {"wrong", to_json(share_of(found.wrong[l], found.pairs))}});
+      }
+      if (!row["cells"].empty()) rows.push_back(std::move(row));
+    }
+  }
+  return rows;
+}
+
+}  // namespace graze

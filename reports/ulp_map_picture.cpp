@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/ulp_map_picture.h"
+
+#include <fmt/format.h>
+#include <png.h>
+#include <stb/stb_easy_font.h>
+
+#include <algorithm>
+#include <boost/archive/iterators/base64_from_binary.hpp>
+#include <boost/archive/iterators/transform_width.hpp>
+#include <stdexcept>
+
+#include "reports/terminal.h"
+
+namespace graze {
+namespace {
+
+// A colour a kind of cell, in its order, then ink and paper. Right verdicts are greys, wrong ones vermilion and blue of
+// Okabe and Ito's palette, which differ in lightness as well.
+constexpr std::uint8_t kPalette[][3] = {{0xee, 0xee, 0xee}, {0xaa, 0xaa, 0xaa}, {0xd5, 0x5e, 0x00}, {0x00, 0x72, 0xb2},
+                                        {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}, {0x00, 0x00, 0x00}, {0xff, 0xff, 0xff}};
+constexpr std::uint8_t kInk = 6, kPaper = 7;
+constexpr const char* kCellNames[] = {"disjoint",       "intersects", "false positive",
+                                      "false negative", "declined",   "not finite"};
+
+constexpr int kZoom = 2;  // of a sheet: its panels' pixels and its letters'
+constexpr int kMargin = 16;
+constexpr int kLine = 24;  // of text
+constexpr int kSide = kZoom * kMapSize;
+constexpr int kLanesARow = 4;
+
+struct Image {
+  int width, height;
+  std::vector<std::uint8_t> colours;  // places in kPalette
+
+  Image(int w, int h, std::uint8_t colour) : width(w), height(h), colours(static_cast<std::size_t>(w * h), colour) {}
+
+  void fill(int left, int top, int w, int h, std::uint8_t colour) {
+    for (int y = std::max(top, 0); y < std::min(top + h, height); ++y) {
+      for (int x = std::max(left, 0); x < std::min(left + w, width); ++x)
+        colours[static_cast<std::size_t>(y * width + x)] = colour;
+    }
+  }
+
+  void write(int left, int top, std::string text) {
+    struct Corner {  // as stb_easy_font lays out its quads, four of them each, from the upper left round
+      float x, y, z;
+      std::uint8_t colour[4];
+    };
+    std::vector<Corner> corners(text.size() * 64);
+    const int quads = stb_easy_font_print(0, 0, text.data(), nullptr, corners.data(),
+                                          static_cast<int>(corners.size() * sizeof(Corner)));
+    for (int q = 0; q < quads; ++q) {
+      const Corner &first = corners[static_cast<std::size_t>(4 * q)],
+                   &last = corners[static_cast<std::size_t>(4 * q + 2)];
+      const auto scaled = [](float place) { return kZoom * static_cast<int>(place); };
+      fill(left + scaled(first.x), top + scaled(first.y), scaled(last.x - first.x), scaled(last.y - first.y), kInk);
+    }
+  }
+
+  std::string png() const {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.width = static_cast<png_uint_32>(width);
+    image.height = static_cast<png_uint_32>(height);
+    image.format = PNG_FORMAT_RGB_COLORMAP;
+    image.colormap_entries = std::size(kPalette);
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+    std::string bytes(size, '\0');
+    if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, colours.data(), 0, kPalette))
+      throw std::runtime_error(std::string("expected libpng to write a picture, found: ") + image.message);
+    bytes.resize(size);
+    return bytes;
+  }
+};
+
+Image picture(const UlpPanel& panel) {
+  Image image(kMapSize, kMapSize, kPaper);
+  std::transform(panel.cells.begin(), panel.cells.end(), image.colours.begin(),
+                 [](Cell cell) { return static_cast<std::uint8_t>(cell); });
+  constexpr int kNear = 3, kLength = 8;
+  for (const int at : {kMapCentre - kNear - kLength + 1, kMapCentre + kNear}) {
+    image.fill(at, kMapCentre, kLength, 1, kInk);
+    image.fill(kMapCentre, at, 1, kLength, kInk);
+  }
+  return image;
+}
+
+std::string counts_of(const UlpPanel& panel) {
+  const std::array<int, kCellKinds> counts = panel.counts();
+  std::string text;
+  for (std::size_t kind = panel.lane ? 2 : 0; kind < kCellKinds; ++kind) {
+    if (counts[kind] > 0)
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(static_cast<std::uint64_t>(counts[kind])),
+                          kCellNames[kind]);
+  }
+  return text.empty() ? "right everywhere" : text;
+}
+
+// For each kind, whether some panel has it.
+std::array<bool, kCellKinds> kinds_in(const UlpMap& map) {
+  std::array<bool, kCellKinds> found{};
+  for (const UlpPanel& panel : map.panels) {
+    for (const Cell cell : panel.cells) found[static_cast<std::size_t>(cell)] = true;
+  }
+  return found;
+}
+
+std::string base64(std::string bytes) {
+  namespace iterators = boost::archive::iterators;
+  using Letters = iterators::base64_from_binary<iterators::transform_width<std::string::const_iterator, 6, 8>>;
+  const std::size_t missing = (3 - bytes.size() % 3) % 3;
+  bytes.append(missing, '\0');
+  std::string letters(Letters(bytes.cbegin()), Letters(bytes.cend()));
+  letters.replace(letters.size() - missing, missing, missing, '=');
+  return letters;
+}
+
+std::vector<std::string> hex(const Pair& pair) {
+  std::vector<std::string> texts;
+  for (int c = 0; c < kCoordinates; ++c) texts.push_back(fmt::format("{:a}", coordinates(pair)[c]));
+  return texts;
+}
+
+}  // namespace
+
+std::string panel_png(const UlpPanel& panel) { return picture(panel).png(); }
+
+std::string sheet_png(const UlpMap& map) {
+  const int lanes = static_cast<int>(map.panels.size()) - 1;
+  const int columns = 1 + std::min(lanes, kLanesARow), rows = std::max(1, (lanes + kLanesARow - 1) / kLanesARow);
+  const int row_height = kSide + 2 * kLine + kMargin;
+  Image sheet(kMargin + columns * (kSide + kMargin), kMargin + rows * row_height + 3 * kLine, kPaper);
+  for (int p = 0; p <= lanes; ++p) {
+    const UlpPanel& panel = map.panels[static_cast<std::size_t>(p)];
+    const int column = p == 0 ? 0 : 1 + (p - 1) % kLanesARow, row = p == 0 ? 0 : (p - 1) / kLanesARow;
+    const int left = kMargin + column * (kSide + kMargin), top = kMargin + row * row_height;
+    sheet.write(left, top, panel.name());
+    sheet.write(left, top + kLine, counts_of(panel));
+    const Image small = picture(panel);
+    for (int i = 0; i < kMapSize * kMapSize; ++i) {
+      sheet.fill(left + i % kMapSize * kZoom, top + 2 * kLine + i / kMapSize * kZoom, kZoom, kZoom,
+                 small.colours[static_cast<std::size_t>(i)]);
+    }
+  }
+  int top = kMargin + rows * row_height;
+  sheet.write(kMargin, top,
+              fmt::format("{} to the right, {} upwards; a cell is an ulp; the cross is at the pair itself",
+                          name_of_coordinate(map.moved.x), name_of_coordinate(map.moved.y)));
+  top += kLine;
+  int left = kMargin;
+  const std::array<bool, kCellKinds> found = kinds_in(map);
+  for (std::uint8_t kind = 0; kind < kCellKinds; ++kind) {
+    if (!found[kind]) continue;
+    std::string name = kCellNames[kind];
+    sheet.fill(left, top, 16, 16, kInk);
+    sheet.fill(left + 1, top + 1, 14, 14, kind);
+    sheet.write(left + kLine, top, name);
+    left += 2 * kLine + kZoom * stb_easy_font_width(name.data());
+  }
+  return sheet.png();
+}
+
+nlohmann::ordered_json to_json(const UlpMap& map) {
+  const std::string x = name_of_coordinate(map.moved.x), y = name_of_coordinate(map.moved.y);
+  nlohmann::ordered_json panels = nlohmann::ordered_json::array();
+  for (const UlpPanel& panel : map.panels)
+    panels.push_back({{"name", panel.name()}, {"png", base64(panel_png(panel))}});
+  nlohmann::ordered_json legend = nlohmann::ordered_json::array();
+  const std::array<bool, kCellKinds> found = kinds_in(map);
+  for (std::size_t kind = 0; kind < kCellKinds; ++kind) {
+    const auto& [red, green, blue] = kPalette[kind];
+    if (found[kind])
+      legend.push_back({{"colour", fmt::format("#{:02x}{:02x}{:02x}", red, green, blue)}, {"means", kCellNames[kind]}});
+  }
+  return {{"title", fmt::format("{} and {} moved by up to {} ulps", x, y, kMapCentre)},
+          {"x", x},
+          {"y", y},
+          {"size", kMapSize},
+          {"legend", legend},
+          {"pair", hex(map.pair)},
+          {"panels", panels}};
+}
+
+bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair) {
+  return json.is_object() && json.value("pair", nlohmann::ordered_json()) == hex(pair);
+}
+
+}  // namespace graze

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures read back by the PNG library: each pixel has its cell's colour.
+#include "reports/ulp_map_picture.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <set>
+
+namespace graze {
+namespace {
+
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint32_t> pixels;  // 0xRRGGBB
+
+  explicit Picture(const std::string& bytes) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) throw std::runtime_error(image.message);
+    image.format = PNG_FORMAT_RGB;
+    std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(image));
+    if (!png_image_finish_read(&image, nullptr, rgb.data(), 0, nullptr)) throw std::runtime_error(image.message);
+    width = static_cast<int>(image.width);
+    height = static_cast<int>(image.height);
+    for (std::size_t i = 0; i < rgb.size(); i += 3)
+      pixels.push_back(static_cast<std::uint32_t>(rgb[i] << 16 | rgb[i + 1] << 8 | rgb[i + 2]));
+  }
+};
+
+const Pair kPair{{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}}, {{0.75f, 0.75f, 0}, {0.75f, 0.75f, 1}, {0.5f, 0.75f, 1}}};
+
+// One row of each kind of cell, over and over.
+UlpMap striped(int lanes) {
+  UlpMap map{kPair, {9, 10}, {}};
+  for (int p = 0; p <= lanes; ++p) {
+    UlpPanel panel{p == 0 ? nullptr : &graze::lanes()[static_cast<std::size_t>(p - 1)], {}};
+    for (int cell = 0; cell < kMapSize * kMapSize; ++cell)
+      panel.cells.push_back(static_cast<Cell>(cell / kMapSize % (p == 0 ? 2 : kCellKinds)));
+    map.panels.push_back(panel);
+  }
+  return map;
+}
+
+TEST(UlpMapPicture, HasAColourAKindAndACrossAroundThePair) {
+  const UlpMap map = striped(1);
+  const Picture picture(panel_png(map.panels[1]));
+  ASSERT_EQ(picture.width, kMapSize);
+  ASSERT_EQ(picture.height, kMapSize);
+  const auto at = [&](int column, int row) {
+    return picture.pixels[static_cast<std::size_t>(row * kMapSize + column)];
+  };
+  std::set<std::uint32_t> colours;
+  for (int row = 0; row < kCellKinds; ++row) colours.insert(at(0, row));
+  EXPECT_EQ(colours.size(), std::size_t{kCellKinds});
+  int ink = 0;
+  for (int row = 0; row < kMapSize; ++row) {
+    for (int column = 0; column < kMapSize; ++column) {
+      if (at(column, row) != at(0, row % kCellKinds)) {
+        EXPECT_EQ(at(column, row), 0u);
+        EXPECT_TRUE(column == kMapCentre || row == kMapCentre);
+        ++ink;
+      }
+    }
+  }
+  EXPECT_EQ(ink, 32);
+  EXPECT_EQ(at(kMapCentre, kMapCentre), at(0, kMapCentre % kCellKinds));  // the pair's own cell shows
+}
+
+TEST(UlpMapPicture, SheetsHoldAllPanelsAtTwiceTheSize) {
+  const UlpMap map = striped(8);
+  const Picture one(sheet_png(striped(1))), nine(sheet_png(map));
+  EXPECT_GT(one.width, 2 * 2 * kMapSize);
+  EXPECT_GT(nine.width, 5 * 2 * kMapSize);
+  EXPECT_GT(nine.height, one.height + 2 * kMapSize);
+  const std::uint32_t declined = Picture(panel_png(map.panels[1])).pixels[4 * kMapSize];
+  int found = 0;
+  for (const std::uint32_t pixel : nine.pixels) found += pixel == declined;
+  const int rows = kMapSize / kCellKinds;  // that are declined, of each lane
+  EXPECT_NEAR(found, 8 * 4 * rows * kMapSize, 8 * 4 * 32 + 14 * 14);
+  EXPECT_EQ(sheet_png(map), sheet_png(striped(8)));
+}
+
+TEST(UlpMapPicture, JsonIsThePairsOwn) {
+  const nlohmann::ordered_json json = to_json(striped(2));
+  EXPECT_EQ(json["x"], "b[0].x");
+  EXPECT_EQ(json["size"], kMapSize);
+  EXPECT_EQ(json["legend"][0], (nlohmann::ordered_json{{"colour", "#eeeeee"}, {"means", "disjoint"}}));
+  ASSERT_EQ(json["panels"].size(), 3u);
+  EXPECT_EQ(json["panels"][0]["name"], "truth");
+  EXPECT_EQ(json["panels"][1]["name"], lanes()[0].id);
+  const std::string png = json["panels"][0]["png"];
+  EXPECT_EQ(png.substr(0, 11), "iVBORw0KGgo");  // "\x89PNG\r\n\x1a\n"
+  EXPECT_EQ(png.size() % 4, 0u);
+  EXPECT_EQ(png.size(), (panel_png(striped(2).panels[0]).size() + 2) / 3 * 4);
+  EXPECT_TRUE(is_map_of(json, kPair));
+  Pair other = kPair;
+  other.b[2].z = -1;
+  EXPECT_FALSE(is_map_of(json, other));
+  EXPECT_FALSE(is_map_of({}, kPair));
+}
+
+}  // namespace
+}  // namespace graze

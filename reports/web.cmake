@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. Where npm cannot fetch its
+# packages, as offline, that string is empty, and reports are plain pages.
+file(MAKE_DIRECTORY ${BUILD})
+file(REMOVE_RECURSE ${BUILD}/src)
+foreach(part index.html package.json package-lock.json tsconfig.json vite.config.js src)
+  file(COPY ${SOURCE}/${part} DESTINATION ${BUILD})
+endforeach()
+
+file(SHA256 ${BUILD}/package-lock.json lock)
+set(installed "")
+if(EXISTS ${BUILD}/node_modules/installed)
+  file(READ ${BUILD}/node_modules/installed installed)
+endif()
+if(NOT installed STREQUAL lock)
+  execute_process(COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --prefer-offline --fetch-retries=1
+    WORKING_DIRECTORY ${BUILD} RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE why)
+  if(why MATCHES EUSAGE)
+    message(FATAL_ERROR "expected package-lock.json to fit package.json, found:\n${why}")
+  elseif(failed)
+    message(WARNING "npm ci failed, so reports will be plain pages; to try again, remove ${OUT} and build.\n${why}")
+    file(WRITE ${OUT} "\"\"\n")
+    return()
+  endif()
+  file(WRITE ${BUILD}/node_modules/installed ${lock})
+endif()
+
+execute_process(COMMAND ${NPM} run --silent build WORKING_DIRECTORY ${BUILD} RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
+if(failed)
+  message(FATAL_ERROR "expected reports/web to build, found:\n${said}")
+endif()
+file(READ ${BUILD}/dist/index.html page)
+file(WRITE ${OUT} "R\"graze_page(${page})graze_page\"\n")

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// One signature's card: the pair, what every lane says of it, why, and how to have it again.
+import { breakable, code_block, copy_button, h, lazy_details } from './dom';
+import { count, figure, percent, power_of_two } from './format';
+import type { Report } from './report';
+import { stage } from './stage';
+
+type Card = Report['cards'][number];
+type Signature = Report['signatures'][number];
+
+const kHulls = ['point', 'segment', 'triangle'];
+export function hulls(dimensions: string, how = '') {
+  const [a, b] = [...dimensions].map((d) => kHulls[Number(d)] ?? d);
+  return a === b ? `two ${how}${a}s` : `a ${how}${a} and a ${b}`;
+}
+const kContacts: Record<string, string> = { none: 'apart', point: 'meeting in a point', segment: 'meeting in a segment', area: 'meeting in an area' };
+
+export function signature_words(signature: Signature): string {
+  const { contact, dimensions, coplanar, margin } = signature;
+  return `${hulls(dimensions, coplanar ? 'coplanar ' : '')} ${kContacts[contact] ?? contact}, margin ${margin_words(margin)}`;
+}
+
+// "-2^-3" as "2⁻³ ulps deep", "2^4" as "2⁴ ulps"
+export function margin_words(margin: string): string {
+  const found = /^([-+]?)2\^(-?\d+)$/.exec(margin);
+  if (!found) return margin;
+  return `${power_of_two(Number(found[2]))} ulps${found[1] === '-' ? ' deep' : ''}`;
+}
+
+function coordinates({ pair }: Card) {
+  const row = (name: string, first: number) => h('tr', {}, h('th', { scope: 'row' }, name),
+    [0, 1, 2].map((k) => h('td', { class: 'number' }, h('span', {}, pair.decimal[first + k]), h('code', {}, pair.hex[first + k]))));
+  const text = pair.hex.join(' ');
+  return h('div', { class: 'coordinates' },
+    h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Coordinates' }, h('table', { class: 'plain' }, h('caption', {}, 'Coordinates, decimal and hex'),
+      h('thead', {}, h('tr', {}, h('td', {}), ['x', 'y', 'z'].map((axis) => h('th', { scope: 'col' }, axis)))),
+      h('tbody', {}, [0, 1, 2].map((i) => row(`a[${i}]`, 3 * i)), [0, 1, 2].map((i) => row(`b[${i}]`, 9 + 3 * i))))),
+    h('p', { class: 'inline-copy' }, 'All 18 as hex floats, for ', h('code', {}, 'graze check -'), ' ', copy_button(text, 'the coordinates')));
+}
+
+function verdicts(report: Report, card: Card) {
+  const rows = new Map<string, Map<string, Card['verdicts'][number]>>();
+  const targets: string[] = [];
+  for (const verdict of card.verdicts) {
+    const lane = report.lanes[verdict.lane];
+    const name = `${lane.algorithm}/${lane.scalar}`;
+    if (!rows.has(name)) rows.set(name, new Map());
+    rows.get(name)!.set(lane.target, verdict);
+    if (!targets.includes(lane.target)) targets.push(lane.target);
+  }
+  return h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' }, h('table', { class: 'plain verdicts' },
+    h('caption', {}, 'Verdict of every lane, wrong ones marked'),
+    h('thead', {}, h('tr', {}, h('td', {}), targets.map((target) => h('th', { scope: 'col' }, target)))),
+    h('tbody', {}, [...rows].map(([name, by_target]) => h('tr', {}, h('th', { scope: 'row' }, breakable(name)), targets.map((target) => {
+      const verdict = by_target.get(target);
+      return h('td', { class: verdict?.wrong ? 'bad' : '' }, verdict ? `${verdict.wrong ? '✗ ' : ''}${verdict.verdict}` : '–');
+    }))))));
+}
+
+function ulp_maps(maps: NonNullable<Card['maps']>) {
+  const steps = `${maps.size} × ${maps.size} steps of an ulp`;
+  return h('div', { class: 'maps' }, h('h4', {}, 'Ulp map'),
+    h('p', {}, `${maps.title}: ${maps.x} to the right, ${maps.y} upwards, ${steps}; the case is in the middle. `,
+      h('span', { class: 'map-key' }, maps.legend.map(({ colour, means }) => h('span', {}, h('i', { style: `background:${colour}` }), means)))),
+    h('div', { class: 'panels' }, maps.panels.map(({ name, png }) => h('figure', { class: name === 'truth' ? 'panel truth' : 'panel' },
+      h('div', {}, h('img', { src: `data:image/png;base64,${png}`, width: maps.size, height: maps.size, decoding: 'async', alt: `Ulp map of ${name}` })),
+      h('figcaption', {}, name === 'truth' ? 'truth' : breakable(name.split('/').slice(1).join('/')))))));
+}
+
+// One text at a time, chosen by its button.
+function snippets(card: Card) {
+  const shown = h('div', {});
+  const buttons = card.snippets.map(({ label, text }) => {
+    const button = h('button', { type: 'button', 'aria-pressed': 'false', onclick: () => {
+      const open = button.getAttribute('aria-pressed') === 'true';
+      buttons.forEach((other) => other.setAttribute('aria-pressed', 'false'));
+      button.setAttribute('aria-pressed', String(!open));
+      shown.replaceChildren(...(open ? [] : [code_block(text, `the ${label} snippet`)]));
+    } }, label);
+    return button;
+  });
+  return h('div', { class: 'snippets' }, h('h4', {}, 'For a bug report'), h('div', { class: 'chips' }, buttons), shown);
+}
+
+// The inside of a card, made when it is opened.
+export function card_body(report: Report, card: Card, signature: Signature) {
+  const { truth } = card;
+  const where = truth.contact === 'none' ? `${figure(truth.margin)} apart` : truth.margin === 0 ? `contact: ${truth.contact}, margin 0`
+    : `contact: ${truth.contact}, ${figure(Math.abs(truth.margin))} deep`;
+  const ulps = truth.margin === 0 ? '' : ` (${figure(Math.abs(truth.margin_ulps))} ulps)`;
+  return h('div', { class: 'card-body' },
+    h('div', { class: 'card-top' }, stage(card),
+      h('div', { class: 'card-facts' },
+        h('p', { class: 'truth' }, h('b', {}, `Truth: ${truth.verdict}`), `, ${where}${ulps}`),
+        h('ul', { class: 'sentences' }, card.sentences.map((sentence) => h('li', {}, sentence))),
+        coordinates(card))),
+    h('div', { class: card.maps ? 'card-top' : '' }, h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)), card.maps && ulp_maps(card.maps)),
+    h('h4', {}, 'Again'),
+    h('div', { class: 'commands' }, card.commands.map(({ label, text }) => [h('span', { class: 'label' }, label), code_block(text, `the ${label} command`)])),
+    card.snippets.length > 0 && snippets(card),
+    h('p', { class: 'small' }, card.minimised ? `Minimised from ${card.from}; ` : `Not minimised, as drawn: ${card.from}; `, 'stored in ', h('code', {}, card.file),
+      '; signature ', h('code', {}, ...breakable(signature.key))));
+}
+
+export function card_element(report: Report, card: Card, number: number) {
+  const signature = report.signatures[card.signature];
+  const { details, open } = lazy_details([
+    h('span', { class: 'card-number' }, String(number)),
+    h('span', { class: 'card-title' }, h('b', {}, signature.algorithm), ` wrong on ${signature_words(signature)}`),
+    h('span', { class: 'card-count' }, `${count(signature.count)} pairs, ${percent(signature.share)}`),
+  ], () => card_body(report, card, signature), { class: 'card', id: `card-${number}` });
+  return { details, open };
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Elements, and the small parts that several sections share.
+
+export type Child = Node | string | null | false | Child[];
+type Props = Record<string, string | number | boolean | null | ((event: never) => void)>;
+
+// An element. Functions are listeners (`onclick`), true is an attribute without value, false and null are absent.
+export function h<K extends keyof HTMLElementTagNameMap>(tag: K, props: Props, ...children: Child[]) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(props)) {
+    if (typeof value === 'function') element.addEventListener(name.slice(2), value as EventListener);
+    else if (value === true) element.setAttribute(name, '');
+    else if (value !== false && value !== null) element.setAttribute(name, String(value));
+  }
+  append(element, children);
+  return element;
+}
+
+function append(element: Element, children: Child[]) {
+  for (const child of children) {
+    if (Array.isArray(child)) append(element, child);
+    else if (child !== false && child !== null) element.append(child);
+  }
+}
+
+export function section(id: string, title: string, ...children: Child[]) {
+  return h('section', { id, 'aria-labelledby': `${id}-title` }, h('h2', { id: `${id}-title` }, title), ...children);
+}
+
+// An identifier that may break after each underscore and slash.
+export function breakable(id: string): Child[] {
+  return id.split(/(?<=[_/])/).flatMap((part, i) => (i ? [h('wbr', {}), part] : [part]));
+}
+
+// A sentence in which `…` is code.
+export function sentence(text: string): Child[] {
+  return text.split('`').map((part, i) => (i % 2 ? h('code', {}, part) : part));
+}
+
+async function to_clipboard(text: string) {
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {  // not every browser counts a file on disk as a secure place
+    const area = h('textarea', { class: 'hidden' });
+    area.value = text;
+    document.body.append(area);
+    area.select();
+    document.execCommand('copy');
+    area.remove();
+  }
+}
+
+export function copy_button(text: string, what: string) {
+  const button = h('button', { type: 'button', class: 'copy', 'aria-label': `Copy ${what}` }, 'Copy');
+  button.addEventListener('click', async () => {
+    await to_clipboard(text);
+    button.textContent = 'Copied';
+    setTimeout(() => (button.textContent = 'Copy'), 1500);
+  });
+  return button;
+}
+
+// A text to copy, in one scrolling line or as it is.
+export function code_block(text: string, what: string) {
+  return h('div', { class: 'code' }, h('pre', { tabindex: 0, 'aria-label': what }, h('code', {}, text)), copy_button(text, what));
+}
+
+// A <details> whose inside is made when it is opened first.
+export function lazy_details(summary: Child[], make: () => Child, props: Props = {}) {
+  const details = h('details', props, h('summary', {}, ...summary));
+  let made = false;
+  const open = () => {
+    if (made || !details.open) return;
+    made = true;
+    append(details, [make()]);
+  };
+  details.addEventListener('toggle', open);
+  return { details, open: () => ((details.open = true), open()) };
+}
+
+// A labelled <select>; `change` gets the value chosen.
+export function choice(label: string, options: [string, string][], value: string, change: (value: string) => void) {
+  const select = h('select', { onchange: () => change(select.value) },
+    options.map(([id, text]) => h('option', { value: id, selected: id === value }, text)));
+  return h('label', { class: 'field' }, h('span', {}, label), select);
+}
+
+// Calls draw(width) now and whenever the element's width changes.
+export function on_width(element: HTMLElement, draw: (width: number) => void) {
+  let last = 0;
+  new ResizeObserver(() => {
+    const width = Math.floor(element.clientWidth);
+    if (width > 0 && width !== last) draw((last = width));
+  }).observe(element);
+}

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers as a reader wants them. Fixed to English, so that a report reads the same everywhere.
+import type { Share } from './report';
+
+export const count = (n: number) => n.toLocaleString('en-US');
+
+const kSuperscripts: Record<string, string> = { '-': '⁻' };
+'⁰¹²³⁴⁵⁶⁷⁸⁹'.split('').forEach((digit, i) => (kSuperscripts[i] = digit));
+const raised = (n: number) => [...String(n)].map((c) => kSuperscripts[c]).join('');
+
+// 2⁻¹²
+export const power_of_two = (exponent: number) => `2${raised(exponent)}`;
+
+// Three significant digits; powers of ten where there would be more than three zeros.
+export function figure(value: number): string {
+  if (value === 0 || !Number.isFinite(value)) return String(value);
+  const exponent = Math.floor(Math.log10(Math.abs(value)));
+  if (exponent >= -3 && exponent < 6) return count(Number(value.toPrecision(3)));
+  const [digits, power] = value.toExponential(2).split('e');
+  return `${Number(digits)}·10${raised(Number(power))}`;
+}
+
+// A share in per cent, without the sign: 47.8, 0.156, <0.001.
+export function bare_percent(share: number): string {
+  const percent = 100 * share;
+  if (percent === 0 || percent === 100) return String(percent);
+  if (percent < 0.001) return '<0.001';
+  if (percent > 99.9) return '>99.9';
+  return percent.toFixed(percent >= 10 ? 1 : percent >= 1 ? 2 : 3);
+}
+
+export function percent(share: number): string {
+  const value = 100 * share;
+  return value !== 0 && value < 0.001 ? `${figure(value)} %` : `${bare_percent(share)} %`;
+}
+
+export const interval = (share: Share) => `${percent(share.low).replace(' %', '')} to ${percent(share.high)}`;
+
+// "10,802 of 52,632 = 20.5 % (95 %: 20.2 to 20.9 %)"
+export const in_full = (share: Share) =>
+  share.of === 0 ? 'no pairs'
+    : `${count(share.count)} of ${count(share.of)} = ${percent(share.share)} (95 %: ${interval(share)})`;

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The colours of shares: magma (van der Walt and Smith 2015), even to the eye and safe for the colour-blind. The scale is
+// the cube root: rates of one in 10^4 and of one in two have both to be told from their neighbours. Steps of it are
+// classes and custom properties, so that dark mode is a matter of CSS: on a white page the worst is darkest, on a dark
+// one brightest.
+import { interpolateMagma } from 'd3-scale-chromatic';
+import { h } from './dom';
+
+const kSteps = 26;
+
+// Which step a share has; null for none wrong, which has no colour.
+export function heat_step(share: number): number | null {
+  if (!(share > 0)) return null;
+  return Math.round(Math.cbrt(share) * (kSteps - 1));
+}
+
+export const heat_class = (share: number) => {
+  const step = heat_step(share);
+  return step === null ? 'none' : `h${step}`;
+};
+
+export const heat_fill = (share: number) => {
+  const step = heat_step(share);
+  return step === null ? 'var(--heat-none)' : `var(--h${step})`;
+};
+
+function luminance(hex: string) {
+  const [r, g, b] = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255)
+    .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+
+function rules(dark: boolean) {
+  let properties = '', classes = '';
+  for (let step = 0; step < kSteps; ++step) {
+    const t = step / (kSteps - 1);
+    const colour = interpolateMagma(dark ? 0.2 + 0.78 * t : 0.98 - 0.8 * t);
+    properties += `--h${step}:${colour};`;
+    classes += `.h${step}{background:var(--h${step});color:${luminance(colour) > 0.179 ? '#000' : '#fff'}}`;
+  }
+  return `:root{${properties}}${classes}`;
+}
+
+export function heat_styles() {
+  return h('style', {}, `${rules(false)}@media screen and (prefers-color-scheme:dark){${rules(true)}}`);
+}
+
+export function heat_legend() {
+  const steps = Array.from({ length: kSteps }, (_, i) => h('i', { class: `h${i}` }));
+  return h('div', { class: 'heat-legend', role: 'img', 'aria-label': 'Colour scale: share of wrong verdicts; no colour where none is wrong' },
+    h('i', { class: 'none' }), h('span', {}, 'none wrong'),
+    h('span', { class: 'ramp' }, steps, [0.001, 0.01, 0.1, 0.3, 1].map((share) => h('b', { style: `left:${100 * Math.cbrt(share)}%` }, share === 1 ? '100 %' : String(100 * share)))));
+}

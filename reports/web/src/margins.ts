@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold from which on no
+// error was seen.
+import * as Plot from '@observablehq/plot';
+import { kChartStyle, named } from './chart';
+import { breakable, choice, h, lazy_details, on_width, section } from './dom';
+import { count, figure, in_full, percent, power_of_two } from './format';
+import { lane_picker } from './lane_picker';
+import type { Report, Share } from './report';
+import { series_colour, series_dash, series_width } from './series';
+import { sortable_table } from './sortable_table';
+
+type Point = Report['margins'][number]['points'][number];
+type Threshold = Report['thresholds'][number];
+interface Dot { lane: number; x: number; share: Share; side: string; words: string }
+
+const kNearest = -33;        // below every exponent: the place of zero next to it
+const kGap = 3;              // of the zero column to both sides
+
+const kOutermost = [-32, 31];  // these buckets are open-ended
+
+function bucket(exponent: number) {
+  const [from, to] = [power_of_two(exponent), power_of_two(exponent + 1)];
+  return exponent === kOutermost[0] ? `less than ${to} ulps` : exponent === kOutermost[1] ? `${from} ulps and more` : `${from} to ${to} ulps`;
+}
+
+function side_words({ side, exponent }: Point) {
+  if (side === 'zero' || exponent === null) return 'touching or coplanar, margin 0';
+  return side === 'disjoint' ? `${bucket(exponent)} apart` : `${bucket(exponent)} deep`;
+}
+
+export function margins_section(report: Report) {
+  let stratum: number | null = null, log = true;
+  const exponents = report.margins.flatMap((row) => row.points.flatMap((p) => (p.exponent === null || !p.wrong.of ? [] : [p.exponent])));
+  const lowest = Math.max(kNearest + 1, Math.min(...exponents)), highest = Math.max(...exponents);
+  // Disjoint to the right of zero, intersecting to the left.
+  const place = (side: string, exponent: number | null) =>
+    exponent === null || side === 'zero' ? 0 : (side === 'disjoint' ? 1 : -1) * (exponent - lowest + kGap);
+  const reach = highest - lowest + kGap + 1;
+  const counted = report.margins.flatMap((row) => row.points.flatMap((p) => (p.wrong.count ? [p.wrong.share] : [])));
+  const floor = Math.floor(Math.log10(Math.min(0.01, ...counted)));
+
+  const figure_element = h('figure', { class: 'chart', id: 'margin-chart' });
+  const thresholds = sortable_table<Threshold>([
+    { label: 'Lane', cell: (t) => breakable(report.lanes[t.lane].id), order: (t) => t.lane },
+    ...(['disjoint', 'intersects'] as const).flatMap((side) => {
+      const name = side === 'disjoint' ? 'apart' : 'deep';
+      return [
+        { label: `No error from (ulps ${name})`, numeric: true, cell: (t: Threshold) => (t[side].exponent === null ? 'never' : power_of_two(t[side].exponent)), order: (t: Threshold) => t[side].exponent ?? 999 },
+        { label: 'Pairs beyond', numeric: true, cell: (t: Threshold) => count(t[side].above), order: (t: Threshold) => t[side].above },
+        { label: 'Rate below (95 %)', numeric: true, cell: (t: Threshold) => (t[side].above ? percent(t[side].bound) : '–'), order: (t: Threshold) => t[side].bound },
+      ];
+    }),
+  ], { caption: 'Certified thresholds of the lanes chosen', class: 'plain thresholds' });
+
+  function dots(): Dot[] {
+    return picker.lanes().flatMap((lane) => {
+      const row = report.margins.find((r) => r.lane === lane && r.stratum === stratum);
+      return (row?.points ?? []).filter((p) => p.wrong.of > 0).map((p) => ({
+        lane, x: place(p.side, p.exponent) + (p.side === 'disjoint' ? 0.5 : p.side === 'intersects' ? -0.5 : 0), side: p.side, share: p.wrong,
+        words: `${report.lanes[lane].id}\n${side_words(p)}\n${in_full(p.wrong)}`,
+      }));
+    }).sort((a, b) => a.x - b.x);
+  }
+
+  const none = floor - 0.6;                       // where a share of zero stands on the log axis
+  const y = (share: number) => (!log ? 100 * share : share > 0 ? Math.max(none, Math.log10(share)) : none);
+
+  function draw(width: number) {
+    const all = dots(), small = width < 560;
+    const ticks = [0];
+    for (let e = Math.ceil((lowest + (small ? 8 : 0)) / 16) * 16; e <= highest; e += small ? 16 : 8) ticks.push(place('disjoint', e), place('intersects', e));
+    const exponent_at = (x: number) => Math.abs(x) + lowest - kGap;
+    const decades = Array.from({ length: -floor + 1 }, (_, i) => floor + i);
+    const style = (lane: number) => report.lanes[lane];
+    const lanes = [...new Set(all.map((dot) => dot.lane))];
+    const marks: Plot.Markish[] = [
+      Plot.ruleX([0], { stroke: 'currentColor', strokeOpacity: 0.12, strokeWidth: small ? 8 : 14 }),
+      Plot.ruleY([log ? none : 0], { stroke: 'currentColor', strokeOpacity: 0.5 }),
+    ];
+    for (const lane of lanes) {
+      const { algorithm, scalar, target } = style(lane);
+      const stroke = series_colour(report, algorithm), dash = series_dash(target), strokeWidth = series_width(scalar);
+      for (const side of ['intersects', 'disjoint']) {
+        const own = all.filter((dot) => dot.lane === lane && dot.side === side);
+        marks.push(
+          Plot.areaY(own, { x: 'x', y1: (d: Dot) => y(d.share.low), y2: (d: Dot) => y(d.share.high), fill: stroke, fillOpacity: lanes.length > 8 ? 0.06 : 0.1 }),
+          Plot.lineY(own, { x: 'x', y: (d: Dot) => (log && !d.share.count ? NaN : y(d.share.share)), stroke, strokeWidth, strokeDasharray: dash, strokeLinejoin: 'round' }),
+          Plot.dot(log ? own.filter((d) => !d.share.count) : [], { x: 'x', y: none, r: 1.6, fill: stroke }));
+      }
+      const zero = all.filter((dot) => dot.lane === lane && dot.side === 'zero');
+      marks.push(
+        Plot.ruleX(zero, { x: 'x', y1: (d: Dot) => y(d.share.low), y2: (d: Dot) => y(d.share.high), stroke, strokeWidth }),
+        Plot.dot(zero, { x: 'x', y: (d: Dot) => y(d.share.share), fill: stroke, r: scalar === 'f64' ? 2.5 : 4 }));
+      if (stratum !== null) continue;
+      const own = report.thresholds.find((t) => t.lane === lane);
+      const certified = (['disjoint', 'intersects'] as const).flatMap((side) => {
+        const t = own?.[side];
+        return t && t.exponent !== null && t.above ? [{ x: place(side, t.exponent), words: `${report.lanes[lane].id}\nno error in ${count(t.above)} pairs from ${power_of_two(t.exponent)} ulps on\nrate below ${percent(t.bound)} (95 %)` }] : [];
+      });
+      marks.push(Plot.dot(certified, { x: 'x', y: log ? none : 0, symbol: 'triangle', r: 6, dy: 0, fill: stroke, stroke: 'var(--page)', title: 'words', className: 'threshold' }));
+    }
+    marks.push(Plot.tip(all, Plot.pointer({ x: 'x', y: (d: Dot) => y(d.share.share), title: 'words', maxRadius: 30 })));
+    const plot = Plot.plot({
+      width, height: small ? 320 : 420, marginLeft: 58, marginRight: 12, marginBottom: 50, marginTop: 26,
+      style: kChartStyle,
+      x: { domain: [-reach, reach], ticks, tickFormat: (x: number) => (x === 0 ? '0' : power_of_two(exponent_at(x))), label: small ? 'margin, ulps: ← deep · apart →' : 'exact margin in ulps of the largest coordinate:  ← deeper inside  ·  farther apart →', labelAnchor: 'center', labelArrow: 'none', labelOffset: 42 },
+      y: log
+        ? { domain: [none, 0], grid: true, ticks: [none, ...decades], tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`), label: 'share wrong', labelArrow: 'none' }
+        : { domain: [0, 100], grid: true, tickFormat: (v: number) => `${v} %`, label: 'share wrong', labelArrow: 'none' },
+      marks,
+    });
+    const label = `Share of wrong verdicts against the exact margin, of ${lanes.length} lanes; the table below has the thresholds`;
+    figure_element.replaceChildren(all.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen, or it has no figures here.'));
+    thresholds.show(report.thresholds.filter((t) => picker.lanes().includes(t.lane)));
+  }
+
+  const redraw = () => figure_element.clientWidth && draw(figure_element.clientWidth);
+  const published = [...new Set(report.lanes.filter((lane) => !lane.exact).map((lane) => lane.algorithm))];
+  const picker = lane_picker(report, { algorithm: published, scalar: ['f32'], target: ['cpu'] }, redraw, (algorithm) => series_colour(report, algorithm));
+  on_width(figure_element, draw);
+
+  const strata = [...new Set(report.margins.map((row) => row.stratum))].filter((s) => s !== null);
+  const key = h('p', { class: 'key' }, 'Colour: algorithm. Thick: f32, thin: f64. Full line: cpu; dashes: cpu-fma; dots: cuda-nofma; dash and dot: cuda-fma. Band: 95 % interval. ', h('b', {}, '▲'), ' no error was seen from here on.');
+  return section('margins', 'Error rate against margin',
+    h('p', {}, 'How often a lane is wrong, against how close the call was. To the right pairs that are apart (errors are false positives), to the left pairs that intersect (errors are false negatives), by the exact distance or depth in ulps; in the middle pairs that touch.'),
+    h('div', { class: 'controls' },
+      strata.length > 0 && choice('Stratum', [['', 'all'], ...strata.map((s): [string, string] => [String(s), report.strata[s].id])], '', (value) => { stratum = value === '' ? null : Number(value); redraw(); }),
+      choice('Share', [['log', 'logarithmic'], ['linear', 'linear']], 'log', (value) => { log = value === 'log'; redraw(); })),
+    picker.element, figure_element, key,
+    h('h3', {}, 'From which margin on may a lane be trusted?'),
+    h('p', {}, 'The smallest margin, a power of two, from which on no error was seen; how many pairs lie beyond it; and below which rate errors there are, with 95 % confidence.'),
+    thresholds.element,
+    lazy_details(['The chart’s numbers as a table'], () => {
+      const table = sortable_table<Dot>([
+        { label: 'Lane', cell: (d) => report.lanes[d.lane].id, order: (d) => d.lane },
+        { label: 'Margin', cell: (d) => d.words.split('\n')[1], order: (d) => d.x },
+        { label: 'Wrong', cell: (d) => in_full(d.share), order: (d) => d.share.share, descending_first: true },
+      ], { caption: 'Share wrong by margin, of the lanes chosen when this was opened', class: 'plain', page: 100 });
+      table.show(dots());
+      return table.element;
+    }, { class: 'more-facts' }).details);
+}

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// What report.json holds, which reports/report.cpp writes. All numbers are computed there; the page only renders.
+// Lanes and strata are referred to by place in `lanes` / `strata`. Absent things are null or empty arrays.
+
+export interface Share { count: number; of: number; share: number; low: number; high: number }  // Wilson, 95 %; six significant digits are enough
+
+export interface Report {
+  format: 1;
+  run: {
+    seed: number; pairs: number; complete: boolean;
+    command: string;                       // reproduces the whole campaign
+    map_command: string;                   // regenerates the page from stored data: "graze report DIR"
+    build: { version: string; commit: string; compiler: string; cuda: string | null; device: string | null };
+    machine: string | null;                // from timings.json only if deterministic; else null
+  };
+  strata: { id: string; describes: string; pairs: number; intersects: number }[];
+  lanes: { id: string; algorithm: string; scalar: "f32" | "f64"; target: string; paper: string; evidence: string | null;
+           exact: boolean }[];
+  answer: string[];                        // the five sentences
+  // One row a lane and stratum that has pairs, and one a lane with stratum null: all strata together.
+  rates: { lane: number; stratum: number | null; false_positive: Share; false_negative: Share; wrong: Share; declined: number;
+           differs_from_cpu: Share | null }[];
+  // Side by side: left and right lane of one algorithm; `differs` is measured pair by pair where known, else null.
+  // Stratum null: all strata together (as in `rates`).
+  side_by_side: { kind: "cpu-nofma" | "nofma-fma" | "f32-f64"; left: number; right: number;
+                  strata: { stratum: number | null; left_wrong: Share; right_wrong: Share; differs: Share | null }[] }[];
+  // Error against margin, over all strata (stratum null) and a stratum each. side: disjoint or intersecting pairs.
+  // exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have their own entry with exponent null.
+  // Only buckets that have pairs. This table is the largest: with 40 lanes and 19 strata about 60,000 points; lanes of
+  // a stratum with the same points may be left out where the lane was never wrong there (the page then draws nothing).
+  // rep: for room only stratum null is filled (a stratum each is in margins.csv); points without pairs are absent.
+  margins: { lane: number; stratum: number | null;
+             points: { side: "disjoint" | "zero" | "intersects"; exponent: number | null; wrong: Share }[] }[];
+  // Smallest margin (in ulps, a power of two) from which on no error was seen; `bound`: 95 % upper bound of the error
+  // rate of the `above` pairs beyond it (1 - 0.05^(1/n)). null exponent: errors up to the largest margin seen.
+  thresholds: { lane: number; disjoint: { exponent: number | null; above: number; bound: number };
+                intersects: { exponent: number | null; above: number; bound: number } }[];
+  // rep: a cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
+  // Extremes: kind scale: exponent of the largest coordinate; offset: log2(largest coordinate / extent of the pair).
+  extremes: { kind: "scale" | "offset"; step: number; lane: number; cells: { exponent: number; wrong: Share }[] }[];
+  signature_count: number;                 // all; `signatures` holds the first of them by pairs, `cards` say how
+  signatures: {                            // every signature listed that fits (table), commonest first
+    key: string; algorithm: string; count: number; share: number;   // of all pairs
+    contact: string; dimensions: string; coplanar: boolean; margin: string;   // "-2^-3", "0", "2^4" ulps
+    marks: string;   // rep: for room one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
+    card: number | null;                   // place in `cards`
+  }[];
+  cards: {
+    signature: number; file: string; minimised: boolean; from: string;   // "near_edge_edge:1:42"
+    pair: { decimal: string[]; hex: string[]; value: number[] };           // 18 each, a[0].x … b[2].z
+    truth: { verdict: string; contact: string; margin: number; margin_ulps: number };
+    // For the drawing: points in double (from exact values), the common set and the line of both planes, clipped to it.
+    drawing: { contact: number[][]; planes_line: number[][] };              // 0, 1, 2 or more points; 0 or 2 points
+    verdicts: { lane: number; verdict: "disjoint" | "intersects" | "declined"; wrong: boolean }[];   // all lanes run
+    sentences: string[];                   // explain's
+    // rep: read from cases/<hash>.map.json beside the case file: this object, and "pair": the 18 hex floats of the mapped
+    // pair in one string, as write_entry has them (used only if it is the pair shown). `graze minimize DIR` writes it for
+    // carded_signatures (fuzz/cards.h on branch rep); facts (verdicts, sentences) go to cases/<hash>.json likewise.
+    maps: { title: string; x: string; y: string; size: number;             // "b[0].x", "b[0].y", 256; y grows upwards
+            legend: { colour: string; means: string }[];                   // "#rrggbb" as in the panels, "disjoint", …
+            panels: { name: string; png: string }[] } | null;              // name: "truth" or a lane id; png: base64
+    commands: { label: string; text: string }[];                           // "repro", "explain", "minimize"
+    snippets: { label: string; text: string }[];                           // "cpp", "python", … may be empty to save room
+  }[];
+  missing: string[];                       // sentences on what this report lacks (not minimised, no maps, …)
+  compare: Compare | null;
+}
+
+export interface Compare {                 // `--compare DIR1 DIR2`: run is DIR2, other is DIR1
+  other: Report["run"];
+  rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[];   // changed: intervals apart
+  gained: { key: string; count: number }[]; lost: { key: string; count: number }[];
+}

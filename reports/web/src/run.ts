@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was run, and the answer in sentences.
+import { breakable, code_block, h, lazy_details, section, sentence, type Child } from './dom';
+import { count, percent } from './format';
+import type { Report } from './report';
+import { sortable_table } from './sortable_table';
+
+// "20 lanes: twin, proven on …", one line an evidence word.
+function executors(report: Report): Child[] {
+  const by_evidence = new Map<string, number>();
+  for (const lane of report.lanes) {
+    const words = lane.evidence ?? 'this build, on the CPU';
+    by_evidence.set(words, (by_evidence.get(words) ?? 0) + 1);
+  }
+  return [...by_evidence].map(([words, lanes]) => h('div', {}, `${lanes} ${lanes === 1 ? 'lane' : 'lanes'}: ${words}`));
+}
+
+function strata_table(report: Report) {
+  const table = sortable_table<Report['strata'][number]>([
+    { label: 'Stratum', cell: (s) => [s.id], order: (s) => report.strata.indexOf(s) },
+    { label: 'What it draws', cell: (s) => [s.describes], order: (s) => s.describes },
+    { label: 'Pairs', numeric: true, cell: (s) => count(s.pairs), order: (s) => s.pairs },
+    { label: 'Intersect', numeric: true, cell: (s) => (s.pairs ? percent(s.intersects / s.pairs) : '–'), order: (s) => s.intersects / s.pairs },
+  ], { caption: 'Strata of the campaign', class: 'plain' });
+  table.show(report.strata);
+  return table.element;
+}
+
+function lanes_table(report: Report) {
+  const table = sortable_table<Report['lanes'][number]>([
+    { label: 'Lane', cell: (lane) => breakable(lane.id), order: (lane) => report.lanes.indexOf(lane) },
+    { label: 'Reference', cell: (lane) => lane.paper, order: (lane) => lane.paper },
+    { label: 'Ran by', cell: (lane) => lane.evidence ?? 'this build, on the CPU', order: (lane) => lane.evidence ?? '' },
+  ], { caption: 'Lanes of the campaign', class: 'plain' });
+  table.show(report.lanes);
+  return table.element;
+}
+
+export function build_words({ build }: Report['run']) {
+  return [`graze ${build.version}, commit ${build.commit}`, build.compiler, build.cuda ?? 'built without CUDA', build.device ?? 'no CUDA device'];
+}
+
+export function run_section(report: Report) {
+  const { run } = report;
+  const [graze, compiler, toolkit, device] = build_words(run);
+  const facts: [string, Child][] = [
+    ['Pairs', `${count(run.pairs)}${run.complete ? '' : ' so far: the campaign is not complete'}`],
+    ['Seed', String(run.seed)],
+    ['Build', graze],
+    ['Compiler', compiler],
+    ['Toolkit', toolkit],
+    ['Device', device],
+    ['Machine', run.machine],
+    ['Executors', executors(report)],
+  ];
+  return section('run', 'What was run',
+    h('dl', { class: 'facts' }, facts.filter(([, value]) => value !== null).map(([name, value]) => h('div', {}, h('dt', {}, name), h('dd', {}, value)))),
+    h('p', { class: 'label' }, 'The whole campaign again'), code_block(run.command, 'the campaign’s command'),
+    h('p', { class: 'label' }, 'This page again, from the stored results'), code_block(run.map_command, 'the report’s command'),
+    lazy_details([`${report.strata.length} strata`], () => strata_table(report), { class: 'more-facts' }).details,
+    lazy_details([`${report.lanes.length} lanes`], () => lanes_table(report), { class: 'more-facts' }).details,
+    report.missing.length > 0 && h('div', { class: 'notice' }, h('strong', {}, 'What this report lacks'), h('ul', {}, report.missing.map((text) => h('li', {}, sentence(text))))));
+}
+
+export function answer_section(report: Report) {
+  return section('answer', 'The answer', h('ol', { class: 'answer' }, report.answer.map((text) => h('li', {}, sentence(text)))));
+}

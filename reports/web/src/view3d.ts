@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// The drawing by WebGL. One renderer serves all cards: a browser grants only about 16 contexts. It draws off screen, and
+// each card keeps a copy of its picture in a canvas of its own.
+import {
+  AmbientLight, BufferGeometry, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Material, Mesh, MeshLambertMaterial,
+  MeshBasicMaterial, OrthographicCamera, Scene, WebGLRenderer,
+} from 'three';
+import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
+import { axes, half_height, labels, project, type Shape, type Vec, type View } from './drawing';
+
+let renderer: WebGLRenderer | null | undefined;  // null: this browser has no WebGL
+
+function shared_renderer(): WebGLRenderer | null {
+  if (renderer !== undefined) return renderer;
+  const canvas = document.createElement('canvas');
+  if (!canvas.getContext('webgl2', { alpha: true, antialias: true })) return (renderer = null);
+  renderer = new WebGLRenderer({ canvas, alpha: true, antialias: true });
+  canvas.addEventListener('webglcontextlost', () => (renderer = null));
+  return renderer;
+}
+
+export const has_webgl = () => shared_renderer() !== null;
+
+export interface Picture { draw: (canvas: HTMLCanvasElement, view: View) => void; dispose: () => void }
+
+const style_colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+function fan(points: Vec[]) {
+  const corners: number[] = [];
+  for (let i = 1; i + 1 < points.length; ++i) corners.push(...points[0], ...points[i], ...points[i + 1]);
+  const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(corners, 3));
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
+function segments(points: Vec[], closed: boolean) {
+  const ends = points.flatMap((p, i) => (i + 1 < points.length ? [...p, ...points[i + 1]] : closed ? [...p, ...points[0]] : []));
+  return new LineSegmentsGeometry().setPositions(ends);
+}
+
+export function picture(shape: Shape): Picture {
+  const scene = new Scene();
+  const light = new DirectionalLight(0xffffff, 1.9);
+  scene.add(new AmbientLight(0xffffff, 1.5), light);
+  const coloured: { material: Material & { color: Color }; name: string }[] = [];
+  const lines: { material: LineMaterial; width: number }[] = [];
+  const made: { dispose: () => void }[] = [];
+
+  function add_line(geometry: LineSegmentsGeometry, name: string, width: number, hidden: 'shown' | 'faint', dashed = false) {
+    const material = new LineMaterial({ linewidth: width, dashed, dashSize: 0.06, gapSize: 0.04, transparent: true });
+    if (hidden === 'faint') Object.assign(material, { depthTest: false, opacity: 0.35 });
+    coloured.push({ material, name });
+    lines.push({ material, width });
+    const line = new LineSegments2(geometry, material);
+    if (dashed) line.computeLineDistances();
+    scene.add(line);
+    made.push(geometry, material);
+    return line;
+  }
+
+  for (const [name, points, shift] of [['--triangle-a', shape.a, 1], ['--triangle-b', shape.b, 2]] as const) {
+    // The shift keeps edges in front of faces, and coplanar faces from flickering into each other.
+    const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: shift, polygonOffsetUnits: 2 * shift });
+    const geometry = fan([...points]);
+    scene.add(new Mesh(geometry, material));
+    coloured.push({ material, name });
+    made.push(geometry, material);
+    add_line(segments([...points], true), `${name}-edge`, 2, 'shown');
+    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1;  // also where the other hides it
+  }
+  if (shape.line.length > 1) add_line(segments(shape.line, false), '--ink', 1.3, 'shown', true);
+  if (shape.contact.length > 2) {
+    const material = new MeshBasicMaterial({ side: DoubleSide, depthTest: false, transparent: true, opacity: 0.55 });
+    const geometry = fan(shape.contact);
+    const mesh = new Mesh(geometry, material);
+    mesh.renderOrder = 2;
+    scene.add(mesh);
+    coloured.push({ material, name: '--contact' });
+    made.push(geometry, material);
+  }
+  if (shape.contact.length > 1) {
+    const line = add_line(segments(shape.contact, shape.contact.length > 2), '--contact', 4, 'shown');
+    line.material.depthTest = false;
+    line.renderOrder = 3;
+  }
+
+  const camera = new OrthographicCamera();
+  camera.up.set(0, 0, 1);
+
+  function draw(canvas: HTMLCanvasElement, view: View) {
+    const gl = shared_renderer();
+    const context = canvas.getContext('2d');
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (!gl || !context || !width || !height) return;
+    const ratio = Math.min(2, window.devicePixelRatio || 1);
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    gl.setPixelRatio(1);
+    if (gl.domElement.width !== canvas.width || gl.domElement.height !== canvas.height) gl.setSize(canvas.width, canvas.height, false);
+    for (const { material, name } of coloured) material.color.set(style_colour(name));
+    for (const line of lines) line.material.linewidth = line.width * ratio;
+    const half = half_height(shape, view), { eye } = axes(view);
+    Object.assign(camera, { left: (-half * width) / height, right: (half * width) / height, top: half, bottom: -half, near: 0.1, far: 2e4 });
+    const far = 1e4;  // parts outside the frame may lie far in front of it
+    camera.position.set(far * eye[0], far * eye[1], far * eye[2]);
+    camera.lookAt(0, 0, 0);
+    camera.updateProjectionMatrix();
+    light.position.copy(camera.position);
+    gl.setClearColor(0, 0);
+    gl.render(scene, camera);
+    context.clearRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(gl.domElement, 0, 0);
+    overlay(context, view, width, height, ratio);
+  }
+
+  // Names of the vertices, and a contact that is a point.
+  function overlay(context: CanvasRenderingContext2D, view: View, width: number, height: number, ratio: number) {
+    context.save();
+    context.scale(ratio, ratio);
+    if (shape.contact.length === 1) {
+      const { x, y } = project(shape, shape.contact[0], view, width, height);
+      context.beginPath();
+      context.arc(x, y, 5, 0, 2 * Math.PI);
+      context.fillStyle = style_colour('--contact');
+      context.strokeStyle = style_colour('--page');
+      context.lineWidth = 2;
+      context.fill();
+      context.stroke();
+    }
+    context.font = '12px ui-monospace, monospace';
+    context.textAlign = 'center';
+    context.textBaseline = 'middle';
+    context.fillStyle = style_colour('--ink');
+    for (const { x, y, text } of labels(shape, view, width, height)) context.fillText(text, x, y);
+    context.restore();
+  }
+
+  return { draw, dispose: () => made.forEach((one) => one.dispose()) };
+}

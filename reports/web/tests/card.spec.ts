@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+import { expect, open_card, pixels, test } from './page';
+
+test('the drawing turns by dragging and by keys, and comes back', async ({ page }) => {
+  const card = await open_card(page, 1);
+  const board = card.locator('.board');
+  await expect(board).not.toHaveClass(/flat/);  // drawn by WebGL
+  await page.waitForTimeout(200);
+  const still = await pixels(board.locator('canvas'));
+  expect(still.length).toBeGreaterThan(2000);   // something is drawn
+  const box = (await board.boundingBox())!;
+  await page.mouse.move(box.x + 100, box.y + 100);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 180, box.y + 130, { steps: 4 });
+  await page.mouse.up();
+  const dragged = await pixels(board.locator('canvas'));
+  expect(dragged).not.toBe(still);
+  await board.focus();
+  await page.keyboard.press('ArrowLeft');
+  const turned = await pixels(board.locator('canvas'));
+  expect(turned).not.toBe(dragged);
+  await page.keyboard.press('ArrowUp');
+  expect(await pixels(board.locator('canvas'))).not.toBe(turned);
+  await card.locator('button', { hasText: 'Reset' }).click();
+  await board.evaluate((element) => (element as HTMLElement).blur());
+  await page.mouse.move(0, 0);
+  expect(await pixels(board.locator('canvas'))).toBe(still);
+});
+
+test('every card draws, with one WebGL context for all', async ({ page, report }) => {
+  await page.locator('button', { hasText: 'Open all' }).click();
+  for (let number = 1; number <= report.cards.length; ++number) {
+    const board = page.locator(`#card-${number} .board`);
+    await board.scrollIntoViewIfNeeded();
+    await expect(async () => {
+      const painted = await board.locator('canvas').evaluate((canvas: HTMLCanvasElement) => {
+        const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', { willReadFrequently: true })!;
+        copy.drawImage(canvas, 0, 0);
+        return copy.getImageData(0, 0, canvas.width, canvas.height).data.some((value) => value > 0);
+      });
+      expect(painted).toBe(true);
+    }).toPass({ timeout: 5000 });
+  }
+});
+
+test('a card says what the report says', async ({ page, report }) => {
+  const number = 1 + Math.max(0, report.cards.findIndex((card) => card.maps));
+  const data = report.cards[number - 1];
+  const card = await open_card(page, number);
+  await expect(card.locator('.truth').first()).toContainText(data.truth.verdict);
+  for (const text of [...data.sentences, ...data.pair.hex, ...data.pair.decimal]) await expect(card).toContainText(text);
+  await expect(card.locator('.verdicts .bad')).toHaveCount(data.verdicts.filter((verdict) => verdict.wrong).length);
+  const images = card.locator('.panel img');
+  await expect(images).toHaveCount(data.maps?.panels.length ?? 0);
+  for (const image of await images.all()) {
+    expect(await image.evaluate((img: HTMLImageElement) => img.decode().then(() => img.naturalWidth))).toBe(data.maps!.size);
+  }
+});
+
+test('commands, coordinates and snippets are copied', async ({ page, report }) => {
+  const data = report.cards[0];
+  const card = await open_card(page, 1);
+  const clipboard = () => page.evaluate(() => navigator.clipboard.readText());
+  await page.locator('#run .copy').first().click();
+  expect(await clipboard()).toBe(report.run.command);
+  for (const { label, text } of data.commands) {
+    await card.locator(`[aria-label="Copy the ${label} command"]`).click();
+    expect(await clipboard()).toBe(text);
+  }
+  await card.locator('[aria-label="Copy the coordinates"]').click();
+  expect(await clipboard()).toBe(data.pair.hex.join(' '));
+  for (const { label, text } of data.snippets) {
+    await card.locator('.snippets button', { hasText: new RegExp(`^${label}$`) }).click();
+    await card.locator(`[aria-label="Copy the ${label} snippet"]`).click();
+    expect(await clipboard()).toBe(text);
+  }
+});
+
+test('without WebGL the drawing is an SVG, and turns', async ({ page }) => {
+  await page.addInitScript(() => {
+    const real = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) {
+      return kind.startsWith('webgl') ? null : (real as Function).call(this, kind, ...rest);
+    } as typeof real;
+  });
+  await page.reload();
+  const card = await open_card(page, 1);
+  const svg = card.locator('.paper svg');
+  await expect(card.locator('.board')).toHaveClass(/flat/);
+  await expect(svg).toBeVisible();
+  await expect(svg.locator('polygon.triangle-a, polygon.triangle-b')).toHaveCount(2);
+  const still = await svg.innerHTML();
+  await card.locator('.board').focus();
+  await page.keyboard.press('ArrowRight');
+  expect(await svg.innerHTML()).not.toBe(still);
+});

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+import type { Report } from '../src/report';
+import { expect, pixels, test } from './page';
+
+const kLines = '#margin-chart svg g[data-mark="line"] path';
+
+// On the log axis a lane has a line on the sides of zero on which it was ever wrong.
+const lines_of = (report: Report, shown: (lane: Report['lanes'][number]) => boolean) =>
+  report.margins.filter((row) => row.stratum === null && shown(report.lanes[row.lane])).reduce((lines, row) =>
+    lines + ['disjoint', 'intersects'].filter((side) => row.points.some((p) => p.side === side && p.wrong.count > 0)).length, 0);
+
+test('errors against margin: a line a lane, thresholds with their bounds', async ({ page, report }) => {
+  await page.locator('#margin-chart').scrollIntoViewIfNeeded();
+  const published = report.lanes.filter((lane) => !lane.exact && lane.scalar === 'f32' && lane.target === 'cpu');
+  await expect(page.locator(kLines)).toHaveCount(lines_of(report, (lane) => published.includes(lane)));
+  for (const d of await page.locator(kLines).evaluateAll((paths) => paths.map((path) => path.getAttribute('d')))) expect(d).not.toContain('NaN');
+  await expect(page.locator('.thresholds tbody tr')).toHaveCount(published.length);
+  const certified = published.flatMap((lane) => {
+    const t = report.thresholds.find((one) => report.lanes[one.lane] === lane)!;
+    return [t.disjoint, t.intersects].filter((side) => side.exponent !== null && side.above > 0);
+  });
+  const titles = await page.locator('#margin-chart title').allTextContents();
+  expect(titles.filter((title) => title.includes('no error in'))).toHaveLength(certified.length);
+});
+
+test('lanes are picked, and the share is drawn on either axis', async ({ page, report }) => {
+  await page.locator('#margin-chart').scrollIntoViewIfNeeded();
+  const drawn = await pixels(page.locator('#margin-chart'));
+  await page.locator('#margins .chips button', { hasText: /^f64$/ }).click();
+  await expect(page.locator(kLines)).toHaveCount(lines_of(report, (lane) => !lane.exact && lane.target === 'cpu'));
+  expect(await pixels(page.locator('#margin-chart'))).not.toBe(drawn);
+  await page.locator('#margins .chips button', { hasText: /^f64$/ }).click();
+  await page.locator('#margins select').selectOption('linear');
+  await expect(page.locator('#margin-chart')).toContainText('50 %');
+});
+
+test('pointing at the chart tells the lane, the margin and the interval', async ({ page }) => {
+  await page.locator('#margin-chart').scrollIntoViewIfNeeded();
+  const box = (await page.locator('#margin-chart svg').first().boundingBox())!;
+  await page.mouse.move(box.x + 0.56 * box.width, box.y + 0.15 * box.height, { steps: 5 });
+  await expect(page.locator('#margin-chart g[aria-label="tip"]')).toContainText('95 %');
+});
+
+test('extremes: a cell for every exponent that has pairs', async ({ page, report }) => {
+  for (const kind of ['scale', 'offset'] as const) {
+    const rows = report.extremes.filter((row) => row.kind === kind && report.lanes[row.lane].target === 'cpu');
+    const cells = rows.reduce((sum, row) => sum + row.cells.length, 0);
+    if (!cells) continue;
+    await page.locator(`#extremes-${kind}`).scrollIntoViewIfNeeded();
+    await expect(page.locator(`#extremes-${kind} g[data-mark="rect"] rect`)).toHaveCount(cells);
+    const fills = await page.locator(`#extremes-${kind} g[data-mark="rect"] rect`).evaluateAll((rects) => [...new Set(rects.map((rect) => getComputedStyle(rect).fill))]);
+    expect(fills.length).toBeGreaterThan(3);
+  }
+});

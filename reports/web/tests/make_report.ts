@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes the page that the tests open: a real campaign, minimised, by the graze that GRAZE names. GRAZE_REPORT names a
+// page made before instead.
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+const kStrata = 'thesis,near_edge_edge,coplanar_wide,exact_contact,far_from_origin,extreme_scale';
+
+export default function make_report() {
+  const { GRAZE, GRAZE_REPORT } = process.env;
+  if (GRAZE_REPORT) {
+    if (!existsSync(GRAZE_REPORT)) throw new Error(`GRAZE_REPORT: expected a report's page, found nothing at ${GRAZE_REPORT}`);
+    return;
+  }
+  if (!GRAZE) throw new Error('GRAZE: expected the path of the graze binary, found nothing');
+  const folder = mkdtempSync(join(tmpdir(), 'graze-page-'));
+  const run = (...args: string[]) => execFileSync(GRAZE, args, { cwd: folder, stdio: ['ignore', 'ignore', 'inherit'] });
+  run('fuzz', '--pairs', '1500', '--seed', '1', '--strata', kStrata, '--executor', 'twin', '--out', 'campaign');
+  run('minimize', 'campaign', '--executor', 'twin');
+  run('report', 'campaign');
+  process.env.GRAZE_REPORT = join(folder, 'campaign', 'report.html');
+  return () => rmSync(folder, { recursive: true });
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page under test, watched: it must fetch nothing and leave the console clean, whatever a test does with it.
+import { pathToFileURL } from 'node:url';
+import { expect, test as base, type Locator, type Page } from '@playwright/test';
+import type { Report } from '../src/report';
+
+export const url = () => pathToFileURL(process.env.GRAZE_REPORT!).href;
+
+export const test = base.extend<{ report: Report; watched: void }>({
+  watched: [async ({ page }, use) => {
+    const fetched: string[] = [], said: string[] = [];
+    page.on('request', (request) => {
+      const asked = request.url().split('#')[0];
+      if (asked !== url() && !asked.startsWith('data:')) fetched.push(asked);
+    });
+    page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
+    page.on('pageerror', (error) => said.push(`error: ${error.message}`));
+    await page.goto(url());
+    await page.waitForSelector('#method');
+    await use();
+    expect(fetched, 'fetched').toEqual([]);
+    expect(said, 'on the console').toEqual([]);
+  }, { auto: true }],
+  report: async ({ page, watched: _ }, use) => {
+    await use(JSON.parse((await page.locator('#report').textContent())!) as Report);
+  },
+});
+
+export { expect };
+
+// What is painted there, to be compared.
+export async function pixels(element: Locator): Promise<string> {
+  return (await element.screenshot({ animations: 'disabled' })).toString('base64');
+}
+
+export async function open_card(page: Page, number: number): Promise<Locator> {
+  const card = page.locator(`#card-${number}`);
+  if ((await card.getAttribute('open')) === null) await card.locator('summary').first().click();
+  await card.locator('.board').scrollIntoViewIfNeeded();
+  return card;
+}

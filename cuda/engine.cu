@@ -6,6 +6,7 @@
 #include "cuda/engine_kernels.h"
 #include "cuda/kernels.h"
 #include "cuda/prove_kernels.h"
+#include "fuzz/strata.h"
 
 namespace graze {
 namespace {
@@ -41,7 +42,7 @@ class CudaEngine final : public Engine {
 
   EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) override {
     check(cudaSetDevice(ordinal_));
-    const EngineBlock empty = begin();
+    const EngineBlock empty = begin(kStrata[stratum].axis);
     const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, count));
     EngineBlock blocks[kBlocksAtOnce];
     for (int k = 0; k < kBlocksAtOnce; ++k) blocks[k] = with_memory(empty, *buffers_[k], block_pairs);
@@ -64,15 +65,17 @@ class CudaEngine final : public Engine {
 
  private:
   // Empties what adds up over the blocks.
-  EngineBlock begin() {
+  EngineBlock begin(Axis axis) {
     EngineBlock block{};
+    block.axis = axis;
     std::uint32_t* lengths = lengths_.at_least(2);
     block.undecided = {undecided_.at_least(kMostUndecided), kMostUndecided, lengths};
     block.signatures = {signatures_.at_least(kSignatures), kSignatures, lengths + 1};
-    block.counts = counts_.at_least(counters() + 1);
-    block.disagreements = block.counts + counters();
+    block.counts = counts_.at_least(2 * counters() + 1);
+    block.extreme_counts = block.counts + counters();
+    block.disagreements = block.counts + 2 * counters();
     check(cudaMemset(lengths, 0, 2 * sizeof *lengths));
-    check(cudaMemset(block.counts, 0, (counters() + 1) * sizeof *block.counts));
+    check(cudaMemset(block.counts, 0, (2 * counters() + 1) * sizeof *block.counts));
     std::vector<EngineSignature> empty(kSignatures);
     for (EngineSignature& row : empty) std::fill_n(row.cases, kEngineCases, ~std::uint64_t{0});
     check(cudaMemcpy(block.signatures.rows, empty.data(), empty.size() * sizeof empty[0], cudaMemcpyHostToDevice));
@@ -84,7 +87,8 @@ class CudaEngine final : public Engine {
     block.pairs.coordinates = buffers.coordinates.at_least(pairs * kCoordinates);
     block.truth = buffers.truth.at_least(words);
     block.wrong = buffers.wrong.at_least(words);
-    block.buckets = buffers.buckets.at_least(pairs);
+    block.buckets = buffers.buckets.at_least(2 * pairs);
+    block.extremes = block.buckets + pairs;
     block.lanes.count = static_cast<int>(lanes_.size());
     std::uint32_t* of_lanes = buffers.lane_words.at_least(words * (2 * lanes_.size() + 1));
     std::uint32_t* none = of_lanes + words * 2 * lanes_.size();
@@ -133,11 +137,12 @@ class CudaEngine final : public Engine {
       throw std::runtime_error("the engine left too many pairs to the host; run fewer at once");
     if (lengths[1]) throw std::runtime_error("the engine found more signatures than it can hold");
     EngineResult result;
-    result.counts.resize(counters() + 1);
-    check(cudaMemcpy(result.counts.data(), block.counts, result.counts.size() * sizeof result.counts[0],
-                     cudaMemcpyDeviceToHost));
-    result.disagreements = result.counts.back();
-    result.counts.pop_back();
+    std::vector<std::uint64_t> counts(2 * counters() + 1);
+    check(cudaMemcpy(counts.data(), block.counts, counts.size() * sizeof counts[0], cudaMemcpyDeviceToHost));
+    const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counters());
+    result.disagreements = counts.back();
+    result.counts.assign(counts.begin(), middle);
+    if (block.axis != Axis::none) result.extreme_counts.assign(middle, counts.end() - 1);
     result.undecided.resize(lengths[0]);
     check(cudaMemcpy(result.undecided.data(), block.undecided.indices, lengths[0] * sizeof result.undecided[0],
                      cudaMemcpyDeviceToHost));

@@ -210,8 +210,19 @@ __global__ void __launch_bounds__(kThreads) settle_depths(EngineBlock block) {
   });
 }
 
-// A warp a word: the first thread of each bucket counts all pairs of that bucket.
-__global__ void __launch_bounds__(kThreads) tally(EngineBlock block) {
+// The extremes of the pairs whose bucket is known.
+__global__ void __launch_bounds__(kThreads) place_extremes(EngineBlock block) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  if (i >= block.pairs.count) return;
+  float c[kCoordinates];
+  load(block.pairs, i, c);
+  block.extremes[i] = block.buckets[i] == kUndecided ? kUndecided : extreme_of(pair_of(c), block.axis);
+}
+
+// By bucket, or by extreme. A warp a word: the first thread of each bucket counts all pairs of that bucket.
+__global__ void __launch_bounds__(kThreads) tally(EngineBlock block, bool by_extreme) {
+  const std::int8_t* const buckets = by_extreme ? block.extremes : block.buckets;
+  unsigned long long* const into = by_extreme ? block.extreme_counts : block.counts;
   extern __shared__ std::uint32_t counts[];
   const int counters = static_cast<int>(engine_counters(block.lanes.count));
   for (int i = static_cast<int>(threadIdx.x); i < counters; i += kThreads) counts[i] = 0;
@@ -221,7 +232,7 @@ __global__ void __launch_bounds__(kThreads) tally(EngineBlock block) {
   for (std::uint32_t word = (blockIdx.x * kThreads + threadIdx.x) / 32; word < words;
        word += gridDim.x * kThreads / 32) {
     const std::uint32_t i = word * 32 + lane_of_warp;
-    const std::int8_t bucket = i < block.pairs.count ? block.buckets[i] : kUndecided;
+    const std::int8_t bucket = i < block.pairs.count ? buckets[i] : kUndecided;
     const std::uint32_t known = __ballot_sync(0xffffffffu, bucket != kUndecided);
     const std::uint32_t same = __match_any_sync(0xffffffffu, bucket);
     disagreements += lane_of_warp == 0 ? __popc(block.wrong[word] & known) : 0;
@@ -240,10 +251,10 @@ __global__ void __launch_bounds__(kThreads) tally(EngineBlock block) {
       count(4 + 4 * l, none);
     }
   }
-  if (disagreements) atomicAdd(block.disagreements, static_cast<unsigned long long>(disagreements));
+  if (disagreements && !by_extreme) atomicAdd(block.disagreements, static_cast<unsigned long long>(disagreements));
   __syncthreads();
   for (int i = static_cast<int>(threadIdx.x); i < counters; i += kThreads) {
-    if (counts[i]) atomicAdd(&block.counts[i], static_cast<unsigned long long>(counts[i]));
+    if (counts[i]) atomicAdd(&into[i], static_cast<unsigned long long>(counts[i]));
   }
 }
 
@@ -267,7 +278,11 @@ void launch_engine(const EngineBlock& block, cudaStream_t stream) {
   settle_depths<<<kBlocks, kThreads, 0, stream>>>(block);
   const std::size_t shared = engine_counters(block.lanes.count) * sizeof(std::uint32_t);
   check(cudaFuncSetAttribute(tally, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)));
-  tally<<<kBlocks, kThreads, shared, stream>>>(block);
+  tally<<<kBlocks, kThreads, shared, stream>>>(block, false);
+  if (block.axis != Axis::none) {
+    place_extremes<<<(n + kThreads - 1) / kThreads, kThreads, 0, stream>>>(block);
+    tally<<<kBlocks, kThreads, shared, stream>>>(block, true);
+  }
   check(cudaGetLastError());
 }
 

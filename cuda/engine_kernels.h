@@ -4,12 +4,13 @@
 
 #include <cuda_runtime.h>
 
+#include "core/extreme.h"
 #include "cuda/engine.h"
 #include "cuda/exact_kernels.h"
 
 namespace graze {
 
-inline constexpr std::int8_t kUndecided = 127;  // a bucket that is not known
+inline constexpr std::int8_t kUndecided = 127;  // a bucket, or an extreme, that is not known
 inline constexpr int kMostLanes = 32;
 
 struct LaneWords {
@@ -64,6 +65,9 @@ struct EngineBlock {
   SignatureTable signatures;
   IndexList undecided;
   unsigned long long* counts;  // see EngineResult
+  Axis axis;
+  std::int8_t* extremes;  // written and counted unless axis is none
+  unsigned long long* extreme_counts;
   unsigned long long* disagreements;
 };
 

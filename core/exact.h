@@ -184,9 +184,11 @@ struct ExactNumbers {
   GRAZE_HD bool zero(const T& x) const { return x == T(0); }
   GRAZE_HD bool is_proper(const Vec<M>& normal) const { return !is_zero(normal); }
 };
-using DoubleNumbers = ExactNumbers<double, double, double>;              // up to 15 bits
-using NarrowNumbers = ExactNumbers<std::int64_t, std::int64_t, Int128>;  // up to 30 bits
-using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128>;           // up to 40 bits
+// Of the coordinates on their grid, how many bits these numbers hold.
+inline constexpr int kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40;
+using DoubleNumbers = ExactNumbers<double, double, double>;
+using NarrowNumbers = ExactNumbers<std::int64_t, std::int64_t, Int128>;
+using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128>;
 using WideNumbers = ExactNumbers<Wide<5>, Wide<9>, Wide<14>>;
 
 template <class Numbers>
@@ -582,7 +584,8 @@ GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n,
 template <class Numbers>
 GRAZE_HD Seen look(const Triangles<Numbers>& t, bool verdict_only) {
   Seen seen;
-  NormalOf<Numbers> n = normal<Numbers>(t.a);
+  const typename Numbers::M zero(0);
+  NormalOf<Numbers> n{zero, zero, zero};
   for (int axis = 0; axis < 11 && !(verdict_only && seen.separated); ++axis) {
     const int i = axis / 3, j = axis % 3;
     const NormalOf<Numbers> along =
@@ -668,10 +671,10 @@ GRAZE_HD bool decide(const float* a, const float* b, int exponent) {
 // The decision after the first attempt.
 GRAZE_HD inline bool intersects_unsure(const float* a, const float* b, Stage& stage) {
   const Grid grid = grid_of(a, b);
-  stage = grid.bits <= 15 ? Stage::doubles : Stage::int128;
-  if (grid.bits <= 15) return decide<DoubleNumbers>(a, b, 0);
-  if (grid.bits <= 30) return decide<NarrowNumbers>(a, b, grid.exponent);
-  if (grid.bits <= 40) return decide<IntNumbers>(a, b, grid.exponent);
+  stage = grid.bits <= kDoubleBits ? Stage::doubles : Stage::int128;
+  if (grid.bits <= kDoubleBits) return decide<DoubleNumbers>(a, b, 0);
+  if (grid.bits <= kNarrowBits) return decide<NarrowNumbers>(a, b, grid.exponent);
+  if (grid.bits <= kIntBits) return decide<IntNumbers>(a, b, grid.exponent);
   stage = Stage::bounded;
   const Answer answer = by_planes(triangles<BoundedNumbers>(a, b));
   if (answer != Answer::unsure) return answer != Answer::disjoint;
@@ -712,10 +715,10 @@ GRAZE_HD inline Relation relation(const float* a, const float* b) {
   Relation r;
   if (relate_quickly(a, b, r)) return r;
   const Grid grid = grid_of(a, b);
-  return grid.bits <= 15   ? by_axes(triangles<DoubleNumbers>(a, b))
-         : grid.bits <= 30 ? by_axes(triangles<NarrowNumbers>(a, b, grid.exponent))
-         : grid.bits <= 40 ? by_axes(triangles<IntNumbers>(a, b, grid.exponent))
-                           : by_axes(triangles<WideNumbers>(a, b));
+  return grid.bits <= kDoubleBits   ? by_axes(triangles<DoubleNumbers>(a, b))
+         : grid.bits <= kNarrowBits ? by_axes(triangles<NarrowNumbers>(a, b, grid.exponent))
+         : grid.bits <= kIntBits    ? by_axes(triangles<IntNumbers>(a, b, grid.exponent))
+                                    : by_axes(triangles<WideNumbers>(a, b));
 }
 
 }  // namespace graze::exact

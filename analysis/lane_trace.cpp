@@ -65,11 +65,9 @@ Replay replay(const Lane& lane, const Pair& pair) {
 }
 
 Verdict decide_lane(const Lane& lane, const Pair& pair) {
-  const DecideBlock block = lane.decide ? lane.decide : twin_block(lane.algorithm, lane.scalar, lane.target);
+  const DecideBlock block = block_on_host(lane);
   if (!block) throw std::invalid_argument(lane.id + ": expected a host lane or a twin");
-  std::uint64_t intersects = 0, declined = 0;
-  block(&pair, 1, &intersects, &declined);
-  return declined & 1 ? Verdict::declined : intersects & 1 ? Verdict::intersects : Verdict::disjoint;
+  return decide_one(block, pair);
 }
 
 }  // namespace graze

@@ -77,6 +77,12 @@ std::span<const Lane> lanes() {
 
 std::span<const Lane> published_lanes() { return lanes().first(std::size_t{2} * kAlgorithmCount * kTargetCount); }
 
+Verdict decide_one(DecideBlock block, const Pair& pair) {
+  std::uint64_t intersects = 0, declined = 0;
+  block(&pair, 1, &intersects, &declined);
+  return verdict_of_bits(intersects & 1, declined & 1);
+}
+
 bool runs_on_this_cpu(const Lane& lane) {
 #if defined(__x86_64__)
   return lane.target != Target::cpu_fma || __builtin_cpu_supports("fma");

@@ -19,13 +19,16 @@ constexpr AlgorithmInfo kExactInfo{"exact",
                                    true};
 
 void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  std::fill_n(intersects, (count + 63) / 64, 0);
-  std::fill_n(declined, (count + 63) / 64, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool finite = is_finite(pairs[i]);
-    const bool yes = finite && exact::intersects(&pairs[i].a[0].x, &pairs[i].b[0].x);
-    intersects[i / 64] |= std::uint64_t{yes} << i % 64;
-    declined[i / 64] |= std::uint64_t{!finite} << i % 64;
+  for (std::size_t word = 0; word * 64 < count; ++word) {
+    std::uint64_t yes = 0, no_answer = 0;
+    for (std::size_t bit = 0; bit < 64 && word * 64 + bit < count; ++bit) {
+      const Pair& pair = pairs[word * 64 + bit];
+      const bool finite = is_finite(pair);
+      yes |= std::uint64_t{finite && exact::intersects(&pair.a[0].x, &pair.b[0].x)} << bit;
+      no_answer |= std::uint64_t{!finite} << bit;
+    }
+    intersects[word] = yes;
+    declined[word] = no_answer;
   }
 }
 

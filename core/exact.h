@@ -15,9 +15,11 @@
 //              (7 + 56 e) e sum |products|, e = 2^-53 (Shewchuk 1997, orient3d stage A); contraction only removes
 //              roundings. No overflow or underflow: differences of floats lie between 2^-149 and 2^129, or are zero.
 //   doubles    coordinates that are integers of up to 15 bits times one power of two: a determinant is less than
-//              6 * 2^(3 * 16) < 2^53, so nothing rounds.
+//              6 * 2^(3 * 16) < 2^53, so nothing rounds; in floats so up to 6 bits: 6 * 2^(3 * 7) < 2^24.
 //   int128     up to 30 bits: minors fit in 64 bits; up to 40 bits: a determinant is less than 6 * 2^(3 * 41) < 2^127.
-//   wide       integers multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840.
+//   wide       up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant less than 6 * 2^(3 * 91) <
+//   2^319;
+//              else multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840.
 // Integers do not round: what is exact here does not hang on rounding modes, contraction or optimisation.
 #pragma once
 
@@ -189,10 +191,12 @@ struct ExactNumbers {
   GRAZE_HD bool is_proper(const Vec<M>& normal) const { return !is_zero(normal); }
 };
 // Of the coordinates on their grid, how many bits these numbers hold.
-inline constexpr int kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40;
+inline constexpr int kSingleBits = 6, kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40, kLongBits = 90;
+using SingleNumbers = ExactNumbers<float, float, float>;  // for devices; grids from 2^-30 to 2^30
 using DoubleNumbers = ExactNumbers<double, double, double>;
 using NarrowNumbers = ExactNumbers<std::int64_t, std::int64_t, Int128>;
 using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128>;
+using LongNumbers = ExactNumbers<Wide<2>, Wide<3>, Wide<5>>;
 using WideNumbers = ExactNumbers<Wide<5>, Wide<9>, Wide<14>>;
 
 template <class Numbers>
@@ -240,8 +244,16 @@ GRAZE_HD inline double power_of_two(int exponent) {
   return power;
 }
 
+GRAZE_HD inline void convert(float x, double, float& out) { out = x; }
 GRAZE_HD inline void convert(float x, double, double& out) { out = static_cast<double>(x); }
 GRAZE_HD inline void convert(float x, double scale, std::int64_t& out) { out = static_cast<std::int64_t>(x * scale); }
+GRAZE_HD inline void convert(float x, double scale, Wide<2>& out) {
+  const double integer = x < 0 ? x * -scale : x * scale;
+  const auto high = static_cast<std::uint64_t>(integer * 0x1p-64);
+  out.limb[0] = static_cast<std::uint64_t>(integer - static_cast<double>(high) * 0x1p64);
+  out.limb[1] = high;
+  if (x < 0) out = -out;
+}
 GRAZE_HD inline void convert(float x, double, Wide<5>& out) {
   const std::uint32_t bits = bits_of(x), exponent = bits >> 23 & 0xffu, fraction = bits & 0x7fffffu;
   const std::uint32_t shift = exponent == 0 ? 0 : exponent - 1;
@@ -793,7 +805,7 @@ GRAZE_HD inline bool intersects_unsure(const float* a, const float* b, Stage& st
   const Answer answer = by_planes(triangles<BoundedNumbers>(a, b));
   if (answer != Answer::unsure) return answer != Answer::disjoint;
   stage = Stage::wide;
-  return decide<WideNumbers>(a, b, 0);
+  return grid.bits <= kLongBits ? decide<LongNumbers>(a, b, grid.exponent) : decide<WideNumbers>(a, b, 0);
 }
 
 }  // namespace detail
@@ -811,10 +823,43 @@ GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = n
 
 namespace detail {
 
-// The relation of pairs in general position: they cross, or a plane or an edge of both parts them.
+// The relation of two triangles with one vertex in common, seen from it. Let p and q be the signs of the heights of b's
+// other vertices over a's plane and of a's over b's. Some plane through the vertex leaves a on one side and b on the
+// other if that of a does (p is the same twice), or that of b, or one spanned by an edge of each; the determinants of
+// these are the same four numbers. Then the triangles meet in the vertex alone; else in a segment that ends there.
+// Returns: false when a sign is in doubt.
+GRAZE_HD inline bool relate_at_vertex(const float* a, const float* b, int shared, Relation& r) {
+  const double error = determinant_error(extent_of(a, b));
+  const unsigned i = static_cast<unsigned>(shared) / 3, j = static_cast<unsigned>(shared) % 3;
+  const auto seen = [](const float* v, unsigned k, const Vec<float>& from) {
+    const Vec<float> at = vertex(v, k);
+    return Vec<double>{double(at.x) - from.x, double(at.y) - from.y, double(at.z) - from.z};
+  };
+  const Vec<float> from = vertex(a, i);
+  const Vec<double> a1 = seen(a, (i + 1) % 3, from), a2 = seen(a, (i + 2) % 3, from);
+  const Vec<double> b1 = seen(b, (j + 1) % 3, from), b2 = seen(b, (j + 2) % 3, from);
+  const Vec<double> normal_a = cross<double>(a1, a2), normal_b = cross<double>(b1, b2);
+  const double heights[4] = {dot<double>(normal_a, b1), dot<double>(normal_a, b2), dot<double>(normal_b, a1),
+                             dot<double>(normal_b, a2)};
+  unsigned above = 0;
+  for (unsigned k = 0; k < 4; ++k) {
+    if (!(heights[k] > error || heights[k] < -error)) return false;
+    above |= unsigned{heights[k] > 0} << k;
+  }
+  const bool p1 = above & 1, p2 = above >> 1 & 1, q1 = above >> 2 & 1, q2 = above >> 3 & 1;
+  const bool parted = p1 == p2 || q1 == q2 || p1 == q1;
+  r = {true, parted ? 0 : 1, parted ? 0 : -1, 2, 2, false};
+  return true;
+}
+
+// The relation of pairs in general position: they cross, a plane or an edge of both parts them, or they share a vertex.
 // Returns: false when that is not beyond doubt.
 GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r) {
   const Answer answer = by_planes_quickly(a, b);
+  if (answer == Answer::unsure) {
+    const int shared = shared_vertex(a, b);
+    return shared >= 0 && relate_at_vertex(a, b, shared, r);
+  }
   r = answer == Answer::crosses ? Relation{true, 1, -1, 2, 2, false} : Relation{};
   // A determinant that is certainly not zero parts them: they are not coplanar.
   return answer == Answer::crosses || (answer == Answer::disjoint && both_proper(a, b));
@@ -832,6 +877,7 @@ GRAZE_HD inline Relation relation(const float* a, const float* b) {
   return grid.bits <= kDoubleBits   ? by_axes(triangles<DoubleNumbers>(a, b))
          : grid.bits <= kNarrowBits ? by_axes(triangles<NarrowNumbers>(a, b, grid.exponent))
          : grid.bits <= kIntBits    ? by_axes(triangles<IntNumbers>(a, b, grid.exponent))
+         : grid.bits <= kLongBits   ? by_axes(triangles<LongNumbers>(a, b, grid.exponent))
                                     : by_axes(triangles<WideNumbers>(a, b));
 }
 

@@ -13,29 +13,51 @@ namespace {
 constexpr std::uint32_t kBlockPairs = 1u << 22;  // decided together; a multiple of kThreads
 constexpr std::uint32_t kSignatures = 1u << 18;  // a million pairs of all strata make six thousand
 constexpr std::uint32_t kMostUndecided = 1u << 26;
-constexpr int kBlocksBetweenLooks = 8;
+constexpr int kBlocksAtOnce = 3;
+constexpr int kBlocksBetweenLooks = 12;
+
+// The memory of one block under way. Several are, so that the last pairs of one, which keep few threads busy, do not
+// hold up the next.
+struct Buffers {
+  cudaStream_t stream;
+  DeviceExact exact;
+  DeviceArray<float> coordinates;
+  DeviceArray<std::uint32_t> truth, wrong, lane_words, places, lengths;
+  DeviceArray<std::int8_t> buckets;
+
+  Buffers() { check(cudaStreamCreate(&stream)); }
+  ~Buffers() { cudaStreamDestroy(stream); }
+};
 
 class CudaEngine final : public Engine {
  public:
   CudaEngine(int ordinal, std::span<const Lane* const> lanes) : ordinal_(ordinal), lanes_(lanes.begin(), lanes.end()) {
     if (lanes.size() > kMostLanes) throw std::runtime_error("the engine takes 32 lanes at most");
+    check(cudaSetDevice(ordinal_));
+    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // else each kernel with a stack of its own size waits for it
+    for (std::unique_ptr<Buffers>& buffers : buffers_) buffers = std::make_unique<Buffers>();
   }
+  ~CudaEngine() override { cudaSetDevice(ordinal_); }
 
   EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) override {
     check(cudaSetDevice(ordinal_));
-    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // else each kernel with a stack of its own size waits for it
-    EngineBlock block = begin();
+    const EngineBlock empty = begin();
+    const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, count));
+    EngineBlock blocks[kBlocksAtOnce];
+    for (int k = 0; k < kBlocksAtOnce; ++k) blocks[k] = with_memory(empty, *buffers_[k], block_pairs);
     std::uint64_t done = 0;
-    for (int b = 1; done < count; ++b) {
-      block.pairs.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, count - done));
+    for (int b = 0; done < count; ++b) {
+      EngineBlock& block = blocks[b % kBlocksAtOnce];
+      block.pairs.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(block_pairs, count - done));
       block.pairs.stride = block.pairs.count;
       block.first = first + done;
-      judge(block, seed, stratum);
+      judge(block, *buffers_[b % kBlocksAtOnce], seed, stratum);
       done += block.pairs.count;
-      if (b % kBlocksBetweenLooks == 0 && left_to_host(block) > kMostUndecided - kBlocksBetweenLooks * kBlockPairs)
+      if ((b + 1) % kBlocksBetweenLooks == 0 &&
+          left_to_host(empty) > kMostUndecided - kBlocksBetweenLooks * kBlockPairs)
         break;
     }
-    EngineResult result = fetch(block);
+    EngineResult result = fetch(empty);
     result.done = done;
     return result;
   }
@@ -44,32 +66,12 @@ class CudaEngine final : public Engine {
   // Empties what adds up over the blocks.
   EngineBlock begin() {
     EngineBlock block{};
-    block.pairs.coordinates = coordinates_.at_least(std::size_t{kBlockPairs} * kCoordinates);
-    block.truth = truth_.at_least(kWords);
-    block.wrong = wrong_.at_least(kWords);
-    block.buckets = buckets_.at_least(kBlockPairs);
-    block.lanes.count = static_cast<int>(lanes_.size());
-    std::uint32_t* words = lane_words_.at_least(2 * kWords * lanes_.size());
-    std::uint32_t* none = none_.at_least(kWords);
-    check(cudaMemset(none, 0, kWords * sizeof *none));
-    for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      const Lane& lane = *lanes_[l];
-      if (lane.is_exact()) {  // it is the truth, and declines nothing
-        block.lanes.lane[l] = {block.truth, none, lane.algorithm, -1};
-        continue;
-      }
-      const int slot = static_cast<int>(lane.scalar) * kTargetCount + static_cast<int>(lane.target);
-      block.lanes.lane[l] = {words + 2 * kWords * l, words + 2 * kWords * l + kWords, lane.algorithm, slot};
-    }
-    std::uint32_t* lengths = lengths_.at_least(4);
-    block.left = {left_.at_least(std::size_t{kBlockPairs} * kCoordinates), kBlockPairs, places_.at_least(kBlockPairs),
-                  lengths};
-    block.left_wide = {nullptr, 0, wide_places_.at_least(kBlockPairs), lengths + 1};
-    block.undecided = {undecided_.at_least(kMostUndecided), kMostUndecided, lengths + 2};
-    block.signatures = {signatures_.at_least(kSignatures), kSignatures, lengths + 3};
+    std::uint32_t* lengths = lengths_.at_least(2);
+    block.undecided = {undecided_.at_least(kMostUndecided), kMostUndecided, lengths};
+    block.signatures = {signatures_.at_least(kSignatures), kSignatures, lengths + 1};
     block.counts = counts_.at_least(counters() + 1);
     block.disagreements = block.counts + counters();
-    check(cudaMemset(lengths, 0, 4 * sizeof *lengths));
+    check(cudaMemset(lengths, 0, 2 * sizeof *lengths));
     check(cudaMemset(block.counts, 0, (counters() + 1) * sizeof *block.counts));
     std::vector<EngineSignature> empty(kSignatures);
     for (EngineSignature& row : empty) std::fill_n(row.cases, kEngineCases, ~std::uint64_t{0});
@@ -77,19 +79,45 @@ class CudaEngine final : public Engine {
     return block;
   }
 
-  void judge(const EngineBlock& block, std::uint64_t seed, int stratum) {
-    launch_generate(coordinates_.at_least(0), block.pairs.count, seed, stratum, block.first, nullptr);
-    std::uint32_t* truth = truth_.at_least(0);
+  EngineBlock with_memory(EngineBlock block, Buffers& buffers, std::size_t pairs) {
+    const std::size_t words = (pairs + kThreads - 1) / kThreads * kThreads / 32;
+    block.pairs.coordinates = buffers.coordinates.at_least(pairs * kCoordinates);
+    block.truth = buffers.truth.at_least(words);
+    block.wrong = buffers.wrong.at_least(words);
+    block.buckets = buffers.buckets.at_least(pairs);
+    block.lanes.count = static_cast<int>(lanes_.size());
+    std::uint32_t* of_lanes = buffers.lane_words.at_least(words * (2 * lanes_.size() + 1));
+    std::uint32_t* none = of_lanes + words * 2 * lanes_.size();
+    check(cudaMemset(none, 0, words * sizeof *none));
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      const Lane& lane = *lanes_[l];
+      if (lane.is_exact()) {  // it is the truth, and declines nothing
+        block.lanes.lane[l] = {block.truth, none, lane.algorithm, -1};
+        continue;
+      }
+      const int slot = static_cast<int>(lane.scalar) * kTargetCount + static_cast<int>(lane.target);
+      block.lanes.lane[l] = {of_lanes + 2 * words * l, of_lanes + 2 * words * l + words, lane.algorithm, slot};
+    }
+    std::uint32_t* places = buffers.places.at_least(kEngineLists * pairs);
+    std::uint32_t* lengths = buffers.lengths.at_least(kEngineLists);
+    for (int k = 0; k < kEngineLists; ++k) block.lists[k] = {places + pairs * static_cast<std::size_t>(k), lengths + k};
+    return block;
+  }
+
+  void judge(const EngineBlock& block, Buffers& buffers, std::uint64_t seed, int stratum) {
+    const cudaStream_t stream = buffers.stream;
+    launch_generate(buffers.coordinates.at_least(0), block.pairs.count, seed, stratum, block.first, stream);
+    std::uint32_t* truth = buffers.truth.at_least(0);
     // No stratum has pairs that are not finite: nothing is declined, and `wrong` is free until it is written.
-    exact_.decide(block.pairs, truth, block.wrong, nullptr, nullptr);
+    buffers.exact.decide(block.pairs, truth, block.wrong, nullptr, stream);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
       const LaneWords& words = block.lanes.lane[l];
       if (words.intersects == truth) continue;
-      launch_lane(*lanes_[l], exact_, block.pairs, const_cast<std::uint32_t*>(words.intersects),
-                  const_cast<std::uint32_t*>(words.declined), nullptr);
+      launch_lane(*lanes_[l], buffers.exact, block.pairs, const_cast<std::uint32_t*>(words.intersects),
+                  const_cast<std::uint32_t*>(words.declined), stream);
     }
-    check(cudaMemsetAsync(block.left.count, 0, 2 * sizeof(std::uint32_t), nullptr));
-    launch_engine(block, nullptr);
+    check(cudaMemsetAsync(block.lists[0].count, 0, kEngineLists * sizeof(std::uint32_t), stream));
+    launch_engine(block, stream);
   }
 
   std::uint32_t left_to_host(const EngineBlock& block) {
@@ -99,19 +127,19 @@ class CudaEngine final : public Engine {
   }
 
   EngineResult fetch(const EngineBlock& block) {
-    std::uint32_t lengths[4];
-    check(cudaMemcpy(lengths, block.left.count, sizeof lengths, cudaMemcpyDeviceToHost));
-    if (lengths[2] > kMostUndecided)
+    std::uint32_t lengths[2];
+    check(cudaMemcpy(lengths, block.undecided.count, sizeof lengths, cudaMemcpyDeviceToHost));
+    if (lengths[0] > kMostUndecided)
       throw std::runtime_error("the engine left too many pairs to the host; run fewer at once");
-    if (lengths[3]) throw std::runtime_error("the engine found more signatures than it can hold");
+    if (lengths[1]) throw std::runtime_error("the engine found more signatures than it can hold");
     EngineResult result;
     result.counts.resize(counters() + 1);
     check(cudaMemcpy(result.counts.data(), block.counts, result.counts.size() * sizeof result.counts[0],
                      cudaMemcpyDeviceToHost));
     result.disagreements = result.counts.back();
     result.counts.pop_back();
-    result.undecided.resize(lengths[2]);
-    check(cudaMemcpy(result.undecided.data(), block.undecided.indices, lengths[2] * sizeof result.undecided[0],
+    result.undecided.resize(lengths[0]);
+    check(cudaMemcpy(result.undecided.data(), block.undecided.indices, lengths[0] * sizeof result.undecided[0],
                      cudaMemcpyDeviceToHost));
     std::sort(result.undecided.begin(), result.undecided.end());
     result.signatures.resize(kSignatures);
@@ -125,14 +153,10 @@ class CudaEngine final : public Engine {
 
   std::size_t counters() const { return engine_counters(static_cast<int>(lanes_.size())); }
 
-  static constexpr std::size_t kWords = kBlockPairs / 32;
-
   int ordinal_;
   std::vector<const Lane*> lanes_;
-  DeviceExact exact_;
-  DeviceArray<float> coordinates_, left_;
-  DeviceArray<std::uint32_t> truth_, wrong_, none_, lane_words_, places_, wide_places_, lengths_;
-  DeviceArray<std::int8_t> buckets_;
+  std::unique_ptr<Buffers> buffers_[kBlocksAtOnce];
+  DeviceArray<std::uint32_t> lengths_;
   DeviceArray<std::uint64_t> undecided_;
   DeviceArray<unsigned long long> counts_;
   DeviceArray<EngineSignature> signatures_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// All pairs get their margin's bucket from certified bounds. Those that the bounds leave open, and those on which a
-// lane is wrong, are gathered for the kernels that find their relation exactly. Then everything is counted, a warp at a
-// time.
+// Every pair gets its margin's bucket, from the cheapest bounds that decide it: each kernel lists what it leaves for
+// the next, so that a warp does not wait for one hard pair in 32. Those on which a lane is wrong, and those whose
+// margin may be zero, get their relation. Then everything is counted, a warp at a time.
 #include "cuda/engine_kernels.h"
 
 #include "core/margin_quick.h"
@@ -32,29 +32,88 @@ __device__ Pair pair_of(const float* c) {
           {{c[9], c[10], c[11]}, {c[12], c[13], c[14]}, {c[15], c[16], c[17]}}};
 }
 
-__global__ void __launch_bounds__(kThreads, 2) measure_margins(EngineBlock block) {
-  __shared__ std::uint32_t gathered, first;
-  if (threadIdx.x == 0) gathered = 0;
-  __syncthreads();
-  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
-  float c[kCoordinates];
-  std::uint32_t mine = ~0u;
-  if (i < block.pairs.count) {
-    for (std::uint32_t k = 0; k < kCoordinates; ++k)
-      c[k] = block.pairs.coordinates[std::size_t{k} * block.pairs.stride + i];
-    const Verdict verdict = bit(block.truth, i) ? Verdict::intersects : Verdict::disjoint;
-    Bucket bucket;
-    if (!quick_bucket(pair_of(c), verdict, bucket)) bucket = kUndecided;
-    block.buckets[i] = bucket;
-    if (bucket == kUndecided || bit(block.wrong, i)) mine = atomicAdd(&gathered, 1u);
+__device__ Verdict verdict_of(const EngineBlock& block, std::uint32_t i) {
+  return bit(block.truth, i) ? Verdict::intersects : Verdict::disjoint;
+}
+
+// Calls visit(i, coordinates of pair i) for the listed pairs.
+template <class Visit>
+__device__ void for_listed(const EngineBlock& block, EngineList which, const Visit& visit) {
+  const Places& list = block.lists[which];
+  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *list.count; n += gridDim.x * kThreads) {
+    float c[kCoordinates];
+    load(block.pairs, list.at[n], c);
+    visit(list.at[n], c);
   }
+}
+
+// The threads of a block take its disjoint pairs first, then the others, so that the two ways do not share a warp.
+__device__ std::uint32_t by_verdict(const EngineBlock& block, std::uint16_t* order) {
+  const std::uint32_t word = threadIdx.x / 32, in_word = threadIdx.x % 32, first = blockIdx.x * (kThreads / 32);
+  std::uint32_t meet = 0, before = 0;  // pairs that meet: of all, and of those before this thread's
+  for (std::uint32_t w = 0; w < kThreads / 32; ++w) {
+    const std::uint32_t truth = block.truth[first + w], earlier = w < word ? ~0u : w == word ? (1u << in_word) - 1 : 0;
+    meet += static_cast<std::uint32_t>(__popc(truth));
+    before += static_cast<std::uint32_t>(__popc(truth & earlier));
+  }
+  const bool meets = block.truth[first + word] >> in_word & 1;
+  order[meets ? kThreads - meet + before : threadIdx.x - before] = static_cast<std::uint16_t>(threadIdx.x);
   __syncthreads();
-  if (threadIdx.x == 0 && gathered) first = atomicAdd(block.left.count, gathered);
-  __syncthreads();
-  if (mine == ~0u) return;
-  for (std::uint32_t k = 0; k < kCoordinates; ++k)
-    block.left.coordinates[std::size_t{k} * block.left.stride + first + mine] = c[k];
-  block.left.places[first + mine] = i;
+  return blockIdx.x * kThreads + order[threadIdx.x];
+}
+
+__global__ void __launch_bounds__(kThreads, 2) measure_by_single(EngineBlock block) {
+  __shared__ std::uint16_t order[kThreads];
+  const std::uint32_t i = by_verdict(block, order);
+  if (i >= block.pairs.count) return;
+  float c[kCoordinates];
+  load(block.pairs, i, c);
+  Bucket bucket;
+  const Verdict verdict = verdict_of(block, i);
+  if (!bucket_by_single(pair_of(c), verdict, bucket)) {
+    bucket = kUndecided;
+    block.lists[verdict == Verdict::intersects ? kOpenDepths : kOpenGaps].add(i);
+  }
+  block.buckets[i] = bucket;
+  if (bit(block.wrong, i)) block.lists[kRelated].add(i);
+}
+
+template <Verdict verdict>
+__global__ void __launch_bounds__(kThreads, 2) measure_by_double(EngineBlock block) {
+  for_listed(block, verdict == Verdict::disjoint ? kOpenGaps : kOpenDepths, [&](std::uint32_t i, const float* c) {
+    Bucket bucket;
+    if (bucket_by_double(pair_of(c), verdict, bucket)) {
+      block.buckets[i] = bucket;
+    } else if (verdict == Verdict::disjoint) {
+      block.lists[kTies].add(i);
+    } else if (!bit(block.wrong, i)) {
+      block.lists[kRelated].add(i);
+    }
+  });
+}
+
+__device__ void leave_to_host(const EngineBlock& block, std::uint32_t i) {
+  const std::uint32_t n = atomicAdd(block.undecided.count, 1u);
+  if (n < block.undecided.size) block.undecided.indices[n] = block.first + i;
+}
+
+// The bucket by all means that there are on a device, or kUndecided.
+__device__ Bucket bucket_by_all_means(const float* c, Verdict verdict) {
+  const Pair pair = pair_of(c);
+  const MarginBounds bounds = margin_bounds(pair, verdict);
+  const int ulp = log2_ulp(pair);
+  Bucket bucket;
+  if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
+  const int upper = floor_log2(bounds.hi);
+  const bool proven = verdict == Verdict::disjoint && are_apart_by(c, c + 9, bounds.direction, upper);
+  return proven ? make_bucket(1, upper - ulp) : kUndecided;
+}
+
+__global__ void __launch_bounds__(kThreads) break_ties(EngineBlock block) {
+  for_listed(block, kTies, [&](std::uint32_t i, const float* c) {
+    block.buckets[i] = bucket_by_all_means(c, Verdict::disjoint);
+    if (block.buckets[i] == kUndecided) leave_to_host(block, i);
+  });
 }
 
 // 1: right; 2: false positive; 3: false negative; 4: declined.
@@ -80,7 +139,8 @@ __device__ void add(const SignatureTable& table, SignatureBits bits, std::uint64
   std::uint32_t at = static_cast<std::uint32_t>(bits * 0x9e3779b97f4a7c15u >> 32) & (table.size - 1);
   for (std::uint32_t tried = 0; tried < table.size; ++tried, at = (at + 1) & (table.size - 1)) {
     auto* slot = reinterpret_cast<unsigned long long*>(&table.rows[at].bits);
-    const unsigned long long old = atomicCAS(slot, 0ull, bits);
+    unsigned long long old = *const_cast<volatile unsigned long long*>(slot);
+    if (old == 0) old = atomicCAS(slot, 0ull, bits);
     if (old != 0 && old != bits) continue;
     if (static_cast<unsigned>(__ffs(static_cast<int>(same)) - 1) == threadIdx.x % 32)
       atomicAdd(reinterpret_cast<unsigned long long*>(&table.rows[at].count),
@@ -111,66 +171,43 @@ __device__ void add_signatures(const EngineBlock& block, std::uint32_t i, const 
   }
 }
 
-// The bucket by all means that there are on a device, or kUndecided.
-__device__ Bucket bucket_of(const float* c, const Relation& r) {
-  if (r.margin_sign == 0) return 0;
-  const Pair pair = pair_of(c);
-  const Verdict verdict = r.intersects ? Verdict::intersects : Verdict::disjoint;
-  const MarginBounds bounds = margin_bounds(pair, verdict);
-  const int ulp = log2_ulp(pair);
-  Bucket bucket;
-  if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
-  const int upper = floor_log2(bounds.hi);
-  return !r.intersects && are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
-}
-
-// The relation is known: completes the bucket, or leaves the pair to the host, and adds the signatures.
-__device__ void settle(const EngineBlock& block, const float* c, std::uint32_t i, const Relation& r) {
+// The relation is known: completes the bucket, or leaves that to the next kernel, and adds the signatures.
+__device__ void settle(const EngineBlock& block, std::uint32_t i, const Relation& r) {
   Bucket bucket = block.buckets[i];
   if (bucket == kUndecided) {
-    bucket = bucket_of(c, r);
-    block.buckets[i] = bucket;
-    if (bucket == kUndecided) {
-      const std::uint32_t n = atomicAdd(block.undecided.count, 1u);
-      if (n < block.undecided.size) block.undecided.indices[n] = block.first + i;
-      return;
-    }
+    if (!r.intersects) return;  // the host has it
+    if (r.margin_sign != 0) return block.lists[kDepths].add(i);
+    block.buckets[i] = bucket = 0;
   }
   if (bit(block.wrong, i)) add_signatures(block, i, r, bucket);
 }
 
-__global__ void __launch_bounds__(kThreads) relate(EngineBlock block) {
-  for (std::uint32_t at = blockIdx.x * kThreads + threadIdx.x; at < *block.left.count; at += gridDim.x * kThreads) {
-    float c[kCoordinates];
-    for (std::uint32_t k = 0; k < kCoordinates; ++k)
-      c[k] = block.left.coordinates[std::size_t{k} * block.left.stride + at];
+__global__ void __launch_bounds__(kThreads, 2) relate(EngineBlock block) {
+  for_listed(block, kRelated, [&](std::uint32_t i, const float* c) {
     Relation r;
-    if (!numbers::relate_quickly(c, c + 9, r)) {
-      const numbers::Grid grid = numbers::grid_of(c, c + 9);
-      if (grid.bits <= 15) {
-        r = by_axes(numbers::triangles<numbers::DoubleNumbers>(c, c + 9));
-      } else if (grid.bits <= 30) {
-        r = by_axes(numbers::triangles<numbers::NarrowNumbers>(c, c + 9, grid.exponent));
-      } else if (grid.bits <= 40) {
-        r = by_axes(numbers::triangles<numbers::IntNumbers>(c, c + 9, grid.exponent));
-      } else {
-        const std::uint32_t n = atomicAdd(block.left_wide.count, 1u);
-        block.left_wide.places[n] = at;
-        continue;
-      }
-    }
-    settle(block, c, block.left.places[at], r);
-  }
+    if (numbers::relate_quickly(c, c + 9, r)) return settle(block, i, r);
+    const int bits = numbers::grid_of(c, c + 9).bits;
+    const int grid = (bits > numbers::kDoubleBits) + (bits > numbers::kNarrowBits) + (bits > numbers::kIntBits) +
+                     (bits > numbers::kLongBits);
+    block.lists[kByDoubles + grid].add(i);
+  });
 }
 
-__global__ void __launch_bounds__(kThreads) relate_wide(EngineBlock block) {
-  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *block.left_wide.count; n += gridDim.x * kThreads) {
-    const std::uint32_t at = block.left_wide.places[n];
-    float c[kCoordinates];
-    for (std::uint32_t k = 0; k < kCoordinates; ++k)
-      c[k] = block.left.coordinates[std::size_t{k} * block.left.stride + at];
-    settle(block, c, block.left.places[at], by_axes(numbers::triangles<numbers::WideNumbers>(c, c + 9)));
-  }
+template <class Numbers, EngineList list>
+__global__ void __launch_bounds__(kThreads) relate_by_axes(EngineBlock block) {
+  for_listed(block, list, [&](std::uint32_t i, const float* c) {
+    const int exponent = numbers::grid_of(c, c + 9).exponent;
+    settle(block, i, by_axes(numbers::triangles<Numbers>(c, c + 9, exponent)));
+  });
+}
+
+__global__ void __launch_bounds__(kThreads) settle_depths(EngineBlock block) {
+  for_listed(block, kDepths, [&](std::uint32_t i, const float* c) {
+    const Bucket bucket = bucket_by_all_means(c, Verdict::intersects);
+    block.buckets[i] = bucket;
+    if (bucket == kUndecided) return leave_to_host(block, i);
+    if (bit(block.wrong, i)) add_signatures(block, i, exact::relation(c, c + 9), bucket);
+  });
 }
 
 // A warp a word: the first thread of each bucket counts all pairs of that bucket.
@@ -217,9 +254,17 @@ constexpr unsigned kBlocks = 1024;
 void launch_engine(const EngineBlock& block, cudaStream_t stream) {
   const std::uint32_t n = block.pairs.count;
   mark_wrong<<<((n + 31) / 32 + kThreads - 1) / kThreads, kThreads, 0, stream>>>(block);
-  measure_margins<<<(n + kThreads - 1) / kThreads, kThreads, 0, stream>>>(block);
+  measure_by_single<<<(n + kThreads - 1) / kThreads, kThreads, 0, stream>>>(block);
+  measure_by_double<Verdict::disjoint><<<kBlocks, kThreads, 0, stream>>>(block);
+  measure_by_double<Verdict::intersects><<<kBlocks, kThreads, 0, stream>>>(block);
+  break_ties<<<kBlocks, kThreads, 0, stream>>>(block);
   relate<<<kBlocks, kThreads, 0, stream>>>(block);
-  relate_wide<<<kBlocks, kThreads, 0, stream>>>(block);
+  relate_by_axes<numbers::DoubleNumbers, kByDoubles><<<kBlocks, kThreads, 0, stream>>>(block);
+  relate_by_axes<numbers::NarrowNumbers, kByNarrow><<<kBlocks, kThreads, 0, stream>>>(block);
+  relate_by_axes<numbers::IntNumbers, kByInts><<<kBlocks, kThreads, 0, stream>>>(block);
+  relate_by_axes<numbers::LongNumbers, kByLong><<<kBlocks, kThreads, 0, stream>>>(block);
+  relate_by_axes<numbers::WideNumbers, kByWide><<<kBlocks, kThreads, 0, stream>>>(block);
+  settle_depths<<<kBlocks, kThreads, 0, stream>>>(block);
   const std::size_t shared = engine_counters(block.lanes.count) * sizeof(std::uint32_t);
   check(cudaFuncSetAttribute(tally, cudaFuncAttributeMaxDynamicSharedMemorySize, static_cast<int>(shared)));
   tally<<<kBlocks, kThreads, shared, stream>>>(block);

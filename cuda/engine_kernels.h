@@ -36,6 +36,23 @@ struct IndexList {
   std::uint32_t* count;
 };
 
+// Pairs whose bucket single precision left open, disjoint ones and intersecting ones; disjoint ones that double left
+// open as well; those that need their relation; of these the ones that need all axes, by the numbers that hold them;
+// and intersecting ones that double left open although their margin is not zero.
+enum EngineList {
+  kOpenGaps,
+  kOpenDepths,
+  kTies,
+  kRelated,
+  kByDoubles,
+  kByNarrow,
+  kByInts,
+  kByLong,
+  kByWide,
+  kDepths,
+  kEngineLists
+};
+
 struct EngineBlock {
   DevicePairs pairs;
   std::uint64_t first;  // index of the block's first pair
@@ -43,8 +60,7 @@ struct EngineBlock {
   std::uint32_t* wrong;  // pairs on which some lane is
   std::int8_t* buckets;
   LaneTable lanes;
-  LeftPairs left;       // pairs that need their relation
-  LeftPairs left_wide;  // of them, those that need wide integers: places in `left`
+  Places lists[kEngineLists];
   SignatureTable signatures;
   IndexList undecided;
   unsigned long long* counts;  // see EngineResult
@@ -55,7 +71,7 @@ GRAZE_HD constexpr std::size_t engine_counters(int lanes) {
   return (2 + 4 * static_cast<std::size_t>(lanes)) * kBucketCount;
 }
 
-// Requires: truth and the lanes' words are written, the lists are empty.
+// Requires: truth and the lanes' words are written, the lists of places are empty.
 void launch_engine(const EngineBlock& block, cudaStream_t stream);
 
 }  // namespace graze

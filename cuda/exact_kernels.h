@@ -13,13 +13,18 @@
 
 namespace graze {
 
-// Pairs that a stage left to the next: their coordinates, gathered, and their places in the block.
-struct LeftPairs {
-  float* coordinates;  // 18 arrays of `stride` floats
-  std::uint32_t stride;
-  std::uint32_t* places;
+// Places of pairs in a block, for another kernel.
+struct Places {
+  std::uint32_t* at;
   std::uint32_t* count;
+
+  __device__ void add(std::uint32_t place) const { at[atomicAdd(count, 1u)] = place; }
 };
+
+// The coordinates of pair i.
+__device__ inline void load(const DevicePairs& pairs, std::uint32_t i, float* c) {
+  for (std::uint32_t k = 0; k < kCoordinates; ++k) c[k] = pairs.coordinates[std::size_t{k} * pairs.stride + i];
+}
 
 // The exact decision of blocks of pairs, and the memory for what its stages leave to each other.
 class DeviceExact {
@@ -30,10 +35,7 @@ class DeviceExact {
               cudaStream_t stream);
 
  private:
-  LeftPairs left(int stage, std::uint32_t most);
-
-  DeviceArray<float> coordinates_[2];
-  DeviceArray<std::uint32_t> places_[2], counts_;
+  DeviceArray<std::uint32_t> places_[3], counts_;
 };
 
 // Starts the kernels of a CUDA lane, which write as DeviceExact::decide does.

@@ -2,14 +2,18 @@
 // Compiled with -fmad=false: the strata's bits are those of the host only without contraction.
 #include "cuda/prove_kernels.h"
 
+#include <array>
+#include <utility>
+
 #include "fuzz/strata.h"
 
 namespace graze {
 inline namespace GRAZE_FP {
 namespace {
 
-__global__ void generate_pairs(float* coordinates, std::uint32_t count, std::uint64_t seed, Stratum stratum,
-                               std::uint64_t first) {
+// A kernel a stratum: one for all would need the registers and the stack of the dearest.
+template <Stratum stratum>
+__global__ void generate_pairs(float* coordinates, std::uint32_t count, std::uint64_t seed, std::uint64_t first) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= count) return;
   const Pair pair = generate(seed, stratum, first + i);
@@ -38,6 +42,13 @@ __global__ void compare_hashes(const std::uint64_t* a, const std::uint64_t* b, s
   if (i < count && a[i] != b[i]) note(differences, first + i);
 }
 
+using Generate = void (*)(float*, std::uint32_t, std::uint64_t, std::uint64_t);
+
+template <std::size_t... kStratum>
+constexpr std::array<Generate, sizeof...(kStratum)> generators(std::index_sequence<kStratum...>) {
+  return {generate_pairs<static_cast<Stratum>(kStratum)>...};
+}
+
 constexpr std::uint32_t kBlock = 256;
 constexpr std::uint32_t blocks(std::uint32_t threads) { return (threads + kBlock - 1) / kBlock; }
 
@@ -46,7 +57,8 @@ constexpr std::uint32_t blocks(std::uint32_t threads) { return (threads + kBlock
 
 void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
                      cudaStream_t stream) {
-  generate_pairs<<<blocks(count), kBlock, 0, stream>>>(coordinates, count, seed, static_cast<Stratum>(stratum), first);
+  static constexpr auto kGenerators = generators(std::make_index_sequence<kStrataCount>());
+  kGenerators[static_cast<std::size_t>(stratum)]<<<blocks(count), kBlock, 0, stream>>>(coordinates, count, seed, first);
 }
 
 void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,

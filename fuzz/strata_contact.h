@@ -145,8 +145,9 @@ GRAZE_HD inline Push draw_push(Draws& draws) {
 // Rounds the draft, moves b[0] by the push's ulps, and shuffles.
 GRAZE_HD inline Pair finished(Draws& draws, const Draft& draft, const Push& push) {
   Pair pair = rounded(draft);
-  float& x = component(pair.b[0], push.axis);
-  x = nudged(x, push.ulps);
+  Vec3<float>& v = pair.b[0];
+  v = {push.axis == 0 ? nudged(v.x, push.ulps) : v.x, push.axis == 1 ? nudged(v.y, push.ulps) : v.y,
+       push.axis == 2 ? nudged(v.z, push.ulps) : v.z};
   return shuffled(draws, pair);
 }
 

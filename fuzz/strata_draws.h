@@ -141,10 +141,16 @@ GRAZE_HD inline Pair shuffled(Draws& draws, const Pair& pair) {
   const bool swap = order % 2 != 0;
   const int turn_a = static_cast<int>(order / 2 % 3), turn_b = static_cast<int>(order / 6 % 3);
   const int step_a = order / 18 % 2 != 0 ? 2 : 1, step_b = order / 36 != 0 ? 2 : 1;
+  // Chosen without indexing, which on a device would move the pair from registers to memory.
+  const auto choose = [](bool first, const Vec3<float>& u, const Vec3<float>& v) -> Vec3<float> {
+    return {first ? u.x : v.x, first ? u.y : v.y, first ? u.z : v.z};
+  };
+  const auto at = [&](const Vec3<float>(&v)[3], int k) { return choose(k == 0, v[0], choose(k == 1, v[1], v[2])); };
   Pair result;
   for (int i = 0; i < 3; ++i) {
-    (swap ? result.b : result.a)[i] = pair.a[(turn_a + step_a * i) % 3];
-    (swap ? result.a : result.b)[i] = pair.b[(turn_b + step_b * i) % 3];
+    const Vec3<float> a = at(pair.a, (turn_a + step_a * i) % 3), b = at(pair.b, (turn_b + step_b * i) % 3);
+    result.a[i] = choose(swap, b, a);
+    result.b[i] = choose(swap, a, b);
   }
   return result;
 }

@@ -61,17 +61,21 @@ TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   }
 }
 
-// The engine's two shortcuts to a bucket: quick bounds, and the proof of a distance in integers.
+// The engine's shortcuts to a bucket: quick bounds in two precisions, and the proof of a distance in integers.
 TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
-  std::uint64_t quick = 0, undecided = 0;
+  std::uint64_t by_single = 0, by_double = 0, undecided = 0;
   for (std::uint64_t index = 0; index < 20'000; ++index) {
     const Pair pair = generate(kSeed + 2, GetParam().stratum, index);
     const float *a = &pair.a[0].x, *b = &pair.b[0].x;
     const Verdict verdict = exact::intersects(a, b) ? Verdict::intersects : Verdict::disjoint;
     const Bucket expected = margin_bucket(pair, verdict);
     Bucket bucket;
-    if (quick_bucket(pair, verdict, bucket)) {
-      ++quick;
+    if (bucket_by_single(pair, verdict, bucket)) {
+      ++by_single;
+      ASSERT_EQ(bucket, expected) << index;
+    }
+    if (bucket_by_double(pair, verdict, bucket)) {
+      ++by_double;
       ASSERT_EQ(bucket, expected) << index;
     }
     const MarginBounds bounds = margin_bounds(pair, verdict);
@@ -83,7 +87,10 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
     EXPECT_FALSE(are_apart_by(a, b, bounds.direction, upper + 1)) << index;
   }
   const bool touching = GetParam().stratum == Stratum::shared_vertex || GetParam().stratum == Stratum::shared_edge;
-  EXPECT_TRUE(touching || quick > 3'000u) << quick;
+  EXPECT_TRUE(touching || by_double > 3'000u) << by_double;
+  EXPECT_TRUE(!GetParam().id.starts_with("near_") || by_single > 8'000u) << by_single;
+  RecordProperty("by_single", static_cast<int>(by_single));
+  RecordProperty("by_double", static_cast<int>(by_double));
   EXPECT_TRUE(GetParam().stratum == Stratum::mixed_scale || undecided < 20u) << undecided;
 }
 

@@ -65,15 +65,11 @@ Replay replay(const Lane& lane, const Pair& pair) {
 }
 
 DecideBlock block_of(const Lane& lane) {
-  const DecideBlock block = lane.decide ? lane.decide : twin_block(lane.algorithm, lane.scalar, lane.target);
+  const DecideBlock block = block_on_host(lane);
   if (!block) throw std::invalid_argument(lane.id + ": expected a host lane or a twin");
   return block;
 }
 
-Verdict decide_lane(const Lane& lane, const Pair& pair) {
-  std::uint64_t intersects = 0, declined = 0;
-  block_of(lane)(&pair, 1, &intersects, &declined);
-  return declined & 1 ? Verdict::declined : intersects & 1 ? Verdict::intersects : Verdict::disjoint;
-}
+Verdict decide_lane(const Lane& lane, const Pair& pair) { return decide_one(block_of(lane), pair); }
 
 }  // namespace graze

@@ -20,11 +20,7 @@ struct LaneVerdicts {
   std::span<const std::uint64_t> intersects;
   std::span<const std::uint64_t> declined;
 
-  Verdict at(std::size_t i) const {
-    return test_bit(declined, i)     ? Verdict::declined
-           : test_bit(intersects, i) ? Verdict::intersects
-                                     : Verdict::disjoint;
-  }
+  Verdict at(std::size_t i) const { return verdict_of_bits(test_bit(intersects, i), test_bit(declined, i)); }
 };
 
 struct JudgedBlock {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cases.h"
 
-#include "cli/commands.h"
 #include "core/error.h"
 #include "fuzz/source.h"
 
@@ -28,12 +27,6 @@ std::vector<Entry> read_cases(const std::string& name) {
   const std::vector<Source> sources = stratum_sources(number(seed, name), 1, {stratum});
   if (sources.size() != 1) throw UsageError(name + ": expected one stratum, found a pattern of several");
   return {{sources.front().pair(number(index, name)), {{"stratum", stratum}, {"seed", seed}, {"index", index}}, 0}};
-}
-
-std::optional<std::string> numbers_of(const Entry& entry) {
-  const std::string *stratum = field(entry, "stratum"), *seed = field(entry, "seed"), *index = field(entry, "index");
-  if (!stratum || !seed || !index) return std::nullopt;
-  return *stratum + ':' + *seed + ':' + *index;
 }
 
 }  // namespace graze

@@ -2,7 +2,6 @@
 // What a user names a case by: a file of pairs, or a stratum's pair as STRATUM:SEED:INDEX.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,5 @@ namespace graze {
 // Throws: UsageError for a name that is none, FormatError for a file that is not in the format or missing,
 // std::runtime_error for one without a case.
 std::vector<Entry> read_cases(const std::string& name);
-
-// STRATUM:SEED:INDEX of a case that has these fields.
-std::optional<std::string> numbers_of(const Entry& entry);
 
 }  // namespace graze

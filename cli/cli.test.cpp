@@ -13,18 +13,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kTouching = "0 0 0 4 0 0 0 4 0  1 1 0 1 2 4 2 1 4";
 
-class Cli : public testing::Test {
- protected:
-  Shell shell{std::string("cli-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
-
-  // One line on stderr that holds `part`, and this exit status.
-  void expect_error(const std::string& command, int status, const std::string& part) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
-    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-  }
-};
+class Cli : public CommandTest {};
 
 TEST_F(Cli, CheckPrintsOneObjectALine) {
   const Ran ran = shell(std::string("printf '%s\\n' '") + kTouching + "' '" + kTouching + "' | graze check - --json");

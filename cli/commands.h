@@ -3,9 +3,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
+#include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "fuzz/bench.h"
@@ -34,8 +33,8 @@ void add_lane_options(CLI::App& command, LaneOptions& options);
 // Patterns, separated by commas, in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 
-// The whole number that the text spells, without a sign; nothing when it spells none or one too large.
-std::optional<std::uint64_t> parse_whole(std::string_view text);
+// The most of any number of pairs, and of seeds: 2^53, up to which all are whole in every reader of JSON.
+inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
 // Accepts whole numbers in [least, most] and nothing else: CLI11 alone would wrap negative ones.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);

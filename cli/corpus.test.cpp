@@ -9,19 +9,11 @@
 namespace graze {
 namespace {
 
-class CorpusVerb : public testing::Test {
+class CorpusVerb : public CommandTest {
  protected:
-  Shell shell{std::string("corpus-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
-
   void campaign(const std::string& out, const std::string& options) {
     const Ran ran = shell("graze fuzz --threads 1 --executor twin " + options + " --out " + out);
     ASSERT_EQ(ran.status, 0) << ran.err;
-  }
-  void expect_error(const std::string& command, int status, const std::string& part) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
-    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
   }
 };
 

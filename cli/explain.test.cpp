@@ -11,10 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class ExplainCommand : public testing::Test {
- protected:
-  Shell shell{std::string("explain-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
-};
+class ExplainCommand : public CommandTest {};
 
 TEST_F(ExplainCommand, SaysWhyInOneSentenceAnAlgorithm) {
   const Ran ran = shell("graze explain coplanar_rounded:1:3 --lanes '*/f32/cuda-*'");

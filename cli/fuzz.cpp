@@ -105,14 +105,12 @@ void add_fuzz(CLI::App& app, int& status) {
       app.add_subcommand("fuzz", "Run a campaign, or go on with one: strata through all lanes and the oracle");
   command->footer("Example: graze fuzz --pairs 1000000 --seed 1 --strata 'near_*,coplanar_*' --out campaign");
   auto options = std::make_shared<FuzzOptions>();
-  // 2^53: whole in every reader of JSON.
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 53;
   command
       ->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata; a mesh takes all of its own")
-      ->check(whole_number(1, kMost))
+      ->check(whole_number(1, kMostWhole))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of all strata")
-      ->check(whole_number(0, kMost))
+      ->check(whole_number(0, kMostWhole))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Threads; 0 for one a core; results do not depend on it")
       ->check(whole_number(0, 4096))

@@ -9,18 +9,11 @@
 namespace graze {
 namespace {
 
-class Minimize : public testing::Test {
+class Minimize : public CommandTest {
  protected:
-  Shell shell{std::string("minimize-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
   static constexpr const char* kFuzz =
       "graze fuzz --seed 2 --pairs 240 --lanes '*/f32/*' --executor twin --strata 'near_edge_edge,degenerate' ";
 
-  void expect_error(const std::string& command, int status, const std::string& part) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
-    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-  }
   void expect_done(const std::string& command) {
     const Ran ran = shell(command);
     EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;

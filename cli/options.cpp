@@ -1,23 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <charconv>
 #include <map>
 #include <set>
 
 #include "cli/commands.h"
+#include "corpus/pair_format.h"
 
 namespace graze {
 
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description) {
   return command.add_option(name, globs, description)->delimiter(',')->allow_extra_args(false)->option_text("GLOB,…");
-}
-
-std::optional<std::uint64_t> parse_whole(std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {

@@ -33,17 +33,16 @@ void add_prove_twin(CLI::App& app, int& status) {
       "prove-twin",
       "On a GPU: compare each CUDA lane with its explicit PTX and its twin, bit for bit; exit 1 on any difference");
   command->footer("Example: graze prove-twin --pairs 10000000000 --out proof.json");
-  constexpr std::uint64_t kMost = std::uint64_t{1} << 53;
   auto options = std::make_shared<ProofOptions>();
   auto out = std::make_shared<std::string>("proof.json");
   command->add_option("--pairs", options->pairs, "Pairs a lane, all strata together")
-      ->check(whole_number(1, kMost))
+      ->check(whole_number(1, kMostWhole))
       ->capture_default_str();
   command->add_option("--twin-pairs", options->twin_pairs, "Of them, by the twin too")
-      ->check(whole_number(1, kMost))
+      ->check(whole_number(1, kMostWhole))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of all strata")
-      ->check(whole_number(0, kMost))
+      ->check(whole_number(0, kMostWhole))
       ->capture_default_str();
   add_globs(*command, "--lanes", options->lanes, "Only lanes that match a pattern");
   command->add_flag("--wrong-rule", options->wrong_rule, "Contract the wrong product first: the proof must then fail");

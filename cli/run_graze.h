@@ -2,9 +2,11 @@
 // For tests: runs shell commands with the built `graze` first on the PATH, in a folder of their own.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -47,6 +49,21 @@ class Shell {
   }
 
   std::filesystem::path folder;
+};
+
+// Each test has a shell of its own.
+class CommandTest : public testing::Test {
+ protected:
+  Shell shell{std::string(testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) + "-" +
+              testing::UnitTest::GetInstance()->current_test_info()->name()};
+
+  // One line on stderr that holds `part`, and this exit status.
+  void expect_error(const std::string& command, int status, const std::string& part) const {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
+    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
 };
 
 }  // namespace graze

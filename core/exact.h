@@ -9,7 +9,8 @@
 //   by_axes    separating axes of the Minkowski difference D = { x - y : x in a, y in b }, which holds the origin
 //              exactly when a and b meet. Proper, coplanar and degenerate pairs alike.
 // and four kinds of numbers, each exact or saying that it is not. First doubles with one error bound for all; what it
-// leaves open goes to the smallest exact kind that holds the pair, wide ones only after a tighter bound of each value.
+// leaves open intersects where a vertex is shared, and otherwise goes to the smallest exact kind that holds the pair,
+// wide ones only after a tighter bound of each value.
 //   bounded    doubles with an error bound. A determinant of three differences, each rounded once, is off by at most
 //              (7 + 56 e) e sum |products|, e = 2^-53 (Shewchuk 1997, orient3d stage A); contraction only removes
 //              roundings. No overflow or underflow: differences of floats lie between 2^-149 and 2^129, or are zero.
@@ -24,6 +25,9 @@
 
 #include <cstdint>
 #include <cstring>
+#if defined(__SSE2__) && !defined(__CUDACC__)
+#include <emmintrin.h>
+#endif
 
 #ifdef __FAST_MATH__
 #error "graze/exact.h: error bounds do not hold under -ffast-math"
@@ -39,7 +43,7 @@
 
 namespace graze::exact {
 
-// Which numbers decided.
+// Which numbers decided; bounded also where the triangles share a vertex.
 enum class Stage : std::uint8_t { bounded, doubles, int128, wide };
 inline constexpr int kStages = 4;
 
@@ -290,7 +294,7 @@ struct Sides {
   // The vertex that is alone on its side, the others being on the other side or in the plane; without branches, which
   // would be mispredicted.
   // Requires: known, neither on one side nor in the plane.   Returns: its place; in `over` whether its side is below.
-  GRAZE_HD unsigned alone(unsigned& over) const {
+  GRAZE_HD constexpr unsigned alone(unsigned& over) const {
     if (in == 0) {  // two bits, or one, for each of the eight values of `above`
       over = 0x68u >> above & 1;
       return 0x690u >> 2 * above & 3;
@@ -362,14 +366,14 @@ struct Turn {
   unsigned a[3], b[3];
 };
 
-GRAZE_HD inline void turn_to(unsigned first, unsigned over, unsigned (&order)[3]) {
+GRAZE_HD constexpr void turn_to(unsigned first, unsigned over, unsigned (&order)[3]) {
   const unsigned next = 0b001001u >> 2 * first & 3, last = 3 - first - next;
   order[0] = first;
   order[1] = next ^ ((next ^ last) & (0u - over));  // over ? last : next
   order[2] = 3 - first - order[1];
 }
 
-GRAZE_HD inline Turn lone_vertices(const Sides& of_a, const Sides& of_b) {
+GRAZE_HD constexpr Turn lone_vertices(const Sides& of_a, const Sides& of_b) {
   unsigned over_a, over_b;
   const unsigned alone_a = of_a.alone(over_b), alone_b = of_b.alone(over_a);
   Turn turn;
@@ -403,33 +407,6 @@ GRAZE_HD Answer by_planes(const Triangles<Numbers>& t, const Numbers& numbers = 
   const bool known =
       (numbers.negative(first) || numbers.zero(first)) && (numbers.negative(second) || numbers.zero(second));
   return known ? Answer::intersects : Answer::unsure;
-}
-
-// Two doubles at once: a's part and b's part of a decision that is the same with a and b exchanged.
-#if defined(__SSE2__) && !defined(__CUDACC__)
-using Two = double __attribute__((vector_size(16)));
-// Bit 0 and bit 1: which of the two exceeds its bound.
-inline unsigned exceeds(const Two& x, const Two& bound) {
-  return static_cast<unsigned>(__builtin_ia32_movmskpd(reinterpret_cast<Two>(x > bound)));
-}
-#else
-struct Two {
-  double part[2];
-  GRAZE_HD double operator[](int i) const { return part[i]; }
-  GRAZE_HD Two operator-() const { return {-part[0], -part[1]}; }
-  GRAZE_HD friend Two operator+(Two l, Two r) { return {l[0] + r[0], l[1] + r[1]}; }
-  GRAZE_HD friend Two operator-(Two l, Two r) { return {l[0] - r[0], l[1] - r[1]}; }
-  GRAZE_HD friend Two operator*(Two l, Two r) { return {l[0] * r[0], l[1] * r[1]}; }
-};
-GRAZE_HD inline unsigned exceeds(const Two& x, const Two& bound) {
-  return unsigned{x[0] > bound[0]} | unsigned{x[1] > bound[1]} << 1;
-}
-#endif
-
-GRAZE_HD inline Two exchanged(const Two& x) { return Two{x[1], x[0]}; }
-
-GRAZE_HD inline Vec<Two> both(const Vec<float>& l, const Vec<float>& r) {
-  return {Two{double(l.x), double(r.x)}, Two{double(l.y), double(r.y)}, Two{double(l.z), double(r.z)}};
 }
 
 // The extent of the pair in each axis, each rounded once.
@@ -472,7 +449,129 @@ GRAZE_HD inline bool both_proper(const float* a, const float* b) {
   return proper;
 }
 
-// The same decision in doubles, with one bound for all: unsure wherever a determinant is smaller.
+// The same decision in doubles, with one bound for all: unsure wherever a determinant is smaller. Computed for a and b
+// at once, since their parts are the same with a and b exchanged.
+#if defined(__SSE2__) && !defined(__CUDACC__)
+using Two = double __attribute__((vector_size(16)));
+
+// Bit 0 and bit 1: which of the two exceeds its bound.
+inline unsigned exceeds(Two x, Two bound) { return static_cast<unsigned>(_mm_movemask_pd(_mm_cmpgt_pd(x, bound))); }
+
+inline unsigned signs(Two x) { return static_cast<unsigned>(_mm_movemask_pd(x)); }
+
+inline Two exchanged(Two x) { return _mm_shuffle_pd(x, x, 1); }
+
+inline Vec<Two> exchanged(const Vec<Two>& v) { return {exchanged(v.x), exchanged(v.y), exchanged(v.z)}; }
+
+inline Two least(Two x, Two y) { return _mm_min_pd(x, y); }
+
+inline Two most(Two x, Two y) { return _mm_max_pd(x, y); }
+
+inline Two magnitude(Two x) { return _mm_andnot_pd(_mm_set1_pd(-0.0), x); }
+
+// The coordinates of a triangle as doubles, widened two at a time.
+struct Widened {
+  Two two[5];  // 0 and 1, 2 and 3, 4 and 5, 6 and 7, 8 and 8
+
+  explicit Widened(const float* v) {
+    for (int i = 0; i < 4; ++i)
+      two[i] = _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(v + 2 * i))));
+    two[4] = _mm_set1_pd(v[8]);
+  }
+
+  void store(double* to) const {
+    for (int i = 0; i < 5; ++i) _mm_storeu_pd(to + 2 * i, two[i]);
+  }
+};
+
+// Coordinate i of both.
+inline Two both(const Widened& l, const Widened& r, int i) {
+  return i % 2 == 0 ? _mm_unpacklo_pd(l.two[i / 2], r.two[i / 2]) : _mm_unpackhi_pd(l.two[i / 2], r.two[i / 2]);
+}
+
+// Two vertices.
+inline Vec<Two> both(const double* l, const double* r) { return {Two{l[0], r[0]}, Two{l[1], r[1]}, Two{l[2], r[2]}}; }
+
+// determinant_error(extent_of(a, b)), twice.   Requires: the vertices of both.
+inline Two determinant_error(const Vec<Two> (&v)[3]) {
+  const Vec<Two> low{least(least(v[0].x, v[1].x), v[2].x), least(least(v[0].y, v[1].y), v[2].y),
+                     least(least(v[0].z, v[1].z), v[2].z)};
+  const Vec<Two> high{most(most(v[0].x, v[1].x), v[2].x), most(most(v[0].y, v[1].y), v[2].y),
+                      most(most(v[0].z, v[1].z), v[2].z)};
+  const Two xy = most(_mm_unpacklo_pd(high.x, high.y), _mm_unpackhi_pd(high.x, high.y)) -
+                 least(_mm_unpacklo_pd(low.x, low.y), _mm_unpackhi_pd(low.x, low.y));
+  const Two z = most(high.z, exchanged(high.z)) - least(low.z, exchanged(low.z));
+  return 6 * kDeterminantError * xy * exchanged(xy) * z;
+}
+
+// lone_vertices as a table, for vertices of which none lies in the other's plane: bit 2 i says that vertex i of a is
+// below b, and bit 2 i + 1 that vertex i of b is below a. Each vertex by the place of its first coordinate.
+struct Turns {
+  std::uint8_t a[64][4] = {}, b[64][4] = {};
+
+  constexpr Turns() {
+    for (unsigned i = 0; i < 64; ++i) {
+      const unsigned below_a = (i & 1) | (i >> 1 & 2) | (i >> 2 & 4),
+                     below_b = (i >> 1 & 1) | (i >> 2 & 2) | (i >> 3 & 4);
+      const Turn turn = lone_vertices({7 & ~below_a, below_a, 0}, {7 & ~below_b, below_b, 0});
+      for (unsigned k = 0; k < 3; ++k) {
+        a[i][k] = static_cast<std::uint8_t>(3 * turn.a[k]);
+        b[i][k] = static_cast<std::uint8_t>(3 * turn.b[k]);
+      }
+    }
+  }
+};
+inline constexpr Turns kTurns;
+
+// Its branches are those that most pairs of a kind take alike: one foreseen wrongly costs as much as all that follows
+// it.
+inline Answer by_planes_quickly(const float* a, const float* b) {
+  const Widened wide_a(a), wide_b(b);
+  alignas(16) double at_a[10], at_b[10];
+  wide_a.store(at_a);
+  wide_b.store(at_b);
+  Vec<Two> v[3];
+  for (int i = 0; i < 3; ++i)
+    v[i] = {both(wide_a, wide_b, 3 * i), both(wide_a, wide_b, 3 * i + 1), both(wide_a, wide_b, 3 * i + 2)};
+  const Two bound = determinant_error(v);
+  // Of the other triangle: the heights are those of a's vertices over b, and of b's over a.
+  const Vec<Two> n = exchanged(cross<Two>(v[1] - v[0], v[2] - v[0])), from = exchanged(v[0]);
+  const Two height[3] = {dot<Two>(n, v[0] - from), dot<Two>(n, v[1] - from), dot<Two>(n, v[2] - from)};
+  const Two lowest = least(least(height[0], height[1]), height[2]);
+  const Two highest = most(most(height[0], height[1]), height[2]);
+  if ((exceeds(lowest, bound) | exceeds(-highest, bound)) != 0) return Answer::disjoint;
+  const Two nearest = least(least(magnitude(height[0]), magnitude(height[1])), magnitude(height[2]));
+  if (exceeds(nearest, bound) != 3) return Answer::unsure;
+
+  const unsigned below = signs(height[0]) | signs(height[1]) << 2 | signs(height[2]) << 4;
+  const auto &turn_a = kTurns.a[below], &turn_b = kTurns.b[below];
+  const double *a0 = at_a + turn_a[0], *b0 = at_b + turn_b[0];
+  const Vec<Two> o = both(at_a + turn_a[1], a0), p = both(b0, b0), q = both(a0, at_a + turn_a[2]),
+                 r = both(at_b + turn_b[1], at_b + turn_b[2]);
+  const Two between = dot<Two>(cross<Two>(p - o, q - o), r - o);
+  const unsigned beside = exceeds(between, bound) != 0, crosses = exceeds(-between, bound) == 3;
+  constexpr Answer kAnswers[] = {Answer::unsure, Answer::disjoint, Answer::crosses};
+  return kAnswers[beside | crosses << 1];
+}
+#else
+struct Two {
+  double part[2];
+  GRAZE_HD double operator[](int i) const { return part[i]; }
+  GRAZE_HD Two operator-() const { return {-part[0], -part[1]}; }
+  GRAZE_HD friend Two operator+(Two l, Two r) { return {l[0] + r[0], l[1] + r[1]}; }
+  GRAZE_HD friend Two operator-(Two l, Two r) { return {l[0] - r[0], l[1] - r[1]}; }
+  GRAZE_HD friend Two operator*(Two l, Two r) { return {l[0] * r[0], l[1] * r[1]}; }
+};
+GRAZE_HD inline unsigned exceeds(const Two& x, const Two& bound) {
+  return unsigned{x[0] > bound[0]} | unsigned{x[1] > bound[1]} << 1;
+}
+
+GRAZE_HD inline Two exchanged(const Two& x) { return Two{x[1], x[0]}; }
+
+GRAZE_HD inline Vec<Two> both(const Vec<float>& l, const Vec<float>& r) {
+  return {Two{double(l.x), double(r.x)}, Two{double(l.y), double(r.y)}, Two{double(l.z), double(r.z)}};
+}
+
 GRAZE_HD inline Answer by_planes_quickly(const float* a, const float* b) {
   const double error = determinant_error(extent_of(a, b));
   const Two bound = {error, error};
@@ -498,6 +597,7 @@ GRAZE_HD inline Answer by_planes_quickly(const float* a, const float* b) {
   if (exceeds(height, bound) != 0) return Answer::disjoint;
   return exceeds(-height, bound) == 3 ? Answer::crosses : Answer::unsure;
 }
+#endif
 
 template <class T>
 GRAZE_HD T least(const T (&v)[3]) {

@@ -19,13 +19,16 @@ constexpr AlgorithmInfo kExactInfo{"exact",
                                    true};
 
 void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  std::fill_n(intersects, (count + 63) / 64, 0);
-  std::fill_n(declined, (count + 63) / 64, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool finite = is_finite(pairs[i]);
-    const bool yes = finite && exact::intersects(&pairs[i].a[0].x, &pairs[i].b[0].x);
-    intersects[i / 64] |= std::uint64_t{yes} << i % 64;
-    declined[i / 64] |= std::uint64_t{!finite} << i % 64;
+  for (std::size_t word = 0; word * 64 < count; ++word) {
+    std::uint64_t yes = 0, no_answer = 0;
+    for (std::size_t bit = 0; bit < 64 && word * 64 + bit < count; ++bit) {
+      const Pair& pair = pairs[word * 64 + bit];
+      const bool finite = is_finite(pair);
+      yes |= std::uint64_t{finite && exact::intersects(&pair.a[0].x, &pair.b[0].x)} << bit;
+      no_answer |= std::uint64_t{!finite} << bit;
+    }
+    intersects[word] = yes;
+    declined[word] = no_answer;
   }
 }
 
@@ -76,6 +79,12 @@ std::span<const Lane> lanes() {
 }
 
 std::span<const Lane> published_lanes() { return lanes().first(std::size_t{2} * kAlgorithmCount * kTargetCount); }
+
+Verdict decide_one(DecideBlock block, const Pair& pair) {
+  std::uint64_t intersects = 0, declined = 0;
+  block(&pair, 1, &intersects, &declined);
+  return verdict_of_bits(intersects & 1, declined & 1);
+}
 
 bool runs_on_this_cpu(const Lane& lane) {
 #if defined(__x86_64__)

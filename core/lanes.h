@@ -27,6 +27,14 @@ std::string_view name(Target target);
 // Requires: room for (count + 63) / 64 words in both.
 using DecideBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined);
 
+// What a pair's two bits say.
+constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
+  return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
+}
+
+// The block's verdict on one pair.
+Verdict decide_one(DecideBlock block, const Pair& pair);
+
 struct Lane {
   int index;  // place in lanes()
   std::string id;

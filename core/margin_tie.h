@@ -46,13 +46,13 @@ GRAZE_HD inline Vector direction(const Vector (&a)[3], const Vector (&b)[3], int
 }  // namespace margin_tie
 
 // Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin.h). On their grid
-// coordinates have at most 40 bits, a direction at most 3 * 41 + 4, the gap along it 170, and its square 340 of 512.
-// Returns: false also where the numbers are too large to tell.
+// coordinates have at most kIntBits = 40 bits, a direction at most 3 * 41 + 4, the gap along it 170, and its square 340
+// of 512. Returns: false also where the numbers are too large to tell.
 GRAZE_HD inline bool are_apart_by(const float* a, const float* b, int d, int exponent) {
   using namespace margin_tie;
   const exact::detail::Grid grid = exact::detail::grid_of(a, b);
   const int shift = exponent - grid.exponent;
-  if (grid.bits > 40 || shift > 120 || shift < -80) return false;
+  if (grid.bits > exact::detail::kIntBits || shift > 120 || shift < -80) return false;
   const auto t = exact::detail::triangles<exact::detail::NarrowNumbers>(a, b, grid.exponent);
   Vector va[3], vb[3];
   for (int i = 0; i < 3; ++i) {

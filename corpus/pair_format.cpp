@@ -264,11 +264,24 @@ std::optional<float> parse_float32(std::string_view text) {
   return negative ? -magnitude : magnitude;
 }
 
+std::optional<std::uint64_t> parse_whole(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
 const std::string* field(const Entry& entry, std::string_view key) {
   for (const auto& [name, value] : entry.fields) {
     if (name == key) return &value;
   }
   return nullptr;
+}
+
+std::optional<std::string> numbers_of(const Entry& entry) {
+  const std::string *stratum = field(entry, "stratum"), *seed = field(entry, "seed"), *index = field(entry, "index");
+  if (!stratum || !seed || !index) return std::nullopt;
+  return *stratum + ':' + *seed + ':' + *index;
 }
 
 }  // namespace graze

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iosfwd>
@@ -67,7 +68,13 @@ std::string hex_float(float value);
 // not a number in full, or when its nearest is beyond the largest float32. "inf" and "nan" are numbers.
 std::optional<float> parse_float32(std::string_view text);
 
+// Returns: the whole number that text spells, without a sign; nothing when it spells none or one too large.
+std::optional<std::uint64_t> parse_whole(std::string_view text);
+
 // Returns: the value of the field, or null when the entry has none of that key.
 const std::string* field(const Entry& entry, std::string_view key);
+
+// STRATUM:SEED:INDEX of a case that has these fields.
+std::optional<std::string> numbers_of(const Entry& entry);
 
 }  // namespace graze

@@ -130,6 +130,19 @@ TEST(ParseFloat32, RefusesWhatIsNoNumber) {
   }
 }
 
+TEST(ParseWhole, TakesDigitsThatFitAndNothingElse) {
+  EXPECT_EQ(parse_whole("18446744073709551615"), ~std::uint64_t{0});
+  for (const char* text : {"", "-1", "+1", " 1", "1 ", "0x1", "1.0", "18446744073709551616"})
+    EXPECT_EQ(parse_whole(text), std::nullopt) << text;
+}
+
+TEST(NumbersOf, NeedsAllThree) {
+  Entry entry{{}, {{"index", "42"}, {"stratum", "uniform"}}, 0};
+  EXPECT_EQ(numbers_of(entry), std::nullopt);
+  entry.fields.push_back({"seed", "1"});
+  EXPECT_EQ(numbers_of(entry), "uniform:1:42");
+}
+
 TEST(PairFormat, AnEntryReadsBack) {
   Entry entry;
   const float values[kCoordinates] = {0, -0.0f, 1, 0.1f, kSmallest, -kSmallest, 1e-40f, kMax, -kMax,

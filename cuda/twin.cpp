@@ -42,6 +42,11 @@ const TwinRow& twin_row(int algorithm, Scalar scalar, Target target) {
 DecideBlock twin_block(int algorithm, Scalar scalar, Target target) {
   return twin_row(algorithm, scalar, target).decide;
 }
+DecideBlock block_on_host(const Lane& lane) {
+  if (lane.decide) return lane.decide;
+  return lane.is_exact() ? (&lane - 1)->decide : twin_block(lane.algorithm, lane.scalar, lane.target);
+}
+
 TraceBlock twin_trace(int algorithm, Scalar scalar, Target target) { return twin_row(algorithm, scalar, target).trace; }
 const char* twin_toolkit() { return contracted().toolkit; }
 const char* twin_hash(int algorithm, Scalar scalar, Target target) { return twin_row(algorithm, scalar, target).hash; }

@@ -11,8 +11,12 @@
 
 namespace graze {
 
-// The twin of a CUDA lane; null where there is none.
+// The twin of a published CUDA lane; null where there is none.
 DecideBlock twin_block(int algorithm, Scalar scalar, Target target);
+
+// What gives the lane's verdicts on the host: the lane itself, or the twin of a CUDA lane; that of the exact CUDA lane
+// is the exact CPU lane, the same source. Null where there is none.
+DecideBlock block_on_host(const Lane& lane);
 
 // Writes each pair's trace hash (see cuda/trace.h), the verdict folded in.
 using TraceBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* hashes);

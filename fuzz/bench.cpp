@@ -9,11 +9,6 @@
 namespace graze {
 namespace {
 
-// The lane before the exact CUDA lane is the same source on the CPU.
-DecideBlock twin_of(const Lane& lane) {
-  return lane.is_exact() ? (&lane - 1)->decide : twin_block(lane.algorithm, lane.scalar, lane.target);
-}
-
 std::string twin_evidence_of(const Lane& lane) {
   return lane.is_exact() ? "twin, exact" : twin_evidence(lane.algorithm, lane.scalar, lane.target);
 }
@@ -36,7 +31,7 @@ std::string Bench::evidence(std::size_t l) const {
 std::string status(const Lane& lane, const Device* device, const std::string& why_no_device) {
   if (!lane.is_cuda()) return runs_on_this_cpu(lane) ? "available" : "unavailable (no FMA instructions)";
   if (device) return "available (device)";
-  return twin_of(lane) ? "available (" + twin_evidence_of(lane) + ")" : "unavailable (" + why_no_device + ")";
+  return block_on_host(lane) ? "available (" + twin_evidence_of(lane) + ")" : "unavailable (" + why_no_device + ")";
 }
 
 Bench make_bench(const std::vector<std::string>& globs, Executor executor, bool require_device) {
@@ -52,8 +47,8 @@ Bench make_bench(const std::vector<std::string>& globs, Executor executor, bool 
   if (needs_device && !bench.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
-    DecideBlock on_host = lane.decide;
-    if (lane.is_cuda() && (!bench.device || executor == Executor::both)) on_host = twin_of(lane);
+    const bool only_device = lane.is_cuda() && bench.device && executor != Executor::both;
+    const DecideBlock on_host = only_device ? nullptr : block_on_host(lane);
     if (lane.is_cuda() ? on_host || bench.device : runs_on_this_cpu(lane)) {
       bench.lanes.push_back(&lane);
       bench.on_host.push_back(on_host);
@@ -67,15 +62,9 @@ Bench make_bench(const std::vector<std::string>& globs, Executor executor, bool 
 
 std::vector<Verdict> decide(const Bench& bench, const Pair& pair, std::vector<const Lane*>& apart) {
   apart.clear();
-  const auto verdict = [](std::uint64_t intersects, std::uint64_t declined) {
-    return declined & 1 ? Verdict::declined : intersects & 1 ? Verdict::intersects : Verdict::disjoint;
-  };
   std::vector<Verdict> verdicts(bench.lanes.size());
   for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
-    if (!bench.on_host[l]) continue;
-    std::uint64_t intersects = 0, declined = 0;
-    bench.on_host[l](&pair, 1, &intersects, &declined);
-    verdicts[l] = verdict(intersects, declined);
+    if (bench.on_host[l]) verdicts[l] = decide_one(bench.on_host[l], pair);
   }
   if (!bench.device) return verdicts;
   std::vector<LaneBits> bits;
@@ -83,7 +72,7 @@ std::vector<Verdict> decide(const Bench& bench, const Pair& pair, std::vector<co
   std::size_t next = 0;
   for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
     if (!bench.on_device(l)) continue;
-    const Verdict on_device = verdict(bits[next].intersects[0], bits[next].declined[0]);
+    const Verdict on_device = verdict_of_bits(bits[next].intersects[0] & 1, bits[next].declined[0] & 1);
     if (bench.on_both(l) && on_device != verdicts[l]) apart.push_back(bench.lanes[l]);
     verdicts[l] = on_device;
     ++next;

@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
-#include <sstream>
 
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin.h"
+#include "fuzz/report_files.h"
 #include "oracle/truth.h"
 
 namespace graze {
@@ -20,18 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 // Everything that a campaign leaves and that must not depend on how it ran.
 std::map<std::string, std::string> lasting_files(const fs::path& directory) {
-  std::map<std::string, std::string> files{{"summary.json", contents(directory / "summary.json")}};
+  std::map<std::string, std::string> files{{"summary.json", read_whole(directory / "summary.json")}};
   for (const auto& file : fs::directory_iterator(directory / "cases"))
-    files[file.path().filename()] = contents(file.path());
+    files[file.path().filename()] = read_whole(file.path());
   return files;
 }
 
@@ -88,7 +81,7 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
   }
   EXPECT_EQ(pairs, 200'000u);
   EXPECT_EQ(in_margins, pairs);
-  const Json oracle = Json::parse(contents(root_ / "counts" / "timings.json"))["oracle"];
+  const Json oracle = Json::parse(read_whole(root_ / "counts" / "timings.json"))["oracle"];
   EXPECT_EQ(oracle["cgal"], pairs);
   EXPECT_EQ(oracle["apart"], 0);
   ASSERT_FALSE(summary["signatures"].empty());
@@ -140,9 +133,9 @@ TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
 
 TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
   run(campaign("taken", 1, 4000));
-  const std::string before = contents(root_ / "taken" / "summary.json");
+  const std::string before = read_whole(root_ / "taken" / "summary.json");
   EXPECT_THROW(run(campaign("taken", 1, 5000)), UsageError);
-  EXPECT_EQ(contents(root_ / "taken" / "summary.json"), before);
+  EXPECT_EQ(read_whole(root_ / "taken" / "summary.json"), before);
 }
 
 TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {

@@ -55,7 +55,7 @@ void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
 
 }  // namespace
 
-Judged judge(const Pair& pair) {
+Judged judged(const Pair& pair) {
   const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
   return {r.intersects ? Verdict::intersects : Verdict::disjoint, static_cast<Contact>(r.contact + 1),
           Shape{r.dimension_a, r.dimension_b, r.coplanar}, r.margin_sign};
@@ -64,20 +64,19 @@ Judged judge(const Pair& pair) {
 std::vector<Failure> failures_of(const Bench& bench, const Pair& pair) {
   std::vector<Failure> failures;
   if (!is_finite(pair)) return failures;
-  const Judged judged = judge(pair);
+  const Judged truth_of_pair = judged(pair);
   const std::vector<Verdict> verdicts = decide_in_turn(bench, pair);
   for_each_algorithm(bench.lanes, [&](std::size_t first, std::size_t count) {
-    Failure failure{judged, {}, {}, {}};
+    Failure failure{truth_of_pair, {}, {}, {}};
     bool wrong = false;
     for (std::size_t l = first; l < first + count; ++l) {
       const Lane& lane = *bench.lanes[l];
-      const DecideBlock on_host =
-          bench.on_host[l] ? bench.on_host[l] : twin_block(lane.algorithm, lane.scalar, lane.target);
+      const DecideBlock on_host = block_on_host(lane);
       if (!on_host) throw std::runtime_error(lane.id + ": expected a twin to minimise with, found none");
       failure.lanes.push_back(&lane);
       failure.on_host.push_back(on_host);
       failure.verdicts.push_back(verdicts[l]);
-      wrong = wrong || verdicts[l] != judged.verdict;
+      wrong = wrong || verdicts[l] != truth_of_pair.verdict;
     }
     if (!wrong) return;
     if (!fails_alike(failure, pair)) {
@@ -90,7 +89,7 @@ std::vector<Failure> failures_of(const Bench& bench, const Pair& pair) {
 }
 
 bool fails_alike(const Failure& failure, const Pair& pair) {
-  return !decided_alike(failure, {pair}).empty() && judge(pair) == failure.truth;
+  return !decided_alike(failure, {pair}).empty() && judged(pair) == failure.truth;
 }
 
 Signature signature_of(const Failure& failure, const Pair& pair) {
@@ -123,7 +122,7 @@ Minimised minimise(const Failure& failure, const Pair& pair) {
     for (auto first = simpler.begin(); first != simpler.end();) {
       const auto last = first + std::min<std::ptrdiff_t>(kBlockPairs, simpler.end() - first);
       for (const Pair& candidate : decided_alike(failure, {first, last})) {
-        if (judge(candidate) != failure.truth) continue;
+        if (judged(candidate) != failure.truth) continue;
         result.pair = candidate;
         keep_worst(result, candidate, failure.truth.verdict);
         return true;

@@ -24,7 +24,7 @@ struct Judged {
 
 // By the exact decision of core/exact.h; the oracle confirms the results (see confirm).
 // Requires: finite coordinates.   Exact: always.
-Judged judge(const Pair& pair);
+Judged judged(const Pair& pair);
 
 // One algorithm's failure: the truth, and what each of its lanes says of it. A pair fails alike when all of it holds.
 struct Failure {

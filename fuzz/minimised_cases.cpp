@@ -12,10 +12,12 @@
 namespace graze {
 namespace {
 
-bool is_result(const Entry& entry) {
-  const std::string* kind = field(entry, "kind");
-  return kind && (*kind == "minimised" || *kind == "worst");
+bool has_kind(const Entry& entry, std::string_view kind) {
+  const std::string* value = field(entry, "kind");
+  return value && *value == kind;
 }
+
+bool is_result(const Entry& entry) { return is_minimised(entry) || has_kind(entry, "worst"); }
 
 // The cases to minimise, in their order.
 std::vector<const Entry*> originals(const std::vector<Entry>& entries) {
@@ -28,9 +30,8 @@ std::vector<const Entry*> originals(const std::vector<Entry>& entries) {
 }
 
 std::string name_of(const Entry& entry) {
-  const std::string *stratum = field(entry, "stratum"), *seed = field(entry, "seed"), *index = field(entry, "index");
   const std::string *from = field(entry, "from"), *name = field(entry, "name");
-  return stratum && seed && index ? fmt::format("{}:{}:{}", *stratum, *seed, *index) : from ? *from : name ? *name : "";
+  return numbers_of(entry).value_or(from ? *from : name ? *name : "");
 }
 
 bool is_of_algorithm(const std::string& key, const Failure& failure) {
@@ -46,6 +47,8 @@ Entry result_entry(const MinimisedCase& result, const Pair& pair, const char* ki
 }
 
 }  // namespace
+
+bool is_minimised(const Entry& entry) { return has_kind(entry, "minimised"); }
 
 std::vector<MinimisedCase> minimise_cases(const Bench& bench, const std::vector<Entry>& entries) {
   std::vector<MinimisedCase> results;

@@ -19,6 +19,9 @@ struct MinimisedCase {
   Pair original;
 };
 
+// Whether the entry is what a case was minimised to.
+bool is_minimised(const Entry& entry);
+
 // One result for all cases with the same recorded signature, of its algorithm: the simplest one, and the worst pair of
 // all. Cases without a record have one for each algorithm that is wrong. What is minimised already counts as a case
 // only where there is no other. Each result is confirmed.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <sstream>
 
 #include "analysis/signature.h"
@@ -53,10 +52,9 @@ struct Line {
 
   std::uint64_t count() const {
     const std::string& word = text("count");
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || end != word.data() + word.size()) fail("a whole number as count", '\'' + word + '\'');
-    return value;
+    const std::optional<std::uint64_t> value = parse_whole(word);
+    if (!value) fail("a whole number as count", '\'' + word + '\'');
+    return *value;
   }
 
   // An algorithm that the text does not name did not run; one that is none any more is an error.
@@ -75,6 +73,11 @@ struct Line {
     return marks;
   }
 };
+
+// The lane's mark; null for an exact lane, which has none.
+char* mark_of(Marks& marks, const Lane& lane) {
+  return lane.is_exact() ? nullptr : &marks[static_cast<std::size_t>(lane.index)];
+}
 
 std::string verdict_of_mark(char mark, std::string_view truth) {
   switch (mark) {
@@ -151,13 +154,11 @@ Replay replay(const Pair& pair, std::span<const Lane* const> run, const DecideLa
     std::vector<const Lane*> apart;
     const std::vector<Verdict> verdicts = decide(pair, apart);
     for (std::size_t l = 0; l < run.size(); ++l) {
-      if (run[l]->is_exact()) continue;
-      char& known = result.marks[static_cast<std::size_t>(run[l]->index)];
       const char now = mark(verdicts[l], result.truth.verdict);
-      known = r == 0 || known == now ? now : '~';
+      if (char* known = mark_of(result.marks, *run[l])) *known = r == 0 || *known == now ? now : '~';
     }
     for (const Lane* lane : apart) {
-      if (!lane->is_exact()) result.marks[static_cast<std::size_t>(lane->index)] = '~';
+      if (char* known = mark_of(result.marks, *lane)) *known = '~';
     }
   }
   return result;
@@ -181,21 +182,19 @@ Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> run, cons
   Verified result;
   for (auto& [signature, c] : corpus) {
     const auto change = [&, &who = c.name](const std::string& what) { result.changes.push_back({who, what}); };
-    const Replay now = replay(c.pair, run, decide);
+    Replay now = replay(c.pair, run, decide);
     const std::string truth_now(name(now.truth.verdict)), contact_now(name(now.truth.contact));
     if (c.truth != truth_now || c.contact != contact_now)
       change(fmt::format("truth: was {}, {}, is {}, {}", c.truth, c.contact, truth_now, contact_now));
     for (const Lane* lane : run) {
-      if (lane->is_exact()) continue;
-      char& known = c.marks[static_cast<std::size_t>(lane->index)];
-      const char mark_now = now.marks[static_cast<std::size_t>(lane->index)];
-      if (known == '~') continue;
-      if (known != '_') {
+      char *known = mark_of(c.marks, *lane), *mark_now = mark_of(now.marks, *lane);
+      if (!known || *known == '~') continue;
+      if (*known != '_') {
         ++result.compared;
-        const std::string was = verdict_of_mark(known, c.truth), is = verdict_of_mark(mark_now, truth_now);
+        const std::string was = verdict_of_mark(*known, c.truth), is = verdict_of_mark(*mark_now, truth_now);
         if (was != is) change(fmt::format("{}: was {}, is {}", lane->id, was, is));
       }
-      known = mark_now;
+      *known = *mark_now;
     }
     c.truth = truth_now;
     c.contact = contact_now;

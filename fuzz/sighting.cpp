@@ -12,6 +12,7 @@
 #include "analysis/signature.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "fuzz/minimised_cases.h"
 
 namespace graze {
 namespace {
@@ -94,10 +95,6 @@ std::vector<Sighting> sightings_of_cases(const std::vector<Entry>& entries, cons
     std::ostringstream bits;
     write_entry(bits, {entry.pair});
     sightings.push_back({signature, entry, 1, seen_by(build, "case", bits.str())});
-  };
-  const auto is_minimised = [](const Entry& entry) {
-    const std::string* kind = field(entry, "kind");
-    return kind && *kind == "minimised";
   };
   const bool minimised = std::any_of(entries.begin(), entries.end(), is_minimised);
   for (const Entry& entry : entries) {

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "corpus/pair_format.h"
 #include "oracle/truth.h"
@@ -15,18 +14,12 @@
 namespace graze {
 namespace {
 
-std::string contents(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
   for (const Lane& lane : published_lanes()) {
     const std::string id(lane.info->id), source = amalgamated_source(id);
     EXPECT_EQ(source.find("#include \""), source.npos) << id;
-    const std::string header = contents(std::string(GRAZE_SOURCE_DIR) + "/core/" + id + ".h");
+    std::ifstream in(std::string(GRAZE_SOURCE_DIR) + "/core/" + id + ".h", std::ios::binary);
+    const std::string header{std::istreambuf_iterator<char>(in), {}};
     const std::size_t body = header.find("namespace graze {");
     ASSERT_NE(body, header.npos) << id;
     EXPECT_NE(source.find(header.substr(body)), source.npos) << id << ": not the file in core/, byte for byte";

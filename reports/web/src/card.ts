@@ -58,9 +58,8 @@ function verdicts(report: Report, card: Card) {
 }
 
 function ulp_maps(maps: NonNullable<Card['maps']>) {
-  const steps = `${maps.size} × ${maps.size} steps of an ulp`;
   return h('div', { class: 'maps' }, h('h4', {}, 'Ulp map'),
-    h('p', {}, `${maps.title}: ${maps.x} to the right, ${maps.y} upwards, ${steps}; the case is in the middle. `,
+    h('p', {}, `${maps.title}: ${maps.x} to the right, ${maps.y} upwards; the case is in the middle. `,
       h('span', { class: 'map-key' }, maps.legend.map(({ colour, means }) => h('span', {}, h('i', { style: `background:${colour}` }), means)))),
     h('div', { class: 'panels' }, maps.panels.map(({ name, png }) => h('figure', { class: name === 'truth' ? 'panel truth' : 'panel' },
       h('div', {}, h('img', { src: `data:image/png;base64,${png}`, width: maps.size, height: maps.size, decoding: 'async', alt: `Ulp map of ${name}` })),
@@ -94,7 +93,7 @@ export function card_body(report: Report, card: Card, signature: Signature) {
         h('p', { class: 'truth' }, h('b', {}, `Truth: ${truth.verdict}`), `, ${where}${ulps}`),
         h('ul', { class: 'sentences' }, card.sentences.map((sentence) => h('li', {}, sentence))),
         coordinates(card))),
-    h('div', { class: card.maps ? 'card-top' : '' }, h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)), card.maps && ulp_maps(card.maps)),
+    h('div', { class: card.maps ? 'card-low' : '' }, h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)), card.maps && ulp_maps(card.maps)),
     h('h4', {}, 'Again'),
     h('div', { class: 'commands' }, card.commands.map(({ label, text }) => [h('span', { class: 'label' }, label), code_block(text, `the ${label} command`)])),
     card.snippets.length > 0 && snippets(card),

@@ -89,7 +89,8 @@ export function league_section(report: Report) {
     table.element.classList.toggle('single', show !== 'both');
   };
   return section('league', 'League table',
-    h('p', {}, 'Share of wrong verdicts, in per cent of a stratum’s pairs. A ', h('b', {}, 'false positive'), ' says that triangles intersect which are apart; a ', h('b', {}, 'false negative'), ' misses a contact. In each cell the upper number counts false positives, the lower one false negatives; every head sorts.'),
+    h('p', {}, 'In per cent. A ', h('b', {}, 'false positive'), ' says “intersects” of triangles that are apart, and is counted against the pairs that are apart; a ',
+      h('b', {}, 'false negative'), ' misses a contact, and is counted against the pairs that intersect. In each cell false positives stand above false negatives; every head sorts.'),
     h('div', { class: 'controls' },
       h('label', { class: 'field' }, h('span', {}, 'Find a lane'), search),
       choice('Show', kShow, show, (value) => { show = value as Show; redraw(); }),

@@ -84,7 +84,7 @@ export function margins_section(report: Report) {
       for (const side of ['intersects', 'disjoint']) {
         const own = all.filter((dot) => dot.lane === lane && dot.side === side);
         marks.push(
-          Plot.areaY(own, { x: 'x', y1: (d: Dot) => y(d.share.low), y2: (d: Dot) => y(d.share.high), fill: stroke, fillOpacity: lanes.length > 8 ? 0.06 : 0.1 }),
+          Plot.areaY(own, { x: 'x', y1: (d: Dot) => y(d.share.low), y2: (d: Dot) => y(d.share.high), fill: stroke, fillOpacity: lanes.length > 6 ? 0.05 : lanes.length > 2 ? 0.08 : 0.18 }),
           Plot.lineY(own, { x: 'x', y: (d: Dot) => (log && !d.share.count ? NaN : y(d.share.share)), stroke, strokeWidth, strokeDasharray: dash, strokeLinejoin: 'round' }),
           Plot.dot(log ? own.filter((d) => !d.share.count) : [], { x: 'x', y: none, r: 1.6, fill: stroke }));
       }

@@ -10,7 +10,7 @@ const kTerms: [string, Child[]][] = [
   ['Twin', ['A replay of a CUDA kernel’s PTX on the CPU, contractions and all, with the same bits. ', '“Proven” means that it was compared with the device on the number of pairs given, without a difference.']],
   ['Stratum', ['A named generator of pairs, a pure function of seed and index. Each is hard in its own way; shares over all strata depend on the mix and say nothing of your data, shares within a stratum do.']],
   ['Truth', ['CGAL’s exact kernel decides; an independent decision on integers of any size (GMP) confirms every disagreement that is kept. If the two ever part, the campaign stops.']],
-  ['False positive, false negative', ['The lane says “intersects” of triangles that are apart; says “disjoint” of triangles that meet. ', h('i', {}, 'Declined'), ' is neither.']],
+  ['False positive, false negative', ['The lane says “intersects” of triangles that are apart; says “disjoint” of triangles that meet. Shares are of the pairs on which that error is possible; “wrong” is of all. ', h('i', {}, 'Declined'), ' is neither.']],
   ['Margin', ['How close the call was: the distance of a disjoint pair; of an intersecting one the smallest shift that parts it, drawn to the left. It is 0 where any push parts the two: touching or coplanar. Computed exactly, then rounded once.']],
   ['Ulp', ['The step between neighbouring float32 numbers at the pair’s largest coordinate. Margins are given in ulps, so that size does not matter.']],
   ['Interval', ['Wilson’s, at 95 %. Where no error was seen in n pairs, the rate is below 1 − 0.05^(1/n) with 95 % confidence: about 3/n.']],

@@ -4,13 +4,19 @@
 // The exact lane must first give the host's bits on a sample. Prints a line and succeeds where there is no device.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <atomic>
+#include <bit>
 #include <exception>
 #include <iostream>
 #include <string>
+#include <string_view>
+#include <thread>
 #include <vector>
 
 #include "build_info.h"
 #include "core/exact.h"
+#include "core/fnv1a.h"
 #include "core/lanes.h"
 #include "cuda/device.h"
 #include "cuda/device_memory.h"
@@ -39,9 +45,9 @@ struct Resident {
   std::uint32_t* intersects_bits() { return intersects.at_least(kPairs / 32); }
   std::uint32_t* declined_bits() { return declined.at_least(kPairs / 32); }
 
-  void hold(int wanted) {
-    if (stratum == wanted) return;
-    launch_generate(coordinates.at_least(kFloats), kPairs, 1, wanted, 0, nullptr);
+  void hold(int wanted, std::uint64_t first = 0) {
+    if (stratum == wanted && first == 0) return;
+    launch_generate(coordinates.at_least(kFloats), kPairs, 1, wanted, first, nullptr);
     check(cudaGetLastError());
     check(cudaDeviceSynchronize());
     stratum = wanted;
@@ -88,29 +94,74 @@ void measure(benchmark::State& state, double items, double bytes, const Launch& 
   state.SetBytesProcessed(static_cast<std::int64_t>(launches * bytes));
 }
 
-// Whether the exact lane gives the host's bits on the first kSample pairs. Returns in stages, by whom all were decided.
-bool agrees_with_host(Resident& resident, const Lane& host, unsigned long long (&stages)[exact::kStages]) {
+using Bits = std::vector<std::uint64_t>;
+
+// The verdicts of resident pairs [first, first + count): on the device, and by the host's exact lane.
+// Requires: first and count are multiples of 64.
+struct Verdicts {
+  Bits device, host;
+};
+Verdicts verdicts(Resident& resident, const Lane& host, std::size_t first, std::size_t count) {
+  std::vector<Pair> pairs(count);
+  std::vector<float> column(count);
+  for (std::size_t c = 0; c < kCoordinates; ++c) {
+    check(cudaMemcpy(column.data(), resident.pairs().coordinates + c * kPairs + first, count * sizeof(float),
+                     cudaMemcpyDeviceToHost));
+    for (std::size_t i = 0; i < count; ++i) coordinates(pairs[i])[c] = column[i];
+  }
+  Verdicts v{Bits(count / 64), Bits(count / 64)};
+  check(cudaMemcpy(v.device.data(), resident.intersects_bits() + first / 32, count / 8, cudaMemcpyDeviceToHost));
+  Bits declined(count / 64);
+  host.decide(pairs.data(), count, v.host.data(), declined.data());
+  return v;
+}
+
+// Decides the resident pairs, and returns in stages by whom.
+void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
   unsigned long long* counts = resident.stages.at_least(exact::kStages);
   check(cudaMemset(counts, 0, sizeof stages));
   resident.exact.decide(resident.pairs(), resident.intersects_bits(), resident.declined_bits(), counts, nullptr);
   check(cudaMemcpy(stages, counts, sizeof stages, cudaMemcpyDeviceToHost));
+}
 
-  std::vector<Pair> pairs(kSample);
-  std::vector<float> column(kSample);
-  for (std::size_t c = 0; c < kCoordinates; ++c) {
-    check(cudaMemcpy(column.data(), resident.pairs().coordinates + c * kPairs, kSample * sizeof(float),
-                     cudaMemcpyDeviceToHost));
-    for (std::size_t i = 0; i < kSample; ++i) coordinates(pairs[i])[c] = column[i];
+// All pairs of every stratum, `rounds` times as many as are resident, by device and host: a line each with a hash of
+// the verdicts.   Returns: whether none differs.
+bool device_is_host(std::uint64_t rounds) {
+  const Lane& host = *(&lanes().back() - 1);
+  bool same = true;
+  for (int stratum = 0; stratum < kStrataCount; ++stratum) {
+    Resident resident;
+    std::uint64_t differ = 0, hashes[2] = {fnv1a(""), fnv1a("")};
+    for (std::uint64_t round = 0; round < rounds; ++round) {
+      resident.hold(stratum, round * kPairs);
+      unsigned long long stages[exact::kStages];
+      decide(resident, stages);
+      constexpr std::size_t kPart = 1 << 18;
+      std::vector<Verdicts> parts(kPairs / kPart);
+      std::atomic<std::size_t> next = 0;
+      std::vector<std::jthread> threads;
+      for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) {
+        threads.emplace_back([&] {
+          for (std::size_t p = next++; p < parts.size(); p = next++)
+            parts[p] = verdicts(resident, host, p * kPart, kPart);
+        });
+      }
+      threads.clear();
+      for (const Verdicts& v : parts) {
+        for (std::size_t w = 0; w < v.host.size(); ++w)
+          differ += static_cast<std::uint64_t>(std::popcount(v.host[w] ^ v.device[w]));
+        const auto bytes = [](const Bits& bits) {
+          return std::string_view(reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]);
+        };
+        hashes[0] = fnv1a(bytes(v.device), hashes[0]);
+        hashes[1] = fnv1a(bytes(v.host), hashes[1]);
+      }
+    }
+    std::cout << kStrata[stratum].id << ": " << rounds * kPairs << " pairs, " << differ << " differ, hashes "
+              << std::hex << hashes[0] << ' ' << hashes[1] << std::dec << std::endl;
+    same = same && differ == 0 && hashes[0] == hashes[1];
   }
-  using Bits = std::vector<std::uint64_t>;
-  const auto fetch = [](const std::uint32_t* bits) {
-    Bits result(kSample / 64);
-    check(cudaMemcpy(result.data(), bits, kSample / 8, cudaMemcpyDeviceToHost));
-    return result;
-  };
-  Bits intersects(kSample / 64), declined(kSample / 64);
-  host.decide(pairs.data(), pairs.size(), intersects.data(), declined.data());
-  return fetch(resident.intersects_bits()) == intersects && fetch(resident.declined_bits()) == declined;
+  return same;
 }
 
 void measure_lane(benchmark::State& state, Resident& resident, int stratum, const Lane& lane) {
@@ -118,7 +169,9 @@ void measure_lane(benchmark::State& state, Resident& resident, int stratum, cons
   if (lane.is_exact()) {
     unsigned long long stages[exact::kStages];
     const Lane& host = *(&lane - 1);  // exact/f32/cpu stands before exact/f32/cuda
-    if (!agrees_with_host(resident, host, stages)) return state.SkipWithError("differs from the host's exact lane");
+    decide(resident, stages);
+    const Verdicts v = verdicts(resident, host, 0, kSample);
+    if (v.device != v.host) return state.SkipWithError("differs from the host's exact lane");
     constexpr const char* kNames[] = {"bounded", "doubles", "int128", "wide"};
     for (int s = 0; s < exact::kStages; ++s) state.counters[kNames[s]] = static_cast<double>(stages[s]);
   }
@@ -160,7 +213,10 @@ void add_all(Resident& resident) {
 }  // namespace
 }  // namespace graze
 
+// `graze_device_bench compare ROUNDS` compares the exact lanes of device and host instead of measuring.
 int main(int argc, char** argv) try {
+  const bool compare = argc == 3 && std::string_view(argv[1]) == "compare";
+  if (compare) return graze::device_is_host(std::stoull(argv[2])) ? 0 : 1;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   std::string why_not;

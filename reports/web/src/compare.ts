@@ -27,7 +27,7 @@ function rates_table(compare: Compare) {
 }
 
 function signatures_table(caption: string, seen: Seen[]) {
-  if (!seen.length) return h('p', {}, `${caption}: none.`);
+  if (!seen.length) return h('div', {}, h('h3', {}, `${caption}: none`));
   const table = sortable_table<Seen>([
     { label: 'Signature', cell: (s) => h('code', {}, ...breakable(s.key)), order: (s) => s.key },
     { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },

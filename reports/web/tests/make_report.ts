@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes the page that the tests open: a real campaign, minimised, by the graze that GRAZE names. GRAZE_REPORT names a
-// page made before instead.
+// page made before instead, and GRAZE_COMPARE one that compares.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -17,9 +17,13 @@ export default function make_report() {
   if (!GRAZE) throw new Error('GRAZE: expected the path of the graze binary, found nothing');
   const folder = mkdtempSync(join(tmpdir(), 'graze-page-'));
   const run = (...args: string[]) => execFileSync(GRAZE, args, { cwd: folder, stdio: ['ignore', 'ignore', 'inherit'] });
-  run('fuzz', '--pairs', '1500', '--seed', '1', '--strata', kStrata, '--executor', 'twin', '--out', 'campaign');
+  const fuzz = (seed: string, out: string) => run('fuzz', '--pairs', '1500', '--seed', seed, '--strata', kStrata, '--executor', 'twin', '--out', out);
+  fuzz('1', 'campaign');
   run('minimize', 'campaign', '--executor', 'twin');
   run('report', 'campaign');
+  fuzz('2', 'other');
+  run('report', '--compare', 'other', 'campaign');
   process.env.GRAZE_REPORT = join(folder, 'campaign', 'report.html');
+  process.env.GRAZE_COMPARE = join(folder, 'campaign', 'compare.html');
   return () => rmSync(folder, { recursive: true });
 }

@@ -96,24 +96,28 @@ void measure(benchmark::State& state, double items, double bytes, const Launch& 
 
 using Bits = std::vector<std::uint64_t>;
 
-// The verdicts of resident pairs [first, first + count): on the device, and by the host's exact lane.
-// Requires: first and count are multiples of 64.
-struct Verdicts {
-  Bits device, host;
-};
-Verdicts verdicts(Resident& resident, const Lane& host, std::size_t first, std::size_t count) {
+// The first `count` resident pairs, to `columns`: 18 arrays of that length, as they lie on the device.
+void fetch(Resident& resident, std::size_t count, float* columns) {
+  check(cudaMemcpy2D(columns, count * sizeof(float), resident.pairs().coordinates, kPairs * sizeof(float),
+                     count * sizeof(float), kCoordinates, cudaMemcpyDeviceToHost));
+}
+
+// The verdicts of the host's exact lane on pairs [first, first + count) of `stride` fetched ones.
+// Requires: count is a multiple of 64.
+Bits by_host(const Lane& host, const float* columns, std::size_t stride, std::size_t first, std::size_t count) {
   std::vector<Pair> pairs(count);
-  std::vector<float> column(count);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
-    check(cudaMemcpy(column.data(), resident.pairs().coordinates + c * kPairs + first, count * sizeof(float),
-                     cudaMemcpyDeviceToHost));
-    for (std::size_t i = 0; i < count; ++i) coordinates(pairs[i])[c] = column[i];
+    for (std::size_t i = 0; i < count; ++i) coordinates(pairs[i])[c] = columns[c * stride + first + i];
   }
-  Verdicts v{Bits(count / 64), Bits(count / 64)};
-  check(cudaMemcpy(v.device.data(), resident.intersects_bits() + first / 32, count / 8, cudaMemcpyDeviceToHost));
-  Bits declined(count / 64);
-  host.decide(pairs.data(), count, v.host.data(), declined.data());
-  return v;
+  Bits intersects(count / 64), declined(count / 64);
+  host.decide(pairs.data(), count, intersects.data(), declined.data());
+  return intersects;
+}
+
+Bits by_device(Resident& resident, std::size_t count) {
+  Bits intersects(count / 64);
+  check(cudaMemcpy(intersects.data(), resident.intersects_bits(), count / 8, cudaMemcpyDeviceToHost));
+  return intersects;
 }
 
 // Decides the resident pairs, and returns in stages by whom.
@@ -124,43 +128,48 @@ void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
   check(cudaMemcpy(stages, counts, sizeof stages, cudaMemcpyDeviceToHost));
 }
 
-// All pairs of every stratum, `rounds` times as many as are resident, by device and host: a line each with a hash of
-// the verdicts.   Returns: whether none differs.
-bool device_is_host(std::uint64_t rounds) {
+// Rounds [first, end) of every stratum, each of kPairs pairs, by device and host: a line each with hashes of the
+// verdicts.   Returns: whether none differs.
+bool device_is_host(std::uint64_t first, std::uint64_t end) {
   const Lane& host = *(&lanes().back() - 1);
+  const auto hashed = [](const Bits& bits, std::uint64_t hash) {
+    return fnv1a({reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]}, hash);
+  };
+  Resident resident;
+  float* columns;
+  check(cudaMallocHost(&columns, kFloats * sizeof(float)));
   bool same = true;
   for (int stratum = 0; stratum < kStrataCount; ++stratum) {
-    Resident resident;
-    std::uint64_t differ = 0, hashes[2] = {fnv1a(""), fnv1a("")};
-    for (std::uint64_t round = 0; round < rounds; ++round) {
+    std::uint64_t differ = 0, hash_of_device = fnv1a(""), hash_of_host = fnv1a("");
+    for (std::uint64_t round = first; round < end; ++round) {
       resident.hold(stratum, round * kPairs);
       unsigned long long stages[exact::kStages];
       decide(resident, stages);
-      constexpr std::size_t kPart = 1 << 18;
-      std::vector<Verdicts> parts(kPairs / kPart);
+      fetch(resident, kPairs, columns);
+      constexpr std::size_t kPart = 1 << 16;
+      std::vector<Bits> parts(kPairs / kPart);
       std::atomic<std::size_t> next = 0;
       std::vector<std::jthread> threads;
       for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) {
         threads.emplace_back([&] {
           for (std::size_t p = next++; p < parts.size(); p = next++)
-            parts[p] = verdicts(resident, host, p * kPart, kPart);
+            parts[p] = by_host(host, columns, kPairs, p * kPart, kPart);
         });
       }
       threads.clear();
-      for (const Verdicts& v : parts) {
-        for (std::size_t w = 0; w < v.host.size(); ++w)
-          differ += static_cast<std::uint64_t>(std::popcount(v.host[w] ^ v.device[w]));
-        const auto bytes = [](const Bits& bits) {
-          return std::string_view(reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]);
-        };
-        hashes[0] = fnv1a(bytes(v.device), hashes[0]);
-        hashes[1] = fnv1a(bytes(v.host), hashes[1]);
-      }
+      Bits of_host;
+      for (const Bits& part : parts) of_host.insert(of_host.end(), part.begin(), part.end());
+      const Bits of_device = by_device(resident, kPairs);
+      for (std::size_t w = 0; w < of_host.size(); ++w)
+        differ += static_cast<std::uint64_t>(std::popcount(of_host[w] ^ of_device[w]));
+      hash_of_device = hashed(of_device, hash_of_device);
+      hash_of_host = hashed(of_host, hash_of_host);
     }
-    std::cout << kStrata[stratum].id << ": " << rounds * kPairs << " pairs, " << differ << " differ, hashes "
-              << std::hex << hashes[0] << ' ' << hashes[1] << std::dec << std::endl;
-    same = same && differ == 0 && hashes[0] == hashes[1];
+    std::cout << kStrata[stratum].id << ": " << (end - first) * kPairs << " pairs, " << differ << " differ, hashes "
+              << std::hex << hash_of_device << ' ' << hash_of_host << std::dec << std::endl;
+    same = same && differ == 0 && hash_of_device == hash_of_host;
   }
+  check(cudaFreeHost(columns));
   return same;
 }
 
@@ -170,8 +179,10 @@ void measure_lane(benchmark::State& state, Resident& resident, int stratum, cons
     unsigned long long stages[exact::kStages];
     const Lane& host = *(&lane - 1);  // exact/f32/cpu stands before exact/f32/cuda
     decide(resident, stages);
-    const Verdicts v = verdicts(resident, host, 0, kSample);
-    if (v.device != v.host) return state.SkipWithError("differs from the host's exact lane");
+    std::vector<float> columns(kSample * kCoordinates);
+    fetch(resident, kSample, columns.data());
+    if (by_device(resident, kSample) != by_host(host, columns.data(), kSample, 0, kSample))
+      return state.SkipWithError("differs from the host's exact lane");
     constexpr const char* kNames[] = {"bounded", "doubles", "int128", "wide"};
     for (int s = 0; s < exact::kStages; ++s) state.counters[kNames[s]] = static_cast<double>(stages[s]);
   }
@@ -213,10 +224,10 @@ void add_all(Resident& resident) {
 }  // namespace
 }  // namespace graze
 
-// `graze_device_bench compare ROUNDS` compares the exact lanes of device and host instead of measuring.
+// `graze_device_bench compare FIRST END` compares the exact lanes of device and host instead of measuring.
 int main(int argc, char** argv) try {
-  const bool compare = argc == 3 && std::string_view(argv[1]) == "compare";
-  if (compare) return graze::device_is_host(std::stoull(argv[2])) ? 0 : 1;
+  if (argc == 4 && std::string_view(argv[1]) == "compare")
+    return graze::device_is_host(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   std::string why_not;

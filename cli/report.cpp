@@ -24,7 +24,8 @@ struct ReportOptions {
 };
 
 void say_what_the_page_is() {
-  if (!has_interactive_page()) fmt::print("The page is plain: this build had no Node (see reports/README.md)\n");
+  if (!has_interactive_page())
+    fmt::print("The page is plain: this build had no Node, or no npm packages (see reports/README.md)\n");
 }
 
 // NAME.html, NAME.json and tables in the directory.
@@ -53,7 +54,8 @@ void report(const ReportOptions& options) {
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
     Json after = make_report(options.compare[1]);
-    add_comparison(after, make_report(options.compare[0]));
+    add_comparison(after, make_report(options.compare[0]), read_summary(options.compare[1])["signatures"],
+                   read_summary(options.compare[0])["signatures"]);
     write_report(options.compare[1], after, "compare");
   } else {
     write_report(options.directory, make_report(options.directory), "report");

@@ -3,9 +3,9 @@
 // crossing, touching, coplanar, shared vertices and edges; any finite coordinates, subnormals and 1e38 included.
 // Needs the C++ standard library only, and a compiler with 128-bit integers (GCC, Clang, nvcc).
 //
-// Two decisions, each written once over the numbers it computes with:
+// Two decisions, written over the numbers they compute with:
 //   by_planes  Guigue and Devillers 2003: the sides of the vertices, then two orientations. For pairs in general
-//              position.
+//              position. Its first attempt, in doubles, is written apart, for speed.
 //   by_axes    separating axes of the Minkowski difference D = { x - y : x in a, y in b }, which holds the origin
 //              exactly when a and b meet. Proper, coplanar and degenerate pairs alike.
 // and four kinds of numbers, each exact or saying that it is not. First doubles with one error bound for all; what it
@@ -17,8 +17,7 @@
 //   doubles    coordinates that are integers of up to 15 bits times one power of two: a determinant is less than
 //              6 * 2^(3 * 16) < 2^53, so nothing rounds; in floats so up to 6 bits: 6 * 2^(3 * 7) < 2^24.
 //   int128     up to 30 bits: minors fit in 64 bits; up to 40 bits: a determinant is less than 6 * 2^(3 * 41) < 2^127.
-//   wide       up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant less than 6 * 2^(3 * 91) <
-//   2^319;
+//   wide       up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant than 6 * 2^(3 * 91) < 2^319;
 //              else multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840.
 // Integers do not round: what is exact here does not hang on rounding modes, contraction or optimisation.
 #pragma once

@@ -327,7 +327,10 @@ GRAZE_HD inline bool fits_single(const Vec& extent) {
 }
 
 GRAZE_HD inline bool bucket_of(const MarginBounds& bounds, Verdict verdict, int log2_ulp, Bucket& bucket) {
-  return bounds.lo > 0 && bounds.hi < INFINITY && bucket_from_bounds(bounds, verdict, log2_ulp, bucket);
+  // Differences of scaled coordinates may be as small as 2^-277: the squares of lengths do not underflow, but products
+  // of more may, and then a separation is no bound. It does not lie between 0 and the connection's length either.
+  return bounds.lo > 0 && bounds.lo <= bounds.hi && bounds.hi < INFINITY &&
+         bucket_from_bounds(bounds, verdict, log2_ulp, bucket);
 }
 
 }  // namespace margin_quick

@@ -131,6 +131,7 @@ void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
 // Rounds [first, end) of every stratum, each of kPairs pairs, by device and host: a line each with hashes of the
 // verdicts.   Returns: whether none differs.
 bool device_is_host(std::uint64_t first, std::uint64_t end) {
+  if (first >= end) throw std::invalid_argument("expected FIRST below END");
   const Lane& host = *(&lanes().back() - 1);
   const auto hashed = [](const Bits& bits, std::uint64_t hash) {
     return fnv1a({reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]}, hash);
@@ -159,7 +160,10 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
       threads.clear();
       Bits of_host;
       for (const Bits& part : parts) of_host.insert(of_host.end(), part.begin(), part.end());
-      const Bits of_device = by_device(resident, kPairs);
+      Bits of_device(kPairs / 64);  // declined ones count as well: there are none
+      check(cudaMemcpy(of_device.data(), resident.declined_bits(), kPairs / 8, cudaMemcpyDeviceToHost));
+      for (const std::uint64_t declined : of_device) differ += static_cast<std::uint64_t>(std::popcount(declined));
+      of_device = by_device(resident, kPairs);
       for (std::size_t w = 0; w < of_host.size(); ++w)
         differ += static_cast<std::uint64_t>(std::popcount(of_host[w] ^ of_device[w]));
       hash_of_device = hashed(of_device, hash_of_device);

@@ -23,9 +23,9 @@ Places published(const CampaignCounts& counts) {
   return places;
 }
 
-std::string with_interval(const Share& s) {
-  return fmt::format("{} ({}, 95 % interval {} to {})", grouped(s.count), rate_words(s.share), rate_words(s.low),
-                     rate_words(s.high));
+std::string with_interval(const Share& s, const char* what = "") {
+  return fmt::format("{}{} ({}, 95 % interval {} to {})", grouped(s.count), what, rate_words(s.share),
+                     rate_words(s.low), rate_words(s.high));
 }
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -96,8 +96,8 @@ std::string worst(const CampaignCounts& counts, const Places& lanes, std::uint64
   const std::string times = least == 0 ? ""
                                        : fmt::format("; {:.3g} times as many as the safest",
                                                      static_cast<double>(most) / static_cast<double>(least));
-  return fmt::format("The worst {} {}: wrong on {} pairs{}{}.", found.size() == 1 ? "is" : "are", ids(counts, found),
-                     with_interval(share_of(most, counts.total.pairs)), kinds, times);
+  return fmt::format("The worst {} {}: wrong on {}{}{}.", found.size() == 1 ? "is" : "are", ids(counts, found),
+                     with_interval(share_of(most, counts.total.pairs), " pairs"), kinds, times);
 }
 
 // A lane with contraction, and the same without.
@@ -151,9 +151,9 @@ std::string contraction(const CampaignCounts& counts, const Places& lanes) {
     return fmt::format("Contraction changes most in {}: beside {} {} of {} pairs; {}{}.", counts.lanes[most->with].id,
                        counts.lanes[most->without].id, from_to, grouped(total.pairs), how_many, uncounted);
   }
-  return fmt::format("Contraction changes most in {}: another verdict than {} on {} pairs, and {}; {}{}.",
+  return fmt::format("Contraction changes most in {}: another verdict than {} on {}, and {}; {}{}.",
                      counts.lanes[most->with].id, counts.lanes[most->without].id,
-                     with_interval(share_of(*most->differs, total.pairs)), from_to, how_many, uncounted);
+                     with_interval(share_of(*most->differs, total.pairs), " pairs"), from_to, how_many, uncounted);
 }
 
 std::string thesis(const CampaignCounts& counts, const Places& lanes) {

@@ -14,6 +14,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// As a shell reads it back.
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ",")); }
 
 // Patterns that match these lanes of the table and no others, none of which can be spared: at each step that which
@@ -77,7 +84,7 @@ std::string campaign_command(const Json& summary) {
   std::uint64_t pairs = spec.at("pairs");
   if (spec.contains("mesh")) {
     command += " --mesh";
-    for (const Json& file : spec["mesh"]["files"]) command += " " + file.get<std::string>();
+    for (const Json& file : spec["mesh"]["files"]) command += " " + quoted(file.get<std::string>());
     pairs -= summary["strata"]["mesh"]["pairs"].get<std::uint64_t>();
     std::erase(strata, "mesh");
   }
@@ -86,10 +93,12 @@ std::string campaign_command(const Json& summary) {
   if (!strata.empty() && !all_strata) command += fmt::format(" --strata {}", joined(strata));
   if (ids.size() != lanes().size()) command += fmt::format(" --lanes '{}'", joined(lane_patterns(ids)));
   const Json executors = summary.at("build").value("executors", Json::object());
-  const bool both = std::any_of(executors.begin(), executors.end(), [](const Json& evidence) {
-    return evidence.get<std::string>().starts_with("device and ");
-  });
-  return command + (both ? " --executor both" : "") + " --out campaign";
+  const auto any = [&](std::string_view start) {
+    return std::any_of(executors.begin(), executors.end(),
+                       [&](const Json& evidence) { return evidence.get<std::string>().starts_with(start); });
+  };
+  const char* executor = any("device and ") ? " --executor both" : any("twin") ? " --executor twin" : "";
+  return command + executor + " --out campaign";
 }
 
 }  // namespace graze

@@ -60,7 +60,7 @@ std::string run_section(const Json& report) {
   if (!run["machine"].is_null()) text += paragraph("Machine: " + run["machine"].get<std::string>());
   text += "<pre>" + html(run["command"]) + "</pre>\n";
   text += paragraph(
-      "This build had no Node, so the page lacks its interactive parts: sorting, filters, views that turn, "
+      "This build had no Node, or no npm packages, so the page lacks its interactive parts: sorting, filters, views that turn, "
       "ulp maps and copy buttons. The same data is in the JSON file and the CSV tables beside it.");
   for (const Json& sentence : report["missing"]) text += paragraph(sentence);
   text += "<h2>The answer</h2>\n<ol>\n";

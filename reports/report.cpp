@@ -103,14 +103,15 @@ std::vector<std::pair<std::pair<std::string, std::string>, Share>> wrong_by_name
   return rates;
 }
 
-// Signatures of one report that another does not have.
-Json only_in(const Json& report, const Json& other) {
+// Signatures that the others do not hold.
+Json only_in(const Json& signatures, const Json& others) {
   std::set<std::string> known;
-  for (const Json& row : other.at("signatures")) known.insert(row.at("key"));
+  for (const Json& row : others) known.insert(row.at("key"));
   Json rows = Json::array();
-  for (const Json& row : report.at("signatures")) {
-    if (!known.contains(row.at("key").get<std::string>()))
-      rows.push_back({{"key", row.at("key")}, {"count", row.at("count")}});
+  for (const Json& row : signatures) {
+    const std::string key = row.at("key");
+    if (!known.contains(key) && !key.starts_with("executors/"))
+      rows.push_back({{"key", key}, {"count", row.at("count")}});
   }
   return rows;
 }
@@ -152,7 +153,7 @@ Json make_report(const std::filesystem::path& directory) {
   }
 }
 
-void add_comparison(Json& report, const Json& before) {
+void add_comparison(Json& report, const Json& before, const Json& signatures, const Json& signatures_before) {
   const auto then = wrong_by_name(before);
   const std::map<std::pair<std::string, std::string>, Share> by_name(then.begin(), then.end());
   Json rows = Json::array();
@@ -167,8 +168,8 @@ void add_comparison(Json& report, const Json& before) {
   }
   report["compare"] = {{"other", before.at("run")},
                        {"rates", rows},
-                       {"gained", only_in(report, before)},
-                       {"lost", only_in(before, report)}};
+                       {"gained", only_in(signatures, signatures_before)},
+                       {"lost", only_in(signatures_before, signatures)}};
 }
 
 std::string report_text(const Json& report) {

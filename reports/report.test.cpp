@@ -115,9 +115,9 @@ TEST(Answer, TellsWhatContractionChanges) {
       "none of 1,000 pairs (with 95 % confidence fewer than 0.299 %); exact/f32/cpu is wrong on none.");
   EXPECT_EQ(
       said[1],
-      "The worst is interval_overlap/f32/cuda-fma: wrong on 10 (1 %, 95 % interval 0.544 % to 1.83 %) pairs, 7 of "
+      "The worst is interval_overlap/f32/cuda-fma: wrong on 10 pairs (1 %, 95 % interval 0.544 % to 1.83 %), 7 of "
       "them false positives and 3 false negatives.");
-  EXPECT_TRUE(contains(said[2], "another verdict than interval_overlap/f32/cuda-nofma on 10 (1 %")) << said[2];
+  EXPECT_TRUE(contains(said[2], "another verdict than interval_overlap/f32/cuda-nofma on 10 pairs (1 %")) << said[2];
   EXPECT_TRUE(contains(said[2], "its wrong verdicts go from 0 to 10; 1 of 1 lanes")) << said[2];
   EXPECT_TRUE(contains(said[3], "in interval_overlap/f32/cuda-fma: on 10 (1 %")) << said[3];
   EXPECT_TRUE(contains(said[3], "of 1,000 pairs; without contraction on none.")) << said[3];
@@ -313,7 +313,7 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
   run("other", 2, 4);
   Json report = make_report(root_ / "other");
   const Json before = make_report(root_ / "one");
-  add_comparison(report, before);
+  add_comparison(report, before, report["signatures"], before["signatures"]);
   const Json& compare = report["compare"];
   EXPECT_EQ(compare["other"], before["run"]);
   EXPECT_EQ(compare["rates"].size(), report["rates"].size());
@@ -325,7 +325,7 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
   EXPECT_LT(changed, static_cast<std::ptrdiff_t>(compare["rates"].size() / 10));  // only the seed differs
   Json worse = before;
   for (Json& row : worse["rates"]) row["wrong"] = to_json(share_of(row["wrong"]["of"], row["wrong"]["of"]));
-  add_comparison(worse, before);
+  add_comparison(worse, before, worse["signatures"], before["signatures"]);
   EXPECT_TRUE(std::any_of(worse["compare"]["rates"].begin(), worse["compare"]["rates"].end(),
                           [](const Json& row) { return row["changed"].get<bool>(); }));
 }
@@ -368,7 +368,7 @@ void expect_well_formed(const std::string& text) {
 
 TEST_F(ReportTest, PlainPageIsWellFormedAndShowsEverything) {
   Json report = make_report(root_ / "one");
-  add_comparison(report, report);
+  add_comparison(report, report, report["signatures"], report["signatures"]);
   report["missing"].push_back("a <b> & \"c\"");
   const std::string text = plain_page(report);
   expect_well_formed(text);

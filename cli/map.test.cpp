@@ -9,15 +9,7 @@
 namespace graze {
 namespace {
 
-class MapCommand : public testing::Test {
- protected:
-  Shell shell{std::string("map-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
-
-  void expect_done(const std::string& command) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
-  }
-};
+class MapCommand : public CommandTest {};
 
 TEST_F(MapCommand, CountsAndDrawsATruthThatALineCuts) {
   std::ofstream(shell.folder / "edge.pairs") << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1\n";

@@ -13,11 +13,6 @@ class Minimize : public CommandTest {
  protected:
   static constexpr const char* kFuzz =
       "graze fuzz --seed 2 --pairs 240 --lanes '*/f32/*' --executor twin --strata 'near_edge_edge,degenerate' ";
-
-  void expect_done(const std::string& command) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
-  }
 };
 
 TEST_F(Minimize, ACaseIsPrintedAndWrittenWithItsOriginal) {

@@ -10,23 +10,12 @@
 namespace graze {
 namespace {
 
-class Report : public testing::Test {
+class Report : public CommandTest {
  protected:
-  Shell shell{std::string("report-") + testing::UnitTest::GetInstance()->current_test_info()->name()};
   static constexpr const char* kFuzz =
       "graze fuzz --pairs 3000 --lanes 'moller_1997/*,exact/f32/cpu' --executor twin "
       "--strata 'near_edge_edge,degenerate,thesis' ";
 
-  void expect_error(const std::string& command, int status, const std::string& part) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
-    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
-  }
-  void expect_done(const std::string& command) {
-    const Ran ran = shell(command);
-    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
-  }
   nlohmann::json json(const char* file) { return nlohmann::json::parse(contents(shell.folder / file)); }
 };
 

@@ -57,6 +57,11 @@ class CommandTest : public testing::Test {
   Shell shell{std::string(testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) + "-" +
               testing::UnitTest::GetInstance()->current_test_info()->name()};
 
+  void expect_done(const std::string& command) const {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
+  }
+
   // One line on stderr that holds `part`, and this exit status.
   void expect_error(const std::string& command, int status, const std::string& part) const {
     const Ran ran = shell(command);

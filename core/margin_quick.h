@@ -106,7 +106,14 @@ GRAZE_HD Nearest<Real> seem_nearest(const Corners<Real>& a, const Corners<Real>&
   return nearest;
 }
 
-// The triangle from vertex number `first` on; without indexing, which on a device would move registers to memory.
+// One of two triangles, or below one from another vertex on: without branches or indexing, which on a device would move
+// registers to memory.
+template <class Real>
+GRAZE_HD void choose(bool first, const Corners<Real>& u, const Corners<Real>& v, Corners<Real>& chosen) {
+  for (int k = 0; k < 3; ++k) chosen[k] = {first ? u[k].x : v[k].x, first ? u[k].y : v[k].y, first ? u[k].z : v[k].z};
+}
+
+// The triangle from vertex number `first` on.
 template <class Real>
 GRAZE_HD void turn(const Corners<Real>& v, int first, Corners<double>& turned) {
   const auto at = [&](int k) -> Vec {
@@ -164,10 +171,8 @@ template <class Real>
 GRAZE_HD MarginBounds distance_bounds(const Corners<Real>& a, const Corners<Real>& b, const Features& nearest) {
   const bool exchange = nearest.kind == Kind::face_b || nearest.kind == Kind::edge_b;
   Corners<Real> first, second;
-  for (int k = 0; k < 3; ++k) {
-    first[k] = {exchange ? b[k].x : a[k].x, exchange ? b[k].y : a[k].y, exchange ? b[k].z : a[k].z};
-    second[k] = {exchange ? a[k].x : b[k].x, exchange ? a[k].y : b[k].y, exchange ? a[k].z : b[k].z};
-  }
+  choose(exchange, b, a, first);
+  choose(exchange, a, b, second);
   MarginFrame f;
   f.exact = false;
   turn(first, exchange ? nearest.j : nearest.i, f.a);
@@ -245,10 +250,8 @@ GRAZE_HD void depth_along(const Corners<Real>& a, const Corners<Real>& b, int ax
                           float& lo, float& hi) {
   const bool edges = axis < kNormalA, exchange = axis == kNormalB;
   Corners<Real> first, second;
-  for (int k = 0; k < 3; ++k) {
-    first[k] = {exchange ? b[k].x : a[k].x, exchange ? b[k].y : a[k].y, exchange ? b[k].z : a[k].z};
-    second[k] = {exchange ? a[k].x : b[k].x, exchange ? a[k].y : b[k].y, exchange ? a[k].z : b[k].z};
-  }
+  choose(exchange, b, a, first);
+  choose(exchange, a, b, second);
   Corners<double> turned_a, turned_b;
   turn(first, edges ? axis / 3 : 0, turned_a);
   turn(second, edges ? axis % 3 : 0, turned_b);

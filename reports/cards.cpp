@@ -69,11 +69,7 @@ std::string text_of(const Entry& entry, std::string_view key) {
   return value ? *value : "";
 }
 
-std::string origin(const Entry& entry) {
-  const std::string stratum = text_of(entry, "stratum");
-  return stratum.empty() ? text_of(entry, "from")
-                         : fmt::format("{}:{}:{}", stratum, text_of(entry, "seed"), text_of(entry, "index"));
-}
+std::string origin(const Entry& entry) { return numbers_of(entry).value_or(text_of(entry, "from")); }
 
 Json coordinates_of(const Pair& pair) {
   Json decimal = Json::array(), hex = Json::array(), value = Json::array();

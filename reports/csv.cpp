@@ -58,10 +58,7 @@ std::string margins_csv(const CampaignCounts& counts) {
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     for (const StratumCounts& stratum : counts.strata) {
       for (const auto& [bucket, found] : stratum.margins) {
-        std::vector<Json> cells{counts.lanes[l].id, stratum.id,
-                                bucket < 0   ? "intersects"
-                                : bucket > 0 ? "disjoint"
-                                             : "zero",
+        std::vector<Json> cells{counts.lanes[l].id, stratum.id, side_of(bucket),
                                 bucket == 0 ? Json() : Json(exponent_of(bucket))};
         append(cells, to_json(share_of(found.wrong[l], found.pairs)));
         table.row(cells);

@@ -91,9 +91,7 @@ Json margins(const CampaignCounts& counts) {
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     Json points = Json::array();
     for (const auto& [bucket, found] : counts.total.margins) {
-      points.push_back({{"side", bucket < 0   ? "intersects"
-                                 : bucket > 0 ? "disjoint"
-                                              : "zero"},
+      points.push_back({{"side", side_of(bucket)},
                         {"exponent", bucket == 0 ? Json() : Json(exponent_of(bucket))},
                         {"wrong", to_json(share_of(found.wrong[l], found.pairs))}});
     }

@@ -36,6 +36,9 @@ Threshold threshold(const StratumCounts& counts, std::size_t lane, int side);
 nlohmann::ordered_json thresholds(const CampaignCounts& counts);
 nlohmann::ordered_json extremes(const CampaignCounts& counts);
 
+// Of which pairs a bucket is.
+constexpr const char* side_of(Bucket bucket) { return bucket < 0 ? "intersects" : bucket > 0 ? "disjoint" : "zero"; }
+
 // floor(log2) of the margins of a bucket other than 0, in ulps.
 constexpr int exponent_of(Bucket bucket) { return (bucket < 0 ? -bucket : bucket) + kBucketLowest - 1; }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/lanes.h"
-#include "cuda/twin.h"
+#include "cuda/twin/twin.h"
 
 namespace graze {
 

@@ -3,13 +3,13 @@
 
 #include <stdexcept>
 
-#include "cuda/trace.h"
-#include "cuda/twin.h"
+#include "cuda/lanes/trace.h"
+#include "cuda/twin/twin.h"
 
 namespace graze {
 namespace {
 
-// The hash of cuda/trace.h, of a run written down.
+// The hash of cuda/lanes/trace.h, of a run written down.
 template <class Real>
 std::uint64_t trace_hash(const Trace<double>& run) {
   std::uint64_t hash = 0;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/lanes.h"
-#include "core/traced.h"
+#include "core/algorithms/traced.h"
 
 namespace graze {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/bucket.h"
+#include "core/margin/bucket.h"
 #include "core/lanes.h"
 
 namespace graze {
@@ -47,7 +47,7 @@ struct LaneCounts {
 };
 
 // Counts by margin bucket, of pairs and of each lane's errors. Tallies add; order never matters.
-// Another small integer of a pair (core/extreme.h) can stand in the bucket's place.
+// Another small integer of a pair (core/margin/axis.h) can stand in the bucket's place.
 class Tally {
  public:
   // cpu_twin[l]: which of the lanes is lane l's cpu lane of the same algorithm and scalar; -1 for none.

@@ -8,8 +8,8 @@
 #include <tuple>
 
 #include "analysis/lane_trace.h"
-#include "core/exact.h"
-#include "fuzz/strata_draws.h"
+#include "core/exact/exact.h"
+#include "strata/draws.h"
 #include "oracle/truth.h"
 
 namespace graze {

@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "analysis/lane_trace.h"
-#include "cuda/twin.h"
-#include "fuzz/strata.h"
+#include "cuda/twin/twin.h"
+#include "strata/strata.h"
 #include "oracle/truth.h"
 
 namespace graze {

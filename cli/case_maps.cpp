@@ -5,7 +5,7 @@
 
 #include "analysis/signature.h"
 #include "corpus/pair_format.h"
-#include "fuzz/report_files.h"
+#include "fuzz/campaign/result_files.h"
 #include "reports/ulp_map_picture.h"
 
 namespace graze {

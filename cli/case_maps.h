@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "fuzz/bench.h"
+#include "fuzz/lanes_under_test.h"
 
 namespace graze {
 

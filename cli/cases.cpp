@@ -2,7 +2,7 @@
 #include "cli/cases.h"
 
 #include "core/error.h"
-#include "fuzz/source.h"
+#include "strata/source.h"
 
 namespace graze {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fuzz/bench.h"
+#include "fuzz/lanes_under_test.h"
 
 namespace graze {
 

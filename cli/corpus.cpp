@@ -16,7 +16,7 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
-#include "fuzz/sighting.h"
+#include "fuzz/regression/found_failure.h"
 #include "reports/terminal.h"
 
 namespace graze {

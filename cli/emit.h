@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "corpus/pair_format.h"
-#include "fuzz/bench.h"
+#include "fuzz/lanes_under_test.h"
 #include "reports/snippet.h"
 
 namespace graze {

@@ -10,9 +10,9 @@
 
 #include "cli/commands.h"
 #include "core/error.h"
-#include "fuzz/campaign.h"
-#include "fuzz/mesh.h"
-#include "fuzz/report_files.h"
+#include "fuzz/campaign/campaign.h"
+#include "strata/mesh.h"
+#include "fuzz/campaign/result_files.h"
 #include "reports/margin_figure.h"
 #include "reports/terminal.h"
 

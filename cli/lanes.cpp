@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "fuzz/strata.h"
+#include "strata/strata.h"
 
 namespace graze {
 namespace {

@@ -8,7 +8,7 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
-#include "fuzz/report_files.h"
+#include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
 #include "reports/ulp_map_picture.h"
 

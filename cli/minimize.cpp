@@ -18,10 +18,10 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
-#include "fuzz/cards.h"
-#include "fuzz/case_facts.h"
-#include "fuzz/minimised_cases.h"
-#include "fuzz/report_files.h"
+#include "fuzz/minimise/carded_signatures.h"
+#include "fuzz/minimise/case_facts.h"
+#include "fuzz/minimise/minimised_cases.h"
+#include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
 
 namespace graze {

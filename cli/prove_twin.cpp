@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cuda/prove.h"
-#include "fuzz/report_files.h"
+#include "cuda/twin/prove.h"
+#include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
 
 namespace graze {

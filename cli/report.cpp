@@ -9,7 +9,7 @@
 
 #include "cli/commands.h"
 #include "core/error.h"
-#include "fuzz/report_files.h"
+#include "fuzz/campaign/result_files.h"
 #include "reports/csv.h"
 #include "reports/page.h"
 

@@ -8,9 +8,9 @@
 #include <random>
 #include <set>
 
-#include "core/algorithms.h"
-#include "core/bucket.h"
-#include "core/extreme.h"
+#include "core/algorithms/algorithms.h"
+#include "core/margin/bucket.h"
+#include "core/margin/axis.h"
 #include "core/lanes.h"
 
 namespace graze {

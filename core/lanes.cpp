@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "core/exact.h"
-#include "core/lanes_cpu.h"
+#include "core/exact/exact.h"
+#include "core/host_blocks.h"
 
 namespace graze {
 namespace {

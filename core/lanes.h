@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/algorithm.h"
+#include "core/algorithms/algorithm.h"
 #include "core/pair.h"
 
 namespace graze {
@@ -42,10 +42,10 @@ struct Lane {
   int algorithm;  // place in Algorithms; behind its end for exact lanes
   Scalar scalar;
   Target target;
-  DecideBlock decide;  // null for CUDA lanes; see cuda/device.h
+  DecideBlock decide;  // null for CUDA lanes; see cuda/lanes/device.h
 
   bool is_cuda() const { return target != Target::cpu && target != Target::cpu_fma; }
-  bool is_exact() const;  // right on every finite pair, and declines the others; see core/exact.h
+  bool is_exact() const;  // right on every finite pair, and declines the others; see core/exact/exact.h
 };
 
 // All lanes, ordered by algorithm, scalar, target; the exact ones last.

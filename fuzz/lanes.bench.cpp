@@ -18,8 +18,8 @@
 
 #include "build_info.h"
 #include "core/lanes.h"
-#include "fuzz/mesh.h"
-#include "fuzz/strata.h"
+#include "strata/mesh.h"
+#include "strata/strata.h"
 #include "oracle/truth.h"
 
 namespace graze {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/margin.h"
+#include "core/margin/margin.h"
 #include "oracle/exact_margin.h"
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The margin's bucket: by certified double-precision bounds nearly always, else by integers. Nothing is rounded.
-#include "core/margin.h"
+#include "core/margin/margin.h"
 #include "oracle/exact_margin.h"
 #include "oracle/integer_pair.h"
 #include "oracle/truth.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The algorithms in other arithmetic than a lane's, by MPFR: with more bits, without limits of the exponent, exactly.
-// Algorithms are named by their place in Algorithms (core/algorithms.h).
+// Algorithms are named by their place in Algorithms (core/algorithms/algorithms.h).
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 #include "core/lanes.h"
 #include "core/pair.h"
-#include "core/traced.h"
+#include "core/algorithms/traced.h"
 #include "core/verdict.h"
 
 namespace graze {

@@ -5,7 +5,7 @@
 #include <compare>
 #include <stdexcept>
 
-#include "core/bucket.h"
+#include "core/margin/bucket.h"
 #include "core/pair.h"
 #include "core/verdict.h"
 

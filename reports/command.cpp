@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/lanes.h"
-#include "fuzz/strata.h"
+#include "strata/strata.h"
 #include "reports/report.h"
 
 namespace graze {

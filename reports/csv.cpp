@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports/csv.h"
 
-#include "reports/cards.h"
+#include "reports/failure_cards.h"
 #include "reports/report.h"
 #include "reports/tables.h"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <map>
 
-#include "core/bucket.h"
+#include "core/margin/bucket.h"
 
 namespace graze {
 namespace {

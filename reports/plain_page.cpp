@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "reports/answer.h"
+#include "reports/findings.h"
 #include "reports/page.h"
 #include "reports/plain_figures.h"
 #include "reports/terminal.h"

@@ -9,10 +9,10 @@
 
 #include "core/error.h"
 #include "corpus/pair_format.h"
-#include "fuzz/report_files.h"
-#include "fuzz/strata.h"
-#include "reports/answer.h"
-#include "reports/cards.h"
+#include "fuzz/campaign/result_files.h"
+#include "strata/strata.h"
+#include "reports/findings.h"
+#include "reports/failure_cards.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
 

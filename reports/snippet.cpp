@@ -51,7 +51,7 @@ struct Amalgamation {
   }
 };
 
-std::string header_of(std::string_view algorithm_id) { return fmt::format("core/{}.h", algorithm_id); }
+std::string header_of(std::string_view algorithm_id) { return fmt::format("core/algorithms/{}.h", algorithm_id); }
 
 // The name of the algorithm's struct: the one that has kInfo.
 std::string type_name(std::string_view algorithm_id) {

@@ -55,7 +55,7 @@ export interface Report {
     sentences: string[];                   // explain's
     // rep: read from cases/<hash>.map.json beside the case file: this object, and "pair": the 18 hex floats of the mapped
     // pair in one string, as write_entry has them (used only if it is the pair shown). `graze minimize DIR` writes it for
-    // carded_signatures (fuzz/cards.h on branch rep); facts (verdicts, sentences) go to cases/<hash>.json likewise.
+    // carded_signatures (fuzz/minimise/carded_signatures.h on branch rep); facts (verdicts, sentences) go to cases/<hash>.json likewise.
     maps: { title: string; x: string; y: string; size: number;             // "b[0].x", "b[0].y", 256; y grows upwards
             legend: { colour: string; means: string }[];                   // "#rrggbb" as in the panels, "disjoint", …
             panels: { name: string; png: string }[] } | null;              // name: "truth" or a lane id; png: base64

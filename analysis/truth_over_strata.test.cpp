@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// The oracle and the lanes over the strata: two exact decisions that must always agree, and subjects whose
+// failures must show where they are known to be.
+#include <gtest/gtest.h>
+
+#include "analysis/tally.h"
+#include "core/exact/exact.h"
+#include "core/margin/single_precision.h"
+#include "core/margin/tie_proof.h"
+#include "strata/strata.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+constexpr std::uint64_t kSeed = 20120727;
+
+bool wrong(const Lane& lane, const Pair& pair, Verdict truth) {
+  std::uint64_t intersects = 0, declined = 0;
+  lane.decide(&pair, 1, &intersects, &declined);
+  return declined || (intersects != 0) != (truth == Verdict::intersects);
+}
+
+const Lane& lane(std::string_view id) {
+  for (const Lane& row : lanes()) {
+    if (row.id == id) return row;
+  }
+  throw std::out_of_range(std::string(id));
+}
+
+class EveryStratum : public testing::TestWithParam<StratumInfo> {};
+
+TEST_P(EveryStratum, TheOraclesTwoDecisionsAgree) {
+  std::uint64_t intersecting = 0;
+  for (std::uint64_t index = 0; index < 100'000; ++index) {
+    const Pair pair = generate(kSeed, GetParam().stratum, index);
+    const bool intersects = cgal_verdict(pair) == Verdict::intersects;
+    ASSERT_EQ(intersects, gmp_contact(pair) != Contact::none) << GetParam().id << ":" << kSeed << ":" << index;
+    intersecting += intersects;
+  }
+  EXPECT_GT(intersecting, 0u);
+  // Neighbours in a mesh always share a point; everywhere else both verdicts must occur.
+  const bool shared = GetParam().stratum == Stratum::shared_vertex || GetParam().stratum == Stratum::shared_edge;
+  EXPECT_EQ(intersecting == 100'000u, shared);
+}
+
+// The exact decision on machine numbers: verdict, contact, shape and the margin's sign are the oracle's.
+TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
+  for (std::uint64_t index = 0; index < 100'000; ++index) {
+    const Pair pair = generate(kSeed + 1, GetParam().stratum, index);
+    const float *a = &pair.a[0].x, *b = &pair.b[0].x;
+    const Verdict verdict = cgal_verdict(pair);
+    const Contact contact = gmp_contact(pair);
+    ASSERT_EQ(exact::intersects(a, b), verdict == Verdict::intersects) << index;
+    const exact::Relation r = exact::relation(a, b);
+    ASSERT_EQ(r.intersects, verdict == Verdict::intersects) << index;
+    ASSERT_EQ(r.contact, static_cast<int>(contact) - 1) << index;
+    ASSERT_EQ((Shape{r.dimension_a, r.dimension_b, r.coplanar}), shape(pair)) << index;
+    const Bucket bucket = margin_bucket(pair, verdict);
+    ASSERT_EQ(r.margin_sign, (bucket > 0) - (bucket < 0)) << index;
+  }
+}
+
+// The engine's shortcuts to a bucket: quick bounds in two precisions, and the proof of a distance in integers.
+TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
+  std::uint64_t by_single = 0, by_double = 0, undecided = 0;
+  for (std::uint64_t index = 0; index < 20'000; ++index) {
+    const Pair pair = generate(kSeed + 2, GetParam().stratum, index);
+    const float *a = &pair.a[0].x, *b = &pair.b[0].x;
+    const Verdict verdict = exact::intersects(a, b) ? Verdict::intersects : Verdict::disjoint;
+    const Bucket expected = margin_bucket(pair, verdict);
+    Bucket bucket;
+    if (bucket_by_single(pair, verdict, bucket)) {
+      ++by_single;
+      ASSERT_EQ(bucket, expected) << index;
+    }
+    if (bucket_by_double(pair, verdict, bucket)) {
+      ++by_double;
+      ASSERT_EQ(bucket, expected) << index;
+    }
+    const MarginBounds bounds = margin_bounds(pair, verdict);
+    const int ulp = log2_ulp(pair), upper = floor_log2(bounds.hi);
+    if (verdict == Verdict::intersects || bucket_from_bounds(bounds, verdict, ulp, bucket)) continue;
+    const bool proven = are_apart_by(a, b, bounds.direction, upper);
+    undecided += !proven;
+    ASSERT_TRUE(!proven || make_bucket(1, upper - ulp) == expected) << index;
+    EXPECT_FALSE(are_apart_by(a, b, bounds.direction, upper + 1)) << index;
+  }
+  const bool touching = GetParam().stratum == Stratum::shared_vertex || GetParam().stratum == Stratum::shared_edge;
+  EXPECT_TRUE(touching || by_double > 3'000u) << by_double;
+  EXPECT_TRUE(!GetParam().id.starts_with("near_") || by_single > 5'000u) << by_single;
+  RecordProperty("by_single", static_cast<int>(by_single));
+  RecordProperty("by_double", static_cast<int>(by_double));
+  EXPECT_TRUE(GetParam().stratum == Stratum::mixed_scale || undecided < 20u) << undecided;
+}
+
+// The margin's certified bucket, sign included, against the exact margin.
+TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
+  for (std::uint64_t index = 0; index < 400; ++index) {
+    const Pair pair = generate(kSeed, GetParam().stratum, index);
+    const Truth t = truth(pair);
+    const Bucket bucket = margin_bucket(pair, t.verdict);
+    ASSERT_EQ(bucket > 0, t.verdict == Verdict::disjoint) << index;
+    ASSERT_EQ(bucket == 0, t.margin == 0 && t.verdict == Verdict::intersects) << index;
+    if (bucket != 0 && t.margin_ulps != 0 && std::isfinite(t.margin_ulps)) {
+      // The rounded margin may sit on a bucket's border; the bucket may then be the one below.
+      const int log2_ulps = std::ilogb(t.margin_ulps);
+      EXPECT_TRUE(bucket == make_bucket(bucket > 0 ? 1 : -1, log2_ulps) ||
+                  std::abs(t.margin_ulps) == std::ldexp(1.0, log2_ulps))
+          << index;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Strata, EveryStratum, testing::ValuesIn(kStrata),
+                         [](const auto& row) { return std::string(row.param.id); });
+
+// Every near, coplanar, degenerate and extreme stratum must defeat some lane, or it is not worth its name.
+TEST(Lanes, FailInEveryHardStratum) {
+  for (const StratumInfo& row : kStrata) {
+    if (row.stratum == Stratum::uniform || row.stratum == Stratum::thesis) continue;
+    std::uint64_t failures = 0;
+    for (std::uint64_t index = 0; index < 3000; ++index) {
+      const Pair pair = generate(kSeed, row.stratum, index);
+      failures += wrong(lane("moller_1997/f32/cpu"), pair, cgal_verdict(pair)) ||
+                  wrong(lane("guigue_devillers_2003/f32/cpu"), pair, cgal_verdict(pair));
+    }
+    EXPECT_GT(failures, 0u) << row.id;
+  }
+}
+
+// On {-1,0,1} nothing rounds in algorithms that neither divide nor take roots: each error is one of logic, and
+// on proper triangles they make none.
+TEST(Lanes, OnTheLatticeDivisionFreeAlgorithmsFailOnDegeneratePairsOnly) {
+  std::uint64_t proper = 0, wrong_on_degenerate = 0;
+  for (std::uint64_t index = 0; index < 200'000; ++index) {
+    const Pair pair = generate(kSeed, Stratum::lattice, index);
+    const Verdict verdict = cgal_verdict(pair);
+    const Shape hulls = shape(pair);
+    const bool degenerate = hulls.dimension_a < 2 || hulls.dimension_b < 2;
+    proper += !degenerate;
+    for (const Lane& row : lanes()) {
+      if (!row.info->rounding_free_on_lattice || row.is_cuda() || !runs_on_this_cpu(row)) continue;
+      const bool failed = wrong(row, pair, verdict);
+      wrong_on_degenerate += degenerate && failed;
+      ASSERT_FALSE(!degenerate && failed) << row.id << " on lattice:" << kSeed << ":" << index;
+    }
+  }
+  EXPECT_GT(proper, 100'000u);
+  EXPECT_GT(wrong_on_degenerate, 0u);
+}
+
+// Wide exact contacts defeat double precision as well.
+TEST(Lanes, WideExactContactsDefeatDoublePrecision) {
+  for (const Stratum stratum : {Stratum::coplanar_wide, Stratum::exact_contact}) {
+    std::uint64_t failures = 0;
+    for (std::uint64_t index = 0; index < 3000; ++index) {
+      const Pair pair = generate(kSeed, stratum, index);
+      failures += wrong(lane("guigue_devillers_2003/f64/cpu"), pair, cgal_verdict(pair));
+    }
+    EXPECT_GT(failures, 30u) << kStrata[static_cast<int>(stratum)].id;
+  }
+}
+
+// Canaries: where contraction cannot show, the fused lanes have become the strict ones (see GRAZE_FP).
+TEST(Canary, ContractionShowsInEveryAlgorithmAndScalar) {
+  for (const Lane& fused : lanes()) {
+    if (fused.target != Target::cpu_fma || !runs_on_this_cpu(fused)) continue;
+    const Lane& strict = lanes()[static_cast<std::size_t>(fused.index) - 1];
+    ASSERT_EQ(strict.target, Target::cpu);
+    std::uint64_t differences = 0;
+    for (std::uint64_t index = 0; index < 2000; ++index) {
+      const Pair pair = generate(kSeed, Stratum::exact_contact, index);
+      differences += wrong(fused, pair, Verdict::intersects) != wrong(strict, pair, Verdict::intersects);
+    }
+    EXPECT_GT(differences, 0u) << fused.id;
+  }
+}
+
+}  // namespace
+}  // namespace graze

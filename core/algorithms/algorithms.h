@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The list of algorithms. A new subject is one header and one entry here; the lane table, the device lanes,
+// tests, campaigns, benchmarks and `graze lanes` iterate it.
+#pragma once
+
+#include <tuple>
+
+#include "core/algorithms/guigue_devillers_2003.h"
+#include "core/algorithms/interval_overlap.h"
+#include "core/algorithms/moller_1997.h"
+#include "core/pair.h"
+#include "core/algorithms/projected_sat.h"
+#include "core/algorithms/separating_axes.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+
+using Algorithms = std::tuple<ProjectedSat, IntervalOverlap, Moller1997, GuigueDevillers2003, SeparatingAxes>;
+inline constexpr int kAlgorithmCount = std::tuple_size_v<Algorithms>;
+
+// The pair's stored bits, widened; a decision by one algorithm in one scalar.
+template <class Algorithm, class Real>
+GRAZE_HD Verdict decide_widened(const Pair& pair) {
+  Vec3<Real> a[3], b[3];
+  for (int i = 0; i < 3; ++i) {
+    a[i] = {Real(pair.a[i].x), Real(pair.a[i].y), Real(pair.a[i].z)};
+    b[i] = {Real(pair.b[i].x), Real(pair.b[i].y), Real(pair.b[i].z)};
+  }
+  return Algorithm::decide(a, b);
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers and a policy that write down what an algorithm does with them: every comparison and every value asked of the
+// policy, with its source line. They can also lead it: down a given path, whatever the values say.
+#pragma once
+
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <source_location>
+#include <span>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "core/algorithms/algorithms.h"
+#include "core/pair.h"
+
+namespace graze {
+
+enum class Relation : std::uint8_t { less, at_most, equal, greater, at_least };
+
+constexpr bool holds(Relation relation, std::partial_ordering order) {
+  switch (relation) {
+    case Relation::less:
+      return order < 0;
+    case Relation::at_most:
+      return order <= 0;
+    case Relation::equal:
+      return order == 0;
+    case Relation::greater:
+      return order > 0;
+    default:
+      return order >= 0;
+  }
+}
+
+// A comparison, or a value handed to the policy's snap (left, alone).
+template <class Number>
+struct Seen {
+  std::source_location where;
+  std::optional<Site> site;  // what the policy was asked about; none for a comparison of the algorithm's own
+  bool compared;
+  Relation relation;
+  Number left, right;
+  bool held;   // by the values
+  bool taken;  // what the algorithm was told: the same, unless it was led
+};
+
+// Outcomes of a run's comparisons, in order.
+using Path = std::vector<bool>;
+
+template <class Number>
+struct Trace {
+  Verdict verdict = Verdict::declined;
+  std::vector<Seen<Number>> seen;
+};
+
+template <class Number>
+Path path_of(const Trace<Number>& run) {
+  Path path;
+  for (const Seen<Number>& seen : run.seen) {
+    if (seen.compared) path.push_back(seen.taken);
+  }
+  return path;
+}
+
+// A run being written down. Floats are kept as doubles, so that runs of all lanes are of one type.
+template <class Number>
+struct Recorder {
+  using Kept = std::conditional_t<std::is_same_v<Number, float>, double, Number>;
+
+  Trace<Kept> run;
+  Path lead;  // what to say of the first comparisons; those beyond go by their values
+  std::size_t comparisons = 0;
+  std::vector<int> uses;        // of each product, by additions
+  std::vector<int> known_uses;  // the same, from an earlier run
+
+  static inline thread_local Recorder* current = nullptr;
+
+  bool compare(Relation relation, const Number& l, const Number& r, std::optional<Site> site,
+               const std::source_location& where) {
+    const bool held = holds(relation, order(l, r));
+    const bool taken = comparisons < lead.size() ? lead[comparisons] : held;
+    ++comparisons;
+    run.seen.push_back({where, site, true, relation, Kept(l), Kept(r), held, taken});
+    return taken;
+  }
+  void ask(Site site, const Number& x, const std::source_location& where) {
+    run.seen.push_back({where, site, false, Relation::equal, Kept(x), Kept(0), true, true});
+  }
+
+ private:
+  static std::partial_ordering order(float l, float r) { return l <=> r; }
+  static std::partial_ordering order(double l, double r) { return l <=> r; }
+  template <class Other>
+  static std::partial_ordering order(const Other& l, const Other& r) {
+    return compare_numbers(l, r);
+  }
+};
+
+// none: every operation rounds. The others: a product that is added or subtracted is not rounded. left: of two products
+// the left one, as g++ does where it contracts them at all. nvcc: the one with fewer uses, or else the left, as
+// cuda/twin/generator/contraction.cpp has it; but neither of two that scale by a quotient, for in interval_overlap's
+// common_line, the only such place, nvcc moves the addition into another block. A rule guesses: compare with the lane.
+enum class Contraction { none, left, nvcc };
+
+inline namespace GRAZE_FP {
+
+template <class Number, Contraction contraction = Contraction::none>
+struct Traced {
+  Number value;
+  Number x{0}, y{0};                      // the factors, of a product
+  int product = -1;                       // its place among the run's products
+  bool quotient = false, scaled = false;  // it is a quotient or a constant; a product whose right factor is
+
+  Traced() : value(0) {}
+  explicit Traced(Number v) : value(std::move(v)) {}
+  template <class Other>
+  requires(std::is_arithmetic_v<Other> && !std::is_same_v<Other, Number>) explicit Traced(Other v)
+      : value(static_cast<Number>(v)), quotient(std::is_integral_v<Other>) {}
+
+  // An operand of a comparison, and where in the source it stands.
+  struct Operand {
+    const Traced& number;
+    std::source_location where;
+    Operand(const Traced& n, std::source_location w = std::source_location::current()) : number(n), where(w) {}
+  };
+
+  friend Traced operator+(const Traced& l, const Traced& r) {
+    if constexpr (contraction != Contraction::none) {
+      const int fused = choose(l, r);
+      if (fused < 0) return Traced(std::fma(l.x, l.y, r.value));
+      if (fused > 0) return Traced(std::fma(r.x, r.y, l.value));
+    }
+    return Traced(Number(l.value + r.value));
+  }
+  friend Traced operator-(const Traced& l, const Traced& r) {
+    if constexpr (contraction != Contraction::none) {
+      const int fused = choose(l, r);
+      if (fused < 0) return Traced(std::fma(l.x, l.y, -r.value));
+      if (fused > 0) return Traced(std::fma(-r.x, r.y, l.value));
+    }
+    return Traced(Number(l.value - r.value));
+  }
+  friend Traced operator*(const Traced& l, const Traced& r) {
+    Traced result(Number(l.value * r.value));
+    if constexpr (contraction != Contraction::none) {
+      result.x = l.value;
+      result.y = r.value;
+      result.scaled = r.quotient;
+      result.product = static_cast<int>(Recorder<Number>::current->uses.size());
+      Recorder<Number>::current->uses.push_back(0);
+    }
+    return result;
+  }
+  friend Traced operator/(const Traced& l, const Traced& r) {
+    Traced result(Number(l.value / r.value));
+    result.quotient = true;
+    return result;
+  }
+  friend Traced operator-(const Traced& n) { return Traced(Number(-n.value)); }
+  friend Traced sqrt(const Traced& n) {
+    using std::sqrt;
+    return Traced(Number(sqrt(n.value)));
+  }
+
+  friend bool operator<(Operand l, Operand r) { return compare(Relation::less, l, r); }
+  friend bool operator<=(Operand l, Operand r) { return compare(Relation::at_most, l, r); }
+  friend bool operator==(Operand l, Operand r) { return compare(Relation::equal, l, r); }
+  friend bool operator>(Operand l, Operand r) { return compare(Relation::greater, l, r); }
+  friend bool operator>=(Operand l, Operand r) { return compare(Relation::at_least, l, r); }
+
+ private:
+  // Which operand of an addition is contracted: -1 the left, 1 the right, 0 neither.
+  static int choose(const Traced& l, const Traced& r) {
+    Recorder<Number>& recorder = *Recorder<Number>::current;
+    const auto uses = [&recorder](const Traced& n) {
+      if (n.product < 0) return 0;
+      const auto i = static_cast<std::size_t>(n.product);
+      ++recorder.uses[i];
+      return i < recorder.known_uses.size() ? recorder.known_uses[i] : 1;
+    };
+    const int left = uses(l), right = uses(r);
+    if (l.product < 0 || r.product < 0) return l.product >= 0 ? -1 : r.product >= 0 ? 1 : 0;
+    if (contraction == Contraction::left) return -1;
+    return l.scaled && r.scaled ? 0 : right < left ? 1 : -1;
+  }
+  static bool compare(Relation relation, const Operand& l, const Operand& r) {
+    return Recorder<Number>::current->compare(relation, l.number.value, r.number.value, std::nullopt, l.where);
+  }
+};
+
+// Compares exactly, as ExactZero does.
+struct TracingPolicy {
+  template <class Number, Contraction contraction>
+  Traced<Number, contraction> snap(Site site, const Traced<Number, contraction>& n,
+                                   std::source_location where = std::source_location::current()) const {
+    Recorder<Number>::current->ask(site, n.value, where);
+    return Traced<Number, contraction>(n.value);
+  }
+  template <class Number, Contraction contraction>
+  bool less(Site site, const Traced<Number, contraction>& l, const Traced<Number, contraction>& r,
+            std::source_location where = std::source_location::current()) const {
+    return Recorder<Number>::current->compare(Relation::less, l.value, r.value, site, where);
+  }
+  template <class Number, Contraction contraction>
+  bool at_most(Site site, const Traced<Number, contraction>& l, const Traced<Number, contraction>& r,
+               std::source_location where = std::source_location::current()) const {
+    return Recorder<Number>::current->compare(Relation::at_most, l.value, r.value, site, where);
+  }
+};
+
+// The algorithm (its place in Algorithms) on the pair in these numbers, led down the path.
+template <class Number, Contraction contraction = Contraction::none>
+Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const Pair& pair, const Path& lead = {}) {
+  using Real = Traced<Number, contraction>;
+  const auto run = [&]<std::size_t... i>(Recorder<Number> & recorder, std::index_sequence<i...>) {
+    recorder.lead = lead;
+    Recorder<Number>::current = &recorder;
+    Vec3<Real> a[3], b[3];
+    for (int v = 0; v < 3; ++v) {
+      a[v] = {Real(pair.a[v].x), Real(pair.a[v].y), Real(pair.a[v].z)};
+      b[v] = {Real(pair.b[v].x), Real(pair.b[v].y), Real(pair.b[v].z)};
+    }
+    const auto decide = [&]<std::size_t place>(std::integral_constant<std::size_t, place>) {
+      if (static_cast<std::size_t>(algorithm) == place)
+        recorder.run.verdict = std::tuple_element_t<place, Algorithms>::decide(a, b, TracingPolicy{});
+    };
+    (decide(std::integral_constant<std::size_t, i>()), ...);
+    Recorder<Number>::current = nullptr;
+  };
+  Recorder<Number> recorder;
+  run(recorder, std::make_index_sequence<kAlgorithmCount>());
+  if constexpr (contraction != Contraction::none) {  // only the whole run tells how often a product is used
+    Recorder<Number> again;
+    again.known_uses = std::move(recorder.uses);
+    run(again, std::make_index_sequence<kAlgorithmCount>());
+    return std::move(again.run);
+  }
+  return std::move(recorder.run);
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze

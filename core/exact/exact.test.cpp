@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hand examples and laws of the exact decision. analysis/truth_over_strata.test.cpp compares it with the oracle in every stratum.
+#include "core/exact/exact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace graze::exact {
+namespace {
+
+struct Example {
+  const char* what;
+  float a[9], b[9];
+  Relation relation;
+};
+
+const Example kExamples[] = {
+    {"b pierces a", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, -1, 1, 1, 1, 3, 3, 1}, {true, 1, -1, 2, 2, false}},
+    {"apart", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {0, 0, 1, 4, 0, 2, 0, 4, 3}, {false, -1, 1, 2, 2, false}},
+    {"a vertex on the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 1, 2, 4, 2, 1, 4}, {true, 0, 0, 2, 2, false}},
+    {"an edge in the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 2, 1, 0, 1, 1, 4}, {true, 1, 0, 2, 2, false}},
+    {"edges cross in a point", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {2, 0, -1, 2, 0, 1, 2, -4, 0}, {true, 0, 0, 2, 2, false}},
+    {"coplanar, overlapping", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 5, 1, 0, 1, 5, 0}, {true, 2, 0, 2, 2, true}},
+    {"coplanar, inside", {0, 0, 0, 8, 0, 0, 0, 8, 0}, {1, 1, 0, 3, 1, 0, 1, 3, 0}, {true, 2, 0, 2, 2, true}},
+    {"coplanar, a common edge", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {0, 0, 0, 4, 0, 0, 0, -4, 0}, {true, 1, 0, 2, 2, true}},
+    {"coplanar, a common vertex", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {0, 0, 0, -4, 0, 0, 0, -4, 0}, {true, 0, 0, 2, 2, true}},
+    {"coplanar, apart", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {5, 5, 0, 9, 5, 0, 5, 9, 0}, {false, -1, 1, 2, 2, true}},
+    {"a segment through the face",
+     {0, 0, 0, 4, 0, 0, 0, 4, 0},
+     {1, 1, -1, 1, 1, 1, 1, 1, 0},
+     {true, 0, -1, 2, 1, false}},
+    {"a segment in the plane", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {-1, 1, 0, 9, 1, 0, 2, 1, 0}, {true, 1, 0, 2, 1, true}},
+    {"a point in the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 1, 1, 0, 1, 1, 0}, {true, 0, 0, 2, 0, true}},
+    {"a point beside the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 1, 1, 1, 1, 1, 1, 1}, {false, -1, 1, 2, 0, false}},
+    {"segments cross", {0, 0, 0, 4, 4, 0, 2, 2, 0}, {0, 4, 0, 4, 0, 0, 4, 0, 0}, {true, 0, 0, 1, 1, true}},
+    {"segments pass", {0, 0, 0, 4, 4, 0, 2, 2, 0}, {0, 4, 1, 4, 0, 1, 4, 0, 1}, {false, -1, 1, 1, 1, false}},
+    {"segments overlap on a line", {0, 0, 0, 4, 4, 4, 2, 2, 2}, {3, 3, 3, 9, 9, 9, 3, 3, 3}, {true, 1, 0, 1, 1, true}},
+    {"segments meet end to end", {0, 0, 0, 4, 4, 4, 2, 2, 2}, {4, 4, 4, 9, 9, 9, 4, 4, 4}, {true, 0, 0, 1, 1, true}},
+    {"segments apart on a line", {0, 0, 0, 1, 1, 1, 0, 0, 0}, {4, 4, 4, 9, 9, 9, 4, 4, 4}, {false, -1, 1, 1, 1, true}},
+    {"parallel segments", {0, 0, 0, 1, 1, 1, 0, 0, 0}, {0, 0, 1, 1, 1, 2, 0, 0, 1}, {false, -1, 1, 1, 1, true}},
+    {"equal points", {1, 2, 3, 1, 2, 3, 1, 2, 3}, {1, 2, 3, 1, 2, 3, 1, 2, 3}, {true, 0, 0, 0, 0, true}},
+    {"two points", {1, 2, 3, 1, 2, 3, 1, 2, 3}, {1, 2, 4, 1, 2, 4, 1, 2, 4}, {false, -1, 1, 0, 0, true}},
+    {"zeros of either sign",
+     {0, 0, 0, -0.0f, 0, 0, 0, -0.0f, 0},
+     {-0.0f, 0, 0, 0, 0, 0, 0, 0, -0.0f},
+     {true, 0, 0, 0, 0, true}},
+};
+
+// The example, moved and scaled so that each kind of number has to decide it.
+void expect_relation(const Example& example, float scale, float offset, const char* numbers) {
+  constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
+  for (int order = 0; order < 72; ++order) {
+    float a[9], b[9];
+    for (int i = 0; i < 9; ++i) {
+      const int p = kOrders[order % 6][i / 3], q = kOrders[order / 6 % 6][i / 3];
+      a[i] = example.a[3 * p + i % 3] * scale + offset;
+      b[i] = example.b[3 * q + i % 3] * scale + offset;
+    }
+    Relation expected = example.relation;
+    if (order >= 36) std::swap(expected.dimension_a, expected.dimension_b);
+    EXPECT_EQ(order < 36 ? relation(a, b) : relation(b, a), expected) << example.what << ' ' << numbers << ' ' << order;
+    EXPECT_EQ(order < 36 ? intersects(a, b) : intersects(b, a), expected.intersects) << example.what << ' ' << numbers;
+  }
+}
+
+TEST(Exact, KnowsContactsInAllOrdersAndScales) {
+  for (const Example& example : kExamples) {
+    expect_relation(example, 1, 0, "small integers");
+    expect_relation(example, 0x1p18f, 1, "24 bits");
+    expect_relation(example, 1, 0x1p20f, "far from the origin");
+    expect_relation(example, 0x1p-149f, 0, "subnormal");
+    expect_relation(example, 0x1p-149f, 0x1p-126f, "at the least normal number");
+    expect_relation(example, 0x1p124f, 0, "near the largest float");
+  }
+}
+
+// A far vertex, of which the contact does not depend, brings 250 bits into play.
+TEST(Exact, DecidesWhereNoMachineNumberReaches) {
+  const float tiny = 0x1p-149f, huge = 0x1p127f;
+  const float a[9] = {0, 0, 0, huge, 0, huge, 0, huge, huge};  // in z = x + y
+  for (const float height : {0.0f, tiny, -tiny}) {
+    const float b[9] = {tiny, tiny, 2 * tiny + height, 1, 2, huge, 2, 1, huge};
+    Stage stage;
+    EXPECT_EQ(intersects(a, b, &stage), height <= 0) << height;
+    EXPECT_TRUE(height != 0 || stage == Stage::wide);
+    const Relation r = relation(a, b);
+    EXPECT_EQ(r.intersects, height <= 0);
+    EXPECT_EQ(r.contact, height > 0 ? -1 : height == 0 ? 0 : 1);
+    EXPECT_EQ(r.margin_sign, height > 0 ? 1 : height == 0 ? 0 : -1);
+  }
+}
+
+// The same pair by every kind of number that can hold it.
+TEST(Exact, KindsOfNumbersAgree) {
+  std::mt19937 random(5);
+  const auto coordinate = [&] { return static_cast<float>(static_cast<int>(random() % 7) - 3); };
+  int contacts[4] = {};
+  for (int i = 0; i < 20'000; ++i) {
+    float a[9], b[9];
+    for (float& x : a) x = coordinate();
+    for (float& x : b) x = coordinate();
+    using namespace detail;
+    const Relation r = by_axes(triangles<DoubleNumbers>(a, b));
+    ++contacts[r.contact + 1];
+    ASSERT_EQ(by_axes(triangles<NarrowNumbers>(a, b, 0)), r) << i;
+    ASSERT_EQ(by_axes(triangles<IntNumbers>(a, b, 0)), r) << i;
+    ASSERT_EQ(by_axes(triangles<WideNumbers>(a, b)), r) << i;
+    ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects) << i;
+    ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects) << i;
+  }
+  for (const int count : contacts) EXPECT_GT(count, 0);
+}
+
+TEST(Exact, WideIntegersMultiplyAndCompare) {
+  using detail::Wide;
+  const auto wide = [](std::int64_t x) {
+    Wide<5> w;
+    w.limb[0] = static_cast<std::uint64_t>(x);
+    for (int i = 1; i < 5; ++i) w.limb[i] = x < 0 ? ~std::uint64_t{0} : 0;
+    return w;
+  };
+  const std::int64_t values[] = {0, 1, -1, 3, -7, 1ll << 62, -(1ll << 62), 0x7fffffffffffffff};
+  for (const std::int64_t l : values) {
+    for (const std::int64_t r : values) {
+      const detail::Int128 product = static_cast<detail::Int128>(l) * r;
+      const Wide<9> found = Wide<9>(wide(l)) * wide(r);
+      EXPECT_EQ(found.limb[0], static_cast<std::uint64_t>(product));
+      EXPECT_EQ(found.limb[1], static_cast<std::uint64_t>(product >> 64));
+      EXPECT_EQ(found.negative(), product < 0);
+      EXPECT_EQ(wide(l) < wide(r), l < r);
+      EXPECT_EQ(wide(l) == wide(r), l == r);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace graze::exact

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a few strata vary besides the margin: the scale of the coordinates, or how far from the origin they lie. Counted
+// by a small integer, as margins are by their bucket, and on host and device alike.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "core/margin/bucket.h"
+#include "core/margin/margin.h"
+
+namespace graze {
+
+enum class Axis : std::uint8_t { none, scale, offset };
+
+inline std::string_view name(Axis axis) {
+  return axis == Axis::scale ? "scale" : axis == Axis::offset ? "offset" : "none";
+}
+
+// log2 of an extreme's lower end. Scales come in steps of four powers of two: -152 is 2^-152 to 2^-148.
+GRAZE_HD constexpr int exponent_of(Axis axis, std::int8_t extreme) {
+  return axis == Axis::scale ? 4 * extreme : extreme;
+}
+
+inline namespace GRAZE_FP {
+
+// The pair's place on the axis, in [-kBucketMost, kBucketMost]. scale: floor(log2(m) / 4), m the largest magnitude of a
+// coordinate (all zero: as 2^-149). offset: floor(log2(m / s)), s the longest side of the box around both triangles;
+// the end is open, and where one point is all.
+// Requires: finite coordinates; compiled without contraction, on host and device alike.
+GRAZE_HD inline std::int8_t extreme_of(const Pair& pair, Axis axis) {
+  if (axis == Axis::none) return 0;
+  const float* c = &pair.a[0].x;
+  double largest = 0, extent = 0;
+  for (int i = 0; i < 3; ++i) {
+    double low = c[i], high = c[i];
+    for (int k = i + 3; k < kCoordinates; k += 3) {
+      if (c[k] < low) low = c[k];
+      if (c[k] > high) high = c[k];
+    }
+    if (-low > largest) largest = -low;
+    if (high > largest) largest = high;
+    if (high - low > extent) extent = high - low;
+  }
+  if (axis == Axis::scale) return static_cast<std::int8_t>((largest > 0 ? floor_log2(largest) : -149) >> 2);
+  const int offset = extent > 0 ? floor_log2(largest / extent) : kBucketMost;
+  return static_cast<std::int8_t>(offset < kBucketMost ? offset : kBucketMost);
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distances that are a power of two of an ulp, or within rounding of it: a proof in integers that the distance is no
+// smaller. The bounds of core/margin/margin.h leave only those open.
+#pragma once
+
+#include "core/exact/exact.h"
+#include "core/margin/margin.h"
+
+namespace graze {
+namespace margin_tie {
+
+using Big = exact::detail::Wide<8>;
+using Vector = exact::detail::Vec<Big>;
+
+GRAZE_HD inline Big big(std::int64_t x) {
+  Big result;
+  for (int i = 0; i < 8; ++i) result.limb[i] = i == 0 ? static_cast<std::uint64_t>(x) : x < 0 ? ~std::uint64_t{0} : 0;
+  return result;
+}
+
+GRAZE_HD inline Big shifted_up(const Big& x, int bits) {
+  Big result;
+  const int limbs = bits / 64, rest = bits % 64;
+  for (int i = 7; i >= limbs; --i) {
+    result.limb[i] = x.limb[i - limbs] << rest;
+    if (rest != 0 && i > limbs) result.limb[i] |= x.limb[i - limbs - 1] >> (64 - rest);
+  }
+  return result;
+}
+
+// Direction number d of core/margin/margin.h.
+GRAZE_HD inline Vector direction(const Vector (&a)[3], const Vector (&b)[3], int d) {
+  using exact::detail::cross;
+  const auto edge = [](const Vector(&v)[3], int i) { return v[i == 2 ? 0 : i + 1] - v[i]; };
+  if (d == kNormalA) return cross<Big>(edge(a, 0), edge(a, 1));
+  if (d == kNormalB) return cross<Big>(edge(b, 0), edge(b, 1));
+  if (d < kSeparatingAxes) return cross<Big>(edge(a, d / 3), edge(b, d % 3));
+  const int first = d < kFromEdgeB ? kFromEdgeA : d < kFromVertex ? kFromEdgeB : kFromVertex;
+  const int i = (d - first) / 3, j = (d - first) % 3;
+  const Vector between = b[j] - a[i];
+  if (first == kFromVertex) return between;
+  const Vector e = first == kFromEdgeA ? edge(a, i) : edge(b, j);
+  return cross<Big>(cross<Big>(e, between), e);
+}
+
+}  // namespace margin_tie
+
+// Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin/margin.h). On their grid
+// coordinates have at most kIntBits = 40 bits, a direction at most 3 * 41 + 4, the gap along it 170, and its square 340
+// of 512. Returns: false also where the numbers are too large to tell.
+GRAZE_HD inline bool are_apart_by(const float* a, const float* b, int d, int exponent) {
+  using namespace margin_tie;
+  const exact::detail::Grid grid = exact::detail::grid_of(a, b);
+  const int shift = exponent - grid.exponent;
+  if (grid.bits > exact::detail::kIntBits || shift > 120 || shift < -80) return false;
+  const auto t = exact::detail::triangles<exact::detail::NarrowNumbers>(a, b, grid.exponent);
+  Vector va[3], vb[3];
+  for (int i = 0; i < 3; ++i) {
+    va[i] = {big(t.a[i].x), big(t.a[i].y), big(t.a[i].z)};
+    vb[i] = {big(t.b[i].x), big(t.b[i].y), big(t.b[i].z)};
+  }
+  const Vector n = direction(va, vb, d);
+  Big at_a[3], at_b[3];
+  for (int i = 0; i < 3; ++i) {
+    at_a[i] = exact::detail::dot<Big>(n, va[i] - va[0]);
+    at_b[i] = exact::detail::dot<Big>(n, vb[i] - va[0]);
+  }
+  const Big above = exact::detail::least(at_b) - exact::detail::most(at_a);
+  const Big below = exact::detail::least(at_a) - exact::detail::most(at_b);
+  const Big gap = above > below ? above : below;
+  if (!(gap > Big(0))) return false;
+  const Big gap2 = gap * gap, n2 = exact::detail::dot<Big>(n, n);
+  return shift < 0 ? !(shifted_up(gap2, -2 * shift) < n2) : !(gap2 < shifted_up(n2, 2 * shift));
+}
+
+}  // namespace graze

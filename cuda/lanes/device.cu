@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/lanes/device.h"
+
+#include <cuda_runtime.h>
+
+#include <algorithm>
+
+#include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/exact_kernels.cuh"
+#include "cuda/lanes/kernels.cuh"
+
+namespace graze {
+namespace {
+
+std::string version(int packed) { return std::to_string(packed / 1000) + "." + std::to_string(packed % 1000 / 10); }
+
+}  // namespace
+
+void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
+                 std::uint32_t* declined, cudaStream_t stream) {
+  if (lane.is_exact()) return exact.decide(pairs, intersects, declined, nullptr, stream);
+  const DeviceKernels<LaunchDecide>& kernels = lane.target == Target::cuda_fma ? kDecideFma : kDecideNofma;
+  kernels[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pairs, intersects, declined,
+                                                                                           stream);
+  check(cudaGetLastError());
+}
+
+namespace {
+
+class CudaDevice final : public Device {
+ public:
+  CudaDevice() {
+    cudaDeviceProp properties;
+    check(cudaSetDevice(0));
+    check(cudaGetDeviceProperties(&properties, 0));
+    name = properties.name;
+    int driver_version = 0;
+    check(cudaDriverGetVersion(&driver_version));
+    driver = version(driver_version);
+    toolkit = std::to_string(__CUDACC_VER_MAJOR__) + "." + std::to_string(__CUDACC_VER_MINOR__) + "." +
+              std::to_string(__CUDACC_VER_BUILD__);
+  }
+
+  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
+              std::vector<LaneBits>& bits) override {
+    bits.resize(cuda_lanes.size());
+    if (pairs.empty()) return;
+    // Whole thread blocks, so that each writes whole words.
+    const std::size_t stride = (pairs.size() + kThreads - 1) / kThreads * kThreads;
+    staging_.resize(stride * kCoordinates);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (std::size_t c = 0; c < kCoordinates; ++c) staging_[c * stride + i] = coordinates(pairs[i])[c];
+    }
+    float* on_device = coordinates_.at_least(staging_.size());
+    check(cudaMemcpy(on_device, staging_.data(), staging_.size() * sizeof(float), cudaMemcpyHostToDevice));
+
+    const DevicePairs block{on_device, static_cast<std::uint32_t>(stride), static_cast<std::uint32_t>(pairs.size())};
+    const std::size_t words = stride / 64;
+    std::uint64_t* intersects = intersects_.at_least(words * cuda_lanes.size());
+    std::uint64_t* declined = declined_.at_least(words * cuda_lanes.size());
+    for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
+      const Lane& lane = *cuda_lanes[l];
+      launch_lane(lane, exact_, block, reinterpret_cast<std::uint32_t*>(intersects + l * words),
+                  reinterpret_cast<std::uint32_t*>(declined + l * words), nullptr);
+    }
+    for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
+      bits[l].intersects.resize(words);
+      bits[l].declined.resize(words);
+      check(cudaMemcpy(bits[l].intersects.data(), intersects + l * words, words * sizeof(std::uint64_t),
+                       cudaMemcpyDeviceToHost));
+      check(cudaMemcpy(bits[l].declined.data(), declined + l * words, words * sizeof(std::uint64_t),
+                       cudaMemcpyDeviceToHost));
+    }
+  }
+
+ private:
+  std::vector<float> staging_;
+  DeviceArray<float> coordinates_;
+  DeviceExact exact_;
+  DeviceArray<std::uint64_t> intersects_, declined_;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> open_device(std::string& why_not) {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) {
+    cudaGetLastError();  // clears it
+    why_not = "no device";
+    return nullptr;
+  }
+  return std::make_unique<CudaDevice>();
+}
+
+}  // namespace graze

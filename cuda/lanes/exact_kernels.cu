@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Four kernels: one thread a pair for the first attempt, which needs few registers; then the pairs that it left, where
+// floats or doubles hold all determinants; then those that this left, on 128-bit integers; then those that these
+// left, on wide integers. Hard pairs are listed, so that a warp does not wait for one of them in 32.
+#include "cuda/lanes/exact_kernels.cuh"
+
+#include "cuda/lanes/kernels.cuh"
+
+namespace graze {
+namespace {
+
+using exact::Stage;
+using exact::detail::Answer;
+
+__device__ bool is_finite(float x) { return (exact::detail::bits_of(x) & 0x7f800000u) != 0x7f800000u; }
+
+__device__ void count(unsigned long long* stages, Stage stage, std::uint32_t pairs) {
+  if (stages && pairs) atomicAdd(&stages[static_cast<int>(stage)], static_cast<unsigned long long>(pairs));
+}
+
+__device__ void set_bit(std::uint32_t* words, std::uint32_t i) { atomicOr(&words[i / 32], 1u << i % 32); }
+
+__global__ void __launch_bounds__(kThreads, 3) decide_most(DevicePairs pairs, Places left, std::uint32_t* intersects,
+                                                           std::uint32_t* declined, unsigned long long* stages) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  bool finite = true;
+  Answer answer = Answer::disjoint;
+  if (i < pairs.count) {
+    float c[kCoordinates];
+    load(pairs, i, c);
+    for (float x : c) finite = finite && is_finite(x);
+    if (finite) answer = exact::detail::by_planes_quickly(c, c + 9);
+    if (answer == Answer::unsure && exact::detail::shared_vertex(c, c + 9) >= 0) answer = Answer::intersects;
+    if (answer == Answer::unsure) left.add(i);
+  }
+  const std::uint32_t yes_word = __ballot_sync(0xffffffffu, answer == Answer::crosses || answer == Answer::intersects);
+  const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
+  const std::uint32_t decided = __ballot_sync(0xffffffffu, i < pairs.count && answer != Answer::unsure);
+  if (threadIdx.x % 32 != 0) return;
+  intersects[i / 32] = yes_word;
+  declined[i / 32] = declined_word;
+  count(stages, Stage::bounded, static_cast<std::uint32_t>(__popc(decided)));
+}
+
+__global__ void __launch_bounds__(kThreads, 2)
+    decide_left(DevicePairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
+  using namespace exact::detail;
+  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
+    const std::uint32_t i = from.at[n];
+    float c[kCoordinates];
+    load(pairs, i, c);
+    const Grid grid = grid_of(c, c + 9);
+    if (grid.bits > kDoubleBits) {
+      left.add(i);
+      continue;
+    }
+    const bool singles = grid.bits <= kSingleBits && grid.exponent >= -30 && grid.exponent <= 30;
+    if (singles ? decide<SingleNumbers>(c, c + 9, 0) : decide<DoubleNumbers>(c, c + 9, 0)) set_bit(intersects, i);
+    count(stages, Stage::doubles, 1);
+  }
+}
+
+__global__ void __launch_bounds__(kThreads) decide_on_int128(DevicePairs pairs, Places from, Places left,
+                                                             std::uint32_t* intersects, unsigned long long* stages) {
+  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
+    const std::uint32_t i = from.at[n];
+    float c[kCoordinates];
+    load(pairs, i, c);
+    const exact::detail::Grid grid = exact::detail::grid_of(c, c + 9);
+    bool yes;
+    if (grid.bits <= exact::detail::kIntBits) {
+      yes = grid.bits <= exact::detail::kNarrowBits
+                ? exact::detail::decide<exact::detail::NarrowNumbers>(c, c + 9, grid.exponent)
+                : exact::detail::decide<exact::detail::IntNumbers>(c, c + 9, grid.exponent);
+      count(stages, Stage::int128, 1);
+    } else {
+      const Answer answer = by_planes(exact::detail::triangles<exact::detail::BoundedNumbers>(c, c + 9));
+      yes = answer == Answer::crosses || answer == Answer::intersects;
+      if (answer == Answer::unsure) {
+        left.add(i);
+      } else {
+        count(stages, Stage::bounded, 1);
+      }
+    }
+    if (yes) set_bit(intersects, i);
+  }
+}
+
+__global__ void __launch_bounds__(kThreads)
+    decide_on_wide(DevicePairs pairs, Places from, std::uint32_t* intersects, unsigned long long* stages) {
+  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
+    const std::uint32_t i = from.at[n];
+    float c[kCoordinates];
+    load(pairs, i, c);
+    const exact::detail::Grid grid = exact::detail::grid_of(c, c + 9);
+    const bool yes = grid.bits <= exact::detail::kLongBits
+                         ? exact::detail::decide<exact::detail::LongNumbers>(c, c + 9, grid.exponent)
+                         : exact::detail::decide<exact::detail::WideNumbers>(c, c + 9, 0);
+    if (yes) set_bit(intersects, i);
+    count(stages, Stage::wide, 1);
+  }
+}
+
+constexpr int kBlocksForLeft = 1024;
+
+}  // namespace
+
+void DeviceExact::decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
+                         unsigned long long* stages, cudaStream_t stream) {
+  if (pairs.count == 0) return;
+  constexpr int kLists = 3;
+  std::uint32_t* counts = counts_.at_least(kLists);
+  Places left[kLists];
+  for (int k = 0; k < kLists; ++k) left[k] = {places_[k].at_least(pairs.count), counts + k};
+  check(cudaMemsetAsync(counts, 0, kLists * sizeof *counts, stream));
+  decide_most<<<(pairs.count + kThreads - 1) / kThreads, kThreads, 0, stream>>>(pairs, left[0], intersects, declined,
+                                                                                stages);
+  decide_left<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);
+  decide_on_int128<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);
+  decide_on_wide<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[2], intersects, stages);
+  check(cudaGetLastError());
+}
+
+}  // namespace graze

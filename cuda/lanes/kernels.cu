@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device lanes, and the same algorithms tracing their intermediate values. Compiled twice, each time in its own
+// namespace GRAZE_FP: with -fmad=false, and with nvcc's default contraction. Nothing else may be defined here, or the
+// linker would mix the variants. The twins are generated from the PTX of this file: see cuda/twin/twin.h.
+#include "cuda/lanes/kernels.cuh"
+#include "cuda/lanes/trace.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+
+template <class Real>
+struct Triangles {
+  Vec3<Real> a[3], b[3];
+};
+
+template <class Real>
+__device__ Triangles<Real> widened(const DevicePairs& pairs, std::uint32_t i) {
+  const float* c = pairs.coordinates + i;
+  const auto vertex = [&](int v) {
+    return Vec3<Real>{Real(c[(3 * v) * pairs.stride]), Real(c[(3 * v + 1) * pairs.stride]),
+                      Real(c[(3 * v + 2) * pairs.stride])};
+  };
+  return {{vertex(0), vertex(1), vertex(2)}, {vertex(3), vertex(4), vertex(5)}};
+}
+
+// One thread a pair. The algorithm is its place in Algorithms, so that the twin generator knows the kernel by its name.
+template <int algorithm, class Real>
+__global__ void decide_pairs(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  Verdict verdict = Verdict::disjoint;
+  if (i < pairs.count) {
+    const Triangles<Real> t = widened<Real>(pairs, i);
+    verdict = std::tuple_element_t<algorithm, Algorithms>::decide(t.a, t.b);
+  }
+  const std::uint32_t yes = __ballot_sync(0xffffffffu, verdict == Verdict::intersects);
+  const std::uint32_t no_answer = __ballot_sync(0xffffffffu, verdict == Verdict::declined);
+  if (threadIdx.x % 32 == 0) {
+    intersects[i / 32] = yes;
+    declined[i / 32] = no_answer;
+  }
+}
+
+template <int algorithm, class Real>
+__global__ void trace_pairs(DevicePairs pairs, std::uint64_t* hashes) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= pairs.count) return;
+  const Triangles<Real> t = widened<Real>(pairs, i);
+  std::uint64_t hash = 0;
+  const Verdict verdict = std::tuple_element_t<algorithm, Algorithms>::decide(t.a, t.b, TracePolicy{&hash});
+  hashes[i] = hash ^ static_cast<std::uint64_t>(verdict);
+}
+
+constexpr std::uint32_t thread_blocks(const DevicePairs& pairs) { return (pairs.count + kThreads - 1) / kThreads; }
+
+template <int algorithm, class Real>
+void launch_decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {
+  decide_pairs<algorithm, Real><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, intersects, declined);
+}
+
+template <int algorithm, class Real>
+void launch_trace(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream) {
+  trace_pairs<algorithm, Real><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, hashes);
+}
+
+template <int... algorithm>
+constexpr DeviceKernels<LaunchDecide> decide_launchers(std::integer_sequence<int, algorithm...>) {
+  return {std::array<LaunchDecide, 2>{launch_decide<algorithm, float>, launch_decide<algorithm, double>}...};
+}
+
+template <int... algorithm>
+constexpr DeviceKernels<LaunchTrace> trace_launchers(std::integer_sequence<int, algorithm...>) {
+  return {std::array<LaunchTrace, 2>{launch_trace<algorithm, float>, launch_trace<algorithm, double>}...};
+}
+
+}  // namespace GRAZE_FP
+
+extern const DeviceKernels<LaunchDecide> GRAZE_DECIDE_KERNELS =
+    decide_launchers(std::make_integer_sequence<int, kAlgorithmCount>());
+extern const DeviceKernels<LaunchTrace> GRAZE_TRACE_KERNELS =
+    trace_launchers(std::make_integer_sequence<int, kAlgorithmCount>());
+
+}  // namespace graze

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device lanes' kernels, a table a build variant: [algorithm][scalar]. Device code only; see cuda/lanes/device.h.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <array>
+#include <cstdint>
+
+#include "core/algorithms/algorithms.h"
+#include "cuda/lanes/device_pairs.h"
+
+namespace graze {
+
+inline constexpr int kThreads = 256;
+
+// Starts a kernel that writes bit i % 32 of word i / 32: intersects, declined. Words of whole thread blocks are
+// written.
+using LaunchDecide = void (*)(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
+                              cudaStream_t stream);
+// Starts a kernel that writes each pair's trace hash; see cuda/lanes/trace.h.
+using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream);
+
+template <class Launch>
+using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;
+extern const DeviceKernels<LaunchDecide> kDecideNofma, kDecideFma;
+extern const DeviceKernels<LaunchTrace> kTraceNofma, kTraceFma;
+
+}  // namespace graze

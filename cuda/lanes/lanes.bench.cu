@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs a second of every CUDA lane on pairs that already lie in the device's memory, by stratum; and beside them what
+// bounds them, the memory: a copy, and a kernel that only reads the pairs (72 bytes each) and writes a bit.
+// The exact lane must first give the host's bits on a sample. Prints a line and succeeds where there is no device.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "build_info.h"
+#include "core/exact/exact.h"
+#include "core/fnv1a.h"
+#include "core/lanes.h"
+#include "cuda/lanes/device.h"
+#include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/exact_kernels.cuh"
+#include "cuda/lanes/kernels.cuh"
+#include "cuda/lanes/stratum_kernels.cuh"
+#include "strata/strata.h"
+
+namespace graze {
+namespace {
+
+constexpr std::uint32_t kPairs = 1u << 24;
+constexpr std::size_t kFloats = std::size_t{kPairs} * kCoordinates;
+constexpr std::uint32_t kSample = 1u << 16;
+constexpr int kLaunches = 4;  // timed together, so that a launch's own microseconds do not count
+
+// The pairs of one stratum at a time, and the memory that the lanes write.
+struct Resident {
+  int stratum = -1;
+  DeviceArray<float> coordinates, copy;
+  DeviceArray<std::uint32_t> intersects, declined;
+  DeviceArray<unsigned long long> stages;
+  DeviceExact exact;
+
+  DevicePairs pairs() { return {coordinates.at_least(kFloats), kPairs, kPairs}; }
+  std::uint32_t* intersects_bits() { return intersects.at_least(kPairs / 32); }
+  std::uint32_t* declined_bits() { return declined.at_least(kPairs / 32); }
+
+  void hold(int wanted, std::uint64_t first = 0) {
+    if (stratum == wanted && first == 0) return;
+    launch_generate(coordinates.at_least(kFloats), kPairs, 1, wanted, first, nullptr);
+    check(cudaGetLastError());
+    check(cudaDeviceSynchronize());
+    stratum = wanted;
+  }
+};
+
+__global__ void read_pairs(DevicePairs pairs, std::uint32_t* bits) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  float sum = 0;
+  for (int c = 0; c < kCoordinates; ++c) sum += pairs.coordinates[std::size_t(c) * pairs.stride + i];
+  const std::uint32_t word = __ballot_sync(0xffffffffu, sum > 0);
+  if (threadIdx.x % 32 == 0) bits[i / 32] = word;
+}
+
+class Event {
+ public:
+  Event() { check(cudaEventCreate(&event_)); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  ~Event() { cudaEventDestroy(event_); }
+  operator cudaEvent_t() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+// Counts items (pairs) and bytes for each launch.
+template <class Launch>
+void measure(benchmark::State& state, double items, double bytes, const Launch& launch) {
+  const Event start, stop;
+  launch();  // the first one allocates
+  check(cudaDeviceSynchronize());
+  for (auto _ : state) {
+    check(cudaEventRecord(start));
+    for (int i = 0; i < kLaunches; ++i) launch();
+    check(cudaEventRecord(stop));
+    check(cudaEventSynchronize(stop));
+    float milliseconds = 0;
+    check(cudaEventElapsedTime(&milliseconds, start, stop));
+    state.SetIterationTime(milliseconds / 1000.0);
+  }
+  const double launches = static_cast<double>(state.iterations()) * kLaunches;
+  state.SetItemsProcessed(static_cast<std::int64_t>(launches * items));
+  state.SetBytesProcessed(static_cast<std::int64_t>(launches * bytes));
+}
+
+using Bits = std::vector<std::uint64_t>;
+
+// The first `count` resident pairs, to `columns`: 18 arrays of that length, as they lie on the device.
+void fetch(Resident& resident, std::size_t count, float* columns) {
+  check(cudaMemcpy2D(columns, count * sizeof(float), resident.pairs().coordinates, kPairs * sizeof(float),
+                     count * sizeof(float), kCoordinates, cudaMemcpyDeviceToHost));
+}
+
+// The verdicts of the host's exact lane on pairs [first, first + count) of `stride` fetched ones.
+// Requires: count is a multiple of 64.
+Bits by_host(const Lane& host, const float* columns, std::size_t stride, std::size_t first, std::size_t count) {
+  std::vector<Pair> pairs(count);
+  for (std::size_t c = 0; c < kCoordinates; ++c) {
+    for (std::size_t i = 0; i < count; ++i) coordinates(pairs[i])[c] = columns[c * stride + first + i];
+  }
+  Bits intersects(count / 64), declined(count / 64);
+  host.decide(pairs.data(), count, intersects.data(), declined.data());
+  return intersects;
+}
+
+Bits by_device(Resident& resident, std::size_t count) {
+  Bits intersects(count / 64);
+  check(cudaMemcpy(intersects.data(), resident.intersects_bits(), count / 8, cudaMemcpyDeviceToHost));
+  return intersects;
+}
+
+// Decides the resident pairs, and returns in stages by whom.
+void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
+  unsigned long long* counts = resident.stages.at_least(exact::kStages);
+  check(cudaMemset(counts, 0, sizeof stages));
+  resident.exact.decide(resident.pairs(), resident.intersects_bits(), resident.declined_bits(), counts, nullptr);
+  check(cudaMemcpy(stages, counts, sizeof stages, cudaMemcpyDeviceToHost));
+}
+
+// Rounds [first, end) of every stratum, each of kPairs pairs, by device and host: a line each with hashes of the
+// verdicts.   Returns: whether none differs.
+bool device_is_host(std::uint64_t first, std::uint64_t end) {
+  if (first >= end) throw std::invalid_argument("expected FIRST below END");
+  const Lane& host = *(&lanes().back() - 1);
+  const auto hashed = [](const Bits& bits, std::uint64_t hash) {
+    return fnv1a({reinterpret_cast<const char*>(bits.data()), bits.size() * sizeof bits[0]}, hash);
+  };
+  Resident resident;
+  float* columns;
+  check(cudaMallocHost(&columns, kFloats * sizeof(float)));
+  bool same = true;
+  for (int stratum = 0; stratum < kStrataCount; ++stratum) {
+    std::uint64_t differ = 0, hash_of_device = fnv1a(""), hash_of_host = fnv1a("");
+    for (std::uint64_t round = first; round < end; ++round) {
+      resident.hold(stratum, round * kPairs);
+      unsigned long long stages[exact::kStages];
+      decide(resident, stages);
+      fetch(resident, kPairs, columns);
+      constexpr std::size_t kPart = 1 << 16;
+      std::vector<Bits> parts(kPairs / kPart);
+      std::atomic<std::size_t> next = 0;
+      std::vector<std::jthread> threads;
+      for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) {
+        threads.emplace_back([&] {
+          for (std::size_t p = next++; p < parts.size(); p = next++)
+            parts[p] = by_host(host, columns, kPairs, p * kPart, kPart);
+        });
+      }
+      threads.clear();
+      Bits of_host;
+      for (const Bits& part : parts) of_host.insert(of_host.end(), part.begin(), part.end());
+      Bits of_device(kPairs / 64);  // declined ones count as well: there are none
+      check(cudaMemcpy(of_device.data(), resident.declined_bits(), kPairs / 8, cudaMemcpyDeviceToHost));
+      for (const std::uint64_t declined : of_device) differ += static_cast<std::uint64_t>(std::popcount(declined));
+      of_device = by_device(resident, kPairs);
+      for (std::size_t w = 0; w < of_host.size(); ++w)
+        differ += static_cast<std::uint64_t>(std::popcount(of_host[w] ^ of_device[w]));
+      hash_of_device = hashed(of_device, hash_of_device);
+      hash_of_host = hashed(of_host, hash_of_host);
+    }
+    std::cout << kStrata[stratum].id << ": " << (end - first) * kPairs << " pairs, " << differ << " differ, hashes "
+              << std::hex << hash_of_device << ' ' << hash_of_host << std::dec << std::endl;
+    same = same && differ == 0 && hash_of_device == hash_of_host;
+  }
+  check(cudaFreeHost(columns));
+  return same;
+}
+
+void measure_lane(benchmark::State& state, Resident& resident, int stratum, const Lane& lane) {
+  resident.hold(stratum);
+  if (lane.is_exact()) {
+    unsigned long long stages[exact::kStages];
+    const Lane& host = *(&lane - 1);  // exact/f32/cpu stands before exact/f32/cuda
+    decide(resident, stages);
+    std::vector<float> columns(kSample * kCoordinates);
+    fetch(resident, kSample, columns.data());
+    if (by_device(resident, kSample) != by_host(host, columns.data(), kSample, 0, kSample))
+      return state.SkipWithError("differs from the host's exact lane");
+    constexpr const char* kNames[] = {"bounded", "doubles", "int128", "wide"};
+    for (int s = 0; s < exact::kStages; ++s) state.counters[kNames[s]] = static_cast<double>(stages[s]);
+  }
+  measure(state, kPairs, double{kPairs} * sizeof(Pair), [&] {
+    launch_lane(lane, resident.exact, resident.pairs(), resident.intersects_bits(), resident.declined_bits(), nullptr);
+  });
+}
+
+template <class Function>
+void add(const std::string& name, Function function) {
+  benchmark::RegisterBenchmark(name.c_str(), function)->UseManualTime()->Unit(benchmark::kMicrosecond);
+}
+
+void add_all(Resident& resident) {
+  constexpr double kBytes = double{kFloats} * sizeof(float);
+  add("copy/memory", [&](benchmark::State& state) {
+    resident.hold(0);
+    measure(state, kPairs, 2 * kBytes, [&] {
+      check(cudaMemcpyAsync(resident.copy.at_least(kFloats), resident.pairs().coordinates, kFloats * sizeof(float),
+                            cudaMemcpyDeviceToDevice));
+    });
+  });
+  add("read/memory", [&](benchmark::State& state) {
+    resident.hold(0);
+    measure(state, kPairs, kBytes, [&] {
+      read_pairs<<<kPairs / kThreads, kThreads>>>(resident.pairs(), resident.intersects_bits());
+      check(cudaGetLastError());
+    });
+  });
+  for (int stratum = 0; stratum < kStrataCount; ++stratum) {
+    for (const Lane& lane : lanes()) {
+      if (!lane.is_cuda()) continue;
+      add(lane.id + '/' + std::string(kStrata[stratum].id),
+          [&resident, &lane, stratum](benchmark::State& state) { measure_lane(state, resident, stratum, lane); });
+    }
+  }
+}
+
+}  // namespace
+}  // namespace graze
+
+// `graze_device_bench compare FIRST END` compares the exact lanes of device and host instead of measuring.
+int main(int argc, char** argv) try {
+  if (argc == 4 && std::string_view(argv[1]) == "compare")
+    return graze::device_is_host(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  std::string why_not;
+  const std::unique_ptr<graze::Device> device = graze::open_device(why_not);
+  if (!device) {
+    std::cout << "graze_device_bench: skipped, " << why_not << '\n';
+    return 0;
+  }
+  benchmark::AddCustomContext("device", device->name);
+  benchmark::AddCustomContext("driver", device->driver);
+  benchmark::AddCustomContext("nvcc", device->toolkit);
+  benchmark::AddCustomContext("flags", GRAZE_FLAGS);
+  benchmark::AddCustomContext("commit", GRAZE_COMMIT);
+  graze::Resident resident;
+  graze::add_all(resident);
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << "graze_device_bench: " << error.what() << '\n';
+  return 1;
+}

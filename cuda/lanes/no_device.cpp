@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stands in for device.cu where there is no nvcc: the CUDA lanes are listed, and unavailable.
+#include "cuda/lanes/device.h"
+
+#include <stdexcept>
+
+#include "cuda/engine/engine.h"
+#include "cuda/twin/prove.h"
+
+namespace graze {
+
+std::unique_ptr<Device> open_device(std::string& why_not) {
+  why_not = "built without CUDA";
+  return nullptr;
+}
+
+std::vector<std::unique_ptr<Engine>> open_engines(std::span<const Lane* const>) { return {}; }
+
+ProofRecord prove_twin(const ProofOptions&) { throw std::runtime_error("a proof needs a device: built without CUDA"); }
+
+}  // namespace graze

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled with -fmad=false: the strata's bits are those of the host only without contraction.
+#include "cuda/lanes/stratum_kernels.cuh"
+
+#include <array>
+#include <utility>
+
+#include "strata/strata.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+namespace {
+
+// A kernel a stratum: one for all would need the registers and the stack of the dearest.
+template <Stratum stratum>
+__global__ void generate_pairs(float* coordinates, std::uint32_t count, std::uint64_t seed, std::uint64_t first) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= count) return;
+  const Pair pair = generate(seed, stratum, first + i);
+  const float* values = &pair.a[0].x;
+  for (int c = 0; c < kCoordinates; ++c) coordinates[static_cast<std::size_t>(c) * count + i] = values[c];
+}
+
+__device__ void note(Differences* differences, std::uint64_t place) {
+  const unsigned long long n = atomicAdd(&differences->count, 1ull);
+  if (n < kExamples) differences->places[n] = place;
+}
+
+__global__ void compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
+                             Differences* differences) {
+  const std::uint32_t word = blockIdx.x * blockDim.x + threadIdx.x;
+  if (word * 32 >= count) return;
+  for (std::uint32_t differ = a[word] ^ b[word]; differ != 0; differ &= differ - 1) {
+    const std::uint32_t place = word * 32 + static_cast<std::uint32_t>(__ffs(static_cast<int>(differ)) - 1);
+    if (place < count) note(differences, first + place);
+  }
+}
+
+__global__ void compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
+                               Differences* differences) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i < count && a[i] != b[i]) note(differences, first + i);
+}
+
+using Generate = void (*)(float*, std::uint32_t, std::uint64_t, std::uint64_t);
+
+template <std::size_t... kStratum>
+constexpr std::array<Generate, sizeof...(kStratum)> generators(std::index_sequence<kStratum...>) {
+  return {generate_pairs<static_cast<Stratum>(kStratum)>...};
+}
+
+constexpr std::uint32_t kBlock = 256;
+constexpr std::uint32_t blocks(std::uint32_t threads) { return (threads + kBlock - 1) / kBlock; }
+
+}  // namespace
+}  // namespace GRAZE_FP
+
+void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
+                     cudaStream_t stream) {
+  static constexpr auto kGenerators = generators(std::make_index_sequence<kStrataCount>());
+  kGenerators[static_cast<std::size_t>(stratum)]<<<blocks(count), kBlock, 0, stream>>>(coordinates, count, seed, first);
+}
+
+void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
+                         Differences* differences, cudaStream_t stream) {
+  compare_bits<<<blocks((count + 31) / 32), kBlock, 0, stream>>>(a, b, count, first, differences);
+}
+
+void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
+                           Differences* differences, cudaStream_t stream) {
+  compare_hashes<<<blocks(count), kBlock, 0, stream>>>(a, b, count, first, differences);
+}
+
+}  // namespace graze

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Device code of the proof: pairs of a stratum as a block, and counts of what differs between two runs.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstdint>
+
+#include "cuda/lanes/device_pairs.h"
+
+namespace graze {
+
+inline constexpr std::uint32_t kExamples = 8;
+
+// Differences found, and the first few places found; in no particular order.
+struct Differences {
+  unsigned long long count;
+  std::uint64_t places[kExamples];
+};
+
+// Writes pairs [first, first + count) of the stratum.
+void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
+                     cudaStream_t stream);
+
+// Adds the set bits of (a ^ b): bit i % 32 of word i / 32 is place i. Bits from `count` on do not count.
+void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
+                         Differences* differences, cudaStream_t stream);
+void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
+                           Differences* differences, cudaStream_t stream);
+
+}  // namespace graze

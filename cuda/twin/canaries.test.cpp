@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs on which lanes must differ: see cuda/twin/canaries.pairs.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "core/lanes.h"
+#include "corpus/pair_format.h"
+#include "cuda/twin/twin.h"
+#include "cuda/twin/twin_table.h"
+
+namespace graze {
+
+extern const TwinTable kTwinsWrong;  // contracted with the right product first
+
+namespace {
+
+Verdict decide(DecideBlock block, const Pair& pair) {
+  std::uint64_t intersects = 0, declined = 0;
+  block(&pair, 1, &intersects, &declined);
+  return intersects ? Verdict::intersects : declined ? Verdict::declined : Verdict::disjoint;
+}
+
+const std::string& text(const Entry& entry, const char* key) {
+  const std::string* value = field(entry, key);
+  if (!value) throw std::runtime_error("a canary without " + std::string(key));
+  return *value;
+}
+
+// The lane "ALGORITHM/SCALAR" of the canary, in this target.
+const Lane& lane_of(const Entry& canary, Target target) {
+  const std::string id = text(canary, "lane") + "/" + std::string(name(target));
+  for (const Lane& lane : lanes()) {
+    if (lane.id == id) return lane;
+  }
+  throw std::runtime_error("no lane " + id);
+}
+
+Verdict twin_says(const Entry& canary, Target target) {
+  const Lane& lane = lane_of(canary, target);
+  return decide(twin_block(lane.algorithm, lane.scalar, target), canary.pair);
+}
+
+std::vector<Entry> canaries(const std::string& kind) {
+  std::vector<Entry> all = read_pairs(GRAZE_SOURCE_DIR "/cuda/twin/canaries.pairs");
+  std::erase_if(all, [&](const Entry& entry) { return text(entry, "kind") != kind; });
+  return all;
+}
+
+void expect_every_kernel(const std::vector<Entry>& entries) {
+  std::set<std::string> kernels;
+  for (const Entry& entry : entries) kernels.insert(text(entry, "lane"));
+  EXPECT_EQ(kernels.size(), std::size_t{2} * kAlgorithmCount);
+}
+
+TEST(Canaries, CudaFmaAndCudaNofmaDiffer) {
+  const std::vector<Entry> all = canaries("cuda_nofma");
+  expect_every_kernel(all);
+  for (const Entry& canary : all) {
+    EXPECT_EQ(name(twin_says(canary, Target::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
+    EXPECT_EQ(name(twin_says(canary, Target::cuda_nofma)), text(canary, "other")) << text(canary, "name");
+    EXPECT_NE(text(canary, "cuda_fma"), text(canary, "other"));
+  }
+}
+
+TEST(Canaries, AWrongContractionRuleIsCaught) {
+  const std::vector<Entry> all = canaries("right_first");
+  expect_every_kernel(all);
+  for (const Entry& canary : all) {
+    const Lane& lane = lane_of(canary, Target::cuda_fma);
+    const TwinRow& wrong =
+        kTwinsWrong.rows[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
+    EXPECT_EQ(name(twin_says(canary, Target::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
+    EXPECT_NE(decide(wrong.decide, canary.pair), twin_says(canary, Target::cuda_fma)) << text(canary, "name");
+  }
+}
+
+TEST(Canaries, CpuFmaAndCudaFmaDiffer) {
+#if defined(__clang__)
+  const std::vector<Entry> all = canaries("cpu_fma_clang");
+#else
+  const std::vector<Entry> all = canaries("cpu_fma_gcc");
+#endif
+  ASSERT_FALSE(all.empty());
+  if (!runs_on_this_cpu(lane_of(all[0], Target::cpu_fma))) GTEST_SKIP() << "this processor has no FMA instructions";
+  std::map<std::string, int> differ;
+  for (const Entry& canary : all) {
+    EXPECT_EQ(name(twin_says(canary, Target::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
+    differ[text(canary, "lane")] +=
+        decide(lane_of(canary, Target::cpu_fma).decide, canary.pair) != twin_says(canary, Target::cuda_fma);
+  }
+  int lanes_that_differ = 0;
+  for (const auto& [lane, count] : differ) {
+    lanes_that_differ += count > 0;
+#ifdef GRAZE_RELEASE_BUILD  // what the host compiler contracts depends on its optimisation
+    EXPECT_GT(count, 0) << lane;
+#endif
+  }
+  EXPECT_GT(lanes_that_differ, 0);
+}
+
+// Where the compiler contracts as nvcc does, cpu-fma must still differ from cpu.
+TEST(Canaries, CpuFmaAndCpuDiffer) {
+  std::map<std::string, int> differ;
+  for (const char* kind : {"cuda_nofma", "cpu_fma_gcc", "cpu_fma_clang", "right_first"}) {
+    for (const Entry& canary : canaries(kind)) {
+      if (!runs_on_this_cpu(lane_of(canary, Target::cpu_fma))) GTEST_SKIP() << "this processor has no FMA instructions";
+      differ[text(canary, "lane")] += decide(lane_of(canary, Target::cpu_fma).decide, canary.pair) !=
+                                      decide(lane_of(canary, Target::cpu).decide, canary.pair);
+    }
+  }
+  for (const auto& [lane, count] : differ) EXPECT_GT(count, 0) << lane;
+}
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// One PTX instruction as a C++ statement, in the words of cuda/twin/twin_ops.h.
+#pragma once
+
+#include <string>
+
+#include "cuda/twin/generator/ptx.h"
+
+namespace graze::twin {
+
+// "%f32" as "f32_", which is no type; "$L__BB0_3" as "L__BB0_3".
+std::string identifier(std::string name);
+
+// C++ type of a PTX type; the untyped ones count as unsigned. Empty for a type without one.
+std::string cpp_type(const std::string& type);
+
+// The instruction as a statement of the function `run`; see cpp_writer.h.   Requires: no label.
+// Throws: PtxError for an instruction that is unknown or cannot be replayed.
+std::string cpp_statement(const Module& module, const Kernel& kernel, const Instruction& instruction);
+
+}  // namespace graze::twin

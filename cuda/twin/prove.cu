@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/twin/prove.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "core/lanes.h"
+#include "cuda/lanes/device.h"
+#include "cuda/lanes/device_memory.cuh"
+#include "cuda/twin/explicit_ptx.h"
+#include "cuda/lanes/kernels.cuh"
+#include "cuda/lanes/stratum_kernels.cuh"
+#include "cuda/twin/twin_table.h"
+#include "strata/strata.h"
+
+namespace graze {
+namespace {
+
+constexpr std::uint32_t kBlockPairs = 1u << 23;  // a block of pairs: 604 MB of coordinates
+
+// The explicit PTX, assembled by the driver for the device at hand.
+class ExplicitKernels {
+ public:
+  ExplicitKernels(bool contracted, bool wrong_rule) {
+    const std::string ptx = explicit_ptx(contracted, wrong_rule);
+    check(cudaLibraryLoadData(&library_, ptx.c_str(), nullptr, nullptr, 0, nullptr, nullptr, 0));
+  }
+  ExplicitKernels(const ExplicitKernels&) = delete;
+  ExplicitKernels& operator=(const ExplicitKernels&) = delete;
+  ~ExplicitKernels() { cudaLibraryUnload(library_); }
+
+  template <class... Argument>
+  void launch(const char* symbol, std::uint32_t threads, Argument... arguments) {
+    cudaKernel_t kernel;
+    check(cudaLibraryGetKernel(&kernel, library_, symbol));
+    void* pointers[] = {&arguments...};
+    check(cudaLaunchKernel(reinterpret_cast<const void*>(kernel), dim3((threads + kThreads - 1) / kThreads),
+                           dim3(kThreads), pointers, 0, nullptr));
+  }
+
+ private:
+  cudaLibrary_t library_;
+};
+
+// What one lane says of one block, by the default build and by the explicit PTX.
+struct LaneRun {
+  DeviceArray<std::uint32_t> intersects[2], declined[2];
+  DeviceArray<std::uint64_t> hashes[2];
+};
+
+class Prover {
+ public:
+  explicit Prover(const ProofOptions& options) : options_(options) {
+    for (const Lane& lane : lanes()) {
+      if (!lane.is_cuda() || lane.is_exact() || !matches_any(options.lanes, lane.id)) continue;
+      lanes_.push_back(&lane);
+      const TwinRow& row = twin_row(lane.algorithm, lane.scalar, lane.target);
+      record_.lanes.push_back({lane.id, row.hash, row.trace_hash, std::vector<StratumProof>(kStrataCount)});
+      for (int s = 0; s < kStrataCount; ++s)
+        record_.lanes.back().strata[static_cast<std::size_t>(s)].stratum = kStrata[s].id;
+      auto& module = explicit_[lane.target];
+      if (!module) module = std::make_unique<ExplicitKernels>(lane.target == Target::cuda_fma, options.wrong_rule);
+    }
+  }
+
+  ProofRecord run(const Device& device) {
+    const auto start = std::chrono::steady_clock::now();
+    record_.device = device.name;
+    record_.driver = device.driver;
+    record_.toolkit = device.toolkit;
+    record_.seed = options_.seed;
+    for (int s = 0; s < kStrataCount; ++s) {
+      const auto count = [&](std::uint64_t all) {
+        return all / kStrataCount + (static_cast<std::uint64_t>(s) < all % kStrataCount);
+      };
+      const std::uint64_t pairs = count(options_.pairs), twin_pairs = std::min(pairs, count(options_.twin_pairs));
+      for (std::uint64_t first = 0; first < pairs; first += kBlockPairs) {
+        const auto n = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, pairs - first));
+        const std::uint64_t sample = first < twin_pairs ? std::min<std::uint64_t>(n, twin_pairs - first) : 0;
+        prove_block(s, first, n, static_cast<std::uint32_t>(sample));
+      }
+      record_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      if (options_.progress) options_.progress(progress_line(s));
+    }
+    return std::move(record_);
+  }
+
+ private:
+  std::string progress_line(int s) const {
+    std::uint64_t differences = 0, twin_differences = 0;
+    for (const LaneProof& lane : record_.lanes) {
+      const StratumProof& row = lane.strata[static_cast<std::size_t>(s)];
+      differences += row.verdict_differences + row.trace_differences;
+      twin_differences += row.twin_verdict_differences + row.twin_trace_differences;
+    }
+    return std::string(kStrata[s].id) + ": " + std::to_string(differences) + " differences on the device, " +
+           std::to_string(twin_differences) + " from the twin, " + std::to_string(static_cast<int>(record_.seconds)) +
+           " s";
+  }
+
+  void prove_block(int s, std::uint64_t first, std::uint32_t n, std::uint32_t sample) {
+    float* on_device = coordinates_.at_least(std::size_t{n} * kCoordinates);
+    launch_generate(on_device, n, options_.seed, s, first, nullptr);
+    check(cudaGetLastError());
+    const DevicePairs block{on_device, n, n};
+    if (sample) fetch_pairs(n, sample);
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      StratumProof& row = record_.lanes[l].strata[static_cast<std::size_t>(s)];
+      run_lane(*lanes_[l], block);
+      compare_on_device(row, first, n);
+      if (sample) compare_with_twin(*lanes_[l], row, first, sample);
+    }
+  }
+
+  void run_lane(const Lane& lane, const DevicePairs& block) {
+    const auto a = static_cast<std::size_t>(lane.algorithm), s = static_cast<std::size_t>(lane.scalar);
+    const bool fma = lane.target == Target::cuda_fma;
+    const std::size_t words = (block.count + kThreads - 1) / kThreads * (kThreads / 32);
+    std::uint32_t *yes[2], *no_answer[2];
+    std::uint64_t* hashes[2];
+    for (int v = 0; v < 2; ++v) {
+      yes[v] = run_.intersects[v].at_least(words);
+      no_answer[v] = run_.declined[v].at_least(words);
+      hashes[v] = run_.hashes[v].at_least(block.count);
+    }
+    (fma ? kDecideFma : kDecideNofma)[a][s](block, yes[0], no_answer[0], nullptr);
+    (fma ? kTraceFma : kTraceNofma)[a][s](block, hashes[0], nullptr);
+    check(cudaGetLastError());
+    const TwinRow& row = twin_row(lane.algorithm, lane.scalar, lane.target);
+    ExplicitKernels& kernels = *explicit_.at(lane.target);
+    kernels.launch(row.symbol, block.count, block, yes[1], no_answer[1]);
+    kernels.launch(row.trace_symbol, block.count, block, hashes[1]);
+  }
+
+  void compare_on_device(StratumProof& row, std::uint64_t first, std::uint32_t n) {
+    Differences* found = differences_.at_least(3);
+    check(cudaMemset(found, 0, 3 * sizeof(Differences)));
+    launch_compare_bits(run_.intersects[0].at_least(0), run_.intersects[1].at_least(0), n, first, found, nullptr);
+    launch_compare_bits(run_.declined[0].at_least(0), run_.declined[1].at_least(0), n, first, found + 1, nullptr);
+    launch_compare_hashes(run_.hashes[0].at_least(0), run_.hashes[1].at_least(0), n, first, found + 2, nullptr);
+    check(cudaGetLastError());
+    Differences host[3];
+    check(cudaMemcpy(host, found, sizeof host, cudaMemcpyDeviceToHost));
+    row.pairs += n;
+    row.verdict_differences += host[0].count + host[1].count;
+    row.trace_differences += host[2].count;
+    for (const Differences& d : host) {
+      for (std::uint32_t e = 0; e < std::min<unsigned long long>(d.count, kExamples) && row.examples.size() < kExamples;
+           ++e)
+        row.examples.push_back(d.places[e]);
+    }
+  }
+
+  // The first pairs of the block, from the device: what its kernels saw.
+  void fetch_pairs(std::uint32_t n, std::uint32_t sample) {
+    std::vector<float> column(sample);
+    pairs_.resize(sample);
+    for (int c = 0; c < kCoordinates; ++c) {
+      check(cudaMemcpy(column.data(), coordinates_.at_least(0) + std::size_t{n} * static_cast<std::size_t>(c),
+                       sample * sizeof(float), cudaMemcpyDeviceToHost));
+      for (std::uint32_t i = 0; i < sample; ++i) coordinates(pairs_[i])[c] = column[i];
+    }
+  }
+
+  void compare_with_twin(const Lane& lane, StratumProof& row, std::uint64_t first, std::uint32_t sample) {
+    const std::size_t words = (sample + 63) / 64;
+    std::vector<std::uint64_t> yes(words), no_answer(words), hashes(sample);
+    check(cudaMemcpy(yes.data(), run_.intersects[0].at_least(0), (sample + 31) / 32 * sizeof(std::uint32_t),
+                     cudaMemcpyDeviceToHost));
+    check(cudaMemcpy(no_answer.data(), run_.declined[0].at_least(0), (sample + 31) / 32 * sizeof(std::uint32_t),
+                     cudaMemcpyDeviceToHost));
+    check(
+        cudaMemcpy(hashes.data(), run_.hashes[0].at_least(0), sample * sizeof(std::uint64_t), cudaMemcpyDeviceToHost));
+    const DecideBlock decide = twin_block(lane.algorithm, lane.scalar, lane.target);
+    const TraceBlock trace = twin_trace(lane.algorithm, lane.scalar, lane.target);
+
+    constexpr std::size_t kPart = 1 << 14;
+    std::atomic<std::size_t> next = 0;
+    std::atomic<std::uint64_t> verdicts = 0, traces = 0;
+    std::vector<std::uint64_t> examples(kExamples);
+    std::atomic<std::size_t> example_count = 0;
+    const auto differs = [&](std::size_t i) {
+      if (const std::size_t e = example_count++; e < kExamples) examples[e] = first + i;
+    };
+    const auto work = [&] {
+      std::vector<std::uint64_t> twin_yes(kPart / 64), twin_no_answer(kPart / 64), twin_hashes(kPart);
+      for (std::size_t at = next.fetch_add(kPart); at < sample; at = next.fetch_add(kPart)) {
+        const std::size_t n = std::min<std::size_t>(kPart, sample - at);
+        decide(pairs_.data() + at, n, twin_yes.data(), twin_no_answer.data());
+        trace(pairs_.data() + at, n, twin_hashes.data());
+        for (std::size_t i = 0; i < n; ++i) {
+          const auto bit = [&](const std::vector<std::uint64_t>& words64, std::size_t place) {
+            return words64[place / 64] >> (place % 64) & 1;
+          };
+          const bool verdict = bit(twin_yes, i) != bit(yes, at + i) || bit(twin_no_answer, i) != bit(no_answer, at + i);
+          const bool hash = twin_hashes[i] != hashes[at + i];
+          verdicts += verdict;
+          traces += hash;
+          if (verdict || hash) differs(at + i);
+        }
+      }
+    };
+    std::vector<std::thread> threads;
+    for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) threads.emplace_back(work);
+    for (std::thread& thread : threads) thread.join();
+    row.twin_pairs += sample;
+    row.twin_verdict_differences += verdicts;
+    row.twin_trace_differences += traces;
+    for (std::size_t e = 0; e < std::min<std::size_t>(example_count, kExamples) && row.examples.size() < kExamples; ++e)
+      row.examples.push_back(examples[e]);
+  }
+
+  const ProofOptions& options_;
+  ProofRecord record_;
+  std::vector<const Lane*> lanes_;
+  std::map<Target, std::unique_ptr<ExplicitKernels>> explicit_;
+  LaneRun run_;
+  DeviceArray<float> coordinates_;
+  DeviceArray<Differences> differences_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace
+
+ProofRecord prove_twin(const ProofOptions& options) {
+  std::string why_not;
+  const auto device = open_device(why_not);
+  if (!device) throw std::runtime_error("a proof needs a device: " + why_not);
+  return Prover(options).run(*device);
+}
+
+}  // namespace graze

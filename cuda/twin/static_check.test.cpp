@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// The contraction rule against ptxas, without a GPU: kernel by kernel, machine code of the default build beside that of
+// the PTX in which this project wrote out every contraction. Equal counts of fused and unfused operations are
+// required everywhere; most kernels are the same code, instruction for instruction. Skipped where there is no nvcc.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cuda/twin/generator/ptx_writer.h"
+
+namespace graze {
+namespace {
+
+// The kernels' machine code in a cubin, an ELF file: the sections .text.KERNEL.
+using Code = std::map<std::string, std::string>;
+
+template <class T>
+T read(const std::string& file, std::size_t at) {
+  T value;
+  if (at + sizeof value > file.size()) throw std::runtime_error("a cubin that ends early");
+  std::memcpy(&value, file.data() + at, sizeof value);
+  return value;
+}
+
+Code read_cubin(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string file{std::istreambuf_iterator<char>(in), {}};
+  const auto sections = read<std::uint64_t>(file, 0x28);
+  const auto size = read<std::uint16_t>(file, 0x3a), count = read<std::uint16_t>(file, 0x3c),
+             names = read<std::uint16_t>(file, 0x3e);
+  const auto names_at = read<std::uint64_t>(file, sections + std::uint64_t{names} * size + 0x18);
+  Code code;
+  for (std::uint64_t s = sections; s < sections + std::uint64_t{count} * size; s += size) {
+    const std::string section = file.c_str() + names_at + read<std::uint32_t>(file, s);
+    if (section.starts_with(".text."))
+      code[section.substr(6)] = file.substr(read<std::uint64_t>(file, s + 0x18), read<std::uint64_t>(file, s + 0x20));
+  }
+  return code;
+}
+
+// Floating-point operations in machine code of sm_70 to sm_120: 16 bytes an instruction, told by its low nine bits.
+std::map<std::string, int> operations(const std::string& code) {
+  static const std::map<int, std::string> kNames = {{0x20, "FMUL"}, {0x21, "FADD"}, {0x23, "FFMA"},
+                                                    {0x28, "DMUL"}, {0x29, "DADD"}, {0x2b, "DFMA"}};
+  std::map<std::string, int> counts;
+  for (std::size_t at = 0; at + 16 <= code.size(); at += 16) {
+    if (const auto name = kNames.find(read<std::uint16_t>(code, at) & 0x1ff); name != kNames.end())
+      ++counts[name->second];
+  }
+  return counts;
+}
+
+std::string generated(const std::string& name) { return std::string(GRAZE_GENERATED_DIR "/") + name; }
+
+bool has_nvcc() { return std::filesystem::exists(GRAZE_GENERATED_DIR "/fma.cubin"); }
+
+int same_code(const Code& a, const Code& b) {
+  int same = 0;
+  for (const auto& [kernel, code] : a) same += b.count(kernel) && b.at(kernel) == code;
+  return same;
+}
+
+class StaticCheck : public testing::TestWithParam<const char*> {};
+
+TEST_P(StaticCheck, ExplicitPtxHasTheOperationsOfTheDefaultBuild) {
+  if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
+  const Code built = read_cubin(generated(std::string(GetParam()) + ".cubin")),
+             written = read_cubin(generated(std::string(GetParam()) + ".ptxas.cubin"));
+  ASSERT_EQ(built.size(), 20u);
+  ASSERT_EQ(written.size(), built.size());
+  for (const auto& [kernel, code] : built) {
+    EXPECT_FALSE(operations(code).empty()) << kernel;
+    EXPECT_EQ(operations(code), operations(written.at(kernel))) << kernel;
+  }
+  RecordProperty("same_code", same_code(built, written));
+  // The others differ in the order of instructions and in registers. nvcc 13.0.88: 16 of the 20 contracted ones.
+  EXPECT_GE(same_code(built, written), std::string(GetParam()) == "nofma" ? 20 : 14);
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, StaticCheck, testing::Values("fma", "nofma"),
+                         [](const auto& row) { return std::string(row.param); });
+
+TEST(StaticCheck, CatchesTheRightProductFirst) {
+  if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
+  const Code built = read_cubin(generated("fma.cubin")), wrong = read_cubin(generated("fma.right_first.cubin"));
+  // Every kernel has an a*b - c*d: none is the same code. (Its counts are the same: one fused, one not.)
+  EXPECT_EQ(same_code(built, wrong), 0);
+}
+
+TEST(StaticCheck, SeesContraction) {
+  if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
+  // Only division and square root may contain fused operations in the build without contraction.
+  const Code contracted = read_cubin(generated("fma.cubin")), not_contracted = read_cubin(generated("nofma.cubin"));
+  for (const auto& [kernel, code] : not_contracted) {
+    if (kernel.find("decide_pairsILi2E") == std::string::npos) continue;  // moller_1997 has neither
+    EXPECT_EQ(operations(code).count("FFMA") + operations(code).count("DFMA"), 0u) << kernel;
+  }
+  EXPECT_EQ(same_code(contracted, not_contracted), 0);
+}
+
+// A program without branches, dead code and equal products: sums and products of inputs, of sums, and of products that
+// other sums share. Every sum and every product that nothing reads is stored.
+std::string random_program(std::mt19937& random, const std::string& name, const std::string& type) {
+  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
+  const std::string bytes = type == "f32" ? "4" : "8";
+  std::string body;
+  std::vector<std::string> values, products, unread;
+  std::set<std::set<std::string>> factors;
+  for (int i = 0; i < 8; ++i) {
+    values.push_back("%a" + std::to_string(i));
+    body += "ld.global." + type + " " + values.back() + ", [%rd1+" + std::to_string(std::stoi(bytes) * i) + "];\n";
+  }
+  const auto read = [&](const std::string& operand) {
+    std::erase(unread, operand);
+    return operand;
+  };
+  const auto pick = [&] {
+    return read(!products.empty() && below(4) ? products[below(products.size())] : values[below(values.size())]);
+  };
+  int next = 0;
+  for (std::size_t step = 0, steps = 4 + below(14); step < steps; ++step) {
+    const std::string result = "%f" + std::to_string(next++);
+    if (const std::size_t kind = below(20); kind < 9) {
+      const std::string a = values[below(values.size())], b = values[below(values.size())];
+      if (!factors.insert({a, b}).second) continue;
+      body += (kind == 0 ? "mul.rn." : "mul.") + type + " " + result + ", " + read(a) + ", " + read(b) + ";\n";
+      products.push_back(result);
+    } else if (kind < 19) {
+      body += (kind < 14 ? "add." : "sub.") + type + " " + result + ", " + pick() + ", " + pick() + ";\n";
+      if (below(2)) values.push_back(result);
+    } else {
+      const std::string a = pick(), b = pick();
+      if (!factors.insert({a, b}).second) continue;
+      body += "fma.rn." + type + " " + result + ", " + a + ", " + b + ", " + pick() + ";\n";
+    }
+    unread.push_back(result);
+  }
+  int slot = 0;
+  for (const std::string& result : unread)
+    body += "st.global." + type + " [%rd1+" + std::to_string(256 + 8 * slot++) + "], " + result + ";\n";
+  return ".visible .entry " + name + "(\n.param .u64 " + name + "_p\n)\n{\n.reg .b64 %rd<2>;\n.reg ." + type +
+         " %a<9>;\n.reg ." + type + " %f<40>;\nld.param.u64 %rd1, [" + name + "_p];\n" + body + "ret;\n}\n";
+}
+
+Code assembled(const std::string& name, const std::string& ptx) {
+  const std::string path = testing::TempDir() + name;
+  std::ofstream(path + ".ptx") << ptx;
+  if (std::system((std::string(GRAZE_PTXAS) + " -arch=sm_90 " + path + ".ptx -o " + path + ".cubin").c_str()) != 0)
+    throw std::runtime_error("ptxas failed");
+  return read_cubin(path + ".cubin");
+}
+
+constexpr int kPrograms = 500;
+
+// Share of random programs whose machine code the explicit PTX reproduces, instruction for instruction.
+class RandomPrograms : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
+  }
+  double share_of_same_code(twin::Rule rule) const {
+    const std::string type = GetParam();
+    std::mt19937 random(5);
+    std::string ptx = ".version 9.0\n.target sm_75\n.address_size 64\n";
+    for (int i = 0; i < kPrograms; ++i) ptx += random_program(random, "k" + std::to_string(i), type);
+    std::istringstream in(ptx);
+    twin::Module module = twin::read_ptx(in, "random.ptx");
+    std::ostringstream out;
+    twin::write_explicit(out, module, rule);
+    const Code open = assembled("open_" + type, ptx), closed = assembled("closed_" + type, out.str());
+    if (rule == twin::Rule::ptxas) {
+      for (const auto& [kernel, code] : open) EXPECT_EQ(operations(code), operations(closed.at(kernel))) << kernel;
+    }
+    const double share = same_code(open, closed) / static_cast<double>(kPrograms);
+    RecordProperty("share_of_same_code", std::to_string(share));
+    return share;
+  }
+};
+
+TEST_P(RandomPrograms, AreContractedAsPtxasDoes) {
+  // nvcc 13.0.88: all of them.
+  EXPECT_GT(share_of_same_code(twin::Rule::ptxas), 0.97);
+}
+
+TEST_P(RandomPrograms, ShowAWrongRule) {
+  EXPECT_LT(share_of_same_code(twin::Rule::right_first), 0.95);
+  EXPECT_LT(share_of_same_code(twin::Rule::none), 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, RandomPrograms, testing::Values("f32", "f64"),
+                         [](const auto& row) { return std::string(row.param); });
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Speed of the twins beside the `cpu` lanes, on uniform and on near-touching pairs. Each run first checks that the
+// twin without contraction gives the cpu lane's verdicts.
+#include <benchmark/benchmark.h>
+
+#include "core/lanes.h"
+#include "cuda/twin/twin.h"
+#include "strata/strata.h"
+
+namespace graze {
+namespace {
+
+constexpr std::size_t kPairs = 1 << 14;
+
+std::vector<Pair> pairs_of(Stratum stratum) {
+  std::vector<Pair> pairs;
+  for (std::uint64_t i = 0; i < kPairs; ++i) pairs.push_back(generate(1, stratum, i));
+  return pairs;
+}
+
+struct Bits {
+  std::vector<std::uint64_t> intersects = std::vector<std::uint64_t>(kPairs / 64),
+                             declined = std::vector<std::uint64_t>(kPairs / 64);
+  friend bool operator==(const Bits&, const Bits&) = default;
+};
+
+Bits run(DecideBlock decide, const std::vector<Pair>& pairs) {
+  Bits bits;
+  decide(pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
+  return bits;
+}
+
+void measure(benchmark::State& state, DecideBlock decide, Stratum stratum, const Lane* same_as) {
+  const std::vector<Pair> pairs = pairs_of(stratum);
+  if (same_as && run(decide, pairs) != run(same_as->decide, pairs))
+    return state.SkipWithError("the twin differs from the cpu lane");
+  for (auto _ : state) benchmark::DoNotOptimize(run(decide, pairs));
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * kPairs));
+}
+
+const bool kRegistered = [] {
+  for (Stratum stratum : {Stratum::uniform, Stratum::near_edge_edge}) {
+    const Lane* cpu = nullptr;
+    for (const Lane& lane : lanes()) {
+      if (lane.target == Target::cpu) cpu = &lane;
+      const DecideBlock decide = lane.is_cuda()               ? twin_block(lane.algorithm, lane.scalar, lane.target)
+                                 : lane.target == Target::cpu ? lane.decide
+                                                              : nullptr;
+      if (!decide) continue;
+      const Lane* same_as = lane.target == Target::cuda_nofma ? cpu : nullptr;
+      const std::string name =
+          lane.id + (lane.is_cuda() ? " (twin)/" : "/") + std::string(kStrata[static_cast<int>(stratum)].id);
+      benchmark::RegisterBenchmark(name.c_str(),
+                                   [=](benchmark::State& state) { measure(state, decide, stratum, same_as); });
+    }
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/twin/twin.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "cuda/lanes/trace.h"
+#include "cuda/twin/twin_table.h"
+#include "strata/strata.h"
+
+namespace graze {
+namespace {
+
+constexpr std::uint64_t kSeed = 3;
+
+// Some of every stratum: random, near-touching, coplanar, degenerate, of extreme scale.
+const std::vector<Pair>& sample() {
+  static const std::vector<Pair> pairs = [] {
+    std::vector<Pair> all;
+    for (int s = 0; s < kStrataCount; ++s) {
+      for (std::uint64_t i = 0; i < 8000; ++i) all.push_back(generate(kSeed, kStrata[s].stratum, i));
+    }
+    return all;
+  }();
+  return pairs;
+}
+
+struct Bits {
+  std::vector<std::uint64_t> intersects, declined;
+  friend bool operator==(const Bits&, const Bits&) = default;
+};
+
+Bits run(DecideBlock decide, const std::vector<Pair>& pairs) {
+  Bits bits{std::vector<std::uint64_t>((pairs.size() + 63) / 64), std::vector<std::uint64_t>((pairs.size() + 63) / 64)};
+  decide(pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
+  return bits;
+}
+
+std::string test_name(const std::string& id) {
+  std::string name = id;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  return name;
+}
+
+class Twin : public testing::TestWithParam<const Lane*> {
+ protected:
+  const Lane& lane() const { return *GetParam(); }
+  const Lane& sibling(Target target) const {
+    const auto found = std::find_if(lanes().begin(), lanes().end(), [&](const Lane& l) {
+      return l.algorithm == lane().algorithm && l.scalar == lane().scalar && l.target == target;
+    });
+    return *found;
+  }
+  DecideBlock twin(Target target) const { return twin_block(lane().algorithm, lane().scalar, target); }
+};
+
+// One test a kernel: algorithm and scalar.
+std::vector<const Lane*> cuda_fma_lanes() {
+  std::vector<const Lane*> rows;
+  for (const Lane& lane : lanes()) {
+    if (lane.target == Target::cuda_fma) rows.push_back(&lane);
+  }
+  return rows;
+}
+
+INSTANTIATE_TEST_SUITE_P(Lanes, Twin, testing::ValuesIn(cuda_fma_lanes()),
+                         [](const auto& row) { return test_name(row.param->id); });
+
+TEST_P(Twin, EveryCudaLaneHasOne) {
+  for (Target target : {Target::cuda_fma, Target::cuda_nofma}) {
+    EXPECT_NE(twin(target), nullptr);
+    EXPECT_NE(twin_trace(lane().algorithm, lane().scalar, target), nullptr);
+    EXPECT_EQ(std::strlen(twin_hash(lane().algorithm, lane().scalar, target)), 16u);
+    EXPECT_TRUE(twin_evidence(lane().algorithm, lane().scalar, target).starts_with("twin"));
+  }
+  EXPECT_EQ(twin(Target::cpu), nullptr);
+  EXPECT_STRNE(twin_hash(lane().algorithm, lane().scalar, Target::cuda_fma),
+               twin_hash(lane().algorithm, lane().scalar, Target::cuda_nofma));
+}
+
+TEST_P(Twin, WithoutContractionIsTheCpuLane) {
+  ASSERT_GE(sample().size(), 100'000u);
+  EXPECT_TRUE(run(twin(Target::cuda_nofma), sample()) == run(sibling(Target::cpu).decide, sample()));
+}
+
+// What the cpu lane's algorithm traces, compiled without contraction on this processor.
+template <class Algorithm, class Real>
+std::uint64_t traced(const Pair& pair) {
+  Vec3<Real> a[3], b[3];
+  for (int i = 0; i < 3; ++i) {
+    a[i] = {Real(pair.a[i].x), Real(pair.a[i].y), Real(pair.a[i].z)};
+    b[i] = {Real(pair.b[i].x), Real(pair.b[i].y), Real(pair.b[i].z)};
+  }
+  std::uint64_t hash = 0;
+  const Verdict verdict = Algorithm::decide(a, b, TracePolicy{&hash});
+  return hash ^ static_cast<std::uint64_t>(verdict);
+}
+
+template <class... Algorithm>
+std::uint64_t traced(int algorithm, Scalar scalar, const Pair& pair, const std::tuple<Algorithm...>*) {
+  using Trace = std::uint64_t (*)(const Pair&);
+  static constexpr Trace kTraces[][2] = {{traced<Algorithm, float>, traced<Algorithm, double>}...};
+  return kTraces[algorithm][static_cast<int>(scalar)](pair);
+}
+
+TEST_P(Twin, WithoutContractionHasTheCpuLanesIntermediateBits) {
+  std::vector<std::uint64_t> hashes(sample().size());
+  twin_trace(lane().algorithm, lane().scalar, Target::cuda_nofma)(sample().data(), sample().size(), hashes.data());
+  int differ = 0;
+  for (std::size_t i = 0; i < hashes.size(); ++i) {
+    differ +=
+        hashes[i] != traced(lane().algorithm, lane().scalar, sample()[i], static_cast<const Algorithms*>(nullptr));
+  }
+  EXPECT_EQ(differ, 0);
+}
+
+TEST_P(Twin, ContractionChangesIntermediateBits) {
+  std::vector<std::uint64_t> fused(sample().size()), unfused(sample().size());
+  twin_trace(lane().algorithm, lane().scalar, Target::cuda_fma)(sample().data(), sample().size(), fused.data());
+  twin_trace(lane().algorithm, lane().scalar, Target::cuda_nofma)(sample().data(), sample().size(), unfused.data());
+  EXPECT_NE(fused, unfused);
+}
+
+TEST_P(Twin, WithFmaFromTheLibraryIsTheSame) {
+  const auto a = static_cast<std::size_t>(lane().algorithm), s = static_cast<std::size_t>(lane().scalar);
+  EXPECT_TRUE(run(kTwinsFmaPortable.rows[a][s].decide, sample()) == run(twin(Target::cuda_fma), sample()));
+}
+
+TEST_P(Twin, FusingAllSitesIsCudaFmaAndNoneIsCudaNofma) {
+  const std::size_t sites = contraction_sites(lane().algorithm, lane().scalar).size();
+  ASSERT_GT(sites, 0u);
+  const std::vector<std::uint64_t> none((sites + 63) / 64, 0), all((sites + 63) / 64, ~std::uint64_t{0});
+  const Bits fused = run(twin(Target::cuda_fma), sample()), unfused = run(twin(Target::cuda_nofma), sample());
+  int wrong = 0;
+  for (std::size_t i = 0; i < sample().size(); ++i) {
+    const auto says = [&](const Bits& bits) {
+      return bits.intersects[i / 64] >> (i % 64) & 1 ? Verdict::intersects : Verdict::disjoint;
+    };
+    wrong += decide_fusing(lane().algorithm, lane().scalar, sample()[i], all) != says(fused);
+    wrong += decide_fusing(lane().algorithm, lane().scalar, sample()[i], none) != says(unfused);
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_P(Twin, SitesHaveTheirLines) {
+  bool by_ptxas = false, by_front_end = false;
+  for (const ContractionSite& site : contraction_sites(lane().algorithm, lane().scalar)) {
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(GRAZE_SOURCE_DIR) / site.at.file)) << site.at.file;
+    EXPECT_GT(site.at.line, 0);
+    (site.by_ptxas ? by_ptxas : by_front_end) = true;
+  }
+  EXPECT_TRUE(by_ptxas && by_front_end);
+}
+
+TEST(Twin, DecideFusingRefusesTooFewBits) {
+  EXPECT_THROW(decide_fusing(0, Scalar::f32, Pair{}, {}), std::invalid_argument);
+}
+
+TEST(Twin, BlocksOfAnyLengthFillWholeWords) {
+  const DecideBlock decide = twin_block(1, Scalar::f32, Target::cuda_fma);
+  for (std::size_t n : {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}}) {
+    std::vector<std::uint64_t> yes(2, ~std::uint64_t{0}), declined(2, ~std::uint64_t{0});
+    decide(sample().data(), n, yes.data(), declined.data());
+    if (n < 64) {
+      EXPECT_EQ(yes[0] >> n, 0u);
+    }
+    EXPECT_EQ(yes[1] == ~std::uint64_t{0}, n <= 64);
+  }
+}
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The twins' block functions. Compiled once a variant, each in its own namespace GRAZE_FP, with the generated kernels
+// (GRAZE_TWIN_KERNELS) and without contraction by the host compiler; nothing else may be defined here, or the linker
+// would mix the variants.
+#include <string_view>
+#include <tuple>
+
+#include "cuda/lanes/device_pairs.h"
+#include "cuda/twin/twin_ops_logic.h"
+#include "cuda/twin/twin_table.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+namespace ptx {
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-label"
+#pragma GCC diagnostic ignored "-Wsign-conversion"
+#pragma GCC diagnostic ignored "-Wconversion"
+#include GRAZE_TWIN_KERNELS
+#pragma GCC diagnostic pop
+
+const unsigned char* bytes(const void* object) { return static_cast<const unsigned char*>(object); }
+
+// One pair as a block of one: stride 1, so that its coordinates are the 18 arrays.
+template <class Kernel, class Fuse>
+Verdict decide_one(const Pair& pair, const Fuse& fuse) {
+  const DevicePairs block{coordinates(pair), 1, 1};
+  u32 yes = 0, no_answer = 0;
+  const u32 *yes_at = &yes, *no_answer_at = &no_answer;
+  const unsigned char* const parameters[] = {bytes(&block), bytes(&yes_at), bytes(&no_answer_at)};
+  Kernel::run(parameters, fuse);
+  return yes ? Verdict::intersects : no_answer ? Verdict::declined : Verdict::disjoint;
+}
+
+template <class Kernel>
+void decide_block(const Pair* pairs, std::size_t count, u64* intersects, u64* declined) {
+  for (std::size_t word = 0; word * 64 < count; ++word) {
+    u64 yes = 0, no_answer = 0;
+    for (std::size_t bit = 0; bit < 64 && word * 64 + bit < count; ++bit) {
+      const Verdict verdict = decide_one<Kernel>(pairs[word * 64 + bit], AllFused{});
+      yes |= u64{verdict == Verdict::intersects} << bit;
+      no_answer |= u64{verdict == Verdict::declined} << bit;
+    }
+    intersects[word] = yes;
+    declined[word] = no_answer;
+  }
+}
+
+template <class Kernel>
+void trace_block(const Pair* pairs, std::size_t count, u64* hashes) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const DevicePairs block{coordinates(pairs[i]), 1, 1};
+    const u64* hash_at = hashes + i;
+    const unsigned char* const parameters[] = {bytes(&block), bytes(&hash_at)};
+    Kernel::run(parameters, AllFused{});
+  }
+}
+
+template <class Kernel>
+Verdict decide_fusing(const Pair& pair, const u64* fused) {
+  return decide_one<Kernel>(pair, SomeFused{fused});
+}
+
+template <class Kernel>
+constexpr void enter(TwinTable& table) {
+  TwinRow& row = table.rows[static_cast<std::size_t>(Kernel::kInteger)][static_cast<std::size_t>(Kernel::kScalar)];
+  if constexpr (Kernel::kName == "decide_pairs") {
+    row.decide = decide_block<Kernel>;
+    row.hash = Kernel::kHash;
+    row.symbol = Kernel::kSymbol;
+    if constexpr (Kernel::kSiteCount > 0) {
+      row.decide_fusing = decide_fusing<Kernel>;
+      row.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
+    }
+  } else {
+    row.trace = trace_block<Kernel>;
+    row.trace_hash = Kernel::kHash;
+    row.trace_symbol = Kernel::kSymbol;
+  }
+}
+
+template <class... Kernel>
+constexpr TwinTable table_of(const std::tuple<Kernel...>*) {
+  TwinTable table{kToolkit, {}};
+  (enter<Kernel>(table), ...);
+  return table;
+}
+
+}  // namespace ptx
+}  // namespace GRAZE_FP
+
+extern const TwinTable GRAZE_TWINS = ptx::table_of(static_cast<const ptx::Kernels*>(nullptr));
+
+}  // namespace graze

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// PTX operations on the CPU, continued: integers, comparisons, conversions.
+#pragma once
+
+#include "cuda/twin/twin_ops.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+namespace ptx {
+
+// ---- integers ----
+
+template <class T>
+T mul_lo(T a, T b) {
+  return static_cast<T>(static_cast<u64>(a) * static_cast<u64>(b));
+}
+
+template <class T>
+using Wide = std::conditional_t<std::is_signed_v<T>, std::conditional_t<sizeof(T) == 2, s32, s64>,
+                                std::conditional_t<sizeof(T) == 2, u32, u64>>;
+
+template <class T>
+Wide<T> mul_wide(T a, T b) {
+  return static_cast<Wide<T>>(static_cast<Wide<T>>(a) * static_cast<Wide<T>>(b));
+}
+
+template <class T>
+T mul_hi(T a, T b) {
+  static_assert(sizeof(T) <= 4);
+  return static_cast<T>(mul_wide(a, b) >> (8 * sizeof(T)));
+}
+
+// Shifts by the width or more leave zero, or the sign.
+template <class T>
+T shl(T x, u32 by) {
+  return by < 8 * sizeof(T) ? static_cast<T>(static_cast<u64>(x) << by) : T{0};
+}
+
+template <class T>
+T shr(T x, u32 by) {
+  return by < 8 * sizeof(T) ? static_cast<T>(x >> by) : x < 0 ? static_cast<T>(-1) : T{0};
+}
+
+// ---- comparisons; those with u are true for a NaN, the others false ----
+
+template <class T>
+bool eq(T a, T b) {
+  return a == b;
+}
+template <class T>
+bool ne(T a, T b) {
+  if constexpr (std::is_integral_v<T>)
+    return a != b;
+  else
+    return a < b || a > b;
+}
+template <class T>
+bool lt(T a, T b) {
+  return a < b;
+}
+template <class T>
+bool le(T a, T b) {
+  return a <= b;
+}
+template <class T>
+bool gt(T a, T b) {
+  return a > b;
+}
+template <class T>
+bool ge(T a, T b) {
+  return a >= b;
+}
+template <class T>
+bool equ(T a, T b) {
+  return !ne(a, b);
+}
+template <class T>
+bool neu(T a, T b) {
+  return !(a == b);
+}
+template <class T>
+bool ltu(T a, T b) {
+  return !(a >= b);
+}
+template <class T>
+bool leu(T a, T b) {
+  return !(a > b);
+}
+template <class T>
+bool gtu(T a, T b) {
+  return !(a <= b);
+}
+template <class T>
+bool geu(T a, T b) {
+  return !(a < b);
+}
+template <class T>
+bool num(T a, T b) {
+  return !is_nan(a) && !is_nan(b);
+}
+template <class T>
+bool nan(T a, T b) {
+  return is_nan(a) || is_nan(b);
+}
+
+template <class T>
+bool test_finite(T x) {
+  return abs(x) <= std::numeric_limits<T>::max();
+}
+template <class T>
+bool test_infinite(T x) {
+  return abs(x) == std::numeric_limits<T>::infinity();
+}
+template <class T>
+bool test_number(T x) {
+  return !is_nan(x);
+}
+template <class T>
+bool test_notanumber(T x) {
+  return is_nan(x);
+}
+template <class T>
+bool test_normal(T x) {  // zero counts as normal
+  return test_finite(x) && !is_subnormal(x);
+}
+template <class T>
+bool test_subnormal(T x) {
+  return is_subnormal(x);
+}
+
+// ---- conversions ----
+
+// To an integer of floating point: nearest even, toward zero, down, up; a zero keeps its sign.
+template <class T>
+T rni(T x) {
+  return std::nearbyint(x);
+}
+template <class T>
+T rzi(T x) {
+  return std::trunc(x);
+}
+template <class T>
+T rmi(T x) {
+  return std::floor(x);
+}
+template <class T>
+T rpi(T x) {
+  return std::ceil(x);
+}
+
+// An integral floating-point number as an integer, the nearest there is. NaN: 0, or only the top bit where 64 bits
+// are involved.
+template <class To, class From>
+To to_integer(From x) {
+  if (is_nan(x))
+    return sizeof(From) == 8 || sizeof(To) == 8 ? static_cast<To>(Bits<To>{1} << (8 * sizeof(To) - 1)) : To{0};
+  const From above = static_cast<From>(std::numeric_limits<To>::max() / 2 + 1) * 2;  // 2^bits, or 2^(bits - 1): exact
+  if (x >= above) return std::numeric_limits<To>::max();
+  if (x <= static_cast<From>(std::numeric_limits<To>::min())) return std::numeric_limits<To>::min();
+  return static_cast<To>(x);
+}
+
+}  // namespace ptx
+}  // namespace GRAZE_FP
+}  // namespace graze

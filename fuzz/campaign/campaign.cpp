@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/campaign.h"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <optional>
+
+#include "build_info.h"
+#include "core/error.h"
+#include "fuzz/campaign/gpu_engine.h"
+#include "fuzz/campaign/cpu_engine.h"
+#include "fuzz/campaign/result_files.h"
+
+namespace graze {
+namespace {
+
+constexpr std::uint64_t kBatchPairs = 65536;                         // a transaction
+constexpr std::uint64_t kDeviceBatchPairs = std::uint64_t{1} << 32;  // a second or so on one device
+
+// The processor that this runs on.
+std::string machine_name() {
+  utsname system{};
+  uname(&system);
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t value = line.find(": ");
+    if (line.starts_with("model name") && value != line.npos)
+      return fmt::format("{}, {}", line.substr(value + 2), system.machine);
+  }
+  return system.machine;
+}
+
+// The next batch: of the source that is least far, so that a campaign cut short has seen all of them.
+struct Batch {
+  int source;
+  std::uint64_t first, count;
+};
+
+std::optional<Batch> next_batch(const Campaign& campaign, const std::vector<std::uint64_t>& done) {
+  std::optional<Batch> next;
+  for (std::size_t s = 0; s < done.size(); ++s) {
+    const std::uint64_t left = campaign.sources[s].pairs - done[s];
+    if (left == 0 || (next && next->first <= done[s])) continue;
+    const std::uint64_t most = campaign.engines.empty() ? kBatchPairs : kDeviceBatchPairs * campaign.engines.size();
+    next = Batch{static_cast<int>(s), done[s], std::min(left, most)};
+  }
+  return next;
+}
+
+}  // namespace
+
+Json campaign_spec(const Campaign& campaign) {
+  Json strata = Json::array(), lane_ids = Json::array();
+  std::uint64_t pairs = 0;
+  for (const Source& source : campaign.sources) {
+    strata.push_back(source.id);
+    pairs += source.pairs;
+  }
+  for (const Lane* lane : campaign.bench->lanes) lane_ids.push_back(lane->id);
+  return {{"seed", campaign.seed}, {"pairs", pairs}, {"strata", strata}, {"lanes", lane_ids}};
+}
+
+Json build_info(const Bench& bench) {
+  Json info = {{"version", GRAZE_VERSION},
+               {"commit", GRAZE_COMMIT},
+               {"compiler", GRAZE_COMPILER},
+               {"cuda", nullptr},
+               {"device", nullptr}};
+  if (*GRAZE_NVCC) info["cuda"] = std::string("nvcc ") + GRAZE_NVCC;
+  if (bench.device) info["device"] = bench.device->name + ", driver " + bench.device->driver;
+  info["executors"] = Json::object();
+  for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
+    if (bench.lanes[l]->is_cuda()) info["executors"][bench.lanes[l]->id] = bench.evidence(l);
+  }
+  return info;
+}
+
+std::vector<std::unique_ptr<Engine>> choose_engines(const Campaign& campaign, EngineChoice choice) {
+  if (choice == EngineChoice::cpu || (choice == EngineChoice::automatic && !campaign.bench->device)) return {};
+  if (!campaign.bench->device) throw std::runtime_error("expected a CUDA device for the GPU engine, found none");
+  std::string hindrance;
+  for (std::size_t l = 0; l < campaign.bench->lanes.size(); ++l) {
+    if (!campaign.bench->on_device(l) || campaign.bench->on_both(l)) hindrance = campaign.bench->lanes[l]->id;
+  }
+  for (const Source& source : campaign.sources) {
+    if (source.stratum < 0) hindrance = source.id;
+  }
+  if (hindrance.empty()) return open_engines(campaign.bench->lanes);
+  if (choice == EngineChoice::automatic) return {};
+  throw UsageError("expected lanes that run on the device alone, and strata, for the GPU engine; found " + hindrance);
+}
+
+Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
+                     const std::function<void(const Progress&)>& report) {
+  const auto start = std::chrono::steady_clock::now();
+  const int threads = campaign.threads > 0 ? campaign.threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+
+  Store store(campaign.directory, campaign.spec, campaign.build);
+  DeviceJudge device(campaign);
+  Progress progress;
+  progress.disagreements_of_source.resize(campaign.sources.size());
+  std::vector<std::uint64_t> done;
+  for (const Source& source : campaign.sources) {
+    done.push_back(store.done(static_cast<int>(done.size())));
+    progress.total += source.pairs;
+    progress.done += done.back();
+  }
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  while (!stop) {
+    const std::optional<Batch> batch = next_batch(campaign, done);
+    if (!batch) break;
+    const BatchResult result = campaign.engines.empty() ? judge(campaign, batch->source, batch->count,
+                                                                [&](std::size_t i) { return batch->first + i; })
+                                                        : device.judge(batch->source, batch->first, batch->count);
+    store.commit(batch->source, batch->count, result);
+    done[static_cast<std::size_t>(batch->source)] += batch->count;
+    progress.done += batch->count;
+    progress.done_here += batch->count;
+    progress.seconds = seconds();
+    progress.signatures = store.signature_count();
+    progress.disagreements += result.disagreements;
+    progress.disagreements_of_source[static_cast<std::size_t>(batch->source)] += result.disagreements;
+    report(progress);
+  }
+  Outcome outcome{write_summary(campaign, store, progress.done == progress.total), store.oracle()};
+  append_timing(campaign.directory,
+                {{"pairs", progress.done_here},
+                 {"seconds", seconds()},
+                 {"threads", threads},
+                 {"machine", machine_name()},
+                 {"engine", campaign.engines.empty() ? "cpu" : "gpu"}},
+                outcome.oracle);
+  return outcome;
+}
+
+}  // namespace graze

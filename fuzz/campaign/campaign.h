@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The campaign: every pair of every source through all lanes and the oracle; tallies, signatures and kept cases in
+// a directory. The results are a function of the spec and the build alone: not of threads, batches or interruptions.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cuda/engine/engine.h"
+#include "fuzz/lanes_under_test.h"
+#include "strata/source.h"
+#include "fuzz/campaign/store.h"
+
+namespace graze {
+
+struct Campaign {
+  std::uint64_t seed = 1;
+  std::vector<Source> sources;
+  const Bench* bench = nullptr;                  // the lanes, and what runs them
+  int threads = 0;                               // 0: one a core
+  std::vector<std::unique_ptr<Engine>> engines;  // the devices' engines, which share it; none: the CPU engine
+  std::filesystem::path directory;
+  Json spec;  // what makes this campaign another one; see campaign_spec
+  Json build;
+};
+
+struct Progress {
+  std::uint64_t done = 0, total = 0;                // pairs
+  std::uint64_t done_here = 0;                      // by this process
+  double seconds = 0;                               // of this process
+  std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements by this process only
+  std::vector<std::uint64_t> disagreements_of_source;
+};
+
+// {"seed", "pairs", "strata", "lanes"}: recorded with the results and compared when a campaign goes on.
+Json campaign_spec(const Campaign& campaign);
+
+// Version, commit, compiler, toolkit, device, and for each CUDA lane what ran it.
+Json build_info(const Bench& bench);
+
+// What judges the pairs. automatic: the devices where they can, which is where all lanes are theirs and all sources
+// are strata; else the CPU.
+enum class EngineChoice { automatic, cpu, gpu };
+
+// The engines that take the campaign; none for the CPU engine.
+// Throws: UsageError when the GPU engine is asked for and cannot take it; std::runtime_error without a device.
+std::vector<std::unique_ptr<Engine>> choose_engines(const Campaign& campaign, EngineChoice choice);
+
+struct Outcome {
+  Json summary;
+  Json oracle;  // {"cgal", "gmp", "device", "apart"}: pairs that each exact decision saw; depends on the engine
+};
+
+// Runs or goes on with the campaign until done or `stop`, then writes summary.json, timings.json and cases/.
+// Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any case.
+Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
+                     const std::function<void(const Progress&)>& report);
+
+}  // namespace graze

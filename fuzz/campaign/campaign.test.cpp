@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// The campaign's promises: the same bytes whatever the threads and interruptions, and nothing lost.
+#include "fuzz/campaign/campaign.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+
+#include "core/error.h"
+#include "corpus/pair_format.h"
+#include "cuda/twin/twin.h"
+#include "fuzz/campaign/result_files.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Everything that a campaign leaves and that must not depend on how it ran.
+std::map<std::string, std::string> lasting_files(const fs::path& directory) {
+  std::map<std::string, std::string> files{{"summary.json", read_whole(directory / "summary.json")}};
+  for (const auto& file : fs::directory_iterator(directory / "cases"))
+    files[file.path().filename()] = read_whole(file.path());
+  return files;
+}
+
+class CampaignTest : public testing::Test {
+ protected:
+  CampaignTest() {
+    root_ = fs::temp_directory_path() / ("graze-campaign-" + std::to_string(getpid()));
+    fs::remove_all(root_);
+  }
+  ~CampaignTest() override { fs::remove_all(root_); }
+
+  Campaign campaign(const std::string& name, int threads, std::uint64_t pairs = 200'000) const {
+    Campaign c;
+    c.seed = 3;
+    c.sources = stratum_sources(c.seed, pairs, {"near_edge_edge", "degenerate", "extreme_scale"});
+    c.bench = &bench_;
+    c.threads = threads;
+    c.directory = root_ / name;
+    c.spec = campaign_spec(c);
+    c.build = build_info(bench_);
+    return c;
+  }
+
+  Json run(const Campaign& c, std::uint64_t stop_after_batches = ~0ull) const {
+    std::atomic<bool> stop{false};
+    std::uint64_t batches = 0;
+    return run_campaign(c, stop, [&](const Progress&) { stop = ++batches >= stop_after_batches; }).summary;
+  }
+
+  fs::path root_;
+  Bench bench_ = make_bench({"*/f32/*"}, Executor::twin);
+};
+
+TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
+  run(campaign("one", 1));
+  run(campaign("many", 4));
+  EXPECT_EQ(lasting_files(root_ / "one"), lasting_files(root_ / "many"));
+}
+
+TEST_F(CampaignTest, SameBytesWhenInterruptedAfterEveryBatch) {
+  const Json whole = run(campaign("whole", 2));
+  Json part;
+  for (int i = 0; i < 6; ++i) part = run(campaign("parts", 2), 1);
+  EXPECT_EQ(part.dump(), whole.dump());
+  EXPECT_EQ(lasting_files(root_ / "parts"), lasting_files(root_ / "whole"));
+}
+
+TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
+  const Json summary = run(campaign("counts", 2));
+  std::uint64_t pairs = 0, in_margins = 0;
+  for (const auto& [stratum, row] : summary["strata"].items()) {
+    pairs += row["pairs"].get<std::uint64_t>();
+    for (const auto& [bucket, counts] : row["margins"].items()) in_margins += counts["pairs"].get<std::uint64_t>();
+  }
+  EXPECT_EQ(pairs, 200'000u);
+  EXPECT_EQ(in_margins, pairs);
+  const Json oracle = Json::parse(read_whole(root_ / "counts" / "timings.json"))["oracle"];
+  EXPECT_EQ(oracle["cgal"], pairs);
+  EXPECT_EQ(oracle["apart"], 0);
+  ASSERT_FALSE(summary["signatures"].empty());
+  std::uint64_t failures = 0;
+  for (const auto& row : summary["signatures"]) {
+    failures += row["count"].get<std::uint64_t>();
+    const auto cases = read_pairs(root_ / "counts" / row["case"].get<std::string>());
+    ASSERT_FALSE(cases.empty());
+    EXPECT_LE(cases.size(), kKeptCases);
+    EXPECT_LE(cases.size(), row["count"].get<std::uint64_t>());
+    EXPECT_EQ(*field(cases[0], "signature"), row["key"].get<std::string>());
+  }
+  const std::uint64_t disagreements = summary["disagreements"];
+  EXPECT_GE(failures, disagreements);  // one a failing algorithm
+  EXPECT_GE(oracle["gmp"].get<std::uint64_t>(), disagreements + (pairs - disagreements) / 1024 - 2);
+}
+
+TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
+  Campaign c = campaign("extremes", 2);
+  c.sources = stratum_sources(c.seed, 8000, {"extreme_scale", "far_from_origin", "degenerate"});
+  c.spec = campaign_spec(c);
+  const Json strata = run(c)["strata"];
+  EXPECT_FALSE(strata["degenerate"].contains("extremes"));
+  for (const Source& source : c.sources) {
+    if (source.axis == Axis::none) continue;
+    std::map<std::string, std::map<std::string, std::uint64_t>> expected;
+    for (std::uint64_t index = 0; index < source.pairs; ++index) {
+      const Pair pair = source.pair(index);
+      const bool truth = cgal_verdict(pair) == Verdict::intersects;
+      auto& cell = expected[std::to_string(exponent_of(source.axis, extreme_of(pair, source.axis)))];
+      ++cell["pairs"];
+      for (std::size_t l = 0; l < bench_.lanes.size(); ++l) {
+        std::uint64_t intersects = 0, declined = 0;
+        bench_.on_host[l](&pair, 1, &intersects, &declined);
+        if (declined || (intersects != 0) != truth) ++cell[bench_.lanes[l]->id];
+      }
+    }
+    const Json& extremes = strata[source.id]["extremes"];
+    ASSERT_EQ(extremes.size(), 1u);
+    std::map<std::string, std::map<std::string, std::uint64_t>> found;
+    for (const auto& [exponent, counts] : extremes[std::string(name(source.axis))].items()) {
+      for (const auto& [lane, wrong] : counts["wrong"].items()) found[exponent][lane] = wrong;
+      found[exponent]["pairs"] = counts["pairs"];
+    }
+    EXPECT_EQ(found, expected) << source.id;
+    EXPECT_GT(found.size(), 15u) << source.id;
+  }
+}
+
+TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
+  run(campaign("taken", 1, 4000));
+  const std::string before = read_whole(root_ / "taken" / "summary.json");
+  EXPECT_THROW(run(campaign("taken", 1, 5000)), UsageError);
+  EXPECT_EQ(read_whole(root_ / "taken" / "summary.json"), before);
+}
+
+TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
+  fs::create_directories(root_ / "foreign");
+  std::ofstream(root_ / "foreign" / "campaign.sqlite")
+      << "This is no database, and long enough to be looked at as one: " << std::string(4096, 'x');
+  EXPECT_THROW(run(campaign("foreign", 1, 4000)), std::runtime_error);
+
+  {
+    Database other((fs::create_directories(root_ / "other"), root_ / "other" / "campaign.sqlite"));
+    other.execute("CREATE TABLE t(x)");
+  }
+  EXPECT_THROW(run(campaign("other", 1, 4000)), std::runtime_error);
+
+  run(campaign("cut", 1, 4000));
+  const fs::path file = root_ / "cut" / "campaign.sqlite";
+  fs::resize_file(file, fs::file_size(file) / 2);
+  EXPECT_THROW(run(campaign("cut", 1, 4000)), std::runtime_error);
+}
+
+// A device that is its twin, but for the eighth pair of every block.
+class WrongOnce final : public Device {
+ public:
+  void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
+              std::vector<LaneBits>& bits) override {
+    bits.assign(cuda_lanes.size(), {Bits((pairs.size() + 63) / 64), Bits((pairs.size() + 63) / 64)});
+    for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
+      const Lane& lane = *cuda_lanes[l];
+      twin_block(lane.algorithm, lane.scalar, lane.target)(pairs.data(), pairs.size(), bits[l].intersects.data(),
+                                                           bits[l].declined.data());
+      bits[l].intersects[0] ^= 1u << 7;
+    }
+  }
+};
+
+TEST_F(CampaignTest, ReportsEachDifferenceOfDeviceAndTwin) {
+  bench_ = make_bench({"moller_1997/f32/cuda-fma"}, Executor::twin);
+  bench_.device = std::make_unique<WrongOnce>();
+  const Json summary = run(campaign("apart", 2, 4000));
+  const auto apart = std::find_if(summary["signatures"].begin(), summary["signatures"].end(),
+                                  [](const Json& row) { return row["key"] == "executors/moller_1997/f32/cuda-fma"; });
+  ASSERT_NE(apart, summary["signatures"].end());
+  EXPECT_EQ((*apart)["count"], 3);  // one a stratum
+  const auto cases = read_pairs(root_ / "apart" / (*apart)["case"].get<std::string>());
+  EXPECT_EQ(*field(cases.at(0), "index"), "7");
+  EXPECT_EQ(bench_.evidence(0).substr(0, 15), "device and twin");
+}
+
+TEST(Source, SharesPairsEvenlyAndRefusesUnknownStrata) {
+  const auto sources = stratum_sources(1, 10, {"near_*"});
+  ASSERT_EQ(sources.size(), 4u);
+  EXPECT_EQ(sources[0].pairs, 3u);
+  EXPECT_EQ(sources[3].pairs, 2u);
+  EXPECT_THROW(stratum_sources(1, 10, {"nearly_*"}), UsageError);
+}
+
+TEST(SignatureCount, KeepsTheSmallestCasesInWhateverOrderTheyCome) {
+  SignatureCount forwards, backwards;
+  for (std::uint64_t i = 0; i < 9; ++i) {
+    forwards.add(CaseKey{i, 0});
+    backwards.add(CaseKey{8 - i, 0});
+  }
+  EXPECT_EQ(forwards.count, 9u);
+  EXPECT_EQ(forwards.cases, backwards.cases);
+  EXPECT_EQ(forwards.cases.size(), kKeptCases);
+  EXPECT_EQ(forwards.cases[3].index, 3u);
+}
+
+}  // namespace
+}  // namespace graze

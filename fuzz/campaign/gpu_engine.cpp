@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/gpu_engine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <future>
+
+#include "analysis/signature.h"
+#include "cuda/engine/engine.h"
+#include "fuzz/campaign/cpu_engine.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+// See SignatureBits.
+Signature unpacked(SignatureBits bits) {
+  const auto take = [&bits](int count) {
+    const int field = static_cast<int>(bits & ((1u << count) - 1));
+    bits >>= count;
+    return field;
+  };
+  Signature s;
+  for (char& mark : s.marks) mark = "_.+-?"[take(3)];
+  s.bucket = static_cast<Bucket>(take(8) - kBucketMost);
+  s.shape.dimension_a = take(2);
+  s.shape.dimension_b = take(2);
+  s.shape.coplanar = take(1) != 0;
+  s.contact = static_cast<Contact>(take(2));
+  s.algorithm = take(4) - 1;
+  return s;
+}
+
+// Counts as EngineResult lays them out.
+void add(const std::vector<std::uint64_t>& counts, int lanes, Tally& tally) {
+  const auto counter = [&](int c, int b) {
+    return counts[static_cast<std::size_t>(c * kBucketCount + b + kBucketMost)];
+  };
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    const auto bucket = static_cast<Bucket>(b);
+    tally.add(bucket, counter(0, b), counter(1, b));
+    for (int l = 0; l < lanes; ++l)
+      tally.add(bucket, l, {counter(2 + 4 * l, b), counter(3 + 4 * l, b), counter(4 + 4 * l, b), 0});
+  }
+}
+
+void add(const EngineResult& found, int source, int lanes, BatchResult& result) {
+  add(found.counts, lanes, result.tally);
+  if (!found.extreme_counts.empty()) add(found.extreme_counts, lanes, result.extremes);
+  for (int b = 0; b < kBucketCount; ++b) result.device += found.counts[static_cast<std::size_t>(b)];
+  for (const EngineSignature& row : found.signatures) {
+    SignatureCount one;
+    one.count = row.count;
+    for (const std::uint64_t index : row.cases) {
+      if (index != ~std::uint64_t{0}) one.cases.push_back({index, source});
+    }
+    result.signatures[unpacked(row.bits)].add(one);
+  }
+  result.disagreements += found.disagreements;
+}
+
+}  // namespace
+
+BatchResult DeviceJudge::judge(int source, std::uint64_t first, std::uint64_t count) {
+  const std::size_t engines = campaign_.engines.size();
+  std::vector<std::future<std::vector<EngineResult>>> runs;
+  for (std::size_t e = 0; e < engines; ++e) {
+    const std::uint64_t begin = count * e / engines, end = count * (e + 1) / engines;
+    runs.push_back(std::async(std::launch::async, [&, e, begin, end] {
+      std::vector<EngineResult> parts;
+      for (std::uint64_t at = begin; at < end; at += parts.back().done) {
+        parts.push_back(campaign_.engines[e]->run(
+            campaign_.seed, campaign_.sources[static_cast<std::size_t>(source)].stratum, first + at, end - at));
+      }
+      return parts;
+    }));
+  }
+  const std::vector<const Lane*>& lanes = campaign_.bench->lanes;
+  BatchResult result{Tally(cpu_twins(lanes))};
+  std::vector<std::uint64_t> undecided;
+  for (auto& run : runs) {
+    for (const EngineResult& found : run.get()) {
+      add(found, source, static_cast<int>(lanes.size()), result);
+      undecided.insert(undecided.end(), found.undecided.begin(), found.undecided.end());
+    }
+  }
+  confirm(source, result);
+  constexpr std::size_t kAtOnce = 65536;
+  for (std::size_t at = 0; at < undecided.size(); at += kAtOnce) {
+    result.add(graze::judge(campaign_, source, std::min(kAtOnce, undecided.size() - at),
+                            [&](std::size_t i) { return undecided[at + i]; }));
+  }
+  return result;
+}
+
+void DeviceJudge::confirm(int source, BatchResult& result) {
+  std::map<std::uint64_t, std::vector<Signature>> fresh;
+  for (const auto& [signature, found] : result.signatures) {
+    SignatureCount& known = confirmed_[signature];
+    const std::vector<CaseKey> before = known.cases;
+    known.add(found);
+    for (const CaseKey& kept : known.cases) {
+      if (std::find(before.begin(), before.end(), kept) == before.end()) fresh[kept.index].push_back(signature);
+    }
+  }
+  std::vector<std::uint64_t> indices;
+  for (const auto& [index, signatures] : fresh) indices.push_back(index);
+  const BatchResult judged = graze::judge(campaign_, source, indices.size(), [&](std::size_t i) { return indices[i]; });
+  for (const auto& [index, signatures] : fresh) {
+    for (const Signature& signature : signatures) {
+      const auto found = judged.signatures.find(signature);
+      const bool same = found != judged.signatures.end() &&
+                        std::find(found->second.cases.begin(), found->second.cases.end(), CaseKey{index, source}) !=
+                            found->second.cases.end();
+      if (!same) {
+        throw OracleApart(fmt::format("the device and the oracle differ on {}:{}:{}: the device says {}",
+                                      campaign_.sources[static_cast<std::size_t>(source)].id, campaign_.seed, index,
+                                      key(signature)));
+      }
+    }
+  }
+  result.cgal += judged.cgal;
+  result.gmp += judged.gmp;
+}
+
+}  // namespace graze

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/result_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "core/fnv1a.h"
+#include "corpus/pair_format.h"
+#include "fuzz/minimise/minimised_cases.h"
+
+namespace graze {
+namespace {
+
+// A name for the signature's file.
+std::string case_name(const std::string& key) { return fmt::format("cases/{:016x}.pairs", fnv1a(key)); }
+
+std::string case_text(const Campaign& campaign, const std::string& key, const SignatureCount& found) {
+  std::ostringstream out;
+  write_header(out);
+  out << "# " << key << ": " << found.count << " pairs\n";
+  for (const CaseKey& c : found.cases) {
+    const Source& source = campaign.sources[static_cast<std::size_t>(c.source)];
+    const Pair pair = source.pair(c.index);
+    Entry entry{
+        pair, {{"stratum", source.id}, {"seed", std::to_string(campaign.seed)}, {"index", std::to_string(c.index)}}, 0};
+    for (auto& part : truth_fields(truth(pair))) entry.fields.push_back(std::move(part));
+    entry.fields.push_back({"signature", key});
+    write_entry(out, entry);
+  }
+  return out.str();
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> truth_fields(const Truth& t) {
+  return {{"truth", std::string(name(t.verdict))},
+          {"contact", std::string(name(t.contact))},
+          {"margin", fmt::format("{}", t.margin)},
+          {"margin_ulps", fmt::format("{}", t.margin_ulps)}};
+}
+
+std::string read_whole(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_whole(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path beside = file.string() + ".part";
+  std::ofstream out(beside, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error(beside.string() + ": expected to write it, found: " + std::strerror(errno));
+  std::filesystem::rename(beside, file);
+}
+
+Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
+  std::vector<std::string> lane_ids;
+  for (const Lane* lane : campaign.bench->lanes) lane_ids.push_back(lane->id);
+  Json results = store.results(campaign.sources, lane_ids);
+
+  const auto by_key = store.signatures();
+  std::vector<const std::pair<const std::string, SignatureCount>*> by_count;
+  for (const auto& row : by_key) by_count.push_back(&row);
+  std::stable_sort(by_count.begin(), by_count.end(),
+                   [](auto* l, auto* r) { return l->second.count > r->second.count; });
+  Json signatures = Json::array();
+  for (const auto* row : by_count) {
+    const std::string file = case_name(row->first);
+    const std::string text = case_text(campaign, row->first, row->second);
+    if (!is_minimised_from(read_whole(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
+    signatures.push_back({{"key", row->first}, {"count", row->second.count}, {"case", file}});
+  }
+  Json summary = {{"spec", campaign.spec},
+                  {"build", campaign.build},
+                  {"complete", complete},
+                  {"strata", results["strata"]},
+                  {"disagreements", results["disagreements"]},
+                  {"signatures", signatures}};
+  write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");
+  return summary;
+}
+
+void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle) {
+  const std::filesystem::path file = directory / "timings.json";
+  std::ifstream in(file);
+  Json timings = in ? Json::parse(in, nullptr, false) : Json();
+  if (!timings.is_object() || !timings.contains("runs")) timings = {{"runs", Json::array()}};
+  timings["runs"].push_back(run);
+  if (!oracle.is_null()) timings["oracle"] = oracle;
+  write_whole(file, timings.dump(1) + "\n");
+}
+
+}  // namespace graze

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// The minimiser's promises: a total order, the same failure, nothing simpler one move away, the same bytes again.
+#include "fuzz/minimise/minimise.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "corpus/pair_format.h"
+#include "fuzz/minimise/minimised_cases.h"
+#include "fuzz/minimise/moves.h"
+#include "strata/strata.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+constexpr std::uint64_t kSeed = 5;
+
+const Bench& bench() {
+  static const Bench all = make_bench({}, Executor::twin);
+  return all;
+}
+
+std::string text(const Pair& pair) {
+  std::ostringstream out;
+  write_entry(out, {pair, {}, 0});
+  return out.str();
+}
+
+bool same_bits(const Pair& l, const Pair& r) { return text(l) == text(r); }
+
+Pair pair_of(std::initializer_list<float> values) {
+  Pair pair{};
+  std::copy(values.begin(), values.end(), coordinates(pair));
+  return pair;
+}
+
+struct Case {
+  Pair pair;
+  Failure failure;
+  std::string name;
+};
+
+// The first failures of a stratum, `most` of each algorithm.
+std::vector<Case> cases_of(Stratum stratum, std::size_t most) {
+  std::vector<Case> found;
+  std::vector<std::size_t> of_algorithm(lanes().size());
+  for (std::uint64_t index = 0; index < 3000; ++index) {
+    const Pair pair = generate(kSeed, stratum, index);
+    for (Failure& failure : failures_of(bench(), pair)) {
+      if (++of_algorithm[static_cast<std::size_t>(failure.lanes.front()->algorithm)] > most) continue;
+      const std::string name = std::to_string(index) + " " + std::string(failure.lanes.front()->info->id);
+      found.push_back({pair, std::move(failure), name});
+    }
+  }
+  return found;
+}
+
+// Each row: a pair, one less simple, and the first criterion in which they differ; 8 are the coordinates themselves.
+TEST(Simplicity, ComparesInTheStatedOrder) {
+  struct Row {
+    Pair simpler, other;
+    std::size_t criterion;
+  };
+  const auto with_b = [](std::initializer_list<float> b) {
+    Pair pair = pair_of({0, 0, 0, 1, 0, 0, 0, 1, 0});
+    std::copy(b.begin(), b.end(), &pair.b[0].x);
+    return pair;
+  };
+  const Pair few = with_b({0, 0, 0, 7, 7, 7, 7, 7, 0}), in_x = pair_of({0, 0, 0, 0, 1, 0, 0, 0, 1}),
+             in_space = pair_of({0, 0, 0, 1, 1, 1, 0, 0, 0});
+  const Pair in_z = pair_of({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  Pair mirrored = few;
+  mirrored.b[2].x = -7;
+  const Row rows[] = {
+      {few, with_b({0, 0, 0, 2, 3, 0, 0, 0, 0}), 0},
+      {with_b({0, 0, 0, 999, 0, 0, 0, 0, 0}), with_b({0, 0, 0, 2, 2, 0, 0, 0, 0}), 1},
+      {with_b({0, 0, 0, 999, 0, 0, 0, 0, 0}), with_b({0, 0, 0, 1024, 0, 0, 0, 0, 0}), 2},
+      {with_b({0, 0, 0, 999, 0, 0, 0, 0, 0}), with_b({0, 0, 0, 0.5, 0, 0, 0, 0, 0}), 2},
+      {with_b({0, 0, 0, 64, 0, 0, 0, 0, 0}), with_b({0, 0, 0, 3, 0, 0, 0, 0, 0}), 3},
+      {with_b({0, 0, 0, 5, 0, 0, 0, 0, 0}), with_b({0, 0, 0, 10, 0, 0, 0, 0, 0}), 4},
+      {with_b({0, 0, 0, 1, 0, 0, 0, 0, 0}), with_b({0, 0, 0, 0, 0, 1, 0, 0, 0}), 5},
+      {in_z, in_x, 6},
+      {few, mirrored, 7},
+      {with_b({0, 0, 0, 5, 0, 0, 0, 0, 0}), with_b({0, 0, 0, 7, 0, 0, 0, 0, 0}), 8},
+      {with_b({0, 0, 0, 0, 0, 0, 0, 5, 0}), with_b({0, 0, 0, 0, 5, 0, 0, 0, 0}), 8},
+  };
+  for (const Row& row : rows) {
+    const Simplicity l = simplicity(row.simpler), r = simplicity(row.other);
+    EXPECT_LT(l, r) << row.criterion;
+    const auto apart = std::mismatch(l.counts.begin(), l.counts.end(), r.counts.begin()).first - l.counts.begin();
+    EXPECT_EQ(static_cast<std::size_t>(apart), row.criterion);
+  }
+  EXPECT_EQ(simplicity(in_space).counts[6], 2);
+}
+
+// Any two of many pairs: one is simpler, or their bits are the same; and going on from one to the next never returns.
+TEST(Simplicity, IsATotalOrder) {
+  std::vector<Pair> pairs;
+  for (const StratumInfo& row : kStrata) {
+    for (std::uint64_t index = 0; index < 12; ++index) pairs.push_back(generate(kSeed, row.stratum, index));
+  }
+  std::sort(pairs.begin(), pairs.end(), [](const Pair& l, const Pair& r) { return simplicity(l) < simplicity(r); });
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (std::size_t j = i; j < pairs.size(); ++j) {
+      ASSERT_FALSE(simplicity(pairs[j]) < simplicity(pairs[i]));
+      ASSERT_EQ(simplicity(pairs[i]) == simplicity(pairs[j]), same_bits(pairs[i], pairs[j]));
+    }
+  }
+}
+
+TEST(Simplicity, IsEqualOnlyForTheSameBits) {
+  const Pair zero{};
+  for (const float other : {-0.0f, 1.0f, -1.0f, 1e-45f, -1e-45f, 3e38f}) {
+    for (int i = 0; i < kCoordinates; ++i) {
+      Pair pair{};
+      coordinates(pair)[i] = other;
+      EXPECT_LT(simplicity(zero), simplicity(pair));
+      Pair mirrored = pair;
+      coordinates(mirrored)[i] *= -1;
+      EXPECT_NE(simplicity(mirrored), simplicity(pair));
+    }
+  }
+}
+
+TEST(Simplicity, CountsDistancesOfExponentsDownToSubnormals) {
+  Pair pair{};
+  for (const auto& [value, distance] :
+       {std::pair{1e-45f, 149}, {0x1p-126f, 126}, {0x1p-127f, 127}, {0.75f, 1}, {6.0f, 2}}) {
+    pair.b[2].z = value;
+    EXPECT_EQ(simplicity(pair).counts[4], distance) << value;
+  }
+}
+
+TEST(Moves, AreFiniteWhateverThePair) {
+  const float most = std::numeric_limits<float>::max();
+  for (const Pair& pair : {pair_of({most, -most, 1, most, most, 0, 0, 0, 1e-45f, 1, most, 0, 0, -1e-45f, 0, 1, 1, 1}),
+                           Pair{}, pair_of({1e-45f, 0, 0, 0, 2e-45f, 0, 0, 0, 1e-38f})}) {
+    std::vector<Pair> moved;
+    for (int kind = 0; kind < kMoveKinds; ++kind) append_moves(pair, kind, moved);
+    EXPECT_GT(moved.size(), 1000u);
+    for (const Pair& m : moved) ASSERT_TRUE(is_finite(m)) << text(m);
+  }
+}
+
+class MinimiseStratum : public testing::TestWithParam<StratumInfo> {};
+
+// Same failure by the oracle itself, simpler or equal, 1-minimal by trying all moves again, and a fixed point.
+TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
+  const std::vector<Case> cases = cases_of(GetParam().stratum, 4);
+  ASSERT_FALSE(cases.empty());
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    const Minimised found = minimise(c.failure, c.pair);
+    EXPECT_LE(simplicity(found.pair), simplicity(c.pair));
+
+    const Truth t = truth(found.pair);
+    EXPECT_EQ(t.contact, gmp_contact(c.pair));
+    EXPECT_EQ(shape(found.pair), shape(c.pair));
+    EXPECT_EQ(std::signbit(t.margin), std::signbit(truth(c.pair).margin));
+    EXPECT_EQ(t.margin == 0, truth(c.pair).margin == 0);
+    for (std::size_t l = 0; l < c.failure.lanes.size(); ++l) {
+      std::uint64_t before[2], after[2];
+      c.failure.on_host[l](&c.pair, 1, &before[0], &before[1]);
+      c.failure.on_host[l](&found.pair, 1, &after[0], &after[1]);
+      EXPECT_EQ(before[0], after[0]) << c.failure.lanes[l]->id;
+      EXPECT_EQ(before[1], after[1]) << c.failure.lanes[l]->id;
+    }
+    EXPECT_NO_THROW(confirm(bench(), c.failure, found.pair));
+    EXPECT_NO_THROW(confirm(bench(), c.failure, found.worst));
+    EXPECT_EQ(std::fabs(truth(found.worst).margin_ulps), found.worst_ulps);
+    EXPECT_GE(found.worst_ulps, std::fabs(truth(c.pair).margin_ulps));
+    EXPECT_GE(found.worst_ulps, std::fabs(t.margin_ulps));
+
+    std::vector<Pair> moved;
+    for (int kind = 0; kind < kMoveKinds; ++kind) append_moves(found.pair, kind, moved);
+    std::size_t simpler = 0;
+    for (const Pair& m : moved) {
+      if (!(simplicity(m) < simplicity(found.pair))) continue;
+      ++simpler;
+      ASSERT_FALSE(fails_alike(c.failure, m)) << text(found.pair) << text(m);
+    }
+    EXPECT_LE(found.single_moves, simpler);  // it counts equal ones of a kind once
+    EXPECT_EQ(found.single_moves == 0, simpler == 0);
+
+    const Minimised again = minimise(c.failure, found.pair);
+    EXPECT_TRUE(same_bits(again.pair, found.pair));
+    EXPECT_EQ(again.single_moves, found.single_moves);
+    EXPECT_TRUE(same_bits(minimise(c.failure, c.pair).pair, found.pair));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, MinimiseStratum, testing::ValuesIn(kStrata),
+                         [](const auto& row) { return std::string(row.param.id); });
+
+TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
+  // A crossing pair scaled to 1e-30 and to 1e38: products under- and overflow in float32.
+  for (const float scale : {0x1p-149f, 1e-30f, 1e37f}) {
+    Pair pair = pair_of({-1, -1, 0, 3, -1, 0, -1, 3, 0, 0, 0, -1, 0, 0, 1, 1, 1, 2});
+    for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] *= scale;
+    const std::vector<Failure> failures = failures_of(bench(), pair);
+    ASSERT_FALSE(failures.empty()) << scale;
+    for (const Failure& failure : failures) {
+      const Minimised found = minimise(failure, pair);
+      EXPECT_NO_THROW(confirm(bench(), failure, found.pair));
+      EXPECT_LE(nontrivial_magnitudes(found.pair), nontrivial_magnitudes(pair));
+    }
+  }
+}
+
+TEST(Minimise, ConfirmRefusesAnotherFailure) {
+  const std::vector<Case> cases = cases_of(Stratum::near_edge_edge, 1);
+  ASSERT_GE(cases.size(), 2u);
+  const Pair apart = pair_of({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5});
+  for (const Case& c : cases) {
+    EXPECT_NO_THROW(confirm(bench(), c.failure, c.pair));
+    EXPECT_ANY_THROW(confirm(bench(), c.failure, apart));
+    Failure other = c.failure;
+    other.verdicts.front() = other.verdicts.front() == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint;
+    EXPECT_ANY_THROW(confirm(bench(), other, c.pair));
+  }
+}
+
+TEST(Minimise, NothingFailsOnPairsThatAreRightOrNotFinite) {
+  Pair pair = pair_of({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5});
+  EXPECT_TRUE(failures_of(bench(), pair).empty());
+  pair.a[0].x = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_TRUE(failures_of(bench(), pair).empty());
+}
+
+TEST(MinimisedCases, StandBeforeTheOriginalsAndAreRecognised) {
+  std::ostringstream out;
+  write_header(out);
+  out << "# a comment\n";
+  const std::vector<Case> cases = cases_of(Stratum::near_edge_edge, 2);
+  for (const Case& c : cases) {
+    write_entry(out, {c.pair, {{"signature", key(signature_of(c.failure, c.pair))}}, 0});
+  }
+  const auto read = [](const std::string& from) {
+    std::istringstream in(from);
+    PairReader reader(in, "test");
+    std::vector<Entry> entries;
+    while (std::optional<Entry> entry = reader.next()) entries.push_back(std::move(*entry));
+    return entries;
+  };
+  const std::string fresh = out.str();
+  const std::vector<Entry> entries = read(fresh);
+  EXPECT_FALSE(has_result(bench(), entries));
+  const std::vector<MinimisedCase> results = minimise_cases(bench(), entries);
+  ASSERT_FALSE(results.empty());
+  const std::string once = with_results(fresh, entries, results);
+  const std::vector<Entry> all = read(once);
+  ASSERT_EQ(all.size(), entries.size() + 2 * results.size());
+  EXPECT_EQ(*field(all[0], "kind"), "minimised");
+  EXPECT_EQ(*field(all[1], "kind"), "worst");
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    EXPECT_TRUE(same_bits(all[2 * results.size() + i].pair, entries[i].pair));
+  EXPECT_TRUE(has_result(bench(), all));
+  EXPECT_EQ(with_results(once, all, minimise_cases(bench(), all)), once);
+  EXPECT_TRUE(is_minimised_from(once, fresh));
+  EXPECT_TRUE(is_minimised_from(fresh, fresh));
+  EXPECT_FALSE(is_minimised_from("", fresh));
+  EXPECT_FALSE(is_minimised_from(once + "x", fresh));
+  EXPECT_FALSE(is_minimised_from(once, once + fresh.substr(fresh.find('#'))));
+  EXPECT_FALSE(has_result(make_bench({"*/f32/cpu"}), all));
+}
+
+}  // namespace
+}  // namespace graze

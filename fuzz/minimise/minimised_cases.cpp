@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/minimise/minimised_cases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "fuzz/campaign/result_files.h"
+#include "oracle/truth.h"
+
+namespace graze {
+namespace {
+
+bool has_kind(const Entry& entry, std::string_view kind) {
+  const std::string* value = field(entry, "kind");
+  return value && *value == kind;
+}
+
+bool is_result(const Entry& entry) { return is_minimised(entry) || has_kind(entry, "worst"); }
+
+// The cases to minimise, in their order.
+std::vector<const Entry*> originals(const std::vector<Entry>& entries) {
+  const bool only_results = std::all_of(entries.begin(), entries.end(), is_result);
+  std::vector<const Entry*> found;
+  for (const Entry& entry : entries) {
+    if (only_results || !is_result(entry)) found.push_back(&entry);
+  }
+  return found;
+}
+
+std::string name_of(const Entry& entry) {
+  const std::string *from = field(entry, "from"), *name = field(entry, "name");
+  return numbers_of(entry).value_or(from ? *from : name ? *name : "");
+}
+
+bool is_of_algorithm(const std::string& key, const Failure& failure) {
+  return key.find(fmt::format("/{}:", failure.lanes.front()->info->id)) != std::string::npos;
+}
+
+Entry result_entry(const MinimisedCase& result, const Pair& pair, const char* kind, const std::string& from) {
+  Entry entry{pair, {{"kind", kind}}, 0};
+  if (!from.empty()) entry.fields.push_back({"from", from});
+  for (auto& part : truth_fields(truth(pair))) entry.fields.push_back(std::move(part));
+  entry.fields.push_back({"signature", key(signature_of(result.failure, pair))});
+  return entry;
+}
+
+}  // namespace
+
+bool is_minimised(const Entry& entry) { return has_kind(entry, "minimised"); }
+
+std::vector<MinimisedCase> minimise_cases(const Bench& bench, const std::vector<Entry>& entries) {
+  std::vector<MinimisedCase> results;
+  for (const Entry* entry : originals(entries)) {
+    const std::string* recorded = field(*entry, "signature");
+    for (const Failure& failure : failures_of(bench, entry->pair)) {
+      if (recorded && !is_of_algorithm(*recorded, failure)) continue;
+      const std::string from = name_of(*entry);
+      MinimisedCase found{failure, minimise(failure, entry->pair), recorded ? *recorded : "", from, from, entry->pair};
+      const auto together = std::find_if(results.begin(), results.end(), [&](const MinimisedCase& other) {
+        return recorded && other.recorded == *recorded && other.failure == failure;
+      });
+      if (together == results.end()) {
+        results.push_back(std::move(found));
+        continue;
+      }
+      if (found.result.worst_ulps > together->result.worst_ulps) {
+        together->result.worst = found.result.worst;
+        together->result.worst_ulps = found.result.worst_ulps;
+        together->worst_from = from;
+      }
+      if (simplicity(found.result.pair) < simplicity(together->result.pair)) {
+        together->result.pair = found.result.pair;
+        together->result.single_moves = found.result.single_moves;
+        together->from = from;
+        together->original = entry->pair;
+      }
+    }
+  }
+  for (const MinimisedCase& result : results) {
+    confirm(bench, result.failure, result.result.pair);
+    confirm(bench, result.failure, result.result.worst);
+  }
+  return results;
+}
+
+std::string with_results(const std::string& text, const std::vector<Entry>& entries,
+                         const std::vector<MinimisedCase>& results) {
+  std::ostringstream out;
+  const std::vector<const Entry*> cases = originals(entries);
+  std::istringstream in(text);
+  std::size_t number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    const auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.line == number; });
+    const bool is_case = entry != entries.end() && std::find(cases.begin(), cases.end(), &*entry) != cases.end();
+    if (is_case && &*entry == cases.front()) {
+      for (const MinimisedCase& r : results) {
+        Entry minimised = result_entry(r, r.result.pair, "minimised", r.from);
+        minimised.fields.push_back({"single_moves", std::to_string(r.result.single_moves)});
+        write_entry(out, minimised);
+        write_entry(out, result_entry(r, r.result.worst, "worst", r.worst_from));
+      }
+    }
+    if (entry == entries.end() || is_case) out << line << '\n';
+  }
+  return out.str();
+}
+
+bool has_result(const Bench& bench, const std::vector<Entry>& entries) {
+  const Entry &result = entries.front(), &first = *originals(entries).front();
+  const std::string* recorded = field(result, "signature");
+  if (!is_result(result) || is_result(first) || !recorded) return false;
+  const std::vector<Failure> failures = failures_of(bench, first.pair);
+  return std::any_of(failures.begin(), failures.end(), [&](const Failure& failure) {
+    return fails_alike(failure, result.pair) && key(signature_of(failure, result.pair)) == *recorded;
+  });
+}
+
+bool is_minimised_from(const std::string& text, const std::string& fresh) {
+  const std::size_t head = fresh.find('\n', fresh.find('\n') + 1) + 1;  // the version line, and the signature's
+  return text.size() >= fresh.size() && text.starts_with(fresh.substr(0, head)) && text.ends_with(fresh.substr(head));
+}
+
+}  // namespace graze

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Minimised cases as files: before a file's cases, which stay as they are, stand what they were minimised to
+// (kind=minimised) and the worst pair met on the way (kind=worst).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "corpus/pair_format.h"
+#include "fuzz/minimise/minimise.h"
+
+namespace graze {
+
+struct MinimisedCase {
+  Failure failure;
+  Minimised result;
+  std::string recorded;          // the signature by which the originals go together; empty for an original alone
+  std::string from, worst_from;  // the originals that the two pairs came from: "near_edge_edge:1:42", or empty
+  Pair original;
+};
+
+// Whether the entry is what a case was minimised to.
+bool is_minimised(const Entry& entry);
+
+// One result for all cases with the same recorded signature, of its algorithm: the simplest one, and the worst pair of
+// all. Cases without a record have one for each algorithm that is wrong. What is minimised already counts as a case
+// only where there is no other. Each result is confirmed.
+// Returns: nothing of cases on which no lane of the bench is wrong.   Throws: OracleApart, std::runtime_error.
+std::vector<MinimisedCase> minimise_cases(const Bench& bench, const std::vector<Entry>& entries);
+
+// The text of a file with these results in place of those that it may hold already.
+// Requires: entries are those of the text.
+std::string with_results(const std::string& text, const std::vector<Entry>& entries,
+                         const std::vector<MinimisedCase>& results);
+
+// Whether the file holds the result for its first case on these lanes.
+bool has_result(const Bench& bench, const std::vector<Entry>& entries);
+
+// Whether the file is `fresh` as a campaign writes it, but for results of the minimiser.
+bool is_minimised_from(const std::string& text, const std::string& fresh);
+
+}  // namespace graze

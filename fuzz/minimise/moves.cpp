@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// Sums and products are taken in double and rounded to float32 once: where the result is not exact, the move is one to
+// a pair nearby.
+#include "fuzz/minimise/moves.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/margin/margin.h"
+
+namespace graze {
+namespace {
+
+using Pairs = std::vector<Pair>;
+
+const Vec3<float>& vertex(const Pair& pair, int i) { return i < 3 ? pair.a[i] : pair.b[i - 3]; }
+Vec3<float>& vertex(Pair& pair, int i) { return i < 3 ? pair.a[i] : pair.b[i - 3]; }
+
+void append(Pairs& moved, const Pair& pair) {
+  if (is_finite(pair)) moved.push_back(pair);
+}
+
+// Appends the pair whose coordinate i is make(i), rounded to float32; what overflows it is not finite.
+template <class Make>
+void append_each(Pairs& moved, Make make) {
+  Pair result;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = static_cast<float>(make(i));
+  append(moved, result);
+}
+
+// With a vertex at the origin; -1 leaves all where they are.
+void lattices(const Pair& pair, int origin, Pairs& moved) {
+  double seen[kCoordinates], largest = 0;
+  for (int i = 0; i < kCoordinates; ++i) {
+    const double from = origin < 0 ? 0.0 : double{component(vertex(pair, origin), i % 3)};
+    seen[i] = double{coordinates(pair)[i]} - from;
+    largest = std::max(largest, std::fabs(seen[i]));
+  }
+  if (largest == 0) return;
+  if (origin >= 0) append_each(moved, [&](int i) { return seen[i]; });
+  const int top = std::ilogb(largest) + 1;
+  for (int bits = 1; bits <= 24; ++bits) {
+    double whole[kCoordinates];
+    for (int i = 0; i < kCoordinates; ++i) whole[i] = std::nearbyint(std::ldexp(seen[i], bits - top));
+    append_each(moved, [&](int i) { return whole[i]; });
+    append_each(moved, [&](int i) { return std::ldexp(whole[i], top - bits); });
+    append_each(moved, [&](int i) { return std::ldexp(whole[i], 1 - bits); });
+  }
+}
+
+using Point = Vec3<double>;
+
+// Appends the pair as seen from `origin` with axes u, v and w, rounded to a lattice of 1 to 24 bits or not at all.
+void in_frame(const Pair& pair, const Point& origin, const Point& u, const Point& v, const Point& w, Pairs& moved) {
+  const Point vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+  const double volume = dot(u, vw);
+  if (volume == 0) return;
+  double seen[kCoordinates], largest = 0;
+  for (int i = 0; i < kCoordinates; ++i) {
+    const Point from = widen(vertex(pair, i / 3)) - origin;
+    seen[i] = dot(from, i % 3 == 0 ? vw : i % 3 == 1 ? wu : uv) / volume;
+    largest = std::max(largest, std::fabs(seen[i]));
+  }
+  if (!std::isfinite(largest) || largest == 0) return;
+  append_each(moved, [&](int i) { return seen[i]; });
+  const int top = std::ilogb(largest) + 1;
+  for (int bits = 1; bits <= 24; ++bits) {
+    append_each(moved, [&](int i) { return std::ldexp(std::nearbyint(std::ldexp(seen[i], bits - top)), top - bits); });
+  }
+}
+
+// Four vertices to the origin and the ends of the unit vectors.
+void frames(const Pair& pair, int origin, Pairs& moved) {
+  const auto from_origin = [&](int i) { return widen(vertex(pair, i)) - widen(vertex(pair, origin)); };
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j < i; ++j) {
+      if (i == origin || j == origin) continue;
+      for (int k = 0; k < j; ++k) {
+        if (k != origin)
+          in_frame(pair, widen(vertex(pair, origin)), from_origin(k), from_origin(j), from_origin(i), moved);
+      }
+    }
+  }
+}
+
+void replace_vertex(const Pair& pair, int v, Pairs& moved) {
+  Pair result = pair;
+  for (int other = 0; other < 6; ++other) {
+    vertex(result, v) = vertex(pair, other);
+    moved.push_back(result);
+  }
+  for (int point = 0; point < 27; ++point) {
+    const auto digit = [point](int power) { return static_cast<float>(point / power % 3 - 1); };
+    vertex(result, v) = {digit(1), digit(3), digit(9)};
+    moved.push_back(result);
+  }
+  for (int p = 0; p < 6; ++p) {
+    for (int q = 0; q < p; ++q) {
+      for (int r = 0; r < 6; ++r) {
+        if (r == p || r == q) continue;
+        append_each(moved, [&](int c) {
+          if (c / 3 != v) return double{coordinates(pair)[c]};
+          const auto at = [&](int other) { return double{component(vertex(pair, other), c % 3)}; };
+          return at(p) + at(q) - at(r);
+        });
+      }
+    }
+  }
+}
+
+// Two coordinates at once, each to 0, 1 or -1.
+void replace_two(const Pair& pair, int first, Pairs& moved) {
+  for (int second = 0; second < first; ++second) {
+    for (const float one : {0.0f, 1.0f, -1.0f}) {
+      for (const float other : {0.0f, 1.0f, -1.0f}) {
+        Pair result = pair;
+        coordinates(result)[first] = one;
+        coordinates(result)[second] = other;
+        moved.push_back(result);
+      }
+    }
+  }
+}
+
+// An axis less as many times another as makes a vertex's coordinate there 0, or as many whole times.
+void shear(const Pair& pair, int axis, int other, Pairs& moved) {
+  for (int v = 0; v < 6; ++v) {
+    const double quotient = double{component(vertex(pair, v), axis)} / component(vertex(pair, v), other);
+    for (const double times : {quotient, std::nearbyint(quotient)}) {
+      append_each(moved, [&](int c) {
+        const double taken = c % 3 == axis ? times * component(vertex(pair, c / 3), other) : 0.0;
+        return double{coordinates(pair)[c]} - taken;
+      });
+    }
+  }
+}
+
+void change_axis(const Pair& pair, int axis, Pairs& moved) {
+  std::vector<float> values{0, 1, -1};
+  for (int v = 0; v < 6; ++v) values.push_back(component(vertex(pair, v), axis));
+  for (std::size_t i = 3; i < values.size(); ++i) {
+    append_each(moved, [&](int c) { return double{coordinates(pair)[c]} - (c % 3 == axis ? double{values[i]} : 0.0); });
+    if (values[i] == 0) continue;
+    const int exponent = std::ilogb(values[i]);
+    append_each(moved, [&](int c) { return std::ldexp(coordinates(pair)[c], c % 3 == axis ? -exponent : 0); });
+  }
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  for (unsigned vertices = 1; vertices < 64; ++vertices) {
+    if (std::has_single_bit(vertices)) continue;
+    for (const float value : values) {
+      Pair result = pair;
+      for (int v = 0; v < 6; ++v) {
+        if (vertices >> v & 1u) component(vertex(result, v), axis) = value;
+      }
+      moved.push_back(result);
+    }
+  }
+}
+
+// What a value may be replaced by, in the pair that it occurs in.
+std::vector<float> replacements(const Pair& pair, float value) {
+  std::vector<float> found{0, value / 2, value * 2};
+  for (int n = 1; n <= 9; ++n) found.push_back(static_cast<float>(n));
+  for (int i = 0; i < kCoordinates; ++i) found.push_back(coordinates(pair)[i]);
+  const std::size_t either_sign = found.size();
+  for (std::size_t i = 0; i < either_sign; ++i) found.push_back(-found[i]);
+
+  found.push_back(std::trunc(value));
+  found.push_back(std::trunc(value) + std::copysign(1.0f, value));
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  for (std::uint32_t dropped = 1; dropped < 24; ++dropped) {
+    const std::uint32_t lower = bits >> dropped << dropped;
+    found.push_back(std::bit_cast<float>(lower));
+    found.push_back(std::bit_cast<float>(lower + (1u << dropped)));
+  }
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  found.push_back(std::nextafter(value, kInfinity));
+  found.push_back(std::nextafter(value, -kInfinity));
+
+  const auto rank = [](float x) { return std::rotl(std::bit_cast<std::uint32_t>(x), 1); };
+  std::erase_if(found, [](float x) { return !std::isfinite(x); });
+  std::sort(found.begin(), found.end(), [&](float l, float r) { return rank(l) < rank(r); });
+  const auto last = std::unique(found.begin(), found.end(), [&](float l, float r) { return rank(l) == rank(r); });
+  found.erase(last, found.end());
+  return found;
+}
+
+void replace_value(const Pair& pair, int at, Pairs& moved) {
+  const float* c = coordinates(pair);
+  const float value = c[at];
+  const auto same = [value](float x) { return std::fabs(x) == std::fabs(value); };
+  if (std::any_of(c, c + at, same)) return;  // done where it first occurs
+  for (const float with : replacements(pair, value)) {
+    Pair result = pair;
+    for (int i = at; i < kCoordinates; ++i) {
+      if (same(c[i])) coordinates(result)[i] = std::signbit(c[i]) == std::signbit(value) ? with : -with;
+    }
+    moved.push_back(result);
+  }
+}
+
+void replace_coordinate(const Pair& pair, int at, Pairs& moved) {
+  for (const float with : replacements(pair, coordinates(pair)[at])) {
+    Pair result = pair;
+    coordinates(result)[at] = with;
+    moved.push_back(result);
+  }
+}
+
+void rearrange(const Pair& pair, Pairs& moved) {
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    Pair vertices_a = pair, vertices_b = pair, axes = pair, mirrored = pair;
+    std::swap(vertices_a.a[i], vertices_a.a[j]);
+    std::swap(vertices_b.b[i], vertices_b.b[j]);
+    for (int v = 0; v < 6; ++v) {
+      std::swap(component(vertex(axes, v), i), component(vertex(axes, v), j));
+      component(vertex(mirrored, v), i) *= -1;
+    }
+    moved.insert(moved.end(), {vertices_a, vertices_b, axes, mirrored});
+    for (const int other : {j, (i + 2) % 3}) {
+      for (const double times : {-2.0, -1.0, 1.0, 2.0}) {
+        append_each(moved, [&](int c) {
+          const double added = c % 3 == i ? times * component(vertex(pair, c / 3), other) : 0.0;
+          return double{coordinates(pair)[c]} + added;
+        });
+      }
+      shear(pair, i, other, moved);
+    }
+  }
+  Pair exchanged = pair;
+  std::swap(exchanged.a, exchanged.b);
+  moved.push_back(exchanged);
+  const auto scaled = [&](int exponent) {
+    append_each(moved, [&](int i) { return std::ldexp(coordinates(pair)[i], exponent); });
+  };
+  scaled(1);
+  scaled(-1);
+  for (int i = 0; i < kCoordinates; ++i) {
+    if (coordinates(pair)[i] != 0) scaled(-std::ilogb(coordinates(pair)[i]));
+  }
+}
+
+}  // namespace
+
+void append_moves(const Pair& pair, int kind, Pairs& moved) {
+  if (kind < 7) return lattices(pair, kind - 1, moved);
+  if (kind < 13) return replace_vertex(pair, kind - 7, moved);
+  if (kind < 16) return change_axis(pair, kind - 13, moved);
+  if (kind < 34) return replace_value(pair, kind - 16, moved);
+  if (kind < 52) return replace_coordinate(pair, kind - 34, moved);
+  if (kind < 70) return replace_two(pair, kind - 52, moved);
+  if (kind < 71) return rearrange(pair, moved);
+  frames(pair, kind - 71, moved);
+}
+
+}  // namespace graze

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// The regression corpus with lanes that lie to order: what verify calls a change, and the life of a case.
+#include "fuzz/regression/regression.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "fuzz/regression/found_failure.h"
+
+namespace graze {
+namespace {
+
+// A vertex of b on the face of a: they touch.
+constexpr Pair kTouching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};
+constexpr Pair kShifted{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, 0}, {2, 2, 4}, {3, 1, 4}}};
+const std::string kSignature = "point/22/skew/0/moller_1997:-.......";
+
+// All lanes; those named say disjoint, which is wrong of these pairs, the others are right.
+struct Liars {
+  std::vector<const Lane*> lanes;
+  std::set<std::string> wrong{"moller_1997/f32/cpu"};
+  std::set<std::string> alternating;  // wrong every other time
+  std::set<std::string> apart;
+  int calls = 0;
+
+  Liars() {
+    for (const Lane& lane : published_lanes()) lanes.push_back(&lane);
+  }
+  DecideLanes decide() {
+    return [this](const Pair&, std::vector<const Lane*>& differ) {
+      ++calls;
+      std::vector<Verdict> verdicts;
+      for (const Lane* lane : lanes) {
+        const bool lies = wrong.contains(lane->id) || (alternating.contains(lane->id) && calls % 2 == 0);
+        verdicts.push_back(lies ? Verdict::disjoint : Verdict::intersects);
+        if (apart.contains(lane->id)) differ.push_back(lane);
+      }
+      return verdicts;
+    };
+  }
+};
+
+struct Regression : testing::Test {
+  Liars liars;
+  RegressionCorpus corpus;
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".pairs");
+
+  void SetUp() override {
+    std::filesystem::remove(file);
+    ASSERT_EQ(add({kSignature, {kTouching, {{"stratum", "lattice"}}}, 7, "here; campaign 1"}), Added::as_new);
+  }
+  Added add(const Sighting& sighting) { return graze::add(corpus, sighting, liars.lanes, liars.decide()); }
+  std::vector<std::string> changes() {
+    std::vector<std::string> texts;
+    for (const Change& change : verify(corpus, liars.lanes, liars.decide()).changes) texts.push_back(change.what);
+    return texts;
+  }
+  RegressionCase& only() { return corpus.at(kSignature); }
+  std::string read_error(const std::string& from, const std::string& to) {
+    write_regressions(file, corpus);
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    std::string bad = text.str();
+    bad.replace(bad.find(from), from.size(), to);
+    std::ofstream(file) << bad;
+    try {
+      read_regressions(file);
+    } catch (const FormatError& error) {
+      return std::string(error.what()).substr(file.string().size());
+    }
+    return "";
+  }
+};
+
+using Texts = std::vector<std::string>;
+
+TEST_F(Regression, AFileReadsAsItWasWritten) {
+  write_regressions(file, corpus);
+  const RegressionCorpus read = read_regressions(file);
+  ASSERT_EQ(read.size(), 1u);
+  const RegressionCase &c = read.at(kSignature), &was = only();
+  EXPECT_EQ(
+      std::tie(c.name, c.truth, c.contact, c.state, c.count, c.marks, c.first, c.last, c.other),
+      std::tie(was.name, was.truth, was.contact, was.state, was.count, was.marks, was.first, was.last, was.other));
+  EXPECT_EQ(c.truth, "intersects");
+  EXPECT_EQ(c.contact, "point");
+  EXPECT_EQ(c.count, 7u);
+  EXPECT_EQ(c.other, (std::vector<std::pair<std::string, std::string>>{{"stratum", "lattice"}}));
+}
+
+TEST_F(Regression, BadLinesAreNamed) {
+  EXPECT_EQ(read_error("state=failing", "state=broken"),
+            ":3: expected a state (failing, fixed or flaky), found 'broken'");
+  EXPECT_EQ(read_error("count=7", "count=-7"), ":3: expected a whole number as count, found '-7'");
+  EXPECT_EQ(read_error("count=7", "times=7"), ":3: expected a field count, found none");
+  EXPECT_EQ(read_error("lanes=projected_sat", "lanes=rejected_sat"),
+            ":3: expected an algorithm in lanes, found 'rejected_sat'");
+  EXPECT_EQ(read_error("moller_1997:-.......,", "moller_1997:-......,"),
+            ":3: expected 8 marks of moller_1997 in lanes, found '-......'");
+  EXPECT_EQ(read_error("signature=" + kSignature, "signature=point"),
+            ":3: expected the signature of an algorithm's failure, found 'point'");
+  write_regressions(file, corpus);
+  const Entry twice = read_pairs(file).front();
+  std::ofstream again(file, std::ios::app);
+  write_entry(again, twice);
+  again.close();
+  EXPECT_THROW(read_regressions(file), FormatError);
+}
+
+TEST_F(Regression, ASignatureIsStoredOnceAndCounted) {
+  EXPECT_EQ(add({kSignature, {kShifted}, 5, "there; campaign 2"}), Added::seen_again);
+  EXPECT_EQ(corpus.size(), 1u);
+  EXPECT_EQ(only().count, 12u);
+  EXPECT_EQ(only().first, "here; campaign 1");
+  EXPECT_EQ(only().last, "there; campaign 2");
+  EXPECT_EQ(only().pair.b[0].x, 1);  // the first pair stays
+  EXPECT_EQ(add({kSignature, {kShifted}, 5, "there; campaign 2"}), Added::known);
+  EXPECT_EQ(only().count, 12u);
+}
+
+TEST_F(Regression, APairOfAnotherSignatureIsRefused) {
+  EXPECT_THROW(add({"area/22/coplanar/0/moller_1997:-.......", {kTouching}, 1, "s"}), std::runtime_error);
+  EXPECT_THROW(add({"nonsense", {kTouching}, 1, "s"}), std::runtime_error);
+  EXPECT_EQ(corpus.size(), 1u);
+}
+
+TEST_F(Regression, NothingChangedIsNoChange) { EXPECT_EQ(changes(), Texts()); }
+
+TEST_F(Regression, EveryLaneIsCompared) {
+  EXPECT_EQ(verify(corpus, liars.lanes, liars.decide()).compared, published_lanes().size());
+  liars.wrong.insert("separating_axes/f64/cuda-fma");
+  EXPECT_EQ(changes(), Texts{"separating_axes/f64/cuda-fma: was intersects (right), is disjoint (wrong)"});
+  EXPECT_EQ(changes(), Texts());  // it is on record now
+}
+
+TEST_F(Regression, AFailingCaseIsFixedAndFailsAgain) {
+  liars.wrong.clear();
+  EXPECT_EQ(changes(), (Texts{"moller_1997/f32/cpu: was disjoint (wrong), is intersects (right)", "failing -> fixed"}));
+  liars.wrong = {"moller_1997/f64/cuda-fma"};  // any lane of its algorithm
+  EXPECT_EQ(changes(),
+            (Texts{"moller_1997/f64/cuda-fma: was intersects (right), is disjoint (wrong)", "fixed -> failing"}));
+}
+
+TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
+  liars.wrong.clear();
+  changes();
+  EXPECT_EQ(add({kSignature, {kShifted}, 1, "s2"}), Added::seen_again);
+  EXPECT_EQ(only().state, CaseState::fixed);  // that build saw it fail; this one does not
+  liars.wrong = {"moller_1997/f32/cpu"};
+  EXPECT_EQ(add({kSignature, {kShifted}, 1, "s3"}), Added::seen_again);
+  EXPECT_EQ(only().state, CaseState::failing);
+  EXPECT_EQ(only().pair.b[0].x, 2);
+  EXPECT_EQ(only().count, 9u);
+  EXPECT_EQ(only().first, "here; campaign 1");
+  EXPECT_EQ(changes(), Texts());
+}
+
+TEST_F(Regression, LanesThatDoNotRunChangeNothing) {
+  const std::string before = only().marks;
+  liars.lanes.erase(std::remove_if(liars.lanes.begin(), liars.lanes.end(),
+                                   [](const Lane* lane) { return lane->info->id == "moller_1997"; }),
+                    liars.lanes.end());
+  EXPECT_EQ(changes(), Texts());
+  EXPECT_EQ(only().marks, before);
+  EXPECT_EQ(only().state, CaseState::failing);
+  EXPECT_EQ(verify(corpus, {}, liars.decide()).compared, 0u);
+}
+
+TEST_F(Regression, VerdictsThatDifferBetweenReplaysAreFlakyForGood) {
+  liars.alternating = {"moller_1997/f64/cpu"};
+  EXPECT_EQ(changes(), (Texts{"moller_1997/f64/cpu: was intersects (right), is another from replay to replay",
+                              "failing -> flaky"}));
+  liars.alternating.clear();
+  EXPECT_EQ(changes(), Texts());
+  EXPECT_EQ(only().state, CaseState::flaky);
+}
+
+TEST_F(Regression, ExecutorsThatDifferAreFlaky) {
+  liars.apart = {"interval_overlap/f32/cuda-fma"};
+  EXPECT_EQ(changes(), (Texts{"interval_overlap/f32/cuda-fma: was intersects (right), is another from replay to replay",
+                              "failing -> flaky"}));
+}
+
+TEST_F(Regression, AnEditedTruthShows) {
+  only().contact = "area";
+  EXPECT_EQ(changes(), Texts{"truth: was intersects, area, is intersects, point"});
+  only().state = CaseState::fixed;
+  EXPECT_EQ(changes(), Texts{"fixed -> failing"});
+}
+
+TEST(Sightings, OfACaseAreAllItsWrongAlgorithms) {
+  Liars liars;
+  liars.wrong.insert("separating_axes/f32/cpu");
+  const Json build{{"commit", "c"}, {"compiler", "GNU 1"}, {"cuda", nullptr}, {"device", "H100"}, {"executors", {}}};
+  const auto found = sightings_of_cases({{kTouching}, {kShifted}}, build, liars.lanes, liars.decide());
+  ASSERT_EQ(found.size(), 2u);  // the second pair has the same two
+  EXPECT_EQ(found[0].signature, kSignature);
+  EXPECT_EQ(found[1].signature, "point/22/skew/0/separating_axes:-.......");
+  EXPECT_TRUE(found[0].seen.starts_with("c, GNU 1, no nvcc, H100; case ")) << found[0].seen;
+  EXPECT_EQ(found[0].seen, sightings_of_cases({{kTouching}}, build, liars.lanes, liars.decide())[0].seen);
+  EXPECT_NE(found[0].seen, sightings_of_cases({{kShifted}}, build, liars.lanes, liars.decide())[0].seen);
+}
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/findings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "reports/tables.h"
+#include "reports/terminal.h"
+#include "reports/wilson.h"
+
+namespace graze {
+namespace {
+
+using Places = std::vector<std::size_t>;
+
+Places published(const CampaignCounts& counts) {
+  Places places;
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    if (!counts.lanes[l].exact) places.push_back(l);
+  }
+  return places;
+}
+
+std::string with_interval(const Share& s, const char* what = "") {
+  return fmt::format("{}{} ({}, 95 % interval {} to {})", grouped(s.count), what, rate_words(s.share),
+                     rate_words(s.low), rate_words(s.high));
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 3;
+  const std::size_t named = names.size() <= kMost + 1 ? names.size() : kMost;
+  std::string text;
+  for (std::size_t i = 0; i < named; ++i) {
+    const bool last = i + 1 == named && named == names.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
+  }
+  return named < names.size() ? fmt::format("{} and {} more", text, names.size() - named) : text;
+}
+
+std::string ids(const CampaignCounts& counts, const Places& places) {
+  std::vector<std::string> names;
+  for (const std::size_t l : places) names.push_back(counts.lanes[l].id);
+  return list_of(names);
+}
+
+Places those_wrong(const CampaignCounts& counts, const Places& among, std::uint64_t wrong) {
+  Places places;
+  std::copy_if(among.begin(), among.end(), std::back_inserter(places),
+               [&](std::size_t l) { return counts.total.wrong(l) == wrong; });
+  return places;
+}
+
+std::string of_exact_lanes(const CampaignCounts& counts) {
+  Places exact;
+  std::uint64_t wrong = 0;
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    if (!counts.lanes[l].exact) continue;
+    exact.push_back(l);
+    wrong += counts.total.wrong(l);
+  }
+  if (exact.empty()) return "";
+  return fmt::format("; {} {} wrong on {}", ids(counts, exact), exact.size() == 1 ? "is" : "are",
+                     wrong == 0 ? "none" : grouped(wrong) + ", which must not be");
+}
+
+std::string safest(const CampaignCounts& counts, const Places& lanes, std::uint64_t least, std::uint64_t most) {
+  const StratumCounts& total = counts.total;
+  const std::string bound = rate_words(bound_of_none(total.pairs));
+  const std::string exact = of_exact_lanes(counts);
+  if (most == 0) {
+    return fmt::format("{} wrong on none of {} pairs, so with 95 % confidence {} on fewer than {} of such pairs{}.",
+                       lanes.size() == 1 ? fmt::format("The only published lane, {}, is", counts.lanes[lanes[0]].id)
+                                         : fmt::format("All {} published lanes are", lanes.size()),
+                       grouped(total.pairs), lanes.size() == 1 ? "it errs" : "each errs", bound, exact);
+  }
+  const Places best = those_wrong(counts, lanes, least);
+  const std::string found =
+      least == 0 ? fmt::format("none of {} pairs (with 95 % confidence fewer than {})", grouped(total.pairs), bound)
+                 : fmt::format("{} of {} pairs", with_interval(share_of(least, total.pairs)), grouped(total.pairs));
+  if (lanes.size() == 1)
+    return fmt::format("The only published lane, {}, is wrong on {}{}.", counts.lanes[lanes[0]].id, found, exact);
+  return fmt::format("The safest of {} published lanes {} {}: wrong on {}{}.", lanes.size(),
+                     best.size() == 1 ? "is" : "are", ids(counts, best), found, exact);
+}
+
+std::string worst(const CampaignCounts& counts, const Places& lanes, std::uint64_t least, std::uint64_t most) {
+  if (lanes.size() == 1) return "No other published lane ran, so there is none to be worse.";
+  if (least == most) return fmt::format("No lane is worse than another: all {} are wrong equally often.", lanes.size());
+  const Places found = those_wrong(counts, lanes, most);
+  const LaneCounts& lane = counts.total.lanes[found[0]];
+  const std::string kinds = found.size() > 1 ? ""
+                                             : fmt::format(", {} of them false positives and {} false negatives",
+                                                           grouped(lane.false_positive), grouped(lane.false_negative));
+  const std::string times = least == 0 ? ""
+                                       : fmt::format("; {:.3g} times as many as the safest",
+                                                     static_cast<double>(most) / static_cast<double>(least));
+  return fmt::format("The worst {} {}: wrong on {}{}{}.", found.size() == 1 ? "is" : "are", ids(counts, found),
+                     with_interval(share_of(most, counts.total.pairs), " pairs"), kinds, times);
+}
+
+// A lane with contraction, and the same without.
+struct Contracted {
+  std::size_t without, with;
+  std::optional<std::uint64_t> differs;
+};
+
+std::vector<Contracted> contracted(const CampaignCounts& counts, const Places& lanes) {
+  std::vector<Contracted> found;
+  for (const std::size_t l : lanes) {
+    const ReportLane& lane = counts.lanes[l];
+    if (lane.target != "cpu-fma" && lane.target != "cuda-fma") continue;
+    int without = lane.target == "cuda-fma" ? counts.find(lane.algorithm, lane.scalar, "cuda-nofma") : -1;
+    if (without < 0) without = lane.cpu;
+    if (without < 0) continue;
+    const auto other = static_cast<std::size_t>(without);
+    found.push_back({other, l, differs(counts, counts.total, other, l)});
+  }
+  return found;
+}
+
+std::string contraction(const CampaignCounts& counts, const Places& lanes) {
+  const std::vector<Contracted> all = contracted(counts, lanes);
+  if (all.empty()) {
+    return "No lane with contraction ran beside the same lane without it, so the campaign does not show what "
+           "contraction changes.";
+  }
+  const StratumCounts& total = counts.total;
+  const auto moved = [&](const Contracted& c) {
+    const std::uint64_t before = total.wrong(c.without), after = total.wrong(c.with);
+    return before < after ? after - before : before - after;
+  };
+  const auto effect = [&](const Contracted& c) { return c.differs ? *c.differs : moved(c); };
+  const bool counted = std::all_of(all.begin(), all.end(), [](const Contracted& c) { return c.differs.has_value(); });
+  const auto most = std::max_element(all.begin(), all.end(), [&](const Contracted& l, const Contracted& r) {
+    return std::pair(l.differs.has_value(), effect(l)) < std::pair(r.differs.has_value(), effect(r));
+  });
+  const auto changed = std::count_if(all.begin(), all.end(), [&](const Contracted& c) { return effect(c) != 0; });
+  const std::string uncounted =
+      counted ? "" : "; without a cpu lane beside them the campaign counts wrong verdicts, not changed ones";
+  if (changed == 0) {
+    return fmt::format("Contraction changes no {} of {} that ran with and without it{}.",
+                       counted ? "verdict" : "number of wrong verdicts",
+                       all.size() == 1 ? "the one lane" : fmt::format("{} lanes", all.size()), uncounted);
+  }
+  const std::string from_to = fmt::format("its wrong verdicts go from {} to {}", grouped(total.wrong(most->without)),
+                                          grouped(total.wrong(most->with)));
+  const std::string how_many = fmt::format("{} of {} lanes that ran with and without it change", changed, all.size());
+  if (!most->differs) {
+    return fmt::format("Contraction changes most in {}: beside {} {} of {} pairs; {}{}.", counts.lanes[most->with].id,
+                       counts.lanes[most->without].id, from_to, grouped(total.pairs), how_many, uncounted);
+  }
+  return fmt::format("Contraction changes most in {}: another verdict than {} on {}, and {}; {}{}.",
+                     counts.lanes[most->with].id, counts.lanes[most->without].id,
+                     with_interval(share_of(*most->differs, total.pairs), " pairs"), from_to, how_many, uncounted);
+}
+
+std::string thesis(const CampaignCounts& counts, const Places& lanes) {
+  const StratumCounts* stratum = counts.stratum("thesis");
+  if (!stratum || stratum->pairs == 0) {
+    return "The triangles of the 2012 thesis (stratum thesis) were not drawn, so the campaign does not say how often "
+           "CPU and GPU differ on them.";
+  }
+  const std::string pairs = grouped(stratum->pairs);
+  const auto differing = [&](std::size_t l) { return stratum->lanes[l].differs_from_cpu; };
+  Places compared;
+  std::uint64_t without_contraction = 0;
+  bool ran_without = false;
+  for (const std::size_t l : lanes) {
+    if (!counts.lanes[l].target.starts_with("cuda") || counts.lanes[l].cpu < 0) continue;
+    compared.push_back(l);
+    if (counts.lanes[l].target != "cuda-nofma") continue;
+    ran_without = true;
+    without_contraction += differing(l);
+  }
+  if (compared.empty()) {
+    return fmt::format(
+        "On the {} pairs of the 2012 thesis's triangles no CUDA lane ran beside its cpu lane, so the "
+        "campaign does not say how often CPU and GPU differ.",
+        pairs);
+  }
+  const std::size_t most = *std::max_element(compared.begin(), compared.end(),
+                                             [&](std::size_t l, std::size_t r) { return differing(l) < differing(r); });
+  if (differing(most) == 0) {
+    return fmt::format(
+        "On the 2012 thesis's triangles CPU and GPU agree: none of {} CUDA lanes differs from its cpu "
+        "lane on any of {} pairs (with 95 % confidence fewer than {}).",
+        compared.size(), pairs, rate_words(bound_of_none(stratum->pairs)));
+  }
+  const int own = counts.find("interval_overlap", "f32", "cuda-fma");
+  const auto own_place = static_cast<std::size_t>(own);
+  const bool tells_own = own >= 0 && own_place != most && counts.lanes[own_place].cpu >= 0;
+  return fmt::format("On the 2012 thesis's triangles the GPU differs most from the CPU in {}: on {} of {} pairs{}{}.",
+                     counts.lanes[most].id, with_interval(share_of(differing(most), stratum->pairs)), pairs,
+                     tells_own ? fmt::format("; in the thesis's own algorithm, interval_overlap/f32, on {}",
+                                             with_interval(share_of(differing(own_place), stratum->pairs)))
+                               : "",
+                     !ran_without ? ""
+                     : without_contraction == 0
+                         ? "; without contraction on none"
+                         : fmt::format("; without contraction {} verdicts differ still", grouped(without_contraction)));
+}
+
+std::string dangerous(const CampaignCounts& counts, const Places& lanes) {
+  struct Danger {
+    const StratumCounts* stratum;
+    double share;
+    std::size_t best;
+  };
+  std::vector<Danger> all;
+  for (const StratumCounts& stratum : counts.strata) {
+    if (stratum.pairs == 0) continue;
+    double wrong = 0;
+    for (const std::size_t l : lanes) wrong += static_cast<double>(stratum.wrong(l));
+    const std::size_t best = *std::min_element(
+        lanes.begin(), lanes.end(), [&](std::size_t l, std::size_t r) { return stratum.wrong(l) < stratum.wrong(r); });
+    all.push_back({&stratum, wrong / static_cast<double>(stratum.pairs) / static_cast<double>(lanes.size()), best});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Danger& l, const Danger& r) { return l.share > r.share; });
+  const auto described = [&](const Danger& d) {
+    const double best = share_of(d.stratum->wrong(d.best), d.stratum->pairs).share;
+    return fmt::format("{} ({} of all verdicts wrong{})", d.stratum->id, rate_words(d.share),
+                       lanes.size() == 1 ? ""
+                                         : fmt::format(", {} of those of its best lane, {}",
+                                                       best == 0 ? "none" : rate_words(best), counts.lanes[d.best].id));
+  };
+  if (all.front().share == 0) {
+    return all.size() == 1 ? fmt::format("The only stratum, {}, shows no wrong verdict.", all[0].stratum->id)
+                           : fmt::format("None of the {} strata shows a wrong verdict.", all.size());
+  }
+  if (all.size() == 1) return fmt::format("The only stratum is {}.", described(all[0]));
+  std::vector<std::string> worst;
+  for (std::size_t i = 0; i < std::min<std::size_t>(3, all.size() - 1) && all[i].share > 0; ++i)
+    worst.push_back(described(all[i]));
+  return fmt::format("The most dangerous {} {}; the safest is {} ({}).",
+                     worst.size() == 1 ? "stratum is" : "strata are", list_of(worst), all.back().stratum->id,
+                     all.back().share == 0 ? "no wrong verdict" : rate_words(all.back().share));
+}
+
+}  // namespace
+
+std::string rate_words(double rate) {
+  if (rate == 0) return "0";
+  if (rate >= 0.001) return fmt::format("{:.3g} %", 100 * rate);
+  return fmt::format("1 in {}", grouped(static_cast<std::uint64_t>(std::stod(fmt::format("{:.3g}", 1 / rate)))));
+}
+
+std::vector<std::string> answer(const CampaignCounts& counts) {
+  if (counts.total.pairs == 0) return {"No pair has been decided yet."};
+  const Places lanes = published(counts);
+  if (lanes.empty()) {
+    std::uint64_t wrong = 0;
+    for (std::size_t l = 0; l < counts.lanes.size(); ++l) wrong += counts.total.wrong(l);
+    return {fmt::format("Only exact lanes ran, and {} of their verdicts on {} pairs {} wrong.",
+                        wrong == 0 ? "none" : grouped(wrong), grouped(counts.total.pairs), wrong == 1 ? "is" : "are")};
+  }
+  const auto less = [&](std::size_t l, std::size_t r) { return counts.total.wrong(l) < counts.total.wrong(r); };
+  const auto [least, most] = std::minmax_element(lanes.begin(), lanes.end(), less);
+  const std::uint64_t fewest = counts.total.wrong(*least), largest = counts.total.wrong(*most);
+  return {safest(counts, lanes, fewest, largest), worst(counts, lanes, fewest, largest), contraction(counts, lanes),
+          thesis(counts, lanes), dangerous(counts, lanes)};
+}
+
+}  // namespace graze

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs built around a point of contact: a feature (vertex, edge or face) of each triangle passes through it, the
+// rest of each lies on its own side. Real ones are near contacts once rounded; integer ones stay exact.
+#pragma once
+
+#include "strata/draws.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+namespace strata {
+
+// Where a contact's numbers come from. Integers: nothing that is built of them rounds, in double or in float32,
+// as (place + 2 * weight * step) <= 2^24.
+struct Grain {
+  int place;   // the contact lies within ±place; reals: 0 here, and within ±1/2
+  int step;    // vectors whose multiples by weights are used: within ±step; reals: ±1
+  int weight;  // weights are 1 … weight; reals: (0, 1]
+};
+
+// Functions, as device code cannot refer to constants of class type.
+GRAZE_INLINE Grain real_grain() { return {0, 0, 0}; }
+GRAZE_INLINE Grain small_grain() { return {4, 2, 3}; }
+
+// Coordinates use all 24 bits of a float; products of three differences need 60 to 75.
+GRAZE_INLINE Grain wide_grain(Draws& draws) { return {(1 << 23) - 2, 1 << draws.between(14, 19), 8}; }
+
+GRAZE_INLINE Vec draw_place(Draws& draws, const Grain& grain) {
+  return grain.place > 0 ? draws.integers(grain.place) : draws.reals() * 0.5;
+}
+GRAZE_INLINE Vec draw_step(Draws& draws, const Grain& grain) {
+  return grain.place > 0 ? draws.integers(grain.step) : draws.reals();
+}
+GRAZE_INLINE Vec draw_arm(Draws& draws, const Grain& grain) {
+  return grain.place > 0 ? draws.integers(grain.step * grain.weight) : draws.reals();
+}
+GRAZE_INLINE double draw_weight(Draws& draws, const Grain& grain) {
+  return grain.place > 0 ? 1.0 + draws.below(static_cast<std::uint32_t>(grain.weight)) : draws.positive();
+}
+
+// How flat a triangle is: a sliver's height is a small part of its length, and its third vertex stands beside an
+// end of the longest edge (needle) or anywhere along it (cap).
+struct Shape {
+  double height = 1;
+  bool sliver = false;
+  bool needle = false;
+};
+
+// The third vertex, seen from p: anywhere on that side; a sliver's stands beside the edge, which runs from e * low
+// to e * high.
+GRAZE_INLINE Vec draw_third(Draws& draws, const Grain& grain, const Shape& shape, const Vec& side, const Vec& e,
+                            double low, double high) {
+  const Vec arm = toward(side, draw_arm(draws, grain));
+  if (!shape.sliver) return arm;
+  const double foot = shape.needle ? high : low + draws.positive() * (high - low);
+  return e * foot + arm * shape.height;
+}
+
+// A triangle with its vertex [0] at p.
+GRAZE_INLINE void put_vertex(Draws& draws, const Grain& grain, const Shape& shape, const Vec& p, const Vec& side,
+                             Vec (&triangle)[3]) {
+  const Vec arm = toward(side, draw_arm(draws, grain));
+  triangle[0] = p;
+  triangle[1] = p + arm;
+  triangle[2] = p + draw_third(draws, grain, shape, side, arm, 0, 1);
+}
+
+// A triangle whose edge [0][1] passes through p along e.
+GRAZE_INLINE void put_edge(Draws& draws, const Grain& grain, const Shape& shape, const Vec& p, const Vec& e,
+                           const Vec& side, Vec (&triangle)[3]) {
+  const double back = draw_weight(draws, grain);
+  const double forth = draw_weight(draws, grain);
+  triangle[0] = p - e * back;
+  triangle[1] = p + e * forth;
+  triangle[2] = p + draw_third(draws, grain, shape, side, e, -back, forth);
+}
+
+// A triangle in the plane of s and t with p inside: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) is zero.
+GRAZE_INLINE void put_face(Draws& draws, const Grain& grain, const Vec& p, const Vec& s, const Vec& t,
+                           Vec (&triangle)[3]) {
+  const double w0 = draw_weight(draws, grain);
+  const double w1 = draw_weight(draws, grain);
+  const double w2 = draw_weight(draws, grain);
+  triangle[0] = p + s * w1 - t * w2;
+  triangle[1] = p - s * w0;
+  triangle[2] = p + t * w0;
+}
+
+enum class Touch { vertex_face, edge_edge, vertex_edge, vertex_vertex };
+
+// Two triangles that meet at p only, as long as nothing is rounded. B's touching feature includes b[0].
+struct Contact {
+  Draft draft;
+  Vec p;
+  Vec away;  // the direction that parts B from A, largest component ±1
+};
+
+// Real coordinates stay within ±5/2.
+GRAZE_INLINE Contact draw_contact(Draws& draws, Touch touch, const Grain& grain, const Shape& shape_a = {},
+                                  const Shape& shape_b = {}) {
+  Contact contact;
+  const Vec p = draw_place(draws, grain);
+  const Vec u = draw_step(draws, grain);
+  Vec v = draw_step(draws, grain);
+  if (touch == Touch::vertex_face && shape_a.sliver) {
+    const double ratio = shape_a.needle ? -1 : draws.positive();
+    v = u * ratio + v * shape_a.height;
+  }
+  // u is A's edge and v B's, or both span A's face. A vertex on an edge has a half-plane of directions to leave
+  // in, two vertices a half-space: any does.
+  const Vec away = normalised(touch == Touch::vertex_vertex ? v : cross(u, v));
+  const Vec back = away * -1.0;
+  if (touch == Touch::vertex_face) {
+    put_face(draws, grain, p, u, v, contact.draft.a);
+  } else if (touch == Touch::vertex_vertex) {
+    put_vertex(draws, grain, shape_a, p, back, contact.draft.a);
+  } else {
+    put_edge(draws, grain, shape_a, p, u, back, contact.draft.a);
+  }
+  if (touch == Touch::edge_edge) {
+    put_edge(draws, grain, shape_b, p, v, away, contact.draft.b);
+  } else {
+    put_vertex(draws, grain, shape_b, p, away, contact.draft.b);
+  }
+  contact.p = p;
+  contact.away = away;
+  return contact;
+}
+
+// How B leaves the contact, or enters A. Half of the pushes are gaps: ±2^-1 … ±2^-40 of the triangles' size, before
+// rounding; half move one coordinate of b[0] by 0 … ±8 ulps, after it.
+struct Push {
+  double gap;
+  int axis;
+  int ulps;
+};
+
+GRAZE_INLINE Push draw_push(Draws& draws) {
+  if (draws.coin()) {
+    const double sign = draws.sign();
+    return {sign * power_of_two(-draws.between(1, 40)), 0, 0};
+  }
+  return {0, draws.between(0, 2), draws.integer(8)};
+}
+
+// Rounds the draft, moves b[0] by the push's ulps, and shuffles.
+GRAZE_INLINE Pair finished(Draws& draws, const Draft& draft, const Push& push) {
+  Pair pair = rounded(draft);
+  Vec3<float>& v = pair.b[0];
+  v = {push.axis == 0 ? nudged(v.x, push.ulps) : v.x, push.axis == 1 ? nudged(v.y, push.ulps) : v.y,
+       push.axis == 2 ? nudged(v.z, push.ulps) : v.z};
+  return shuffled(draws, pair);
+}
+
+GRAZE_INLINE Pair near_contact(Draws& draws, Touch touch, const Shape& shape_a = {}, const Shape& shape_b = {}) {
+  Contact contact = draw_contact(draws, touch, real_grain(), shape_a, shape_b);
+  const Push push = draw_push(draws);
+  move(contact.draft.b, contact.away * push.gap);
+  return finished(draws, contact.draft, push);
+}
+
+GRAZE_INLINE Touch draw_touch(Draws& draws) { return static_cast<Touch>(draws.below(4)); }
+
+// Half touch exactly; a quarter each has one coordinate of b[0] one unit above or below.
+GRAZE_INLINE Pair exact_contact(Draws& draws) {
+  const Touch touch = static_cast<Touch>(draws.below(3));  // two equal vertices are for shared_vertex
+  const Grain grain = wide_grain(draws);
+  Contact contact = draw_contact(draws, touch, grain);
+  if (draws.coin()) {
+    const double unit = draws.sign();
+    component(contact.draft.b[0], draws.between(0, 2)) += unit;
+  }
+  return shuffled(draws, rounded(contact.draft));
+}
+
+}  // namespace strata
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// Coplanar and parallel pairs: two triangles on a square grid, and a chart that lays the grid into space. With an
+// integer chart nothing rounds and coplanar is exact; with a real one it holds until rounding.
+#pragma once
+
+#include "strata/draws.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+namespace strata {
+
+struct GridPoint {
+  int i, j;
+};
+
+struct GridPair {
+  GridPoint a[3];
+  GridPoint b[3];
+};
+
+GRAZE_HD inline GridPoint draw_point(Draws& draws, int reach) { return {draws.integer(reach), draws.integer(reach)}; }
+
+GRAZE_HD inline GridPoint along(GridPoint p, GridPoint d, int times) { return {p.i + d.i * times, p.j + d.j * times}; }
+
+// p + w or p - w, whichever lies to the left of d (side 1) or to its right (side -1); if neither, d turned to there.
+GRAZE_HD inline GridPoint beside(GridPoint p, GridPoint d, int side, GridPoint w) {
+  const std::int64_t turn = static_cast<std::int64_t>(d.i) * w.j - static_cast<std::int64_t>(d.j) * w.i;
+  if (turn == 0) return along(p, {-d.j, d.i}, side);
+  return along(p, w, turn * side < 0 ? -1 : 1);
+}
+
+// Two triangles on the grid, within ±(reach + 1). Half are unrelated; half touch, a vertex of B on an edge of A or
+// one grid step from it.
+// Requires: reach >= 8.
+GRAZE_HD inline GridPair draw_grid_pair(Draws& draws, int reach) {
+  GridPair pair;
+  if (draws.coin()) {
+    for (GridPoint& point : pair.a) point = draw_point(draws, reach);
+    for (GridPoint& point : pair.b) point = draw_point(draws, reach);
+    return pair;
+  }
+  const int quarter = reach / 4;
+  const GridPoint start = draw_point(draws, quarter);
+  GridPoint d = draw_point(draws, reach / 8);
+  if (d.i == 0 && d.j == 0) d.i = 1;
+  const int length = draws.between(1, 4);
+  const int at = draws.between(0, length);
+  GridPoint touching = along(start, d, at);
+  if (draws.coin()) {
+    const int step = draws.coin() ? 1 : -1;
+    (draws.coin() ? touching.i : touching.j) += step;
+  }
+  pair.a[0] = start;
+  pair.a[1] = along(start, d, length);
+  pair.a[2] = beside(start, d, 1, draw_point(draws, quarter));
+  pair.b[0] = touching;
+  pair.b[1] = beside(touching, d, -1, draw_point(draws, quarter));
+  if (draws.below(4) == 0) pair.b[1] = along(touching, d, draws.coin() ? 1 : -1);  // edge along edge
+  pair.b[2] = beside(touching, d, -1, draw_point(draws, quarter));
+  return pair;
+}
+
+// A plane with coordinates: grid point (i, j) lies at origin + i u + j v.
+struct Chart {
+  Vec origin, u, v;
+};
+
+GRAZE_HD inline Draft laid(const Chart& chart, const GridPair& pair) {
+  Draft draft;
+  for (int k = 0; k < 3; ++k) {
+    draft.a[k] = chart.origin + chart.u * double(pair.a[k].i) + chart.v * double(pair.a[k].j);
+    draft.b[k] = chart.origin + chart.u * double(pair.b[k].i) + chart.v * double(pair.b[k].j);
+  }
+  return draft;
+}
+
+// The plane through `origin` on which the given coordinate is constant.
+GRAZE_HD inline Chart axis_chart(const Vec& origin, int normal, double step) {
+  return {origin, unit_axis((normal + 1) % 3) * step, unit_axis((normal + 2) % 3) * step};
+}
+
+GRAZE_HD inline Pair coplanar_lattice(Draws& draws) {
+  const Vec origin = draws.integers(4);
+  Chart chart = axis_chart(origin, draws.between(0, 2), 1);
+  if (draws.coin()) {
+    const Vec u = draws.integers(2);
+    const Vec v = draws.integers(2);
+    if (!(cross(u, v) == Vec{0, 0, 0})) chart = {origin, u, v};
+  }
+  const Draft draft = laid(chart, draw_grid_pair(draws, 8));
+  return shuffled(draws, rounded(draft));
+}
+
+// An integer chart and a grid pair on it: the 22 bits of each product are split between grid and chart at random.
+// Within ±(place + 2^23).
+GRAZE_HD inline Draft draw_wide_coplanar(Draws& draws, int place) {
+  const int grid_bits = draws.between(4, 19);
+  const int step = 1 << (22 - grid_bits);
+  const Chart chart{draws.integers(place), draws.integers(step), draws.integers(step)};
+  return laid(chart, draw_grid_pair(draws, (1 << grid_bits) - 1));
+}
+
+GRAZE_HD inline Pair coplanar_wide(Draws& draws) {
+  const Draft draft = draw_wide_coplanar(draws, 1 << 23);
+  return shuffled(draws, rounded(draft));
+}
+
+inline constexpr int kRealReach = 1 << 20;  // grid of a real chart: fine enough to pass for continuous
+
+GRAZE_HD inline Draft draw_real_coplanar(Draws& draws, const Chart& chart) {
+  return laid(chart, draw_grid_pair(draws, kRealReach));
+}
+
+GRAZE_HD inline Chart draw_real_chart(Draws& draws) {
+  const double step = 1.0 / kRealReach;
+  return {draws.reals(), draws.reals() * step, draws.reals() * step};
+}
+
+GRAZE_HD inline Pair coplanar_rounded(Draws& draws) {
+  const Draft draft = draw_real_coplanar(draws, draw_real_chart(draws));
+  return shuffled(draws, rounded(draft));
+}
+
+// B's plane is A's, moved.
+GRAZE_HD inline Pair parallel(Draws& draws) {
+  switch (draws.below(3)) {
+    case 0: {  // tilted, parallel until rounding: by 1 … 2^-40 of the size
+      const Chart chart = draw_real_chart(draws);
+      Draft draft = draw_real_coplanar(draws, chart);
+      const double gap = draws.sign();
+      move(draft.b, normalised(cross(chart.u, chart.v)) * (gap * power_of_two(-draws.between(0, 40))));
+      return shuffled(draws, rounded(draft));
+    }
+    case 1: {  // tilted, exactly parallel: by up to one unit in a coordinate, or by any vector
+      Draft draft = draw_wide_coplanar(draws, 1 << 22);
+      Vec by = draws.integers(1 << draws.between(0, 22));
+      const double units = draws.integer(1);
+      if (draws.coin()) by = unit_axis(draws.between(0, 2)) * units;
+      move(draft.b, by);
+      return shuffled(draws, rounded(draft));
+    }
+    default: {  // axis-aligned, exactly parallel: by up to 4 ulps
+      const int normal = draws.between(0, 2);
+      const Vec origin = draws.reals();
+      Pair pair = rounded(draw_real_coplanar(draws, axis_chart(origin, normal, 1.0 / kRealReach)));
+      const int ulps = draws.integer(4);
+      for (Vec3<float>& vertex : pair.b) component(vertex, normal) = nudged(component(vertex, normal), ulps);
+      return shuffled(draws, pair);
+    }
+  }
+}
+
+}  // namespace strata
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes as input: every format reads to the same triangles, candidates equal a brute-force search, errors say why.
+#include "strata/mesh.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+namespace graze {
+namespace {
+
+using Index = std::pair<std::uint32_t, std::uint32_t>;
+using Triangle = std::array<Vec3<float>, 3>;
+
+// A tetrahedron of the corner at the origin; its faces in this order.
+const std::string kTetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
+
+class MeshFile : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name, std::ios::binary) << content;
+    return folder_ / name;
+  }
+
+  // Returns: the message without the folder; checks that nothing reached the console.
+  std::string error_of(const std::string& name) const {
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    std::string message = "none";
+    try {
+      read_mesh_pairs(folder_ / name);
+    } catch (const std::runtime_error& error) {
+      message = error.what();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr(), "");
+    const std::string prefix = folder_.string() + '/';
+    return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+  }
+
+ private:
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("graze_mesh_test_" + std::to_string(getpid()));
+};
+
+std::string off_of(const std::vector<Triangle>& triangles) {
+  std::string text = "OFF\n" + std::to_string(3 * triangles.size()) + ' ' + std::to_string(triangles.size()) + " 0\n";
+  for (const Triangle& t : triangles) {
+    for (const auto& v : t) {
+      text += std::to_string(v.x) + ' ' + std::to_string(v.y) + ' ' + std::to_string(v.z) + '\n';
+    }
+  }
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    text += "3 " + std::to_string(3 * i) + ' ' + std::to_string(3 * i + 1) + ' ' + std::to_string(3 * i + 2) + '\n';
+  }
+  return text;
+}
+
+std::string binary_stl_of(const std::vector<Triangle>& triangles) {
+  std::string bytes(80, ' ');
+  const auto append = [&bytes](const void* data, std::size_t size) {
+    bytes.append(static_cast<const char*>(data), size);
+  };
+  const auto count = static_cast<std::uint32_t>(triangles.size());
+  append(&count, sizeof count);
+  for (const Triangle& t : triangles) {
+    const Vec3<float> normal{};
+    append(&normal, sizeof normal);
+    append(t.data(), sizeof t);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+bool boxes_overlap(const Triangle& a, const Triangle& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [a_low, a_high] = std::minmax({component(a[0], axis), component(a[1], axis), component(a[2], axis)});
+    const auto [b_low, b_high] = std::minmax({component(b[0], axis), component(b[1], axis), component(b[2], axis)});
+    if (a_high < b_low || b_high < a_low) return false;
+  }
+  return true;
+}
+
+TEST_F(MeshFile, EveryFormatReadsTheSameTriangles) {
+  const std::vector<Triangle> expected = read_mesh_pairs(write("t.off", kTetrahedron)).triangles;
+  ASSERT_EQ(expected.size(), 4u);
+  EXPECT_EQ(expected[3], (Triangle{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}));
+
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1/1 3/2 4/3\nf -3 -2 -1\n";
+  EXPECT_EQ(read_mesh_pairs(write("t.obj", obj)).triangles, expected);
+
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
+  EXPECT_EQ(read_mesh_pairs(write("t.ply", ply)).triangles, expected);
+
+  std::string stl = "solid t\n";
+  for (const Triangle& t : expected) {
+    stl += "facet normal 0 0 0\nouter loop\n";
+    for (const auto& v : t) {
+      stl += "vertex " + std::to_string(v.x) + ' ' + std::to_string(v.y) + ' ' + std::to_string(v.z) + '\n';
+    }
+    stl += "endloop\nendfacet\n";
+  }
+  EXPECT_EQ(read_mesh_pairs(write("t.STL", stl + "endsolid t\n")).triangles, expected);
+  EXPECT_EQ(read_mesh_pairs(write("binary.stl", binary_stl_of(expected))).triangles, expected);
+}
+
+TEST_F(MeshFile, AMeshAgainstItselfPairsEachTwoOnce) {
+  const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron));
+  EXPECT_EQ(pairs.candidates, (std::vector<Index>{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}));
+  const Pair pair = pairs.pair(2);
+  EXPECT_EQ((Triangle{pair.a[0], pair.a[1], pair.a[2]}), pairs.triangles[0]);
+  EXPECT_EQ((Triangle{pair.b[0], pair.b[1], pair.b[2]}), pairs.triangles[3]);
+}
+
+TEST_F(MeshFile, TwoMeshesPairAcrossOnly) {
+  const std::string touching = "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box meets those at a point only
+  const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron), write("u.off", touching));
+  EXPECT_EQ(pairs.triangles.size(), 5u);
+  EXPECT_EQ(pairs.candidates, (std::vector<Index>{{3, 4}}));
+
+  const MeshPairs twice = read_mesh_pairs(write("t.off", kTetrahedron), write("v.off", kTetrahedron));
+  EXPECT_EQ(twice.size(), 16u);
+  for (const auto& [first, second] : twice.candidates) EXPECT_TRUE(first < 4 && second >= 4);
+}
+
+TEST_F(MeshFile, CandidatesEqualABruteForceSearch) {
+  std::mt19937 random(2012);
+  // Coordinates in 0..9 make many boxes that only touch, and some degenerate triangles.
+  const auto soup = [&random](std::size_t count, unsigned extent) {
+    const auto coordinate = [&] { return static_cast<float>(random() % extent + random() % 3); };
+    std::vector<Triangle> triangles(count);
+    for (Triangle& t : triangles) {
+      const Vec3<float> base{coordinate(), coordinate(), coordinate()};
+      for (auto& v : t) v = base + Vec3<float>{float(random() % 3), float(random() % 3), float(random() % 3)};
+    }
+    return triangles;
+  };
+  const std::vector<Triangle> first = soup(400, 20), second = soup(300, 20);
+
+  std::vector<Index> expected;
+  for (std::uint32_t i = 0; i < first.size(); ++i) {
+    for (std::uint32_t j = i + 1; j < first.size(); ++j) {
+      if (boxes_overlap(first[i], first[j])) expected.push_back({i, j});
+    }
+  }
+  const auto file = write("first.off", off_of(first));
+  EXPECT_EQ(read_mesh_pairs(file).triangles, first);
+  EXPECT_EQ(read_mesh_pairs(file).candidates, expected);
+
+  expected.clear();
+  for (std::uint32_t i = 0; i < first.size(); ++i) {
+    for (std::uint32_t j = 0; j < second.size(); ++j) {
+      if (boxes_overlap(first[i], second[j])) expected.push_back({i, static_cast<std::uint32_t>(first.size()) + j});
+    }
+  }
+  EXPECT_EQ(read_mesh_pairs(file, write("second.off", off_of(second))).candidates, expected);
+}
+
+TEST_F(MeshFile, AFaceOfFiveVerticesBecomesAFan) {
+  const std::string pentagon = "OFF\n5 1 0\n0 0 0\n2 0 0\n3 1 0\n2 2 0\n0 2 0\n5 0 1 2 3 4\n";
+  const MeshPairs pairs = read_mesh_pairs(write("pentagon.off", pentagon));
+  ASSERT_EQ(pairs.triangles.size(), 3u);
+  EXPECT_EQ(pairs.triangles[2], (Triangle{{{0, 0, 0}, {2, 2, 0}, {0, 2, 0}}}));
+  EXPECT_EQ(pairs.size(), 3u);
+}
+
+TEST_F(MeshFile, RoundsToFloat32AndKeepsWhatDegenerates) {
+  const std::string thin = "OFF\n4 2 0\n0.1 0 0\n1 0 0\n1.00000000001 0 0\n0 1 0\n3 0 1 2\n3 0 1 3\n";
+  const MeshPairs pairs = read_mesh_pairs(write("thin.off", thin));
+  EXPECT_EQ(pairs.triangles[0], (Triangle{{{0.1f, 0, 0}, {1, 0, 0}, {1, 0, 0}}}));
+  EXPECT_EQ(pairs.size(), 1u);
+}
+
+TEST_F(MeshFile, TheHashIsOfTheBytes) {
+  const auto t = write("t.off", kTetrahedron), u = write("u.off", kTetrahedron + "\n");
+  EXPECT_EQ(read_mesh_pairs(t).content_hash, read_mesh_pairs(write("copy.off", kTetrahedron)).content_hash);
+  EXPECT_NE(read_mesh_pairs(t).content_hash, read_mesh_pairs(u).content_hash);
+  EXPECT_NE(read_mesh_pairs(t, u).content_hash, read_mesh_pairs(u, t).content_hash);
+
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : kTetrahedron) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  EXPECT_EQ(read_mesh_pairs(t).content_hash, hash);
+}
+
+TEST_F(MeshFile, ErrorsNameTheFileAndSayWhy) {
+  EXPECT_EQ(error_of("missing.off"), "missing.off: expected a mesh file, found none that can be opened");
+  EXPECT_EQ(error_of("."), ".: expected a mesh file, found none that can be opened");
+  write("mesh", "x");
+  write("mesh.txt", "x");
+  EXPECT_EQ(error_of("mesh"), "mesh: expected a file of extension .off, .obj, .stl or .ply, found no extension");
+  EXPECT_EQ(error_of("mesh.txt"), "mesh.txt: expected a file of extension .off, .obj, .stl or .ply, found .txt");
+
+  write("one.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_EQ(error_of("one.off"), "one.off: expected at least one pair of triangles whose boxes overlap, found none");
+  write("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n");
+  EXPECT_EQ(error_of("points.off"), "points.off: expected at least one triangle, found none");
+  write("huge.off", "OFF\n3 1 0\n0 0 0\n1e39 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_EQ(error_of("huge.off"), "huge.off: expected coordinates that are finite in float32, found vertex 1 without");
+  write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+  EXPECT_EQ(error_of("index.obj"), "index.obj: expected faces of its 3 vertices, found one of another vertex");
+}
+
+TEST_F(MeshFile, WhatDoesNotParseIsAnError) {
+  const auto misfit = [](const std::string& format) {
+    return "bad." + format + ": expected a mesh in the " + format +
+           " format, found text or bytes that do not parse as one";
+  };
+  for (const std::string format : {"off", "obj", "stl", "ply"}) {
+    for (const char* content : {"", "garbage\n1 2 3\n",
+                                "\x7f"
+                                "ELF\x02\x01"}) {
+      write("bad." + format, content);
+      const std::string error = error_of("bad." + format);
+      // CGAL takes some of these for a file of no faces.
+      EXPECT_TRUE(error == misfit(format) || error == "bad." + format + ": expected at least one triangle, found none")
+          << error << " of " << content;
+    }
+  }
+  const std::string faces =
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  for (const std::string& header : {std::string("property float x\nproperty float y\nproperty float z\n"),
+                                    std::string("element vertex 3\nproperty int x\nproperty int y\nproperty int z\n"),
+                                    std::string("element vertex 3\nproperty float x\nproperty float y\n")}) {
+    write("bad.ply", "ply\nformat ascii 1.0\n" + header + faces);
+    EXPECT_EQ(error_of("bad.ply"), misfit("ply")) << header;
+  }
+  for (const char* content : {"OFF\n4 4 0\n0 0 0\n1 0 0\n",                    // ends early
+                              "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n",    // a vertex that is not there
+                              "OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n",    // a word for a number
+                              "OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n",  // not finite
+                              "OFF\n4000000000 1 0\n0 0 0\n"}) {               // more than memory holds
+    write("bad.off", content);
+    EXPECT_EQ(error_of("bad.off"), misfit("off")) << content;
+  }
+}
+
+}  // namespace
+}  // namespace graze

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs made special by their triangles: slivers, degenerate ones, and mesh neighbours that share stored vertices.
+#pragma once
+
+#include "strata/contact.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+namespace strata {
+
+// Length over height 2^10 … 2^23, log-uniform.
+GRAZE_HD inline Shape draw_sliver_shape(Draws& draws) {
+  const double fraction = 0.5 + 0.5 * draws.positive();
+  return {fraction * power_of_two(-draws.between(10, 22)), true, draws.coin()};
+}
+
+GRAZE_HD inline Pair sliver(Draws& draws) {
+  const Touch touch = draw_touch(draws);
+  const Shape shape = draw_sliver_shape(draws);
+  const std::uint32_t which = draws.below(3);  // A, B or both
+  return near_contact(draws, touch, which != 1 ? shape : Shape{}, which != 0 ? shape : Shape{});
+}
+
+// A segment through or from p along e; its third vertex is an end, or lies exactly on the same line.
+GRAZE_HD inline void put_segment(Draws& draws, const Grain& grain, const Vec& p, const Vec& e, Vec (&triangle)[3]) {
+  const double back = draws.coin() ? draw_weight(draws, grain) : 0;
+  const double forth = draw_weight(draws, grain);
+  triangle[0] = p - e * back;
+  triangle[1] = p + e * forth;
+  triangle[2] = triangle[draws.below(2)];
+  if (draws.coin()) triangle[2] = p + e * double(draws.integer(grain.weight));
+}
+
+GRAZE_HD inline void put_point(const Vec& p, Vec (&triangle)[3]) { triangle[0] = triangle[1] = triangle[2] = p; }
+
+// B is a segment or a point, A anything; both at one point p, then half of the time B is one unit off. Integers
+// throughout, small or wide, so that collinear is exact; then scaled by a power of two.
+GRAZE_HD inline Pair degenerate(Draws& draws) {
+  const Grain grain = draws.coin() ? small_grain() : wide_grain(draws);
+  const Vec p = draw_place(draws, grain);
+  const Vec u = draw_step(draws, grain);
+  const Vec v = draw_step(draws, grain);
+  Draft draft;
+  switch (draws.below(5)) {
+    case 0:
+      put_point(p, draft.a);
+      break;
+    case 1:
+      put_segment(draws, grain, p, u, draft.a);
+      break;
+    case 2:
+      put_vertex(draws, grain, {}, p, v, draft.a);
+      break;
+    case 3:
+      put_edge(draws, grain, {}, p, u, v, draft.a);
+      break;
+    default:
+      put_face(draws, grain, p, u, v, draft.a);
+      break;
+  }
+  if (draws.below(4) == 0) {
+    put_point(p, draft.b);
+  } else {
+    const Vec fresh = draw_step(draws, grain);
+    // Along u: collinear segments, a segment along an edge or in the plane of a face.
+    put_segment(draws, grain, p, draws.below(3) == 0 ? u : fresh, draft.b);
+  }
+  if (draws.coin()) {
+    const double unit = draws.sign();
+    move(draft.b, unit_axis(draws.between(0, 2)) * unit);
+  }
+  const double size = power_of_two(-draws.between(0, 24));
+  scale(draft.a, {size, size, size});
+  scale(draft.b, {size, size, size});
+  return shuffled(draws, rounded(draft));
+}
+
+// How the neighbour's free vertices leave the first triangle's plane. Exact: integers, in the plane, or one unit off
+// it in one coordinate. Otherwise real: in the plane, or a dihedral angle of about 2^-1 … 2^-30, or any.
+struct Fold {
+  bool exact;
+  Vec p, u, v;  // A is p, p + u, p + v
+  double lift;
+};
+
+GRAZE_HD inline Fold draw_fold(Draws& draws) {
+  Fold fold;
+  fold.exact = draws.coin();
+  const Grain grain = fold.exact ? wide_grain(draws) : real_grain();
+  fold.p = draw_place(draws, grain);
+  fold.u = draw_step(draws, grain);
+  fold.v = draw_step(draws, grain);
+  fold.lift = power_of_two(fold.exact ? 0 : -draws.between(0, 30));
+  if (draws.coin()) fold.lift = 0;
+  return fold;
+}
+
+// Anywhere around p in A's plane: beyond an edge the triangles lie flat side by side, over it folded together.
+GRAZE_HD inline Vec draw_free_vertex(Draws& draws, const Fold& fold) {
+  const double i = fold.exact ? draws.integer(8) : draws.real();
+  const double j = fold.exact ? draws.integer(8) : draws.real();
+  const Vec direction = fold.exact ? unit_axis(draws.between(0, 2)) : normalised(cross(fold.u, fold.v));
+  return fold.p + fold.u * i + fold.v * j + direction * (fold.lift * draws.sign());
+}
+
+GRAZE_HD inline Pair shared_vertex(Draws& draws) {
+  const Fold fold = draw_fold(draws);
+  Draft draft{{fold.p, fold.p + fold.u, fold.p + fold.v}, {fold.p, {}, {}}};
+  draft.b[1] = draw_free_vertex(draws, fold);
+  draft.b[2] = draw_free_vertex(draws, fold);
+  return shuffled(draws, rounded(draft));
+}
+
+GRAZE_HD inline Pair shared_edge(Draws& draws) {
+  const Fold fold = draw_fold(draws);
+  Draft draft{{fold.p, fold.p + fold.u, fold.p + fold.v}, {fold.p, fold.p + fold.u, {}}};
+  draft.b[2] = draw_free_vertex(draws, fold);
+  return shuffled(draws, rounded(draft));
+}
+
+}  // namespace strata
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "strata/source.h"
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/lanes.h"
+#include "strata/strata.h"
+
+namespace graze {
+
+std::vector<Source> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs) {
+  for (const std::string& glob : globs) {
+    if (std::none_of(std::begin(kStrata), std::end(kStrata),
+                     [&](const StratumInfo& row) { return matches_any({glob}, row.id); })) {
+      throw UsageError("expected a stratum (see `graze strata`), found '" + glob + "'");
+    }
+  }
+  std::vector<Source> sources;
+  for (const StratumInfo& row : kStrata) {
+    if (!matches_any(globs, row.id)) continue;
+    sources.push_back({std::string(row.id), 0,
+                       [seed, stratum = row.stratum](std::uint64_t index) { return generate(seed, stratum, index); },
+                       static_cast<int>(row.stratum), row.axis});
+  }
+  for (std::size_t s = 0; s < sources.size(); ++s)
+    sources[s].pairs = pairs / sources.size() + (s < pairs % sources.size());
+  return sources;
+}
+
+}  // namespace graze

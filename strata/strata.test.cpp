@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tests of the strata's bits: golden hashes, purity, finiteness, and the strata that are plain draws of numbers.
+// What the others promise of their geometry is in strata_contact.test.cpp and strata_shapes.test.cpp.
+#include "strata/strata.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include "strata/golden.h"
+
+namespace graze {
+namespace {
+
+TEST(Strata, RowsAreInTheOrderOfTheEnumeration) {
+  for (int s = 0; s < kStrataCount; ++s) EXPECT_EQ(static_cast<int>(kStrata[s].stratum), s) << kStrata[s].id;
+}
+
+TEST(Strata, GoldenBits) {
+  for (int s = 0; s < kStrataCount; ++s) {
+    std::uint64_t hash = kHashStart;
+    for (std::uint64_t i = 0; i < kGoldenPairs; ++i) {
+      hash = hash_bits(generate(kGoldenSeed, kStrata[s].stratum, i), hash);
+    }
+    EXPECT_EQ(hash, kGoldenHashes[s]) << kStrata[s].id << std::hex << " is now 0x" << hash;
+  }
+}
+
+TEST(Strata, DoNotDependOnTheOrderOfCalls) {
+  constexpr std::uint64_t kCount = 500;
+  std::vector<std::uint64_t> forward;
+  for (const StratumInfo& info : kStrata) {
+    for (std::uint64_t i = 0; i < kCount; ++i) forward.push_back(hash_bits(generate(1, info.stratum, i)));
+  }
+  for (std::uint64_t i = kCount; i-- > 0;) {
+    for (std::size_t s = 0; s < kStrataCount; ++s) {
+      ASSERT_EQ(hash_bits(generate(1, kStrata[s].stratum, i)), forward[s * kCount + i]) << kStrata[s].id << " " << i;
+    }
+  }
+}
+
+TEST(Strata, AreFinite) {
+  for (const StratumInfo& info : kStrata) {
+    for (std::uint64_t i = 0; i < 100'000; ++i) {
+      ASSERT_TRUE(is_finite(generate(2, info.stratum, i))) << info.id << " " << i;
+    }
+  }
+}
+
+TEST(Strata, DifferBySeedAndStratumAndIndex) {
+  std::set<std::uint64_t> hashes;
+  std::size_t pairs = 0;
+  for (const StratumInfo& info : kStrata) {
+    for (const int bit : {0, 1, 31, 32, 63}) {
+      hashes.insert(hash_bits(generate(std::uint64_t{1} << bit, info.stratum, 0)));
+      hashes.insert(hash_bits(generate(0, info.stratum, std::uint64_t{1} << bit)));
+      pairs += 2;
+    }
+  }
+  EXPECT_EQ(hashes.size(), pairs);
+}
+
+TEST(Draws, ShuffledReachesAll72Orders) {
+  Pair pair;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = static_cast<float>(i);
+  std::set<std::uint64_t> orders;
+  for (std::uint64_t i = 0; i < 5000; ++i) {
+    strata::Draws draws(1, 0, i);
+    const Pair order = strata::shuffled(draws, pair);
+    orders.insert(hash_bits(order));
+    const std::set<float> values(coordinates(order), coordinates(order) + kCoordinates);
+    ASSERT_EQ(values.size(), std::size_t{kCoordinates});
+    ASSERT_EQ(order.a[0].x < 9, order.a[1].x < 9);
+    ASSERT_EQ(order.a[0].x < 9, order.a[2].x < 9);
+  }
+  EXPECT_EQ(orders.size(), 72u);
+}
+
+TEST(Draws, NudgedIsTheNextFloat) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float x : {0.0f, 1.0f, -1.0f, 0x1p-149f, -0x1p-149f, 0x1.fffffcp-127f, -3.5f}) {
+    EXPECT_EQ(strata::nudged(x, 1), std::nextafter(x, infinity));
+    EXPECT_EQ(strata::nudged(x, -1), std::nextafter(x, -infinity));
+    EXPECT_EQ(strata::nudged(strata::nudged(x, -8), 8), x);
+  }
+}
+
+TEST(Draws, PowersOfTwoAreExact) {
+  for (int e = -1022; e <= 1023; ++e) ASSERT_EQ(strata::power_of_two(e), std::ldexp(1.0, e));
+}
+
+TEST(Uniform, FillsTheCube) {
+  constexpr int kPairs = 10'000;
+  double sum = 0, squares = 0;
+  for (std::uint64_t i = 0; i < kPairs; ++i) {
+    const Pair pair = generate(1, Stratum::uniform, i);
+    for (int k = 0; k < kCoordinates; ++k) {
+      const double x = coordinates(pair)[k];
+      ASSERT_TRUE(-1 <= x && x < 1) << x;
+      sum += x;
+      squares += x * x;
+    }
+  }
+  EXPECT_NEAR(sum / (kPairs * kCoordinates), 0, 0.01);
+  EXPECT_NEAR(squares / (kPairs * kCoordinates), 1.0 / 3, 0.01);
+}
+
+TEST(Lattice, TakesThreeValues) {
+  std::set<float> values;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const Pair pair = generate(1, Stratum::lattice, i);
+    values.insert(coordinates(pair), coordinates(pair) + kCoordinates);
+  }
+  EXPECT_EQ(values, (std::set<float>{-1, 0, 1}));
+}
+
+// Whether the listing can give these three coordinates on one axis.
+bool is_of_the_listing(float x, float y, float z) {
+  for (int k = 0; k < 80; ++k) {
+    const float base = static_cast<float>(k - 40) / 10.0f;
+    const std::set<float> values{base, base + 1, base + 2, base + 3, base + 4};
+    if (values.count(x) && values.count(y) && values.count(z)) return true;
+  }
+  return false;
+}
+
+TEST(Thesis, IsTheReferenceAgainstTheListingsTriangles) {
+  std::set<float> values;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const Pair pair = generate(1, Stratum::thesis, i);
+    EXPECT_EQ(pair.a[0], (Vec3<float>{2, -2, 4}));
+    EXPECT_EQ(pair.a[1], (Vec3<float>{1, 5, -2}));
+    EXPECT_EQ(pair.a[2], (Vec3<float>{1, -3, -3}));
+    for (int axis = 0; axis < 3; ++axis) {
+      const float x[3] = {component(pair.b[0], axis), component(pair.b[1], axis), component(pair.b[2], axis)};
+      EXPECT_TRUE(is_of_the_listing(x[0], x[1], x[2])) << x[0] << " " << x[1] << " " << x[2];
+      values.insert(x, x + 3);
+    }
+  }
+  EXPECT_EQ(*values.begin(), -4.0f);
+  EXPECT_EQ(*values.rbegin(), 39 / 10.0f + 4);
+}
+
+}  // namespace
+}  // namespace graze

@@ -4,7 +4,7 @@
 #include "analysis/signature.h"
 #include "analysis/tally.h"
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 // 70 pairs, so that the second word is partly used; lane 0 is right, lane 1 wrong on pairs 3 and 65, declines 66.
@@ -101,4 +101,4 @@ TEST(ForEachAlgorithm, VisitsRunsOfLanes) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::analysis

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/blame.h"
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 // A kernel with some sites fused.
@@ -10,7 +10,7 @@ class Fusing {
   Fusing(const Lane& lane, const Pair& pair)
       : lane_(lane),
         pair_(pair),
-        sites_(contraction_sites(lane.algorithm, lane.scalar)),
+        sites_(cuda::contraction_sites(lane.algorithm, lane.scalar)),
         bits_(sites_.size() / 64 + 1) {}
 
   std::size_t size() const { return sites_.size(); }
@@ -21,9 +21,9 @@ class Fusing {
   void set_all(bool fused) {
     for (std::size_t i = 0; i < size(); ++i) set(i, fused);
   }
-  Verdict verdict() const { return decide_fusing(lane_.algorithm, lane_.scalar, pair_, bits_); }
-  std::vector<ContractionSite> fused() const {
-    std::vector<ContractionSite> result;
+  Verdict verdict() const { return cuda::decide_fusing(lane_.algorithm, lane_.scalar, pair_, bits_); }
+  std::vector<cuda::ContractionSite> fused() const {
+    std::vector<cuda::ContractionSite> result;
     for (std::size_t i = 0; i < size(); ++i) {
       if (bits_[i / 64] >> (i % 64) & 1) result.push_back(sites_[i]);
     }
@@ -33,7 +33,7 @@ class Fusing {
  private:
   const Lane& lane_;
   const Pair& pair_;
-  std::span<const ContractionSite> sites_;
+  std::span<const cuda::ContractionSite> sites_;
   std::vector<std::uint64_t> bits_;
 };
 
@@ -79,9 +79,9 @@ Blame blame(const Lane& lane, const Pair& pair) {
   if (verdict == without) return {};
   if (find_one_or_two(kernel, verdict)) return {kernel.fused(), true};
   reduce(kernel, verdict);
-  std::vector<ContractionSite> sites = kernel.fused();
+  std::vector<cuda::ContractionSite> sites = kernel.fused();
   const bool smallest = sites.size() <= 3;
   return {std::move(sites), smallest};
 }
 
-}  // namespace graze
+}  // namespace graze::analysis

@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 constexpr std::string_view kSites[] = {"plane_distance", "parallel", "orientation", "separation"};
@@ -23,16 +23,16 @@ std::string line_of(const std::source_location& where) {
 
 // What all lanes of an algorithm share.
 struct Algorithm {
-  Exactly exactly;
+  oracle::Exactly exactly;
   int bits_needed_f32, bits_needed_f64;
 };
 
 // Where roots or quotients leave a tie open in any precision, the verdict may be right in some and wrong in others for
 // ever: there, fewer than half of kMostBits must be enough to be called so.
 Algorithm study(int algorithm, const Pair& pair, Verdict truth) {
-  const Exactly exactly = decide_exactly(algorithm, pair);
-  int bits = exactly.verdict == truth ? bits_needed(algorithm, pair, truth, 24) : 0;
-  if (!exactly.certain && bits > kMostBits / 2) bits = 0;
+  const oracle::Exactly exactly = oracle::decide_exactly(algorithm, pair);
+  int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair, truth, 24) : 0;
+  if (!exactly.certain && bits > oracle::kMostBits / 2) bits = 0;
   return {exactly, bits, bits == 0 ? 0 : std::max(bits, 53)};
 }
 
@@ -43,11 +43,11 @@ struct Neighbours {
   std::array<bool, kCoordinates> truth_stays;
 
   Neighbours(const Pair& pair, Verdict truth)
-      : orders(graze::orders(pair)), mirrored(graze::mirrored(pair)), scalings(graze::scalings(pair)) {
+      : orders(analysis::orders(pair)), mirrored(analysis::mirrored(pair)), scalings(analysis::scalings(pair)) {
     for (std::size_t c = 0; c < kCoordinates; ++c) {
-      nudged[c] = graze::nudged(pair, static_cast<int>(c));
+      nudged[c] = analysis::nudged(pair, static_cast<int>(c));
       truth_stays[c] = std::all_of(nudged[c].begin(), nudged[c].end(),
-                                   [truth](const Pair& moved) { return cgal_verdict(moved) == truth; });
+                                   [truth](const Pair& moved) { return oracle::cgal_verdict(moved) == truth; });
     }
   }
 };
@@ -63,16 +63,16 @@ const Lane& without_contraction(const Lane& lane) {
   return lanes()[static_cast<std::size_t>(lane.index + static_cast<int>(target) - static_cast<int>(lane.target))];
 }
 
-Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth, const Exactly& exactly) {
+Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth, const oracle::Exactly& exactly) {
   if (exactly.verdict != truth) return Cause::logic;
   if (decide_lane(without_contraction(lane), pair) == truth) return Cause::contraction;
   const auto limited = [&](bool upper, bool lower) {
-    return decide_limited(lane.algorithm, lane.scalar, pair, {upper, lower});
+    return oracle::decide_limited(lane.algorithm, lane.scalar, pair, {upper, lower});
   };
   if (limited(false, false).verdict != truth) return Cause::rounding;
   const bool overflow = limited(true, false).verdict != truth, underflow = limited(false, true).verdict != truth;
   if (overflow != underflow) return overflow ? Cause::overflow : Cause::underflow;
-  return limited(true, true).first == RangeEvent::overflow ? Cause::overflow : Cause::underflow;
+  return limited(true, true).first == oracle::RangeEvent::overflow ? Cause::overflow : Cause::underflow;
 }
 
 // Where more bits and wider exponents are both needed, the comparison that went wrong tells which failed first: a value
@@ -80,13 +80,14 @@ Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth, const Exactly&
 Cause refined(const LaneExplanation& lane, const Pair& pair) {
   const Step* told = lane.told();
   if (lane.cause != Cause::rounding || !told) return lane.cause;
-  const RangeEvent first = decide_limited(lane.lane->algorithm, lane.lane->scalar, pair, {true, true}).first;
+  const oracle::RangeEvent first =
+      oracle::decide_limited(lane.lane->algorithm, lane.lane->scalar, pair, {true, true}).first;
   const double least =
       lane.lane->scalar == Scalar::f32 ? double{std::numeric_limits<float>::min()} : std::numeric_limits<double>::min();
-  const Beside& difference = told->difference;
+  const oracle::Beside& difference = told->difference;
   const bool lost = difference.lane == 0 && difference.decimal != "0" && std::abs(difference.exact) < least;
-  if (first == RangeEvent::none || (std::isfinite(difference.lane) && !lost)) return Cause::rounding;
-  return first == RangeEvent::overflow && !lost ? Cause::overflow : Cause::underflow;
+  if (first == oracle::RangeEvent::none || (std::isfinite(difference.lane) && !lost)) return Cause::rounding;
+  return first == oracle::RangeEvent::overflow && !lost ? Cause::overflow : Cause::underflow;
 }
 
 // The path up to a comparison, which goes the other way.
@@ -96,12 +97,13 @@ Path turned_at(const Path& path, std::size_t comparison) {
   return turned;
 }
 
-void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth, const Exactly& exactly) {
+void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth, const oracle::Exactly& exactly) {
   const Lane& lane = *result.lane;
   const Replay run = replay(lane, pair);
   result.evidence = run.evidence;
   if (run.evidence == Evidence::none) return;
-  const std::vector<ExactStep> exact = exact_steps(lane.algorithm, lane.scalar, pair, run.run, exactly.bits);
+  const std::vector<oracle::ExactStep> exact =
+      oracle::exact_steps(lane.algorithm, lane.scalar, pair, run.run, exactly.bits);
   const Path path = path_of(run.run);
   std::size_t comparison = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
@@ -154,7 +156,7 @@ std::string_view name(Cause cause) {
 }
 
 Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
-  Explanation result{pair, truth(pair), {}};
+  Explanation result{pair, oracle::truth(pair), {}};
   const Verdict right = result.truth.verdict;
   if (right == Verdict::declined) return result;
   std::map<int, Algorithm> algorithms;
@@ -173,4 +175,4 @@ Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
   return result;
 }
 
-}  // namespace graze
+}  // namespace graze::analysis

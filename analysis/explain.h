@@ -17,7 +17,7 @@
 #include "oracle/precise.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::analysis {
 
 // The first that holds:
 //   logic        the algorithm in exact arithmetic gives the wrong verdict too
@@ -32,12 +32,12 @@ std::string_view name(Cause cause);
 
 // A value that the algorithm asked its policy about, or a comparison.
 struct Step {
-  std::string line;                // "core/algorithms/moller_1997.h:107"
-  std::string_view site;           // what the policy was asked about; empty for a comparison of the algorithm's own
-  std::string_view relation;       // empty for a value
-  Beside left, right, difference;  // a value is `left`
-  bool held = true;                // in the lane
-  bool holds = true;               // in exact arithmetic
+  std::string line;           // "core/algorithms/moller_1997.h:107"
+  std::string_view site;      // what the policy was asked about; empty for a comparison of the algorithm's own
+  std::string_view relation;  // empty for a value
+  oracle::Beside left, right, difference;  // a value is `left`
+  bool held = true;                        // in the lane
+  bool holds = true;                       // in exact arithmetic
   bool wrong() const { return held != holds; }
 };
 
@@ -50,7 +50,7 @@ struct LaneExplanation {
   const Lane* lane;
   Verdict verdict;
   Cause cause;
-  Exactly exactly;          // what the algorithm says in exact arithmetic
+  oracle::Exactly exactly;  // what the algorithm says in exact arithmetic
   Evidence evidence;        // how well the steps are known to be the lane's own
   std::vector<Step> steps;  // in order: values and comparisons of the policy's, and all comparisons that went wrong
   int first_wrong = -1;     // step; -1 when every comparison went as in exact arithmetic
@@ -70,7 +70,7 @@ struct LaneExplanation {
 
 struct Explanation {
   Pair pair;
-  Truth truth;
+  oracle::Truth truth;
   std::vector<LaneExplanation> lanes;  // the wrong ones, in the given order
 };
 
@@ -88,4 +88,4 @@ std::vector<std::string> sentences(const Explanation& explanation);
 nlohmann::ordered_json to_json(const LaneExplanation& lane);
 nlohmann::ordered_json to_json(const Explanation& explanation);
 
-}  // namespace graze
+}  // namespace graze::analysis

@@ -9,13 +9,13 @@
 #include "corpus/pair_format.h"
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 std::vector<const Lane*> lanes_here() {
   std::vector<const Lane*> result;
   for (const Lane& lane : published_lanes()) {
-    if (lane.is_cuda() ? twin_block(lane.algorithm, lane.scalar, lane.target) != nullptr : runs_on_this_cpu(lane))
+    if (lane.is_cuda() ? cuda::twin_block(lane.algorithm, lane.scalar, lane.target) != nullptr : runs_on_this_cpu(lane))
       result.push_back(&lane);
   }
   return result;
@@ -33,9 +33,9 @@ const LaneExplanation& lane_of(const Explanation& explanation, std::string_view 
 TEST(Replay, IsTheLanesOwnRun) {
   for (const Lane* lane : lanes_here()) {
     int pairs = 0, known = 0;
-    for (const StratumInfo& stratum : kStrata) {
+    for (const strata::StratumInfo& stratum : strata::kStrata) {
       for (std::uint64_t i = 0; i < 400; ++i, ++pairs) {
-        const Pair pair = generate(7, stratum.stratum, i);
+        const Pair pair = strata::generate(7, stratum.stratum, i);
         const Replay run = replay(*lane, pair);
         known += run.evidence != Evidence::none && run.run.verdict == decide_lane(*lane, pair);
         if (lane->target == Target::cuda_fma) {
@@ -52,7 +52,7 @@ TEST(Replay, IsTheLanesOwnRun) {
 // Led down its own path a run is itself; led astray it is not.
 TEST(Replay, CanBeLed) {
   const Lane& lane = published_lanes()[0];
-  const Pair pair = generate(7, Stratum::near_edge_edge, 3);
+  const Pair pair = strata::generate(7, strata::Stratum::near_edge_edge, 3);
   const Trace<double> run = run_led(lane, pair, Contraction::none, {});
   EXPECT_EQ(path_of(run_led(lane, pair, Contraction::none, path_of(run))), path_of(run));
   Path astray = path_of(run);
@@ -79,7 +79,7 @@ const Pair kNearContact{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0x1p-12f}, {1
 
 TEST(Explain, AlgorithmsThatAreWrongExactlyAreSoByLogic) {
   Pair figure{};
-  for (const Entry& entry : read_pairs(GRAZE_SOURCE_DIR "/corpus/classic/thesis_2012.pairs")) {
+  for (const corpus::Entry& entry : corpus::read_pairs(GRAZE_SOURCE_DIR "/corpus/classic/thesis_2012.pairs")) {
     if (*field(entry, "name") == "thesis_2012_figure_3_4") figure = entry.pair;
   }
   const Explanation explanation = explain(figure, lanes_here());
@@ -119,10 +119,10 @@ TEST(Explain, AtAHugeScaleItOverflows) {
 
 // 24 bits would not do without limits either, but what the comparison was given is no number.
 TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
-  const Pair pair = generate(1, Stratum::extreme_scale, 2280);
+  const Pair pair = strata::generate(1, strata::Stratum::extreme_scale, 2280);
   const Explanation explanation = explain(pair, lanes_here());
   const LaneExplanation& lane = lane_of(explanation, "interval_overlap/f32/cpu");
-  EXPECT_EQ(decide_limited(lane.lane->algorithm, Scalar::f32, pair, {false, false}).verdict, lane.verdict);
+  EXPECT_EQ(oracle::decide_limited(lane.lane->algorithm, Scalar::f32, pair, {false, false}).verdict, lane.verdict);
   EXPECT_EQ(name(lane.cause), "overflow");
   EXPECT_GT(lane.bits_needed, 24);
   ASSERT_NE(lane.told(), nullptr);
@@ -130,7 +130,7 @@ TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
 }
 
 TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
-  const Explanation explanation = explain(generate(3, Stratum::near_edge_edge, 100), lanes_here());
+  const Explanation explanation = explain(strata::generate(3, strata::Stratum::near_edge_edge, 100), lanes_here());
   const LaneExplanation& lane = lane_of(explanation, "moller_1997/f32/cpu");
   EXPECT_EQ(name(lane.cause), "rounding");
   EXPECT_GT(lane.bits_needed, 24);
@@ -148,16 +148,18 @@ TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
 TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
   int flips = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
-    const Pair pair = generate(5, Stratum::coplanar_rounded, i);
+    const Pair pair = strata::generate(5, strata::Stratum::coplanar_rounded, i);
     for (const LaneExplanation& lane : explain(pair, lanes_here()).lanes) {
-      const Lane& plain = published_lanes()[static_cast<std::size_t>(lane.lane->index) - (lane.lane->is_cuda() ? 1 : 0)];
+      const Lane& plain =
+          published_lanes()[static_cast<std::size_t>(lane.lane->index) - (lane.lane->is_cuda() ? 1 : 0)];
       if (lane.lane->target != Target::cuda_fma || decide_lane(plain, pair) == lane.verdict) continue;
       ++flips;
       EXPECT_TRUE(lane.cause == Cause::contraction || lane.cause == Cause::logic) << lane.lane->id;
-      const std::span<const ContractionSite> all = contraction_sites(lane.lane->algorithm, lane.lane->scalar);
+      const std::span<const cuda::ContractionSite> all =
+          cuda::contraction_sites(lane.lane->algorithm, lane.lane->scalar);
       std::vector<std::size_t> blamed;
       for (std::size_t s = 0; s < all.size(); ++s) {
-        for (const ContractionSite& site : lane.contractions.sites) {
+        for (const cuda::ContractionSite& site : lane.contractions.sites) {
           if (site.ptx_line == all[s].ptx_line) blamed.push_back(s);
         }
       }
@@ -166,11 +168,11 @@ TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
       const auto verdict_without = [&](std::size_t spared) {
         std::vector<std::uint64_t> fused(all.size() / 64 + 1);
         for (std::size_t s : blamed) fused[s / 64] |= std::uint64_t{s != spared} << (s % 64);
-        return decide_fusing(lane.lane->algorithm, lane.lane->scalar, pair, fused);
+        return cuda::decide_fusing(lane.lane->algorithm, lane.lane->scalar, pair, fused);
       };
       EXPECT_EQ(verdict_without(all.size()), lane.verdict);
       for (std::size_t s : blamed) EXPECT_NE(verdict_without(s), lane.verdict);
-      for (const ContractionSite& site : lane.contractions.sites) {
+      for (const cuda::ContractionSite& site : lane.contractions.sites) {
         EXPECT_EQ(std::string_view(site.at.file).substr(0, 5), "core/");
         EXPECT_GT(site.at.line, 0);
       }
@@ -184,7 +186,7 @@ TEST(Explain, ASentenceTellsOfACoplanarFlip) {
   for (const Lane* lane : lanes_here()) {
     if (lane->is_cuda()) cuda.push_back(lane);
   }
-  const Explanation explanation = explain(generate(1, Stratum::coplanar_rounded, 10), cuda);
+  const Explanation explanation = explain(strata::generate(1, strata::Stratum::coplanar_rounded, 10), cuda);
   const std::string text =
       sentence(explanation, lane_of(explanation, "guigue_devillers_2003/f32/cuda-fma").lane->algorithm);
   for (const char* part :
@@ -200,9 +202,9 @@ TEST(Explain, ASentenceTellsOfACoplanarFlip) {
 TEST(Explain, EveryWrongLaneHasItsAccount) {
   std::set<Cause> causes;
   int wrong = 0, decisive = 0, unknown = 0;
-  for (const StratumInfo& stratum : kStrata) {
+  for (const strata::StratumInfo& stratum : strata::kStrata) {
     for (std::uint64_t i = 0; i < 12; ++i) {
-      const Pair pair = generate(9, stratum.stratum, i);
+      const Pair pair = strata::generate(9, stratum.stratum, i);
       const Explanation explanation = explain(pair, lanes_here());
       for (const LaneExplanation& lane : explanation.lanes) {
         ++wrong;
@@ -229,9 +231,10 @@ TEST(Explain, EveryWrongLaneHasItsAccount) {
 }
 
 TEST(Explain, TheSamePairGivesTheSameBytes) {
-  for (const Stratum stratum : {Stratum::extreme_scale, Stratum::coplanar_rounded, Stratum::degenerate}) {
+  for (const strata::Stratum stratum :
+       {strata::Stratum::extreme_scale, strata::Stratum::coplanar_rounded, strata::Stratum::degenerate}) {
     for (std::uint64_t i = 0; i < 5; ++i) {
-      const Pair pair = generate(2, stratum, i);
+      const Pair pair = strata::generate(2, stratum, i);
       EXPECT_EQ(to_json(explain(pair, lanes_here())).dump(), to_json(explain(pair, lanes_here())).dump());
     }
   }
@@ -244,14 +247,14 @@ TEST(Explain, WithoutATruthThereIsNothingWrong) {
 }
 
 TEST(Neighbours, AreExactImages) {
-  const Pair pair = generate(1, Stratum::uniform, 1);
+  const Pair pair = strata::generate(1, strata::Stratum::uniform, 1);
   EXPECT_EQ(orders(pair).size(), 72u);
   EXPECT_EQ(mirrored(pair).size(), 8u);
   EXPECT_EQ(scalings(pair).size(), 2u * kMostScaling + 1);
   for (const std::vector<Pair>& images : {orders(pair), mirrored(pair), scalings(pair)}) {
     std::set<std::string> distinct;
     for (const Pair& image : images) {
-      EXPECT_EQ(cgal_verdict(image), cgal_verdict(pair));
+      EXPECT_EQ(oracle::cgal_verdict(image), oracle::cgal_verdict(pair));
       distinct.emplace(reinterpret_cast<const char*>(&image), sizeof image);
     }
     EXPECT_EQ(distinct.size(), images.size());
@@ -273,4 +276,4 @@ TEST(Neighbours, NudgesMoveOneCoordinateBothWays) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::analysis

@@ -7,10 +7,10 @@
 
 #include "analysis/explain.h"
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
-std::string phrase(const Truth& truth) {
+std::string phrase(const oracle::Truth& truth) {
   if (truth.contact == Contact::none)
     return fmt::format("are {:.3g} apart ({:.3g} ulps of the largest coordinate)", truth.margin, truth.margin_ulps);
   const std::string deep = truth.margin < 0 ? fmt::format(", {:.3g} deep", -truth.margin) : "";
@@ -24,7 +24,7 @@ std::string phrase(const Truth& truth) {
   }
 }
 
-std::string words(const ContractionSite& site) {
+std::string words(const cuda::ContractionSite& site) {
   const std::string at = fmt::format("{}:{}", site.at.file, site.at.line);
   const bool inlined =
       site.from.line > 0 && *site.from.file != '\0' && std::string_view(site.from.file).starts_with("core/");
@@ -32,9 +32,9 @@ std::string words(const ContractionSite& site) {
 }
 
 // "A", "A and B", "A, B and 3 more": equal ones once.
-std::string list(const std::vector<ContractionSite>& sites) {
+std::string list(const std::vector<cuda::ContractionSite>& sites) {
   std::vector<std::string> names;
-  for (const ContractionSite& site : sites) {
+  for (const cuda::ContractionSite& site : sites) {
     if (std::find(names.begin(), names.end(), words(site)) == names.end()) names.push_back(words(site));
   }
   constexpr std::size_t kMost = 3;
@@ -103,7 +103,7 @@ std::string remedy(const LaneExplanation& lane) {
   if (lane.cause == Cause::contraction) return "without contraction it is right";
   const bool range = lane.cause == Cause::overflow || lane.cause == Cause::underflow;
   const std::string bits =
-      lane.bits_needed == 0     ? fmt::format("no mantissa of up to {} bits would be enough", kMostBits)
+      lane.bits_needed == 0     ? fmt::format("no mantissa of up to {} bits would be enough", oracle::kMostBits)
       : lane.bits_needed == own ? fmt::format("its {} mantissa bits would be enough", own)
                                 : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
   return bits + (range ? " with exponents without limits" : "");
@@ -121,7 +121,7 @@ nlohmann::ordered_json number(double x) {
   return std::isnan(x) ? "nan" : x < 0 ? "-inf" : "inf";
 }
 
-nlohmann::ordered_json to_json(const Beside& beside) {
+nlohmann::ordered_json to_json(const oracle::Beside& beside) {
   return {{"lane", number(beside.lane)}, {"exact", beside.decimal}, {"ulps", number(beside.ulps)}};
 }
 
@@ -140,7 +140,7 @@ nlohmann::ordered_json to_json(const Step& step) {
   return json;
 }
 
-nlohmann::ordered_json to_json(const SourceLine& line) {
+nlohmann::ordered_json to_json(const cuda::SourceLine& line) {
   return line.line > 0 ? nlohmann::ordered_json(fmt::format("{}:{}", line.file, line.line)) : nullptr;
 }
 
@@ -195,7 +195,7 @@ nlohmann::ordered_json to_json(const LaneExplanation& lane) {
   json["steps"] = nlohmann::ordered_json::array();
   for (const Step& s : lane.steps) json["steps"].push_back(to_json(s));
   json["contractions"] = nlohmann::ordered_json::array();
-  for (const ContractionSite& site : lane.contractions.sites) {
+  for (const cuda::ContractionSite& site : lane.contractions.sites) {
     json["contractions"].push_back(
         {{"at", to_json(site.at)}, {"from", to_json(site.from)}, {"by", site.by_ptxas ? "ptxas" : "front end"}});
   }
@@ -209,7 +209,7 @@ nlohmann::ordered_json to_json(const LaneExplanation& lane) {
 }
 
 nlohmann::ordered_json to_json(const Explanation& explanation) {
-  const Truth& truth = explanation.truth;
+  const oracle::Truth& truth = explanation.truth;
   nlohmann::ordered_json json{{"truth",
                                {{"verdict", name(truth.verdict)},
                                 {"contact", name(truth.contact)},
@@ -221,4 +221,4 @@ nlohmann::ordered_json to_json(const Explanation& explanation) {
   return json;
 }
 
-}  // namespace graze
+}  // namespace graze::analysis

@@ -6,14 +6,14 @@
 #include "cuda/lanes/trace.h"
 #include "cuda/twin/twin.h"
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 // The hash of cuda/lanes/trace.h, of a run written down.
 template <class Real>
 std::uint64_t trace_hash(const Trace<double>& run) {
   std::uint64_t hash = 0;
-  const TracePolicy policy{&hash};
+  const cuda::TracePolicy policy{&hash};
   for (const Seen<double>& seen : run.seen) {
     if (!seen.site) continue;
     policy.fold(static_cast<Real>(seen.left));
@@ -32,7 +32,7 @@ Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Pa
 // How well the run of a contracting lane is known to be its own.
 Evidence evidence(const Lane& lane, const Pair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
-  const TraceBlock twin = twin_trace(lane.algorithm, lane.scalar, lane.target);
+  const cuda::TraceBlock twin = cuda::twin_trace(lane.algorithm, lane.scalar, lane.target);
   if (!twin) return Evidence::verdict;
   std::uint64_t hash = 0;
   twin(&pair, 1, &hash);
@@ -65,11 +65,11 @@ Replay replay(const Lane& lane, const Pair& pair) {
 }
 
 DecideBlock block_of(const Lane& lane) {
-  const DecideBlock block = block_on_host(lane);
+  const DecideBlock block = cuda::block_on_host(lane);
   if (!block) throw std::invalid_argument(lane.id + ": expected a host lane or a twin");
   return block;
 }
 
 Verdict decide_lane(const Lane& lane, const Pair& pair) { return decide_one(block_of(lane), pair); }
 
-}  // namespace graze
+}  // namespace graze::analysis

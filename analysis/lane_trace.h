@@ -2,10 +2,10 @@
 // A lane's run, written down: each comparison, and each value that it asks its policy about, in its own arithmetic.
 #pragma once
 
-#include "core/lanes.h"
 #include "core/algorithms/traced.h"
+#include "core/lanes.h"
 
-namespace graze {
+namespace graze::analysis {
 
 // source: the lane is the algorithm's source without contraction, and so is the replay. hash: contracted by a rule, and
 // all values asked of the policy have the hash that the lane's twin gives them. verdict: contracted by a rule, and the
@@ -31,4 +31,4 @@ DecideBlock block_of(const Lane& lane);
 // The lane's verdict: by the host, or for CUDA lanes by the twin.   Throws: std::invalid_argument without either.
 Verdict decide_lane(const Lane& lane, const Pair& pair);
 
-}  // namespace graze
+}  // namespace graze::analysis

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace graze {
+namespace graze::analysis {
 
 std::vector<Pair> orders(const Pair& pair) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -60,4 +60,4 @@ std::vector<Pair> nudged(const Pair& pair, int coordinate) {
   return result;
 }
 
-}  // namespace graze
+}  // namespace graze::analysis

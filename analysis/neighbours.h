@@ -6,7 +6,7 @@
 
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::analysis {
 
 // All exact in float32, so that the truth is the pair's own. The pair itself is the first of each.
 std::vector<Pair> orders(const Pair& pair);    // the 72: which triangle is first, and the order of each one's vertices
@@ -19,4 +19,4 @@ std::vector<Pair> scalings(const Pair& pair);
 // be. Those that stay finite: four, but near the ends of float32.
 std::vector<Pair> nudged(const Pair& pair, int coordinate);
 
-}  // namespace graze
+}  // namespace graze::analysis

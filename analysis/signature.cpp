@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace graze {
+namespace graze::analysis {
 
 char mark(Verdict lane, Verdict truth) {
   if (lane == Verdict::declined) return truth == Verdict::declined ? '.' : '?';
@@ -16,7 +16,7 @@ bool Signature::wrong() const {
   return std::any_of(marks.begin(), marks.end(), [](char m) { return m != '.' && m != '_'; });
 }
 
-Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth,
+Signature signature(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts) {
   Signature s{contact, shape, bucket, lanes.front()->algorithm, {}};
   s.marks.fill('_');
@@ -39,4 +39,4 @@ std::string algorithm_of(const std::string& key) {
   return key.substr(slash + 1, colon - slash - 1);
 }
 
-}  // namespace graze
+}  // namespace graze::analysis

@@ -12,7 +12,7 @@
 #include "core/verdict.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::analysis {
 
 // How a lane's answer compares with the truth: '.' right, '+' false positive, '-' false negative, '?' declined.
 char mark(Verdict lane, Verdict truth);
@@ -20,7 +20,7 @@ char mark(Verdict lane, Verdict truth);
 // One algorithm's failure on a pair. One algorithm a signature: a pair on which several fail has several.
 struct Signature {
   Contact contact = Contact::none;
-  Shape shape;
+  oracle::Shape shape;
   Bucket bucket = 0;
   int algorithm = 0;
   std::array<char, 2 * kTargetCount> marks{};  // f32, then f64, each in the order of Target; '_': did not run
@@ -30,7 +30,7 @@ struct Signature {
 };
 
 // Requires: lanes are of one algorithm, verdicts theirs.
-Signature signature(Contact contact, const Shape& shape, Bucket bucket, Verdict truth,
+Signature signature(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts);
 
 // "point/22/skew/-2^-3/moller_1997:+-__..__": contact, dimensions, coplanar or skew, margin bucket, algorithm, marks.
@@ -49,4 +49,4 @@ void for_each_algorithm(std::span<const Lane* const> lanes, Visit visit) {
   }
 }
 
-}  // namespace graze
+}  // namespace graze::analysis

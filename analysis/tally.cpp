@@ -3,7 +3,7 @@
 
 #include <bit>
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 // Calls visit(i) for each set bit i of the word.
@@ -80,4 +80,4 @@ std::vector<int> cpu_twins(std::span<const Lane* const> lanes) {
   return twins;
 }
 
-}  // namespace graze
+}  // namespace graze::analysis

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "core/margin/bucket.h"
 #include "core/lanes.h"
+#include "core/margin/bucket.h"
 
-namespace graze {
+namespace graze::analysis {
 
 // Bit i % 64 of word i / 64 belongs to pair i; unused bits are zero.
 using Bits = std::vector<std::uint64_t>;
@@ -77,4 +77,4 @@ Bits disagreements(const JudgedBlock& block);
 // For each of these lanes, the place among them of its cpu lane; see Tally.
 std::vector<int> cpu_twins(std::span<const Lane* const> lanes);
 
-}  // namespace graze
+}  // namespace graze::analysis

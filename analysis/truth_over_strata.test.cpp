@@ -7,10 +7,10 @@
 #include "core/exact/exact.h"
 #include "core/margin/single_precision.h"
 #include "core/margin/tie_proof.h"
-#include "strata/strata.h"
 #include "oracle/truth.h"
+#include "strata/strata.h"
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 constexpr std::uint64_t kSeed = 20120727;
@@ -28,35 +28,36 @@ const Lane& lane(std::string_view id) {
   throw std::out_of_range(std::string(id));
 }
 
-class EveryStratum : public testing::TestWithParam<StratumInfo> {};
+class EveryStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
 TEST_P(EveryStratum, TheOraclesTwoDecisionsAgree) {
   std::uint64_t intersecting = 0;
   for (std::uint64_t index = 0; index < 100'000; ++index) {
-    const Pair pair = generate(kSeed, GetParam().stratum, index);
-    const bool intersects = cgal_verdict(pair) == Verdict::intersects;
-    ASSERT_EQ(intersects, gmp_contact(pair) != Contact::none) << GetParam().id << ":" << kSeed << ":" << index;
+    const Pair pair = strata::generate(kSeed, GetParam().stratum, index);
+    const bool intersects = oracle::cgal_verdict(pair) == Verdict::intersects;
+    ASSERT_EQ(intersects, oracle::gmp_contact(pair) != Contact::none) << GetParam().id << ":" << kSeed << ":" << index;
     intersecting += intersects;
   }
   EXPECT_GT(intersecting, 0u);
   // Neighbours in a mesh always share a point; everywhere else both verdicts must occur.
-  const bool shared = GetParam().stratum == Stratum::shared_vertex || GetParam().stratum == Stratum::shared_edge;
+  const bool shared =
+      GetParam().stratum == strata::Stratum::shared_vertex || GetParam().stratum == strata::Stratum::shared_edge;
   EXPECT_EQ(intersecting == 100'000u, shared);
 }
 
 // The exact decision on machine numbers: verdict, contact, shape and the margin's sign are the oracle's.
 TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   for (std::uint64_t index = 0; index < 100'000; ++index) {
-    const Pair pair = generate(kSeed + 1, GetParam().stratum, index);
+    const Pair pair = strata::generate(kSeed + 1, GetParam().stratum, index);
     const float *a = &pair.a[0].x, *b = &pair.b[0].x;
-    const Verdict verdict = cgal_verdict(pair);
-    const Contact contact = gmp_contact(pair);
+    const Verdict verdict = oracle::cgal_verdict(pair);
+    const Contact contact = oracle::gmp_contact(pair);
     ASSERT_EQ(exact::intersects(a, b), verdict == Verdict::intersects) << index;
     const exact::Relation r = exact::relation(a, b);
     ASSERT_EQ(r.intersects, verdict == Verdict::intersects) << index;
     ASSERT_EQ(r.contact, static_cast<int>(contact) - 1) << index;
-    ASSERT_EQ((Shape{r.dimension_a, r.dimension_b, r.coplanar}), shape(pair)) << index;
-    const Bucket bucket = margin_bucket(pair, verdict);
+    ASSERT_EQ((oracle::Shape{r.dimension_a, r.dimension_b, r.coplanar}), oracle::shape(pair)) << index;
+    const Bucket bucket = oracle::margin_bucket(pair, verdict);
     ASSERT_EQ(r.margin_sign, (bucket > 0) - (bucket < 0)) << index;
   }
 }
@@ -65,10 +66,10 @@ TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
 TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
   std::uint64_t by_single = 0, by_double = 0, undecided = 0;
   for (std::uint64_t index = 0; index < 20'000; ++index) {
-    const Pair pair = generate(kSeed + 2, GetParam().stratum, index);
+    const Pair pair = strata::generate(kSeed + 2, GetParam().stratum, index);
     const float *a = &pair.a[0].x, *b = &pair.b[0].x;
     const Verdict verdict = exact::intersects(a, b) ? Verdict::intersects : Verdict::disjoint;
-    const Bucket expected = margin_bucket(pair, verdict);
+    const Bucket expected = oracle::margin_bucket(pair, verdict);
     Bucket bucket;
     if (bucket_by_single(pair, verdict, bucket)) {
       ++by_single;
@@ -86,20 +87,21 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
     ASSERT_TRUE(!proven || make_bucket(1, upper - ulp) == expected) << index;
     EXPECT_FALSE(are_apart_by(a, b, bounds.direction, upper + 1)) << index;
   }
-  const bool touching = GetParam().stratum == Stratum::shared_vertex || GetParam().stratum == Stratum::shared_edge;
+  const bool touching =
+      GetParam().stratum == strata::Stratum::shared_vertex || GetParam().stratum == strata::Stratum::shared_edge;
   EXPECT_TRUE(touching || by_double > 3'000u) << by_double;
   EXPECT_TRUE(!GetParam().id.starts_with("near_") || by_single > 5'000u) << by_single;
   RecordProperty("by_single", static_cast<int>(by_single));
   RecordProperty("by_double", static_cast<int>(by_double));
-  EXPECT_TRUE(GetParam().stratum == Stratum::mixed_scale || undecided < 20u) << undecided;
+  EXPECT_TRUE(GetParam().stratum == strata::Stratum::mixed_scale || undecided < 20u) << undecided;
 }
 
 // The margin's certified bucket, sign included, against the exact margin.
 TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
   for (std::uint64_t index = 0; index < 400; ++index) {
-    const Pair pair = generate(kSeed, GetParam().stratum, index);
-    const Truth t = truth(pair);
-    const Bucket bucket = margin_bucket(pair, t.verdict);
+    const Pair pair = strata::generate(kSeed, GetParam().stratum, index);
+    const oracle::Truth t = oracle::truth(pair);
+    const Bucket bucket = oracle::margin_bucket(pair, t.verdict);
     ASSERT_EQ(bucket > 0, t.verdict == Verdict::disjoint) << index;
     ASSERT_EQ(bucket == 0, t.margin == 0 && t.verdict == Verdict::intersects) << index;
     if (bucket != 0 && t.margin_ulps != 0 && std::isfinite(t.margin_ulps)) {
@@ -112,18 +114,18 @@ TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Strata, EveryStratum, testing::ValuesIn(kStrata),
+INSTANTIATE_TEST_SUITE_P(Strata, EveryStratum, testing::ValuesIn(strata::kStrata),
                          [](const auto& row) { return std::string(row.param.id); });
 
 // Every near, coplanar, degenerate and extreme stratum must defeat some lane, or it is not worth its name.
 TEST(Lanes, FailInEveryHardStratum) {
-  for (const StratumInfo& row : kStrata) {
-    if (row.stratum == Stratum::uniform || row.stratum == Stratum::thesis) continue;
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    if (row.stratum == strata::Stratum::uniform || row.stratum == strata::Stratum::thesis) continue;
     std::uint64_t failures = 0;
     for (std::uint64_t index = 0; index < 3000; ++index) {
-      const Pair pair = generate(kSeed, row.stratum, index);
-      failures += wrong(lane("moller_1997/f32/cpu"), pair, cgal_verdict(pair)) ||
-                  wrong(lane("guigue_devillers_2003/f32/cpu"), pair, cgal_verdict(pair));
+      const Pair pair = strata::generate(kSeed, row.stratum, index);
+      failures += wrong(lane("moller_1997/f32/cpu"), pair, oracle::cgal_verdict(pair)) ||
+                  wrong(lane("guigue_devillers_2003/f32/cpu"), pair, oracle::cgal_verdict(pair));
     }
     EXPECT_GT(failures, 0u) << row.id;
   }
@@ -134,9 +136,9 @@ TEST(Lanes, FailInEveryHardStratum) {
 TEST(Lanes, OnTheLatticeDivisionFreeAlgorithmsFailOnDegeneratePairsOnly) {
   std::uint64_t proper = 0, wrong_on_degenerate = 0;
   for (std::uint64_t index = 0; index < 200'000; ++index) {
-    const Pair pair = generate(kSeed, Stratum::lattice, index);
-    const Verdict verdict = cgal_verdict(pair);
-    const Shape hulls = shape(pair);
+    const Pair pair = strata::generate(kSeed, strata::Stratum::lattice, index);
+    const Verdict verdict = oracle::cgal_verdict(pair);
+    const oracle::Shape hulls = oracle::shape(pair);
     const bool degenerate = hulls.dimension_a < 2 || hulls.dimension_b < 2;
     proper += !degenerate;
     for (const Lane& row : lanes()) {
@@ -152,13 +154,13 @@ TEST(Lanes, OnTheLatticeDivisionFreeAlgorithmsFailOnDegeneratePairsOnly) {
 
 // Wide exact contacts defeat double precision as well.
 TEST(Lanes, WideExactContactsDefeatDoublePrecision) {
-  for (const Stratum stratum : {Stratum::coplanar_wide, Stratum::exact_contact}) {
+  for (const strata::Stratum stratum : {strata::Stratum::coplanar_wide, strata::Stratum::exact_contact}) {
     std::uint64_t failures = 0;
     for (std::uint64_t index = 0; index < 3000; ++index) {
-      const Pair pair = generate(kSeed, stratum, index);
-      failures += wrong(lane("guigue_devillers_2003/f64/cpu"), pair, cgal_verdict(pair));
+      const Pair pair = strata::generate(kSeed, stratum, index);
+      failures += wrong(lane("guigue_devillers_2003/f64/cpu"), pair, oracle::cgal_verdict(pair));
     }
-    EXPECT_GT(failures, 30u) << kStrata[static_cast<int>(stratum)].id;
+    EXPECT_GT(failures, 30u) << strata::kStrata[static_cast<int>(stratum)].id;
   }
 }
 
@@ -170,7 +172,7 @@ TEST(Canary, ContractionShowsInEveryAlgorithmAndScalar) {
     ASSERT_EQ(strict.target, Target::cpu);
     std::uint64_t differences = 0;
     for (std::uint64_t index = 0; index < 2000; ++index) {
-      const Pair pair = generate(kSeed, Stratum::exact_contact, index);
+      const Pair pair = strata::generate(kSeed, strata::Stratum::exact_contact, index);
       differences += wrong(fused, pair, Verdict::intersects) != wrong(strict, pair, Verdict::intersects);
     }
     EXPECT_GT(differences, 0u) << fused.id;
@@ -178,4 +180,4 @@ TEST(Canary, ContractionShowsInEveryAlgorithmAndScalar) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::analysis

@@ -9,10 +9,10 @@
 
 #include "analysis/lane_trace.h"
 #include "core/exact/exact.h"
-#include "strata/draws.h"
 #include "oracle/truth.h"
+#include "strata/draws.h"
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 // The truth and the lanes on a block of pairs.
@@ -68,9 +68,10 @@ void confirm(const UlpMap& map, int cell) {
   if (!is_finite(pair)) return;
   const Cell found = map.panels.front().cells[static_cast<std::size_t>(cell)];
   const bool intersects = found == Cell::intersects;
-  if ((cgal_verdict(pair) == Verdict::intersects) == intersects && (gmp_contact(pair) != Contact::none) == intersects)
+  if ((oracle::cgal_verdict(pair) == Verdict::intersects) == intersects &&
+      (oracle::gmp_contact(pair) != Contact::none) == intersects)
     return;
-  throw OracleApart(
+  throw oracle::OracleApart(
       fmt::format("the exact decision and the oracle differ in column {}, row {} of an ulp map over {} and {}", column,
                   row, name_of_coordinate(map.moved.x), name_of_coordinate(map.moved.y)));
 }
@@ -163,4 +164,4 @@ UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordi
   return map;
 }
 
-}  // namespace graze
+}  // namespace graze::analysis

@@ -15,7 +15,7 @@
 #include "core/lanes.h"
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::analysis {
 
 inline constexpr int kMapSize = 256;             // cells a side
 inline constexpr int kMapCentre = kMapSize / 2;  // column and row of the pair itself
@@ -65,4 +65,4 @@ MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* c
 // Throws: OracleApart where the oracle does not confirm the truth.
 UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved);
 
-}  // namespace graze
+}  // namespace graze::analysis

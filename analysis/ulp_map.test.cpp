@@ -9,17 +9,17 @@
 
 #include "analysis/lane_trace.h"
 #include "cuda/twin/twin.h"
-#include "strata/strata.h"
 #include "oracle/truth.h"
+#include "strata/strata.h"
 
-namespace graze {
+namespace graze::analysis {
 namespace {
 
 std::vector<const Lane*> lanes_of(std::string_view algorithm) {
   std::vector<const Lane*> result;
   for (const Lane& lane : published_lanes()) {
     const bool here =
-        lane.is_cuda() ? twin_block(lane.algorithm, lane.scalar, lane.target) != nullptr : runs_on_this_cpu(lane);
+        lane.is_cuda() ? cuda::twin_block(lane.algorithm, lane.scalar, lane.target) != nullptr : runs_on_this_cpu(lane);
     if (here && lane.info->id == algorithm) result.push_back(&lane);
   }
   return result;
@@ -65,10 +65,10 @@ TEST(UlpMap, StepsAreNeighboursThroughZeroAndToTheEnds) {
 
 TEST(UlpMap, EachCellIsWhatItsPairGets) {
   int wrong = 0;
-  for (const StratumInfo& stratum : kStrata) {
-    const Pair pair = generate(11, stratum.stratum, 5);
+  for (const strata::StratumInfo& stratum : strata::kStrata) {
+    const Pair pair = strata::generate(11, stratum.stratum, 5);
     const std::vector<const Lane*> lanes =
-        lanes_of(stratum.stratum < Stratum::sliver ? "interval_overlap" : "moller_1997");
+        lanes_of(stratum.stratum < strata::Stratum::sliver ? "interval_overlap" : "moller_1997");
     const MovedCoordinates moved = liveliest_coordinates(pair, lanes);
     EXPECT_EQ(moved.x / 3, moved.y / 3);
     EXPECT_LT(moved.x, moved.y);
@@ -76,7 +76,7 @@ TEST(UlpMap, EachCellIsWhatItsPairGets) {
     for (int cell = 0; cell < kMapSize * kMapSize; cell += 191) {
       const int column = cell % kMapSize, row = cell / kMapSize;
       const Pair own = pair_at(pair, moved, column, row);
-      const Verdict truth = cgal_verdict(own);
+      const Verdict truth = oracle::cgal_verdict(own);
       ASSERT_EQ(cell_at(map.panels[0], column, row), truth == Verdict::intersects ? Cell::intersects : Cell::disjoint);
       for (std::size_t l = 0; l < lanes.size(); ++l) {
         const Verdict verdict = decide_lane(*lanes[l], own);
@@ -113,4 +113,4 @@ TEST(UlpMap, NamesCoordinatesAsTheyAreWritten) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::analysis

@@ -8,12 +8,15 @@
 #include "fuzz/campaign/result_files.h"
 #include "reports/ulp_map_picture.h"
 
-namespace graze {
+namespace graze::cli {
+
+using fuzz::Json;
 namespace {
 
 // Whether the stored maps are these lanes' of this pair.
 bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
-  if (!is_map_of(maps, pair) || !maps.contains("panels") || maps["panels"].size() != lanes.size() + 1) return false;
+  if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || maps["panels"].size() != lanes.size() + 1)
+    return false;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     if (maps["panels"][l + 1].value("name", "") != lanes[l]->id) return false;
   }
@@ -22,16 +25,17 @@ bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane
 
 }  // namespace
 
-bool map_case(const Bench& bench, const std::filesystem::path& case_file, const std::string& signature, bool again) {
+bool map_case(const fuzz::LanesUnderTest& under_test, const std::filesystem::path& case_file,
+              const std::string& signature, bool again) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
-  const Pair pair = read_pairs(case_file).at(0).pair;
+  const Pair pair = corpus::read_pairs(case_file).at(0).pair;
   std::vector<const Lane*> lanes;
-  std::copy_if(bench.lanes.begin(), bench.lanes.end(), std::back_inserter(lanes),
-               [&](const Lane* lane) { return lane->info->id == algorithm_of(signature); });
-  if (!again && is_current(Json::parse(read_whole(file), nullptr, false), pair, lanes)) return false;
-  const UlpMap map = ulp_map(pair, lanes, liveliest_coordinates(pair, lanes));
-  write_whole(file, to_json(map).dump(1) + "\n");
+  std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
+               [&](const Lane* lane) { return lane->info->id == analysis::algorithm_of(signature); });
+  if (!again && is_current(Json::parse(fuzz::read_whole(file), nullptr, false), pair, lanes)) return false;
+  const analysis::UlpMap map = analysis::ulp_map(pair, lanes, analysis::liveliest_coordinates(pair, lanes));
+  fuzz::write_whole(file, reports::to_json(map).dump(1) + "\n");
   return true;
 }
 
-}  // namespace graze
+}  // namespace graze::cli

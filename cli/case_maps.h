@@ -7,11 +7,11 @@
 
 #include "fuzz/lanes_under_test.h"
 
-namespace graze {
+namespace graze::cli {
 
-// Maps the file's first case on the bench's lanes of the signature's algorithm, along the liveliest coordinates, unless
-// that is there already or `again`. Returns: whether it was done now.
-// Throws: OracleApart, std::runtime_error.
-bool map_case(const Bench& bench, const std::filesystem::path& case_file, const std::string& signature, bool again);
+// Maps the file's first case on the under_test's lanes of the signature's algorithm, along the liveliest coordinates,
+// unless that is there already or `again`. Returns: whether it was done now. Throws: OracleApart, std::runtime_error.
+bool map_case(const fuzz::LanesUnderTest& under_test, const std::filesystem::path& case_file,
+              const std::string& signature, bool again);
 
-}  // namespace graze
+}  // namespace graze::cli

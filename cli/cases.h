@@ -7,11 +7,11 @@
 
 #include "corpus/pair_format.h"
 
-namespace graze {
+namespace graze::cli {
 
 // Returns: the cases, at least one; a stratum's pair has its three numbers as fields.
 // Throws: UsageError for a name that is none, FormatError for a file that is not in the format or missing,
 // std::runtime_error for one without a case.
-std::vector<Entry> read_cases(const std::string& name);
+std::vector<corpus::Entry> read_cases(const std::string& name);
 
-}  // namespace graze
+}  // namespace graze::cli

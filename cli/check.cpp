@@ -12,7 +12,7 @@
 #include "oracle/truth.h"
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 struct CheckOptions {
@@ -29,15 +29,15 @@ nlohmann::ordered_json number(double x) {
 void check(const CheckOptions& options) {
   const bool from_stdin = options.file == "-";
   std::ifstream file;
-  if (!from_stdin) file = open_pairs(options.file);
-  Bench bench;
-  if (!options.truth_only) bench = make_bench(options.lanes.globs, options.lanes.executor);
-  const std::string evidence = cuda_evidence(bench);
-  PairReader reader(from_stdin ? std::cin : file, from_stdin ? "standard input" : options.file);
+  if (!from_stdin) file = corpus::open_pairs(options.file);
+  fuzz::LanesUnderTest under_test;
+  if (!options.truth_only) under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
+  const std::string evidence = cuda_evidence(under_test);
+  corpus::PairReader reader(from_stdin ? std::cin : file, from_stdin ? "standard input" : options.file);
   std::size_t number_of_pair = 0;
   for (; const auto entry = reader.next(); ++number_of_pair) {
-    const Truth t = truth(entry->pair);
-    const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(bench, entry->pair);
+    const oracle::Truth t = oracle::truth(entry->pair);
+    const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(under_test, entry->pair);
     if (options.json) {
       nlohmann::ordered_json line = {{"pair", number_of_pair},
                                      {"truth",
@@ -46,14 +46,14 @@ void check(const CheckOptions& options) {
                                        {"margin", number(t.margin)},
                                        {"margin_ulps", number(t.margin_ulps)}}},
                                      {"lanes", nlohmann::ordered_json::object()}};
-      for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][bench.lanes[l]->id] = name(verdicts[l]);
+      for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][under_test.lanes[l]->id] = name(verdicts[l]);
       if (!evidence.empty()) line["cuda"] = evidence;
       fmt::print("{}\n", line.dump());
     } else {
-      const std::string* label = field(*entry, "name");
+      const std::string* label = corpus::field(*entry, "name");
       fmt::print("pair {}, line {}{}\n", number_of_pair, entry->line, label ? ": " + *label : "");
       std::fflush(stdout);
-      print_pair(std::cout, entry->pair, t, bench.lanes, verdicts);
+      reports::print_pair(std::cout, entry->pair, t, under_test.lanes, verdicts);
       if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
       std::cout.flush();
     }
@@ -76,4 +76,4 @@ void add_check(CLI::App& app, int&) {
   command->callback([options] { check(*options); });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -6,7 +6,7 @@
 
 #include "cli/run_graze.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -197,4 +197,4 @@ TEST_F(Cli, QuietWhenNotOnATerminal) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cli

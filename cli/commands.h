@@ -9,7 +9,7 @@
 
 #include "fuzz/lanes_under_test.h"
 
-namespace graze {
+namespace graze::cli {
 
 void add_fuzz(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
@@ -26,7 +26,7 @@ void add_prove_twin(CLI::App& app, int& status);
 // --lanes and --executor, which every verb that runs lanes has.
 struct LaneOptions {
   std::vector<std::string> globs;
-  Executor executor = Executor::automatic;
+  fuzz::Executor executor = fuzz::Executor::automatic;
 };
 void add_lane_options(CLI::App& command, LaneOptions& options);
 
@@ -40,9 +40,9 @@ inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
-std::vector<Verdict> decide(const Bench& bench, const Pair& pair);
+std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair);
 
-// What runs the CUDA lanes of the bench, in one line: each kind of evidence once. Empty without CUDA lanes.
-std::string cuda_evidence(const Bench& bench);
+// What runs the CUDA lanes of the under_test, in one line: each kind of evidence once. Empty without CUDA lanes.
+std::string cuda_evidence(const fuzz::LanesUnderTest& under_test);
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -19,7 +19,9 @@
 #include "fuzz/regression/found_failure.h"
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::cli {
+
+using fuzz::Json;
 namespace {
 
 struct CorpusOptions {
@@ -48,34 +50,34 @@ class FolderLock {
   int handle_;
 };
 
-RegressionCorpus read_corpus(const CorpusOptions& options) {
+fuzz::RegressionCorpus read_corpus(const CorpusOptions& options) {
   if (!std::filesystem::exists(options.file())) {
     throw UsageError(
         fmt::format("{}: expected a regression corpus (see `graze corpus add`), found none", options.file().string()));
   }
-  RegressionCorpus corpus = read_regressions(options.file());
+  fuzz::RegressionCorpus corpus = fuzz::read_regressions(options.file());
   if (corpus.empty()) throw std::runtime_error(options.file().string() + ": expected at least one case, found none");
   return corpus;
 }
 
-void write_corpus(const CorpusOptions& options, const RegressionCorpus& corpus) {
+void write_corpus(const CorpusOptions& options, const fuzz::RegressionCorpus& corpus) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
-  write_regressions(options.file(), corpus);
+  fuzz::write_regressions(options.file(), corpus);
 }
 
-DecideLanes decide_by(const Bench& bench) {
-  return [&bench](const Pair& pair, std::vector<const Lane*>& apart) { return decide(bench, pair, apart); };
+fuzz::DecideLanes decide_by(const fuzz::LanesUnderTest& under_test) {
+  return [&under_test](const Pair& pair, std::vector<const Lane*>& apart) { return decide(under_test, pair, apart); };
 }
 
 void add(const CorpusOptions& options) {
-  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
-  const DecideLanes by_bench = decide_by(bench);
-  const Json build = build_info(bench);
-  std::vector<std::pair<std::string, std::vector<Sighting>>> found;
+  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
+  const fuzz::DecideLanes by_bench = decide_by(under_test);
+  const Json build = fuzz::build_info(under_test);
+  std::vector<std::pair<std::string, std::vector<fuzz::FoundFailure>>> found;
   for (const std::string& name : options.names) {
     found.emplace_back(name, std::filesystem::is_directory(name)
-                                 ? sightings_of_campaign(name, options.signatures, options.most)
-                                 : sightings_of_cases(read_cases(name), build, bench.lanes, by_bench));
+                                 ? fuzz::found_in_campaign(name, options.signatures, options.most)
+                                 : fuzz::found_in_cases(read_cases(name), build, under_test.lanes, by_bench));
     if (found.back().second.empty())
       throw std::runtime_error(name + ": expected a case on which some lane is wrong, found none");
   }
@@ -83,43 +85,45 @@ void add(const CorpusOptions& options) {
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
   const FolderLock lock(options.folder);
-  RegressionCorpus corpus;
-  if (std::filesystem::exists(options.file())) corpus = read_regressions(options.file());
+  fuzz::RegressionCorpus corpus;
+  if (std::filesystem::exists(options.file())) corpus = fuzz::read_regressions(options.file());
   std::array<std::size_t, 3> count{};
-  for (const auto& [name, sightings] : found) {
-    for (const Sighting& sighting : sightings) {
+  for (const auto& [name, failures] : found) {
+    for (const fuzz::FoundFailure& failure : failures) {
       try {
-        ++count[static_cast<std::size_t>(graze::add(corpus, sighting, bench.lanes, by_bench))];
+        ++count[static_cast<std::size_t>(fuzz::add(corpus, failure, under_test.lanes, by_bench))];
       } catch (const std::runtime_error& error) {
         throw std::runtime_error(name + ": " + error.what());
       }
     }
   }
   write_corpus(options, corpus);
-  fmt::print("{} new, {} seen again, {} known already; {} holds {}\n", grouped(count[0]), grouped(count[1]),
-             grouped(count[2]), options.file().string(), grouped(corpus.size()));
+  fmt::print("{} new, {} seen again, {} known already; {} holds {}\n", reports::grouped(count[0]),
+             reports::grouped(count[1]), reports::grouped(count[2]), options.file().string(),
+             reports::grouped(corpus.size()));
 }
 
 void list(const CorpusOptions& options) {
   for (const auto& [signature, c] : read_corpus(options)) {
-    fmt::print("{:<8}{:>11}  {}\n{:21}{}\n{:21}first: {}\n{:21}last:  {}\n", name(c.state), grouped(c.count), c.name,
-               "", signature, "", c.first, "", c.last);
+    fmt::print("{:<8}{:>11}  {}\n{:21}{}\n{:21}first: {}\n{:21}last:  {}\n", name(c.state), reports::grouped(c.count),
+               c.name, "", signature, "", c.first, "", c.last);
   }
 }
 
 int verify(const CorpusOptions& options) {
-  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
+  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::unique_ptr<FolderLock> lock;
   if (options.update && std::filesystem::exists(options.folder)) lock = std::make_unique<FolderLock>(options.folder);
-  RegressionCorpus corpus = read_corpus(options);
-  const Verified result = graze::verify(corpus, bench.lanes, decide_by(bench));
+  fuzz::RegressionCorpus corpus = read_corpus(options);
+  const fuzz::Verified result = graze::fuzz::verify(corpus, under_test.lanes, decide_by(under_test));
   std::array<std::size_t, 3> states{};
   for (const auto& [signature, c] : corpus) ++states[static_cast<std::size_t>(c.state)];
-  for (const Change& change : result.changes) fmt::print("{}: {}\n", change.name, change.what);
+  for (const fuzz::Change& change : result.changes) fmt::print("{}: {}\n", change.name, change.what);
   fmt::print("{} cases on {} lanes: {} failing, {} fixed, {} flaky; {} verdicts compared, {} changes{}\n",
-             grouped(corpus.size()), bench.lanes.size(), states[0], states[1], states[2], grouped(result.compared),
-             result.changes.size(), options.update ? ", recorded" : "");
-  if (const std::string evidence = cuda_evidence(bench); !evidence.empty()) fmt::print("CUDA lanes: {}\n", evidence);
+             reports::grouped(corpus.size()), under_test.lanes.size(), states[0], states[1], states[2],
+             reports::grouped(result.compared), result.changes.size(), options.update ? ", recorded" : "");
+  if (const std::string evidence = cuda_evidence(under_test); !evidence.empty())
+    fmt::print("CUDA lanes: {}\n", evidence);
   if (options.update) {
     write_corpus(options, corpus);
     return 0;
@@ -158,7 +162,7 @@ void add_corpus(CLI::App& app, int& status) {
   add_lane_options(*command, options->lanes);
   command->callback([options] { add(*options); });
 
-  command = add_verb(*corpus, "list", "List the cases: state, count, name, signature, first and last sighting",
+  command = add_verb(*corpus, "list", "List the cases: state, count, name, signature, first and last failure",
                      "Example: graze corpus list --corpus regression", options);
   command->callback([options] { list(*options); });
 
@@ -170,4 +174,4 @@ void add_corpus(CLI::App& app, int& status) {
   command->callback([options, &status] { status = verify(*options); });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -6,7 +6,7 @@
 
 #include "cli/run_graze.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 class CorpusVerb : public CommandTest {
@@ -164,4 +164,4 @@ TEST_F(CorpusVerb, TheRepositorysOwnHolds) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cli

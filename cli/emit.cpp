@@ -10,45 +10,49 @@
 #include "cli/commands.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 // Where the case is from: its numbers, or those it was minimised from, its name, or its line.
-std::string origin(const std::string& name, const Entry& entry) {
-  if (const std::optional<std::string> numbers = numbers_of(entry)) return *numbers;
-  const std::string *kind = field(entry, "kind"), *from = field(entry, "from"), *label = field(entry, "name");
+std::string origin(const std::string& name, const corpus::Entry& entry) {
+  if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return *numbers;
+  const std::string *kind = corpus::field(entry, "kind"), *from = corpus::field(entry, "from"),
+                    *label = corpus::field(entry, "name");
   if (kind && from) return fmt::format("{} from {}", *kind, *from);
   return label ? *label : entry.line > 0 ? fmt::format("{}:{}", name, entry.line) : name;
 }
 
-std::string described(const std::string& name, const Entry& entry, const Truth& t) {
+std::string described(const std::string& name, const corpus::Entry& entry, const oracle::Truth& t) {
   return fmt::format("Case {}: contact {}, margin {} ({} ulps)", origin(name, entry), graze::name(t.contact), t.margin,
                      t.margin_ulps);
 }
 
 }  // namespace
 
-std::string emit(SnippetKind kind, const std::string& name, const std::vector<Entry>& entries, const Bench& bench) {
-  std::optional<SnippetCase> fallback;
-  for (const Entry& entry : entries) {
-    const Truth t = truth(entry.pair);
+std::string emit(reports::SnippetKind kind, const std::string& name, const std::vector<corpus::Entry>& entries,
+                 const fuzz::LanesUnderTest& under_test) {
+  std::optional<reports::SnippetCase> fallback;
+  for (const corpus::Entry& entry : entries) {
+    const oracle::Truth t = oracle::truth(entry.pair);
     if (t.verdict == Verdict::declined) continue;
-    const SnippetCase found{described(name, entry, t), entry.pair, t.verdict, nullptr, t.verdict};
-    const std::vector<Verdict> verdicts = decide(bench, entry.pair);
-    const std::string* signature = field(entry, "signature");
+    const reports::SnippetCase found{described(name, entry, t), entry.pair, t.verdict, nullptr, t.verdict};
+    const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
+    const std::string* signature = corpus::field(entry, "signature");
     std::optional<std::size_t> wrong;
-    for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
-      if (verdicts[l] == t.verdict || (shows_lanes(kind) && !shows(kind, *bench.lanes[l]))) continue;
-      const bool is_recorded = signature && bench.lanes[l]->info->id == algorithm_of(*signature);
-      if (!wrong || (is_recorded && bench.lanes[*wrong]->info != bench.lanes[l]->info)) wrong = l;
+    for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
+      if (verdicts[l] == t.verdict || (reports::shows_lanes(kind) && !reports::shows(kind, *under_test.lanes[l])))
+        continue;
+      const bool is_recorded = signature && under_test.lanes[l]->info->id == analysis::algorithm_of(*signature);
+      if (!wrong || (is_recorded && under_test.lanes[*wrong]->info != under_test.lanes[l]->info)) wrong = l;
     }
-    if (wrong) return snippet(kind, {found.name, found.pair, found.truth, bench.lanes[*wrong], verdicts[*wrong]});
+    if (wrong)
+      return reports::snippet(kind, {found.name, found.pair, found.truth, under_test.lanes[*wrong], verdicts[*wrong]});
     if (!fallback) fallback = found;
   }
   if (!fallback) throw std::runtime_error(name + ": expected a case with finite coordinates, found none");
-  if (!shows_lanes(kind)) return snippet(kind, *fallback);
+  if (!reports::shows_lanes(kind)) return reports::snippet(kind, *fallback);
   throw std::runtime_error(fmt::format("{}: expected a case on which one of the {} lanes is wrong, found none", name,
-                                       kind == SnippetKind::cuda ? "CUDA" : "CPU"));
+                                       kind == reports::SnippetKind::cuda ? "CUDA" : "CPU"));
 }
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -9,13 +9,13 @@
 #include "fuzz/lanes_under_test.h"
 #include "reports/snippet.h"
 
-namespace graze {
+namespace graze::cli {
 
-// The first case on which a lane of the bench is wrong that the snippet can show, and the first such lane, if it can be
-// of the algorithm in the case's signature. Where the kind shows no lane: the first case on which any lane is wrong, or
-// else the first case.
-// `name` is what the user called the cases.
-// Throws: std::runtime_error when there is none, or none with finite coordinates.
-std::string emit(SnippetKind kind, const std::string& name, const std::vector<Entry>& entries, const Bench& bench);
+// The first case on which a lane of the under_test is wrong that the snippet can show, and the first such lane, if it
+// can be of the algorithm in the case's signature. Where the kind shows no lane: the first case on which any lane is
+// wrong, or else the first case. `name` is what the user called the cases. Throws: std::runtime_error when there is
+// none, or none with finite coordinates.
+std::string emit(reports::SnippetKind kind, const std::string& name, const std::vector<corpus::Entry>& entries,
+                 const fuzz::LanesUnderTest& under_test);
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -6,7 +6,7 @@
 
 #include "cli/run_graze.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 struct EmitCase {
@@ -208,4 +208,4 @@ TEST(EmitErrors, SayWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cli

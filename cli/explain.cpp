@@ -12,15 +12,15 @@
 #include "cli/commands.h"
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
-std::string words(const Beside& beside) {
+std::string words(const oracle::Beside& beside) {
   const std::string error = std::isinf(beside.ulps) ? "" : fmt::format("  {:.3g} ulps", beside.ulps);
   return fmt::format("{:<14.7g} exact {:<14}{}", beside.lane, beside.decimal, error);
 }
 
-void print_step(const Step& step) {
+void print_step(const analysis::Step& step) {
   fmt::print("      {:<34} {:<15}", step.line, step.site);
   if (step.relation.empty()) {
     fmt::print("{}\n", words(step.left));
@@ -32,25 +32,26 @@ void print_step(const Step& step) {
 }
 
 // The values up to the comparison to tell of, or all; at most the last kMost of them.
-void print_steps(const LaneExplanation& lane) {
+void print_steps(const analysis::LaneExplanation& lane) {
   constexpr int kMost = 12;
-  const Step* told = lane.told();
+  const analysis::Step* told = lane.told();
   const int end = told ? static_cast<int>(told - lane.steps.data()) + 1 : static_cast<int>(lane.steps.size());
   const int begin = std::max(0, end - kMost);
   fmt::print("    values{}:{}\n",
-             lane.evidence == Evidence::source ? ""
-             : lane.evidence == Evidence::hash ? " (contracted by a rule; they have the hash of the lane's twin)"
-             : lane.evidence == Evidence::verdict
+             lane.evidence == analysis::Evidence::source ? ""
+             : lane.evidence == analysis::Evidence::hash
+                 ? " (contracted by a rule; they have the hash of the lane's twin)"
+             : lane.evidence == analysis::Evidence::verdict
                  ? " (contracted by a rule; only the verdict is known to be the lane's)"
                  : ": unknown, no rule of contraction replays this lane here",
              begin > 0 ? fmt::format(" ({} before, see --json)", begin) : "");
   for (int i = begin; i < end; ++i) print_step(lane.steps[static_cast<std::size_t>(i)]);
-  if (lane.first_wrong < 0 && lane.evidence != Evidence::none)
+  if (lane.first_wrong < 0 && lane.evidence != analysis::Evidence::none)
     fmt::print("      every comparison goes as in exact arithmetic\n");
 }
 
 // "a[0].x b[2].z"
-std::string free_coordinates(const LaneExplanation& lane) {
+std::string free_coordinates(const analysis::LaneExplanation& lane) {
   std::string names;
   for (int c = 0; c < kCoordinates; ++c) {
     if (lane.matters[static_cast<std::size_t>(c)]) continue;
@@ -59,11 +60,11 @@ std::string free_coordinates(const LaneExplanation& lane) {
   return names.empty() ? " none" : names;
 }
 
-void print_lane(const LaneExplanation& lane, const LaneExplanation* before) {
+void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before) {
   fmt::print("  {}: {}, cause: {}\n", lane.lane->id, name(lane.verdict), name(lane.cause));
-  const auto steps = [](const LaneExplanation& l) { return to_json(l)["steps"]; };
+  const auto steps = [](const analysis::LaneExplanation& l) { return to_json(l)["steps"]; };
   if (before && before->lane->algorithm == lane.lane->algorithm && before->lane->scalar == lane.lane->scalar &&
-      lane.evidence == Evidence::source && steps(*before) == steps(lane)) {
+      lane.evidence == analysis::Evidence::source && steps(*before) == steps(lane)) {
     fmt::print("    values: those of {}\n", before->lane->id);
   } else {
     print_steps(lane);
@@ -71,19 +72,19 @@ void print_lane(const LaneExplanation& lane, const LaneExplanation* before) {
   if (!lane.contractions.sites.empty()) {
     fmt::print("    contractions, {}:\n", lane.contractions.smallest ? "the smallest set that makes the difference"
                                                                      : "none of which can be spared");
-    for (const ContractionSite& site : lane.contractions.sites) {
+    for (const cuda::ContractionSite& site : lane.contractions.sites) {
       fmt::print("      {}:{}, inlined at {}:{}, by {}\n", site.at.file, site.at.line, site.from.file, site.from.line,
                  site.by_ptxas ? "ptxas" : "nvcc's front end");
     }
   }
-  fmt::print("    mantissa bits it would have needed: {}\n", lane.cause == Cause::logic ? "no number of bits helps"
-                                                             : lane.bits_needed == 0
-                                                                 ? fmt::format("more than {}", kMostBits)
-                                                                 : fmt::format("{}", lane.bits_needed));
+  fmt::print("    mantissa bits it would have needed: {}\n",
+             lane.cause == analysis::Cause::logic ? "no number of bits helps"
+             : lane.bits_needed == 0              ? fmt::format("more than {}", oracle::kMostBits)
+                                                  : fmt::format("{}", lane.bits_needed));
   fmt::print("    coordinates that do not matter:{}\n", free_coordinates(lane));
   fmt::print("    wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}\n",
              lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
-             lane.scalings.of, kMostScaling, kMostScaling);
+             lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling);
 }
 
 struct ExplainOptions {
@@ -93,22 +94,22 @@ struct ExplainOptions {
 };
 
 void explain_cases(const ExplainOptions& options) {
-  const Bench bench = make_bench(options.globs, Executor::twin);
-  for (const Entry& entry : read_cases(options.name)) {
-    const Explanation explanation = explain(entry.pair, bench.lanes);
+  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, fuzz::Executor::twin);
+  for (const corpus::Entry& entry : read_cases(options.name)) {
+    const analysis::Explanation explanation = analysis::explain(entry.pair, under_test.lanes);
     if (options.json) {
       nlohmann::ordered_json line{{"case", options.name}, {"line", entry.line}};
       line.update(to_json(explanation));
-      line["cuda"] = cuda_evidence(bench);
+      line["cuda"] = cuda_evidence(under_test);
       fmt::print("{}\n", line.dump());
       continue;
     }
     fmt::print("{}{}\n", options.name, entry.line > 0 ? fmt::format(":{}", entry.line) : "");
     std::fflush(stdout);
-    print_pair(std::cout, entry.pair, explanation.truth, bench.lanes, decide(bench, entry.pair));
+    reports::print_pair(std::cout, entry.pair, explanation.truth, under_test.lanes, decide(under_test, entry.pair));
     std::cout.flush();
-    const LaneExplanation* before = nullptr;
-    for (const LaneExplanation& lane : explanation.lanes) {
+    const analysis::LaneExplanation* before = nullptr;
+    for (const analysis::LaneExplanation& lane : explanation.lanes) {
       print_lane(lane, before);
       if (lane.lane->target == Target::cpu) before = &lane;
     }
@@ -117,7 +118,7 @@ void explain_cases(const ExplainOptions& options) {
                                ? "nothing to explain: a coordinate is not finite, and no verdict is right"
                                : "nothing to explain: no lane is wrong");
     }
-    for (const std::string& text : sentences(explanation)) fmt::print("  {}\n", text);
+    for (const std::string& text : analysis::sentences(explanation)) fmt::print("  {}\n", text);
   }
 }
 
@@ -138,4 +139,4 @@ void add_explain(CLI::App& app, int& status) {
   });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

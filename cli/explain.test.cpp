@@ -6,7 +6,7 @@
 
 #include "cli/run_graze.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -66,4 +66,4 @@ TEST_F(ExplainCommand, WrongUseGetsOneLine) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cli

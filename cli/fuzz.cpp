@@ -11,12 +11,14 @@
 #include "cli/commands.h"
 #include "core/error.h"
 #include "fuzz/campaign/campaign.h"
-#include "strata/mesh.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/margin_figure.h"
 #include "reports/terminal.h"
+#include "strata/mesh.h"
 
-namespace graze {
+namespace graze::cli {
+
+using fuzz::Json;
 namespace {
 
 struct FuzzOptions {
@@ -26,7 +28,7 @@ struct FuzzOptions {
   std::string out = "campaign";
   std::vector<std::string> strata, mesh;
   LaneOptions lanes;
-  EngineChoice engine = EngineChoice::automatic;
+  fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
   bool json = false;
   bool require_device = false;
 };
@@ -35,7 +37,7 @@ std::atomic<bool> stop_requested{false};
 extern "C" void request_stop(int) { stop_requested = true; }
 
 // One line on a terminal, rewritten after each batch.
-void show(const Progress& progress, const std::vector<Source>& sources) {
+void show(const fuzz::Progress& progress, const std::vector<strata::PairSource>& sources) {
   const double rate = static_cast<double>(progress.done_here) / std::max(progress.seconds, 1e-9);
   const auto left =
       static_cast<std::uint64_t>(static_cast<double>(progress.total - progress.done) / std::max(rate, 1.0));
@@ -43,43 +45,44 @@ void show(const Progress& progress, const std::vector<Source>& sources) {
   const auto best = static_cast<std::size_t>(std::max_element(yields.begin(), yields.end()) - yields.begin());
   fmt::print(stderr,
              "\r{:3}%  {} of {} pairs  {} pairs/s  {}:{:02} left  {} disagreements, {} signatures, most in {}\033[K",
-             100 * progress.done / progress.total, grouped(progress.done), grouped(progress.total),
-             grouped(static_cast<std::uint64_t>(rate)), left / 60, left % 60, grouped(progress.disagreements),
-             grouped(progress.signatures), sources[best].id);
+             100 * progress.done / progress.total, reports::grouped(progress.done), reports::grouped(progress.total),
+             reports::grouped(static_cast<std::uint64_t>(rate)), left / 60, left % 60,
+             reports::grouped(progress.disagreements), reports::grouped(progress.signatures), sources[best].id);
 }
 
 int fuzz(const FuzzOptions& options) {
-  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor, options.require_device);
-  Campaign campaign;
+  const fuzz::LanesUnderTest under_test =
+      fuzz::select_lanes(options.lanes.globs, options.lanes.executor, options.require_device);
+  fuzz::Campaign campaign;
   campaign.seed = options.seed;
-  campaign.bench = &bench;
+  campaign.under_test = &under_test;
   campaign.threads = options.threads;
   campaign.directory = options.out;
   // A mesh stands alone unless strata are asked for as well.
   if (options.mesh.empty() || !options.strata.empty())
-    campaign.sources = stratum_sources(options.seed, options.pairs, options.strata);
+    campaign.sources = strata::stratum_sources(options.seed, options.pairs, options.strata);
   Json mesh_spec;
   if (!options.mesh.empty()) {
-    const auto mesh = std::make_shared<MeshPairs>(
-        read_mesh_pairs(options.mesh[0], options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1])
-                                                                 : std::nullopt));
+    const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
+        options.mesh[0],
+        options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));
     campaign.sources.push_back({"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }});
     mesh_spec = {{"files", options.mesh}, {"content", fmt::format("{:016x}", mesh->content_hash)}};
   }
-  campaign.spec = campaign_spec(campaign);
+  campaign.spec = fuzz::campaign_spec(campaign);
   if (!mesh_spec.is_null()) campaign.spec["mesh"] = mesh_spec;
-  campaign.build = build_info(bench);
+  campaign.build = fuzz::build_info(under_test);
 
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
   const bool on_terminal = isatty(STDERR_FILENO);
-  campaign.engines = choose_engines(campaign, options.engine);
-  const auto [summary, oracle] = run_campaign(campaign, stop_requested, [&](const Progress& progress) {
+  campaign.engines = fuzz::choose_engines(campaign, options.engine);
+  const auto [summary, oracle] = fuzz::run_campaign(campaign, stop_requested, [&](const fuzz::Progress& progress) {
     if (on_terminal) show(progress, campaign.sources);
   });
   if (on_terminal) fmt::print(stderr, "\r\033[K");
-  write_whole(campaign.directory / "margins.svg", margin_figure(summary));
+  fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(summary));
   if (!summary["complete"]) {
     fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
     return 130;
@@ -88,7 +91,7 @@ int fuzz(const FuzzOptions& options) {
     std::cout << summary.dump(1) << '\n';
     return 0;
   }
-  print_summary(std::cout, summary, oracle);
+  reports::print_summary(std::cout, summary, oracle);
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
   if (!summary["signatures"].empty()) {
@@ -125,8 +128,8 @@ void add_fuzz(CLI::App& app, int& status) {
                    "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]; alone unless "
                    "--strata is given too")
       ->expected(1, 2);
-  static const std::map<std::string, EngineChoice> engines{
-      {"auto", EngineChoice::automatic}, {"cpu", EngineChoice::cpu}, {"gpu", EngineChoice::gpu}};
+  static const std::map<std::string, fuzz::EngineChoice> engines{
+      {"auto", fuzz::EngineChoice::automatic}, {"cpu", fuzz::EngineChoice::cpu}, {"gpu", fuzz::EngineChoice::gpu}};
   command
       ->add_option(
           "--engine", options->engine,
@@ -139,4 +142,4 @@ void add_fuzz(CLI::App& app, int& status) {
   command->callback([options, &status] { status = fuzz(*options); });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -7,16 +7,16 @@
 #include "cli/commands.h"
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 void print_lanes(bool json) {
   std::string why_no_device;
-  const auto device = open_device(why_no_device);
+  const auto device = cuda::open_device(why_no_device);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   const AlgorithmInfo* last = nullptr;
   for (const Lane& lane : lanes()) {
-    const std::string here = status(lane, device.get(), why_no_device);
+    const std::string here = fuzz::status(lane, device.get(), why_no_device);
     if (json) {
       rows.push_back({{"lane", lane.id},
                       {"status", here},
@@ -54,8 +54,8 @@ void add_strata(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("strata", "List the strata: the named generators of pairs");
   command->footer("Example: graze strata");
   command->callback([] {
-    for (const StratumInfo& row : kStrata) fmt::print("{:<20} {}\n", row.id, row.what);
+    for (const strata::StratumInfo& row : strata::kStrata) fmt::print("{:<20} {}\n", row.id, row.what);
   });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -12,17 +12,17 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", GRAZE_VERSION);
   app.require_subcommand(1);
   int status = 0;
-  graze::add_fuzz(app, status);
-  graze::add_check(app, status);
-  graze::add_repro(app, status);
-  graze::add_minimize(app, status);
-  graze::add_corpus(app, status);
-  graze::add_explain(app, status);
-  graze::add_map(app, status);
-  graze::add_report(app, status);
-  graze::add_lanes(app, status);
-  graze::add_strata(app, status);
-  graze::add_prove_twin(app, status);
+  graze::cli::add_fuzz(app, status);
+  graze::cli::add_check(app, status);
+  graze::cli::add_repro(app, status);
+  graze::cli::add_minimize(app, status);
+  graze::cli::add_corpus(app, status);
+  graze::cli::add_explain(app, status);
+  graze::cli::add_map(app, status);
+  graze::cli::add_report(app, status);
+  graze::cli::add_lanes(app, status);
+  graze::cli::add_strata(app, status);
+  graze::cli::add_prove_twin(app, status);
   try {
     if (argc > 1 && argv[1][0] != '-' &&
         app.get_subcommands([&](CLI::App* verb) { return verb->check_name(argv[1]); }).empty()) {

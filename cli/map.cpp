@@ -12,7 +12,7 @@
 #include "reports/terminal.h"
 #include "reports/ulp_map_picture.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,71 +23,74 @@ struct MapOptions {
 };
 
 int coordinate(const std::string& option, const std::string& name) {
-  const std::optional<int> found = coordinate_of_name(name);
+  const std::optional<int> found = analysis::coordinate_of_name(name);
   if (!found) throw UsageError(option + ": expected a coordinate from a[0].x to b[2].z, found '" + name + "'");
   return *found;
 }
 
 // Those asked for, if any.
-std::optional<MovedCoordinates> asked_for(const MapOptions& options) {
+std::optional<analysis::MovedCoordinates> asked_for(const MapOptions& options) {
   if (options.x.empty() && options.y.empty()) return std::nullopt;
   if (options.x.empty() || options.y.empty()) throw UsageError("expected --x and --y together, found one of them");
-  const MovedCoordinates moved{coordinate("--x", options.x), coordinate("--y", options.y)};
+  const analysis::MovedCoordinates moved{coordinate("--x", options.x), coordinate("--y", options.y)};
   if (moved.x == moved.y) throw UsageError("expected two coordinates, found " + options.x + " twice");
   return moved;
 }
 
 // Whether no verdict changes in it.
-bool is_plain(const UlpMap& map) {
-  return std::all_of(map.panels.begin(), map.panels.end(), [](const UlpPanel& panel) {
-    return std::all_of(panel.cells.begin(), panel.cells.end(), [&](Cell cell) { return cell == panel.cells.front(); });
+bool is_plain(const analysis::UlpMap& map) {
+  return std::all_of(map.panels.begin(), map.panels.end(), [](const analysis::UlpPanel& panel) {
+    return std::all_of(panel.cells.begin(), panel.cells.end(),
+                       [&](analysis::Cell cell) { return cell == panel.cells.front(); });
   });
 }
 
-void print_counts(const UlpMap& map) {
+void print_counts(const analysis::UlpMap& map) {
   const auto row = [](const std::string& name, const auto&... columns) {
     fmt::print("  {:<38}", name);
     (fmt::print("{:>16}", columns), ...);
     fmt::print("\n");
   };
   row("", "disjoint", "intersects", "false positive", "false negative", "declined", "not finite");
-  for (const UlpPanel& panel : map.panels) {
+  for (const analysis::UlpPanel& panel : map.panels) {
     const auto counts = panel.counts();
-    const auto count = [&](Cell cell) {
-      return grouped(static_cast<std::uint64_t>(counts[static_cast<std::size_t>(cell)]));
+    const auto count = [&](analysis::Cell cell) {
+      return reports::grouped(static_cast<std::uint64_t>(counts[static_cast<std::size_t>(cell)]));
     };
-    row(panel.name(), count(Cell::disjoint), count(Cell::intersects), count(Cell::false_positive),
-        count(Cell::false_negative), count(Cell::declined), count(Cell::not_finite));
+    row(panel.name(), count(analysis::Cell::disjoint), count(analysis::Cell::intersects),
+        count(analysis::Cell::false_positive), count(analysis::Cell::false_negative), count(analysis::Cell::declined),
+        count(analysis::Cell::not_finite));
   }
 }
 
 // One picture, or one a panel where a directory is asked for.
-void write_pictures(const UlpMap& map, const fs::path& out) {
+void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
   if (out.extension() == ".png") {
-    write_whole(out, sheet_png(map));
+    fuzz::write_whole(out, reports::sheet_png(map));
   } else {
     std::error_code error;
     fs::create_directories(out, error);
     if (error) throw UsageError(out.string() + ": expected a file.png or a directory, found: " + error.message());
-    for (const UlpPanel& panel : map.panels) {
+    for (const analysis::UlpPanel& panel : map.panels) {
       std::string name = panel.name();
       std::replace(name.begin(), name.end(), '/', '-');
-      write_whole(out / (name + ".png"), panel_png(panel));
+      fuzz::write_whole(out / (name + ".png"), reports::panel_png(panel));
     }
   }
   fmt::print("Wrote {}\n", out.string());
 }
 
 void map_case(const MapOptions& options) {
-  const std::optional<MovedCoordinates> asked = asked_for(options);
-  const Bench bench = make_bench(options.globs, Executor::twin);
-  const Entry entry = read_cases(options.name).front();
+  const std::optional<analysis::MovedCoordinates> asked = asked_for(options);
+  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, fuzz::Executor::twin);
+  const corpus::Entry entry = read_cases(options.name).front();
   if (!is_finite(entry.pair)) throw std::runtime_error(options.name + ": expected finite coordinates, found others");
-  const MovedCoordinates moved = asked ? *asked : liveliest_coordinates(entry.pair, bench.lanes);
-  const UlpMap map = ulp_map(entry.pair, bench.lanes, moved);
+  const analysis::MovedCoordinates moved =
+      asked ? *asked : analysis::liveliest_coordinates(entry.pair, under_test.lanes);
+  const analysis::UlpMap map = analysis::ulp_map(entry.pair, under_test.lanes, moved);
   fmt::print("{}{}: {} x {} cells, {} to the right and {} upwards by an ulp each{}\n", options.name,
-             entry.line > 0 ? fmt::format(":{}", entry.line) : "", kMapSize, kMapSize, name_of_coordinate(moved.x),
-             name_of_coordinate(moved.y),
+             entry.line > 0 ? fmt::format(":{}", entry.line) : "", analysis::kMapSize, analysis::kMapSize,
+             analysis::name_of_coordinate(moved.x), analysis::name_of_coordinate(moved.y),
              asked           ? ""
              : is_plain(map) ? "; no verdict changes"
                              : ", along which verdicts change most");
@@ -117,4 +120,4 @@ void add_map(CLI::App& app, int&) {
   command->callback([options] { map_case(*options); });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

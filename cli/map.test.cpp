@@ -6,7 +6,7 @@
 
 #include "cli/run_graze.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 class MapCommand : public CommandTest {};
@@ -87,4 +87,4 @@ TEST_F(MapCommand, MinimizeStoresTheMapsOfCardsOnceAndForItsPairs) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cli

@@ -18,13 +18,15 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/carded_signatures.h"
 #include "fuzz/minimise/case_facts.h"
 #include "fuzz/minimise/minimised_cases.h"
-#include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::cli {
+
+using fuzz::Json;
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,39 +41,40 @@ struct MinimizeOptions {
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-void print(const MinimisedCase& found, const std::string& name) {
-  const Truth t = truth(found.result.pair);
+void print(const fuzz::MinimisedCase& found, const std::string& name) {
+  const oracle::Truth t = oracle::truth(found.result.pair);
   const std::string from = found.from.empty() ? name : found.from;
   fmt::print("{}, {}\n", from, found.failure.lanes.front()->info->id);
   std::fflush(stdout);
-  print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts);
+  reports::print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts);
   std::cout << fmt::format(
       "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
       "  1-minimal: none of the {} single moves to a simpler pair keeps the failure\n"
       "  worst on the way: {} ulps\n",
-      key(signature_of(found.failure, found.result.pair)), nontrivial_magnitudes(found.result.pair),
-      nontrivial_magnitudes(found.original), grouped(found.result.single_moves), found.result.worst_ulps);
+      analysis::key(fuzz::signature_of(found.failure, found.result.pair)),
+      fuzz::nontrivial_magnitudes(found.result.pair), fuzz::nontrivial_magnitudes(found.original),
+      reports::grouped(found.result.single_moves), found.result.worst_ulps);
   std::cout.flush();
 }
 
 void minimize_case(const MinimizeOptions& options) {
-  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
-  std::vector<Entry> entries = read_cases(options.name);
+  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
+  std::vector<corpus::Entry> entries = read_cases(options.name);
   std::string text;
   if (entries.front().line != 0) {
-    text = read_whole(options.name);
+    text = fuzz::read_whole(options.name);
   } else {
     std::ostringstream out;
-    write_header(out);
-    write_entry(out, entries.front());
+    corpus::write_header(out);
+    corpus::write_entry(out, entries.front());
     text = out.str();
     entries.front().line = 2;
   }
-  const std::vector<MinimisedCase> results = minimise_cases(bench, entries);
+  const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries);
   if (results.empty())
     throw std::runtime_error(options.name + ": expected a case on which a lane is wrong, found none");
-  for (const MinimisedCase& found : results) print(found, options.name);
-  if (!options.out.empty()) write_whole(options.out, with_results(text, entries, results));
+  for (const fuzz::MinimisedCase& found : results) print(found, options.name);
+  if (!options.out.empty()) fuzz::write_whole(options.out, fuzz::with_results(text, entries, results));
 }
 
 // What became of a signature of a campaign.
@@ -82,17 +85,18 @@ struct Done {
   double map_seconds = 0;   // 0 without a map, and where it was done before
 };
 
-Done minimize_file(const Bench& bench, const fs::path& file, bool again) {
+Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file, bool again) {
   const auto start = Clock::now();
-  std::vector<Entry> entries = read_pairs(file);
+  std::vector<corpus::Entry> entries = corpus::read_pairs(file);
   if (entries.empty()) throw std::runtime_error(file.string() + ": expected at least one case, found none");
-  if (!again && has_result(bench, entries)) return {true, nontrivial_magnitudes(entries.front().pair), 0};
-  const std::vector<MinimisedCase> results = minimise_cases(bench, entries);
+  if (!again && has_result(under_test, entries)) return {true, fuzz::nontrivial_magnitudes(entries.front().pair), 0};
+  const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries);
   if (results.empty()) return {};
-  const std::string text = read_whole(file), after = with_results(text, entries, results);
-  if (after != text) write_whole(file, after);
-  const auto cases = std::count_if(entries.begin(), entries.end(), [](const Entry& e) { return !field(e, "kind"); });
-  return {true, nontrivial_magnitudes(results.front().result.pair),
+  const std::string text = fuzz::read_whole(file), after = fuzz::with_results(text, entries, results);
+  if (after != text) fuzz::write_whole(file, after);
+  const auto cases =
+      std::count_if(entries.begin(), entries.end(), [](const corpus::Entry& e) { return !corpus::field(e, "kind"); });
+  return {true, fuzz::nontrivial_magnitudes(results.front().result.pair),
           1e3 * seconds_since(start) / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1))};
 }
 
@@ -101,14 +105,15 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
   for (const Done& done : all) {
     if (done.minimised) magnitudes.push_back(done.magnitudes);
   }
-  fmt::print("{} of {} signatures minimised", grouped(magnitudes.size()), grouped(all.size()));
+  fmt::print("{} of {} signatures minimised", reports::grouped(magnitudes.size()), reports::grouped(all.size()));
   fmt::print("{}\n", magnitudes.size() < all.size() ? "; no selected lane is wrong on the others" : "");
   if (magnitudes.empty()) return;
   std::sort(magnitudes.begin(), magnitudes.end());
   fmt::print("magnitudes other than 0 and 1, and how many signatures have so many (median {}):\n ",
              magnitudes[magnitudes.size() / 2]);
   for (int n = 0; n <= magnitudes.back(); ++n)
-    fmt::print(" {}: {}{}", n, grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))),
+    fmt::print(" {}: {}{}", n,
+               reports::grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))),
                n == magnitudes.back() ? "\n" : ",");
   fmt::print(
       "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
@@ -119,15 +124,15 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
 void minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
-  const Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
+  const Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
   const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
                           summary.value("spec", Json()).contains("lanes");
   if (!is_summary) throw UsageError(options.name + ": expected a campaign's directory with summary.json, found none");
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
-  const Bench bench = make_bench(options.lanes.globs, options.lanes.executor);
+  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<fs::path> files;
   std::vector<std::string> to_map;  // of each, the signature whose card shows a map; empty for others
-  const std::vector<std::size_t> cards = carded_signatures(summary);
+  const std::vector<std::size_t> cards = fuzz::carded_signatures(summary);
   for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
     const Json& row = summary["signatures"][place];
     // Pairs on which a device and its twin differ are kept too; they are nobody's failure.
@@ -146,16 +151,16 @@ void minimize_directory(MinimizeOptions options) {
   std::size_t count = 0;
   std::mutex mutex;
   tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
-    all[i] = minimize_file(bench, files[i], options.again);
-    if (!to_map[i].empty()) store_facts(bench, files[i]);
+    all[i] = minimize_file(under_test, files[i], options.again);
+    if (!to_map[i].empty()) fuzz::store_facts(under_test, files[i]);
     const auto mapping = Clock::now();
-    if (all[i].minimised && !to_map[i].empty() && map_case(bench, files[i], to_map[i], options.again))
+    if (all[i].minimised && !to_map[i].empty() && map_case(under_test, files[i], to_map[i], options.again))
       all[i].map_seconds = seconds_since(mapping);
     const std::lock_guard lock(mutex);
     if (++count % 16 != 0 || !on_terminal) return;
     const double left = seconds_since(start) / static_cast<double>(count) * static_cast<double>(files.size() - count);
-    fmt::print(stderr, "\r{:3}%  {} of {} signatures  {:.0f} s left\033[K", 100 * count / files.size(), grouped(count),
-               grouped(files.size()), left);
+    fmt::print(stderr, "\r{:3}%  {} of {} signatures  {:.0f} s left\033[K", 100 * count / files.size(),
+               reports::grouped(count), reports::grouped(files.size()), left);
   });
   if (on_terminal) fmt::print(stderr, "\r\033[K");
   print_directory(options.name, all);
@@ -169,12 +174,12 @@ void minimize_directory(MinimizeOptions options) {
     map_seconds += done.map_seconds;
   }
   std::sort(times.begin(), times.end());
-  append_timing(directory, {{"minimised", times.size()},
-                            {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
-                            {"mapped", maps},
-                            {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / maps},
-                            {"seconds", seconds_since(start)},
-                            {"threads", threads}});
+  fuzz::append_timing(directory, {{"minimised", times.size()},
+                                  {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
+                                  {"mapped", maps},
+                                  {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / maps},
+                                  {"seconds", seconds_since(start)},
+                                  {"threads", threads}});
 }
 
 }  // namespace
@@ -199,4 +204,4 @@ void add_minimize(CLI::App& app, int&) {
       [options] { fs::is_directory(options->name) ? minimize_directory(*options) : minimize_case(*options); });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

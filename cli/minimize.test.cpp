@@ -6,7 +6,7 @@
 
 #include "cli/run_graze.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 class Minimize : public CommandTest {
@@ -89,4 +89,4 @@ TEST_F(Minimize, BadInputGetsOneLine) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cli

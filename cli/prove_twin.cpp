@@ -10,20 +10,21 @@
 #include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
-int prove(const ProofOptions& options, const std::string& out) {
-  const ProofRecord record = prove_twin(options);
-  write_whole(out, to_json(record).dump(1) + "\n");
+int prove(const cuda::ProofOptions& options, const std::string& out) {
+  const cuda::ProofRecord record = cuda::prove_twin(options);
+  fuzz::write_whole(out, to_json(record).dump(1) + "\n");
   fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", "lane", "explicit PTX", "differences", "twin", "differences");
-  for (const LaneProof& lane : record.lanes) {
-    fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", lane.lane, grouped(lane.pairs()), grouped(lane.differences()),
-               grouped(lane.twin_pairs()), grouped(lane.twin_differences()));
+  for (const cuda::LaneProof& lane : record.lanes) {
+    fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", lane.lane, reports::grouped(lane.pairs()),
+               reports::grouped(lane.differences()), reports::grouped(lane.twin_pairs()),
+               reports::grouped(lane.twin_differences()));
   }
   fmt::print("\n{}, driver {}, nvcc {}: {} in {:.0f} s. Wrote {}\n", record.device, record.driver, record.toolkit,
-             record.proven() ? "proven" : "NOT proven", record.seconds, out);
-  return record.proven() ? 0 : 1;
+             record.verified() ? "verified" : "NOT verified", record.seconds, out);
+  return record.verified() ? 0 : 1;
 }
 
 }  // namespace
@@ -33,7 +34,7 @@ void add_prove_twin(CLI::App& app, int& status) {
       "prove-twin",
       "On a GPU: compare each CUDA lane with its explicit PTX and its twin, bit for bit; exit 1 on any difference");
   command->footer("Example: graze prove-twin --pairs 10000000000 --out proof.json");
-  auto options = std::make_shared<ProofOptions>();
+  auto options = std::make_shared<cuda::ProofOptions>();
   auto out = std::make_shared<std::string>("proof.json");
   command->add_option("--pairs", options->pairs, "Pairs a lane, all strata together")
       ->check(whole_number(1, kMostWhole))
@@ -53,4 +54,4 @@ void add_prove_twin(CLI::App& app, int& status) {
   });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -6,7 +6,7 @@
 
 #include "cli/run_graze.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 struct Step {
@@ -58,4 +58,4 @@ TEST(Readme, EveryCommandPrintsWhatItSays) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cli

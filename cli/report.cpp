@@ -13,7 +13,9 @@
 #include "reports/csv.h"
 #include "reports/page.h"
 
-namespace graze {
+namespace graze::cli {
+
+using fuzz::Json;
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,18 +26,18 @@ struct ReportOptions {
 };
 
 void say_what_the_page_is() {
-  if (!has_interactive_page())
+  if (!reports::has_interactive_page())
     fmt::print("The page is plain: this build had no Node, or no npm packages (see reports/README.md)\n");
 }
 
 // NAME.html, NAME.json and tables in the directory.
 void write_report(const fs::path& directory, const Json& report, const char* name) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
-  write_whole(directory / fmt::format("{}.json", name), report_text(report));
-  write_whole(directory / fmt::format("{}.html", name), page(report));
+  fuzz::write_whole(directory / fmt::format("{}.json", name), reports::report_text(report));
+  fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report));
   std::string tables;
-  for (const CsvTable& table : csv_tables(directory, report)) {
-    write_whole(directory / table.name, table.text);
+  for (const reports::CsvTable& table : reports::csv_tables(directory, report)) {
+    fuzz::write_whole(directory / table.name, table.text);
     tables += fmt::format(", {}", table.name);
   }
   fmt::print("Wrote {0}/{1}.html, {1}.json{2}\n", directory.string(), name, tables);
@@ -49,16 +51,17 @@ void report(const ReportOptions& options) {
   if (options.from.empty() != options.out.empty())
     throw UsageError("expected --from and --out together, found one of them");
   if (!options.from.empty()) {
-    write_whole(options.out, page(read_report(options.from)));
+    fuzz::write_whole(options.out, reports::page(reports::read_report(options.from)));
     fmt::print("Wrote {}\n", options.out);
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
-    Json after = make_report(options.compare[1]);
-    add_comparison(after, make_report(options.compare[0]), read_summary(options.compare[1])["signatures"],
-                   read_summary(options.compare[0])["signatures"]);
+    Json after = reports::make_report(options.compare[1]);
+    reports::add_comparison(after, reports::make_report(options.compare[0]),
+                            reports::read_summary(options.compare[1])["signatures"],
+                            reports::read_summary(options.compare[0])["signatures"]);
     write_report(options.compare[1], after, "compare");
   } else {
-    write_report(options.directory, make_report(options.directory), "report");
+    write_report(options.directory, reports::make_report(options.directory), "report");
   }
 }
 
@@ -83,4 +86,4 @@ void add_report(CLI::App& app, int&) {
   command->callback([options] { report(*options); });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -7,7 +7,7 @@
 
 #include "cli/run_graze.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 class Report : public CommandTest {
@@ -74,4 +74,4 @@ TEST_F(Report, BadUseIsOneLine) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cli

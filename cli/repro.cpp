@@ -12,7 +12,7 @@
 #include "oracle/truth.h"
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::cli {
 namespace {
 
 enum class Compared { same, changed, nothing };
@@ -32,16 +32,16 @@ Compared compare(const std::string& recorded, const std::string& now) {
 }
 
 // Prints the pair's signatures, and whether the recorded one still holds.   Returns: whether it changed.
-bool compare_signatures(const Entry& entry, const Truth& t, std::span<const Lane* const> run,
+bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std::span<const Lane* const> run,
                         std::span<const Verdict> verdicts) {
-  const std::string* recorded = field(entry, "signature");
-  const Shape hulls = shape(entry.pair);
-  const Bucket bucket = margin_bucket(entry.pair, t.verdict);
+  const std::string* recorded = corpus::field(entry, "signature");
+  const oracle::Shape hulls = oracle::shape(entry.pair);
+  const Bucket bucket = oracle::margin_bucket(entry.pair, t.verdict);
   Compared compared = Compared::nothing;
-  for_each_algorithm(run, [&](std::size_t first, std::size_t count) {
-    const Signature failure =
-        signature(t.contact, hulls, bucket, t.verdict, run.subspan(first, count), verdicts.subspan(first, count));
-    const std::string now = key(failure);
+  analysis::for_each_algorithm(run, [&](std::size_t first, std::size_t count) {
+    const analysis::Signature failure = analysis::signature(t.contact, hulls, bucket, t.verdict,
+                                                            run.subspan(first, count), verdicts.subspan(first, count));
+    const std::string now = analysis::key(failure);
     const std::string algorithm = "/" + std::string(run[first]->info->id) + ":";
     const bool is_recorded = recorded && recorded->find(algorithm) != std::string::npos;
     if (is_recorded) compared = compare(*recorded, now);
@@ -57,23 +57,24 @@ bool compare_signatures(const Entry& entry, const Truth& t, std::span<const Lane
 }
 
 int repro(const std::string& name, const LaneOptions& lanes, const std::string& emitted) {
-  const Bench bench = make_bench(lanes.globs, lanes.executor);
-  const std::vector<Entry> entries = read_cases(name);
+  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(lanes.globs, lanes.executor);
+  const std::vector<corpus::Entry> entries = read_cases(name);
   if (!emitted.empty()) {
-    const auto kind = std::find(std::begin(kSnippetKinds), std::end(kSnippetKinds), emitted);
-    std::cout << emit(static_cast<SnippetKind>(kind - std::begin(kSnippetKinds)), name, entries, bench);
+    const auto kind = std::find(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds), emitted);
+    std::cout << emit(static_cast<reports::SnippetKind>(kind - std::begin(reports::kSnippetKinds)), name, entries,
+                      under_test);
     return 0;
   }
-  const std::string evidence = cuda_evidence(bench);
+  const std::string evidence = cuda_evidence(under_test);
   bool changed = false;
-  for (const Entry& entry : entries) {
-    const Truth t = truth(entry.pair);
-    const std::vector<Verdict> verdicts = decide(bench, entry.pair);
-    fmt::print("{}\n", numbers_of(entry).value_or(name));
+  for (const corpus::Entry& entry : entries) {
+    const oracle::Truth t = oracle::truth(entry.pair);
+    const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
+    fmt::print("{}\n", corpus::numbers_of(entry).value_or(name));
     std::fflush(stdout);
-    print_pair(std::cout, entry.pair, t, bench.lanes, verdicts);
+    reports::print_pair(std::cout, entry.pair, t, under_test.lanes, verdicts);
     if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
-    if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, bench.lanes, verdicts) || changed;
+    if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, verdicts) || changed;
     std::cout.flush();
   }
   return changed ? 1 : 0;
@@ -97,9 +98,10 @@ void add_repro(CLI::App& app, int& status) {
           "--emit", *emitted,
           "Print a self-contained program or file instead, of the first case with a wrong lane that it can "
           "show (choose by --lanes): cpp and gtest show a CPU lane, cuda a CUDA lane; python and cgal the truth")
-      ->check(CLI::IsMember(std::vector<std::string>(std::begin(kSnippetKinds), std::end(kSnippetKinds))))
+      ->check(
+          CLI::IsMember(std::vector<std::string>(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds))))
       ->option_text("cpp|cuda|python|obj|cgal|gtest");
   command->callback([name, lanes, emitted, &status] { status = repro(*name, *lanes, *emitted); });
 }
 
-}  // namespace graze
+}  // namespace graze::cli

@@ -13,7 +13,7 @@
 #include <sstream>
 #include <string>
 
-namespace graze {
+namespace graze::cli {
 
 inline std::string contents(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -71,4 +71,4 @@ class CommandTest : public testing::Test {
   }
 };
 
-}  // namespace graze
+}  // namespace graze::cli

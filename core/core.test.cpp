@@ -9,9 +9,9 @@
 #include <set>
 
 #include "core/algorithms/algorithms.h"
-#include "core/margin/bucket.h"
-#include "core/margin/axis.h"
 #include "core/lanes.h"
+#include "core/margin/axis.h"
+#include "core/margin/bucket.h"
 
 namespace graze {
 namespace {
@@ -222,24 +222,24 @@ TEST(Bucket, IsTheSignAndTheBinaryLogarithm) {
 
 TEST(Extreme, IsTheScaleInStepsOfFourOrTheOffsetInSizes) {
   Pair pair{};
-  EXPECT_EQ(exponent_of(Axis::scale, extreme_of(pair, Axis::scale)), -152);
-  EXPECT_EQ(extreme_of(pair, Axis::offset), kBucketMost);  // a point has no size
+  EXPECT_EQ(exponent_of(Axis::scale, place_on_axis(pair, Axis::scale)), -152);
+  EXPECT_EQ(place_on_axis(pair, Axis::offset), kBucketMost);  // a point has no size
   pair.b[1].y = -0x1p-149f;
-  EXPECT_EQ(exponent_of(Axis::scale, extreme_of(pair, Axis::scale)), -152);
-  EXPECT_EQ(extreme_of(pair, Axis::offset), 0);
+  EXPECT_EQ(exponent_of(Axis::scale, place_on_axis(pair, Axis::scale)), -152);
+  EXPECT_EQ(place_on_axis(pair, Axis::offset), 0);
   pair.a[2].y = 0x1p-149f;
-  EXPECT_EQ(extreme_of(pair, Axis::offset), -1);
+  EXPECT_EQ(place_on_axis(pair, Axis::offset), -1);
   pair.b[1].y = -0x1p-148f;
-  EXPECT_EQ(exponent_of(Axis::scale, extreme_of(pair, Axis::scale)), -148);
+  EXPECT_EQ(exponent_of(Axis::scale, place_on_axis(pair, Axis::scale)), -148);
   pair.a[0].x = 0x1.fffffep127f;
-  EXPECT_EQ(exponent_of(Axis::scale, extreme_of(pair, Axis::scale)), 124);
+  EXPECT_EQ(exponent_of(Axis::scale, place_on_axis(pair, Axis::scale)), 124);
   for (int i = 0; i < kCoordinates; i += 3) coordinates(pair)[i] = 1000;
   coordinates(pair)[0] = 1001;
-  EXPECT_EQ(extreme_of(pair, Axis::offset), 9);
-  EXPECT_EQ(exponent_of(Axis::scale, extreme_of(pair, Axis::scale)), 8);
+  EXPECT_EQ(place_on_axis(pair, Axis::offset), 9);
+  EXPECT_EQ(exponent_of(Axis::scale, place_on_axis(pair, Axis::scale)), 8);
   for (int i = 0; i < kCoordinates; i += 3) coordinates(pair)[i] = 0x1p100f;
-  EXPECT_EQ(extreme_of(pair, Axis::offset), kBucketMost);  // the size is 2^-148
-  EXPECT_EQ(extreme_of(pair, Axis::none), 0);
+  EXPECT_EQ(place_on_axis(pair, Axis::offset), kBucketMost);  // the size is 2^-148
+  EXPECT_EQ(place_on_axis(pair, Axis::none), 0);
 }
 
 }  // namespace

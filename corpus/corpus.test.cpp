@@ -11,7 +11,7 @@
 #include "corpus/pair_format.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::corpus {
 namespace {
 
 struct Case {
@@ -84,7 +84,7 @@ class Truth : public testing::TestWithParam<Case> {};
 
 TEST_P(Truth, MatchesTheOracle) {
   const Entry& entry = GetParam().entry;
-  const graze::Truth truth = graze::truth(entry.pair);
+  const oracle::Truth truth = oracle::truth(entry.pair);
   EXPECT_EQ(value(entry, "truth"), name(truth.verdict));
   EXPECT_EQ(value(entry, "contact"), name(truth.contact));
 }
@@ -93,4 +93,4 @@ INSTANTIATE_TEST_SUITE_P(corpus, Truth, testing::ValuesIn(corpus().cases),
                          [](const testing::TestParamInfo<Case>& test) { return test.param.name; });
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::corpus

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <system_error>
 
-namespace graze {
+namespace graze::corpus {
 namespace {
 
 constexpr std::string_view kFormat = "graze-pairs";
@@ -284,4 +284,4 @@ std::optional<std::string> numbers_of(const Entry& entry) {
   return *stratum + ':' + *seed + ':' + *index;
 }
 
-}  // namespace graze
+}  // namespace graze::corpus

@@ -17,7 +17,7 @@
 
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::corpus {
 
 struct Entry {
   Pair pair{};
@@ -77,4 +77,4 @@ const std::string* field(const Entry& entry, std::string_view key);
 // STRATUM:SEED:INDEX of a case that has these fields.
 std::optional<std::string> numbers_of(const Entry& entry);
 
-}  // namespace graze
+}  // namespace graze::corpus

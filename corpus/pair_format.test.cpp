@@ -14,7 +14,7 @@
 #include <random>
 #include <sstream>
 
-namespace graze {
+namespace graze::corpus {
 namespace {
 
 constexpr float kMax = std::numeric_limits<float>::max();
@@ -273,4 +273,4 @@ TEST(ReadPairs, NamesTheFile) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::corpus

@@ -18,11 +18,11 @@
 
 #include "build_info.h"
 #include "core/lanes.h"
+#include "oracle/truth.h"
 #include "strata/mesh.h"
 #include "strata/strata.h"
-#include "oracle/truth.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 constexpr std::size_t kPairs = 1 << 14;  // 1.2 MB: too many branches to learn by heart, and still in the cache
@@ -32,7 +32,7 @@ struct Block {
   std::vector<std::uint64_t> intersects;  // the truth: bit i % 64 of word i / 64
 };
 
-struct Source {
+struct PairsToTime {
   std::string id;
   Block all;
   Block proper;  // the pairs of two triangles that are not degenerate: all that CGAL's do_intersect takes
@@ -49,28 +49,28 @@ Block block_of(std::vector<Pair> pairs) {
   Block block{std::move(pairs), {}};
   block.intersects.resize((block.pairs.size() + 63) / 64);
   by_pair(block.pairs.size(), block.intersects.data(),
-          [&](std::size_t i) { return cgal_verdict(block.pairs[i]) == Verdict::intersects; });
+          [&](std::size_t i) { return oracle::cgal_verdict(block.pairs[i]) == Verdict::intersects; });
   return block;
 }
 
-Source source_of(std::string id, std::vector<Pair> pairs) {
+PairsToTime source_of(std::string id, std::vector<Pair> pairs) {
   std::vector<Pair> proper;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(proper), [](const Pair& pair) {
-    const Shape hulls = shape(pair);
+    const oracle::Shape hulls = oracle::shape(pair);
     return hulls.dimension_a == 2 && hulls.dimension_b == 2;
   });
   return {std::move(id), block_of(std::move(pairs)), block_of(std::move(proper))};
 }
 
-std::vector<Source> make_sources() {
-  std::vector<Source> sources;
+std::vector<PairsToTime> make_sources() {
+  std::vector<PairsToTime> sources;
   std::vector<Pair> pairs(kPairs);
-  for (const StratumInfo& row : kStrata) {
-    for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = generate(1, row.stratum, i);
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = strata::generate(1, row.stratum, i);
     sources.push_back(source_of(std::string(row.id), pairs));
   }
   if (const char* file = std::getenv("GRAZE_MESH"); file && *file) {
-    const MeshPairs mesh = read_mesh_pairs(file);
+    const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
     pairs.resize(std::min(kPairs, mesh.size()));  // spread over the mesh
     for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = mesh.pair(i * mesh.size() / pairs.size());
     if (!pairs.empty()) sources.push_back(source_of("mesh", pairs));
@@ -122,7 +122,7 @@ void add(const std::string& decision, const std::string& source, const Block& bl
   })->Unit(benchmark::kMicrosecond);
 }
 
-void add_source(const Source& source) {
+void add_source(const PairsToTime& source) {
   for (const Lane& lane : lanes()) {
     if (!lane.decide || !runs_on_this_cpu(lane)) continue;
     const Decide decide = [&lane](const Block& block, std::uint64_t* intersects, std::uint64_t* declined) {
@@ -138,11 +138,11 @@ void add_source(const Source& source) {
   }
   add("cgal_verdict", source.id, source.all, true, [](const Block& block, std::uint64_t* intersects, std::uint64_t*) {
     by_pair(block.pairs.size(), intersects,
-            [&](std::size_t i) { return cgal_verdict(block.pairs[i]) == Verdict::intersects; });
+            [&](std::size_t i) { return oracle::cgal_verdict(block.pairs[i]) == Verdict::intersects; });
   });
   add("gmp_contact", source.id, source.all, true, [](const Block& block, std::uint64_t* intersects, std::uint64_t*) {
     by_pair(block.pairs.size(), intersects,
-            [&](std::size_t i) { return gmp_contact(block.pairs[i]) != Contact::none; });
+            [&](std::size_t i) { return oracle::gmp_contact(block.pairs[i]) != Contact::none; });
   });
 }
 
@@ -155,17 +155,17 @@ std::string processor() {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::fuzz
 
 int main(int argc, char** argv) try {
-  benchmark::AddCustomContext("processor", graze::processor());
+  benchmark::AddCustomContext("processor", graze::fuzz::processor());
   benchmark::AddCustomContext("compiler", GRAZE_COMPILER);
   benchmark::AddCustomContext("flags", GRAZE_FLAGS);
   benchmark::AddCustomContext("commit", GRAZE_COMMIT);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  const std::vector<graze::Source> sources = graze::make_sources();
-  for (const graze::Source& source : sources) graze::add_source(source);
+  const std::vector<graze::fuzz::PairsToTime> sources = graze::fuzz::make_sources();
+  for (const graze::fuzz::PairsToTime& source : sources) graze::fuzz::add_source(source);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

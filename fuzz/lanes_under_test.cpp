@@ -6,16 +6,16 @@
 #include "core/error.h"
 #include "cuda/twin/twin.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 std::string twin_evidence_of(const Lane& lane) {
-  return lane.is_exact() ? "twin, exact" : twin_evidence(lane.algorithm, lane.scalar, lane.target);
+  return lane.is_exact() ? "twin, exact" : cuda::twin_evidence(lane.algorithm, lane.scalar, lane.target);
 }
 
 }  // namespace
 
-std::vector<const Lane*> Bench::device_lanes() const {
+std::vector<const Lane*> LanesUnderTest::device_lanes() const {
   std::vector<const Lane*> result;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     if (on_device(l)) result.push_back(lanes[l]);
@@ -23,61 +23,62 @@ std::vector<const Lane*> Bench::device_lanes() const {
   return result;
 }
 
-std::string Bench::evidence(std::size_t l) const {
+std::string LanesUnderTest::evidence(std::size_t l) const {
   const std::string twin = on_host[l] ? twin_evidence_of(*lanes[l]) : "";
   return !on_device(l) ? twin : twin.empty() ? "device" : "device and " + twin;
 }
 
-std::string status(const Lane& lane, const Device* device, const std::string& why_no_device) {
+std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
   if (!lane.is_cuda()) return runs_on_this_cpu(lane) ? "available" : "unavailable (no FMA instructions)";
   if (device) return "available (device)";
-  return block_on_host(lane) ? "available (" + twin_evidence_of(lane) + ")" : "unavailable (" + why_no_device + ")";
+  return cuda::block_on_host(lane) ? "available (" + twin_evidence_of(lane) + ")"
+                                   : "unavailable (" + why_no_device + ")";
 }
 
-Bench make_bench(const std::vector<std::string>& globs, Executor executor, bool require_device) {
+LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device) {
   for (const std::string& glob : globs) {
     if (std::none_of(lanes().begin(), lanes().end(), [&](const Lane& lane) { return matches_any({glob}, lane.id); })) {
       throw UsageError("expected a lane (see `graze lanes`), found '" + glob + "'");
     }
   }
-  Bench bench;
+  LanesUnderTest under_test;
   std::string why_not;
-  if (executor != Executor::twin) bench.device = open_device(why_not);
+  if (executor != Executor::twin) under_test.device = cuda::open_device(why_not);
   const bool needs_device = require_device || executor == Executor::device || executor == Executor::both;
-  if (needs_device && !bench.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
+  if (needs_device && !under_test.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
-    const bool only_device = lane.is_cuda() && bench.device && executor != Executor::both;
-    const DecideBlock on_host = only_device ? nullptr : block_on_host(lane);
-    if (lane.is_cuda() ? on_host || bench.device : runs_on_this_cpu(lane)) {
-      bench.lanes.push_back(&lane);
-      bench.on_host.push_back(on_host);
+    const bool only_device = lane.is_cuda() && under_test.device && executor != Executor::both;
+    const DecideBlock on_host = only_device ? nullptr : cuda::block_on_host(lane);
+    if (lane.is_cuda() ? on_host || under_test.device : runs_on_this_cpu(lane)) {
+      under_test.lanes.push_back(&lane);
+      under_test.on_host.push_back(on_host);
     } else {
-      why_not = status(lane, bench.device.get(), why_not);
+      why_not = status(lane, under_test.device.get(), why_not);
     }
   }
-  if (bench.lanes.empty()) throw UsageError("expected a lane that runs here, found only some that are " + why_not);
-  return bench;
+  if (under_test.lanes.empty()) throw UsageError("expected a lane that runs here, found only some that are " + why_not);
+  return under_test;
 }
 
-std::vector<Verdict> decide(const Bench& bench, const Pair& pair, std::vector<const Lane*>& apart) {
+std::vector<Verdict> decide(const LanesUnderTest& under_test, const Pair& pair, std::vector<const Lane*>& apart) {
   apart.clear();
-  std::vector<Verdict> verdicts(bench.lanes.size());
-  for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
-    if (bench.on_host[l]) verdicts[l] = decide_one(bench.on_host[l], pair);
+  std::vector<Verdict> verdicts(under_test.lanes.size());
+  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
+    if (under_test.on_host[l]) verdicts[l] = decide_one(under_test.on_host[l], pair);
   }
-  if (!bench.device) return verdicts;
-  std::vector<LaneBits> bits;
-  bench.device->decide(std::span(&pair, 1), bench.device_lanes(), bits);
+  if (!under_test.device) return verdicts;
+  std::vector<cuda::LaneBits> bits;
+  under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), bits);
   std::size_t next = 0;
-  for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
-    if (!bench.on_device(l)) continue;
+  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
+    if (!under_test.on_device(l)) continue;
     const Verdict on_device = verdict_of_bits(bits[next].intersects[0] & 1, bits[next].declined[0] & 1);
-    if (bench.on_both(l) && on_device != verdicts[l]) apart.push_back(bench.lanes[l]);
+    if (under_test.on_both(l) && on_device != verdicts[l]) apart.push_back(under_test.lanes[l]);
     verdicts[l] = on_device;
     ++next;
   }
   return verdicts;
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

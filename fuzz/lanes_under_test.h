@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bench: the lanes under test on this machine, and what runs each: the host, a device, a device's twin, or both.
+// The under_test: the lanes under test on this machine, and what runs each: the host, a device, a device's twin, or
+// both.
 #pragma once
 
 #include <memory>
@@ -9,35 +10,35 @@
 #include "core/lanes.h"
 #include "cuda/lanes/device.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 // What runs the CUDA lanes. automatic: the device where there is one, else the twins.
 enum class Executor { automatic, device, twin, both };
 
-struct Bench {
-  std::vector<const Lane*> lanes;    // selected and available, in table order
-  std::vector<DecideBlock> on_host;  // of each: the host lane or the twin; null where only the device runs it
-  std::unique_ptr<Device> device;    // null when the CUDA lanes do not run on one
+struct LanesUnderTest {
+  std::vector<const Lane*> lanes;        // selected and available, in table order
+  std::vector<DecideBlock> on_host;      // of each: the host lane or the twin; null where only the device runs it
+  std::unique_ptr<cuda::Device> device;  // null when the CUDA lanes do not run on one
 
   bool on_device(std::size_t l) const { return device && lanes[l]->is_cuda(); }
   // Those that the device runs, in order.
   std::vector<const Lane*> device_lanes() const;
   // Whether the lane runs on the device and by its twin, to be compared; the device's verdicts then count.
   bool on_both(std::size_t l) const { return on_device(l) && on_host[l]; }
-  // How a CUDA lane's verdicts come about: "device", "twin, proven on …", "twin", "device and twin, …".
+  // How a CUDA lane's verdicts come about: "device", "twin, verified on …", "twin", "device and twin, …".
   std::string evidence(std::size_t l) const;
 };
 
 // Throws: UsageError when a pattern matches no lane, or no selected lane is available; std::runtime_error when a device
 // is asked for and there is none.
-Bench make_bench(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
-                 bool require_device = false);
+LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
+                            bool require_device = false);
 
 // What runs the lane here, or why nothing does: "available (device)", "unavailable (no FMA instructions)".
-std::string status(const Lane& lane, const Device* device, const std::string& why_no_device);
+std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device);
 
 // Each lane's verdict on one pair.
 // Returns in apart, for lanes on both: those whose device and twin differ.
-std::vector<Verdict> decide(const Bench& bench, const Pair& pair, std::vector<const Lane*>& apart);
+std::vector<Verdict> decide(const LanesUnderTest& under_test, const Pair& pair, std::vector<const Lane*>& apart);
 
-}  // namespace graze
+}  // namespace graze::fuzz

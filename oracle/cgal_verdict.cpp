@@ -11,7 +11,7 @@
 #include "oracle/integer_pair.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 // Plain arithmetic on 128-bit integers. Every do_intersect below between points, segments and triangles takes
@@ -82,4 +82,4 @@ Verdict cgal_verdict(const Pair& pair) {
   return intersects ? Verdict::intersects : Verdict::disjoint;
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

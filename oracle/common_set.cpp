@@ -7,7 +7,7 @@
 
 #include "oracle/integer_pair.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using Point = Vec3<mpq_class>;
@@ -141,4 +141,4 @@ std::vector<Vec3<double>> planes_line(const Pair& pair) {
   return rounded({at + along * low, at + along * high}, hulls.exponent);
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

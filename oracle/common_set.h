@@ -6,7 +6,7 @@
 
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::oracle {
 
 // The extreme points of the common set of the two closed hulls, in order around it: none, one, two, or a convex
 // polygon's.   Requires: finite coordinates.   Exact: but for the rounding to double.
@@ -17,4 +17,4 @@ std::vector<Vec3<double>> common_set(const Pair& pair);
 // Requires: finite coordinates.   Exact: as common_set.
 std::vector<Vec3<double>> planes_line(const Pair& pair);
 
-}  // namespace graze
+}  // namespace graze::oracle

@@ -8,7 +8,7 @@
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using oracle_test::hex;
@@ -64,4 +64,4 @@ TEST(CommonSet, HoldsForTheSmallestNumbers) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::oracle

@@ -6,7 +6,7 @@
 
 #include <mpfr.h>
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using Int = mpz_class;
@@ -137,4 +137,4 @@ double rounded(const SquaredMargin& margin) {
   return result;
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

@@ -9,7 +9,7 @@
 #include "core/margin/margin.h"
 #include "oracle/integer_pair.h"
 
-namespace graze {
+namespace graze::oracle {
 
 // |margin| = sqrt(numerator / denominator) * 2^exponent; denominator > 0.
 struct SquaredMargin {
@@ -26,8 +26,8 @@ SquaredMargin exact_distance(const LargePair& pair, int exponent);
 // axes: bit i stands for separating axis i of core/margin/margin.h.   Exact: always.
 SquaredMargin exact_depth(const LargePair& pair, int exponent, std::uint32_t axes);
 
-// How far apart the hulls are along direction d of core/margin/margin.h: a lower bound of their distance, zero if they are
-// not separated.   Exact: always.
+// How far apart the hulls are along direction d of core/margin/margin.h: a lower bound of their distance, zero if they
+// are not separated.   Exact: always.
 SquaredMargin exact_separation(const LargePair& pair, int exponent, int d);
 
 // floor(log2(|margin|)).   Requires: margin is not zero.   Exact: always.
@@ -67,4 +67,4 @@ Int integer_overlap(const Vec3<Int> (&a)[3], const Vec3<Int> (&b)[3], int axis, 
   return one < other ? one : other;
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

@@ -13,7 +13,7 @@
 #include "oracle/integer_pair.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using namespace gmp;
@@ -254,4 +254,4 @@ Contact gmp_contact(const Pair& pair) {
   return flat_with_triangle(work, b, a);
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

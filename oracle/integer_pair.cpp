@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 // |value| = mantissa * 2^exponent, mantissa < 2^24; subnormals share the exponent of the smallest normals.
@@ -69,4 +69,4 @@ LargePair large_integers(const Pair& pair, const Grid& grid) {
   return result;
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

@@ -9,7 +9,7 @@
 
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::oracle {
 
 // Coordinates of at most this many bits keep every degree-3 predicate inside a signed 128-bit integer:
 //   a difference                  < 2 * 2^40           = 2^41
@@ -49,4 +49,4 @@ struct LargePair {
 // The pair's coordinates divided by 2^grid.exponent.
 LargePair large_integers(const Pair& pair, const Grid& grid);
 
-}  // namespace graze
+}  // namespace graze::oracle

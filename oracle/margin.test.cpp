@@ -11,7 +11,7 @@
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using oracle_test::hex;
@@ -176,4 +176,4 @@ TEST(FloorLog2, IsExactAtPowersOfTwo) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::oracle

@@ -5,7 +5,7 @@
 #include "oracle/integer_pair.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using Int128 = __int128;
@@ -45,9 +45,9 @@ Bucket margin_bucket(const Pair& pair, Verdict verdict) {
   const SquaredMargin lower = exact_separation(large, grid.exponent, bounds.direction);
   if (lower.numerator != 0) {
     const Bucket nearest = make_bucket(1, floor_log2(lower) - ulp);
-    if (nearest == make_bucket(1, floor_log2(bounds.hi) - ulp)) return nearest;
+    if (nearest == make_bucket(1, graze::floor_log2(bounds.hi) - ulp)) return nearest;
   }
   return make_bucket(1, floor_log2(exact_distance(large, grid.exponent)) - ulp);
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

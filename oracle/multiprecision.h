@@ -10,7 +10,7 @@
 #include <compare>
 #include <utility>
 
-namespace graze {
+namespace graze::oracle {
 
 // A number of `precision` mantissa bits, rounded to nearest even after each operation. Exponents are limited by
 // mpfr_set_emin and mpfr_set_emax, gradually at the lower end where `subnormals` says so.
@@ -161,4 +161,4 @@ struct Ball {
   }
 };
 
-}  // namespace graze
+}  // namespace graze::oracle

@@ -10,7 +10,7 @@
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using oracle_test::Kind;
@@ -77,4 +77,4 @@ const bool kRegistered = [] {
 }();
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::oracle

@@ -7,7 +7,7 @@
 
 #include "oracle/multiprecision.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 int mantissa_bits(Scalar scalar) { return scalar == Scalar::f32 ? 24 : 53; }
@@ -108,4 +108,4 @@ std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pai
   return steps;
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "core/algorithms/traced.h"
 #include "core/lanes.h"
 #include "core/pair.h"
-#include "core/algorithms/traced.h"
 #include "core/verdict.h"
 
-namespace graze {
+namespace graze::oracle {
 
 // Which ends of a scalar's exponents an arithmetic has: beyond them numbers become infinite, or subnormal and zero.
 struct Limits {
@@ -63,4 +63,4 @@ struct ExactStep {
 // Requires: run is of that algorithm in that scalar; bits as decide_exactly found them.
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run, int bits);
 
-}  // namespace graze
+}  // namespace graze::oracle

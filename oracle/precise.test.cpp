@@ -8,7 +8,7 @@
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using namespace oracle_test;
@@ -107,4 +107,4 @@ TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::oracle

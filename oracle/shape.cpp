@@ -3,7 +3,7 @@
 #include "oracle/integer_pair.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 template <class Integer>
@@ -58,4 +58,4 @@ Shape shape(const Pair& pair) {
                          : shape_of<mpz_class>(large_integers(pair, grid));
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

@@ -10,7 +10,7 @@
 #include "oracle/exact_margin.h"
 #include "oracle/integer_pair.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 std::string hex_coordinates(const Pair& pair) {
@@ -43,4 +43,4 @@ Truth truth(const Pair& pair) {
   return {verdict, contact, margin + 0.0, std::ldexp(margin, -log2_ulp(pair)) + 0.0};
 }
 
-}  // namespace graze
+}  // namespace graze::oracle

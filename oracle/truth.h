@@ -9,7 +9,7 @@
 #include "core/pair.h"
 #include "core/verdict.h"
 
-namespace graze {
+namespace graze::oracle {
 
 struct Truth {
   Verdict verdict = Verdict::declined;
@@ -52,4 +52,4 @@ Shape shape(const Pair& pair);
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.
 Bucket margin_bucket(const Pair& pair, Verdict verdict);
 
-}  // namespace graze
+}  // namespace graze::oracle

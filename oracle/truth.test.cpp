@@ -10,7 +10,7 @@
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using oracle_test::hex;
@@ -202,4 +202,4 @@ TEST(Truth, ScalesByPowersOfTwo) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::oracle

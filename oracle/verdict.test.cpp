@@ -8,7 +8,7 @@
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::oracle {
 namespace {
 
 using oracle_test::hex;
@@ -148,4 +148,4 @@ TEST(IntegerPair, ScaledBackGivesTheFloats) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::oracle

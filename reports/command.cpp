@@ -6,10 +6,10 @@
 #include <set>
 
 #include "core/lanes.h"
-#include "strata/strata.h"
 #include "reports/report.h"
+#include "strata/strata.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -89,7 +89,7 @@ std::string campaign_command(const Json& summary) {
     std::erase(strata, "mesh");
   }
   if (!strata.empty()) command += fmt::format(" --pairs {} --seed {}", pairs, spec.at("seed").dump());
-  const bool all_strata = strata.size() == kStrataCount && !spec.contains("mesh");
+  const bool all_strata = strata.size() == strata::kStrataCount && !spec.contains("mesh");
   if (!strata.empty() && !all_strata) command += fmt::format(" --strata {}", joined(strata));
   if (ids.size() != lanes().size()) command += fmt::format(" --lanes '{}'", joined(lane_patterns(ids)));
   const Json executors = summary.at("build").value("executors", Json::object());
@@ -101,4 +101,4 @@ std::string campaign_command(const Json& summary) {
   return command + executor + " --out campaign";
 }
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -83,4 +83,4 @@ CampaignCounts counts_of(const Json& summary) {
   return counts;
 }
 
-}  // namespace graze
+}  // namespace graze::reports

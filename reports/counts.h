@@ -11,7 +11,7 @@
 #include "analysis/tally.h"
 #include "core/lanes.h"
 
-namespace graze {
+namespace graze::reports {
 
 struct ReportLane {
   std::string id, algorithm, scalar, target;
@@ -28,7 +28,7 @@ struct WrongCounts {
 struct StratumCounts {
   std::string id;
   std::uint64_t pairs = 0, intersects = 0;
-  std::vector<LaneCounts> lanes;
+  std::vector<analysis::LaneCounts> lanes;
   std::map<Bucket, WrongCounts> margins;
   std::map<std::string, std::map<int, WrongCounts>> extremes;  // by axis ("scale", "offset") and exponent
 
@@ -52,4 +52,4 @@ struct CampaignCounts {
 // Requires: what summary.json holds.   Throws: Json::exception otherwise.
 CampaignCounts counts_of(const nlohmann::ordered_json& summary);
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -5,7 +5,7 @@
 #include "reports/report.h"
 #include "reports/tables.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -131,4 +131,4 @@ std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const J
   return tables;
 }
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace graze {
+namespace graze::reports {
 
 struct CsvTable {
   std::string name, text;  // "rates.csv"; a header row, then rows as RFC 4180 has them
@@ -16,4 +16,4 @@ struct CsvTable {
 // compare, if the report has it.   Requires: a report of this campaign.
 std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const nlohmann::ordered_json& report);
 
-}  // namespace graze
+}  // namespace graze::reports

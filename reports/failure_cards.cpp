@@ -7,14 +7,16 @@
 #include <optional>
 
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/carded_signatures.h"
 #include "fuzz/minimise/case_facts.h"
-#include "fuzz/campaign/result_files.h"
 #include "oracle/common_set.h"
 #include "reports/snippet.h"
 #include "reports/ulp_map_picture.h"
 
-namespace graze {
+namespace graze::reports {
+
+using fuzz::Json;
 namespace {
 
 // "point/22/skew/-2^-3/moller_1997:+-__..__" in its parts.
@@ -30,7 +32,7 @@ Key parts_of(const std::string& key) {
     *part = key.substr(from, end - from);
     from = end + 1;
   }
-  parts.algorithm = algorithm_of(key);
+  parts.algorithm = analysis::algorithm_of(key);
   parts.marks = key.substr(key.rfind(':') + 1);
   return parts;
 }
@@ -64,19 +66,19 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
           {"card", nullptr}};
 }
 
-std::string text_of(const Entry& entry, std::string_view key) {
-  const std::string* value = field(entry, key);
+std::string text_of(const corpus::Entry& entry, std::string_view key) {
+  const std::string* value = corpus::field(entry, key);
   return value ? *value : "";
 }
 
-std::string origin(const Entry& entry) { return numbers_of(entry).value_or(text_of(entry, "from")); }
+std::string origin(const corpus::Entry& entry) { return corpus::numbers_of(entry).value_or(text_of(entry, "from")); }
 
 Json coordinates_of(const Pair& pair) {
   Json decimal = Json::array(), hex = Json::array(), value = Json::array();
   for (int i = 0; i < kCoordinates; ++i) {
     const float c = coordinates(pair)[i];
     decimal.push_back(fmt::format("{}", c));
-    hex.push_back(hex_float(c));
+    hex.push_back(corpus::hex_float(c));
     value.push_back(static_cast<double>(c));
   }
   return {{"decimal", decimal}, {"hex", hex}, {"value", value}};
@@ -88,13 +90,13 @@ Json drawing_of(const Pair& pair) {
     for (const Vec3<double>& p : all) rows.push_back({p.x, p.y, p.z});
     return rows;
   };
-  return {{"contact", points(common_set(pair))}, {"planes_line", points(planes_line(pair))}};
+  return {{"contact", points(oracle::common_set(pair))}, {"planes_line", points(oracle::planes_line(pair))}};
 }
 
 // What is stored beside the case, if it is of this pair.
 std::optional<Json> stored(const std::filesystem::path& file, const Pair& pair) {
-  Json found = Json::parse(read_whole(file), nullptr, false);
-  if (!found.is_object() || found.value("pair", "") != pair_text(pair)) return std::nullopt;
+  Json found = Json::parse(fuzz::read_whole(file), nullptr, false);
+  if (!found.is_object() || found.value("pair", "") != fuzz::pair_text(pair)) return std::nullopt;
   return found;
 }
 
@@ -124,9 +126,9 @@ Json verdicts_of(const CampaignCounts& counts, const Key& key, Verdict truth, co
   return rows;
 }
 
-Json commands_of(const Entry& entry, const Key& key, const std::string& from) {
+Json commands_of(const corpus::Entry& entry, const Key& key, const std::string& from) {
   const std::string lanes = fmt::format("--lanes '{}/*'", key.algorithm);
-  const std::string file = fmt::format("echo '{}' > case.pairs", pair_text(entry.pair));
+  const std::string file = fmt::format("echo '{}' > case.pairs", fuzz::pair_text(entry.pair));
   Json rows = Json::array();
   const auto add = [&](const char* label, const std::string& text) {
     rows.push_back({{"label", label}, {"text", text}});
@@ -139,12 +141,12 @@ Json commands_of(const Entry& entry, const Key& key, const std::string& from) {
 }
 
 // A program that shows the first wrong lane, on the host if one of its lanes is; and the truth, by a few lines.
-Json snippets_of(const CampaignCounts& counts, const Entry& entry, const Key& key, Verdict truth, const Json& verdicts,
-                 const std::string& from) {
+Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const Key& key, Verdict truth,
+                 const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
   const std::string name =
-      fmt::format("Case {}{}: contact {}, margin {} ({} ulps)", field(entry, "kind") ? "minimised from " : "", from,
-                  text_of(entry, "contact"), text_of(entry, "margin"), text_of(entry, "margin_ulps"));
+      fmt::format("Case {}{}: contact {}, margin {} ({} ulps)", corpus::field(entry, "kind") ? "minimised from " : "",
+                  from, text_of(entry, "contact"), text_of(entry, "margin"), text_of(entry, "margin_ulps"));
   const auto add_lane = [&](SnippetKind kind) {
     for (const Json& row : verdicts) {
       const ReportLane& lane = counts.lanes[row["lane"].get<std::size_t>()];
@@ -172,7 +174,7 @@ struct Lacking {
 // The maps stored with a case, as far as there is room for them; null without.
 Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size_t& room, Lacking& lacking) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
-  Json maps = Json::parse(read_whole(file), nullptr, false);
+  Json maps = Json::parse(fuzz::read_whole(file), nullptr, false);
   if (!is_map_of(maps, pair)) {
     ++lacking.mapped;
     return nullptr;
@@ -190,13 +192,13 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
 Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& found, std::size_t& room,
              Lacking& lacking) {
   const std::string file = found["case"];
-  const std::vector<Entry> entries = read_pairs(directory / file);
-  if (entries.empty()) throw FormatError(file + ": expected at least one case, found none");
-  const Entry& entry = shown_case(entries);
+  const std::vector<corpus::Entry> entries = corpus::read_pairs(directory / file);
+  if (entries.empty()) throw corpus::FormatError(file + ": expected at least one case, found none");
+  const corpus::Entry& entry = fuzz::shown_case(entries);
   const Key key = parts_of(found["key"]);
   const Verdict truth = verdict_of(text_of(entry, "truth"));
-  const std::optional<Json> facts = stored(facts_file(directory / file), entry.pair);
-  const bool minimised = field(entry, "kind") != nullptr;
+  const std::optional<Json> facts = stored(fuzz::facts_file(directory / file), entry.pair);
+  const bool minimised = corpus::field(entry, "kind") != nullptr;
   lacking.minimised += !minimised;
   lacking.explained += !facts;
   const std::string from = origin(entry);
@@ -254,7 +256,7 @@ Json signature_rows(const CampaignCounts& counts, const Json& summary) {
 
 void add_signatures(Json& report, const std::filesystem::path& directory, const Json& summary,
                     const CampaignCounts& counts) {
-  const std::vector<std::size_t> carded = carded_signatures(summary);
+  const std::vector<std::size_t> carded = fuzz::carded_signatures(summary);
   Json rows = Json::array(), cards = Json::array();
   std::size_t count = 0, room = kMostMapBytes;
   Lacking lacking;
@@ -286,4 +288,4 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   report["cards"] = std::move(cards);
 }
 
-}  // namespace graze
+}  // namespace graze::reports

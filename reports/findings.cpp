@@ -10,7 +10,7 @@
 #include "reports/terminal.h"
 #include "reports/wilson.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 using Places = std::vector<std::size_t>;
@@ -89,7 +89,7 @@ std::string worst(const CampaignCounts& counts, const Places& lanes, std::uint64
   if (lanes.size() == 1) return "No other published lane ran, so there is none to be worse.";
   if (least == most) return fmt::format("No lane is worse than another: all {} are wrong equally often.", lanes.size());
   const Places found = those_wrong(counts, lanes, most);
-  const LaneCounts& lane = counts.total.lanes[found[0]];
+  const analysis::LaneCounts& lane = counts.total.lanes[found[0]];
   const std::string kinds = found.size() > 1 ? ""
                                              : fmt::format(", {} of them false positives and {} false negatives",
                                                            grouped(lane.false_positive), grouped(lane.false_negative));
@@ -262,4 +262,4 @@ std::vector<std::string> answer(const CampaignCounts& counts) {
           thesis(counts, lanes), dangerous(counts, lanes)};
 }
 
-}  // namespace graze
+}  // namespace graze::reports

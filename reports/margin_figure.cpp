@@ -8,7 +8,7 @@
 
 #include "core/margin/bucket.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -107,4 +107,4 @@ std::string margin_figure(const Json& summary) {
   return svg + "</svg>\n";
 }
 
-}  // namespace graze
+}  // namespace graze::reports

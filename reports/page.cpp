@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 constexpr char kText[] =
@@ -36,4 +36,4 @@ std::string filled(std::string_view page_template, const nlohmann::ordered_json&
   return text.append(page_template.substr(end));
 }
 
-}  // namespace graze
+}  // namespace graze::reports

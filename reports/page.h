@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace graze {
+namespace graze::reports {
 
 // Whether this build has the page of reports/web, which takes Node to build.
 bool has_interactive_page();
@@ -20,4 +20,4 @@ std::string plain_page(const nlohmann::ordered_json& report);
 // Throws: std::logic_error for a text without that element.
 std::string filled(std::string_view page_template, const nlohmann::ordered_json& report);
 
-}  // namespace graze
+}  // namespace graze::reports

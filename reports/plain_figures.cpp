@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -128,4 +128,4 @@ std::string pair_drawing(const Json& card) {
   return svg + "</svg>";
 }
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace graze {
+namespace graze::reports {
 
 // A text with the characters escaped that HTML gives a meaning to.
 std::string html(const std::string& text);
@@ -16,4 +16,4 @@ std::string margin_chart(const nlohmann::ordered_json& row);
 // Both triangles, the contact and the line of both planes, in isometric view, of one of the report's cards.
 std::string pair_drawing(const nlohmann::ordered_json& card);
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -8,7 +8,7 @@
 #include "reports/plain_figures.h"
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -60,7 +60,8 @@ std::string run_section(const Json& report) {
   if (!run["machine"].is_null()) text += paragraph("Machine: " + run["machine"].get<std::string>());
   text += "<pre>" + html(run["command"]) + "</pre>\n";
   text += paragraph(
-      "This build had no Node, or no npm packages, so the page lacks its interactive parts: sorting, filters, views that turn, "
+      "This build had no Node, or no npm packages, so the page lacks its interactive parts: sorting, filters, views "
+      "that turn, "
       "ulp maps and copy buttons. The same data is in the JSON file and the CSV tables beside it.");
   for (const Json& sentence : report["missing"]) text += paragraph(sentence);
   text += "<h2>The answer</h2>\n<ol>\n";
@@ -201,4 +202,4 @@ std::string plain_page(const Json& report) {
          extremes_section(report) + signature_section(report) + kDefinitions + "</body>\n</html>\n";
 }
 
-}  // namespace graze
+}  // namespace graze::reports

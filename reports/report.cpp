@@ -10,18 +10,20 @@
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
-#include "strata/strata.h"
-#include "reports/findings.h"
 #include "reports/failure_cards.h"
+#include "reports/findings.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
+#include "strata/strata.h"
 
-namespace graze {
+namespace graze::reports {
+
+using fuzz::Json;
 namespace {
 
 // The machines that the campaign ran on, as far as their names are known.
 Json machines(const std::filesystem::path& directory) {
-  const Json timings = Json::parse(read_whole(directory / "timings.json"), nullptr, false);
+  const Json timings = Json::parse(fuzz::read_whole(directory / "timings.json"), nullptr, false);
   if (!timings.is_object() || !timings.contains("runs")) return nullptr;
   std::set<std::string> names;
   for (const Json& run : timings["runs"]) {
@@ -46,11 +48,12 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
 Json strata_of(const CampaignCounts& counts) {
   Json rows = Json::array();
   for (const StratumCounts& stratum : counts.strata) {
-    const auto info =
-        std::find_if(std::begin(kStrata), std::end(kStrata), [&](const StratumInfo& s) { return s.id == stratum.id; });
+    const auto info = std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata),
+                                   [&](const strata::StratumInfo& s) { return s.id == stratum.id; });
     rows.push_back(
         {{"id", stratum.id},
-         {"describes", info != std::end(kStrata) ? info->what : "pairs of a mesh's triangles whose boxes overlap"},
+         {"describes",
+          info != std::end(strata::kStrata) ? info->what : "pairs of a mesh's triangles whose boxes overlap"},
          {"pairs", stratum.pairs},
          {"intersects", stratum.intersects}});
   }
@@ -119,7 +122,7 @@ Json only_in(const Json& signatures, const Json& others) {
 }  // namespace
 
 Json read_summary(const std::filesystem::path& directory) {
-  Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
+  Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
   if (!summary.is_object() || !summary.contains("spec") || !summary.contains("strata"))
     throw UsageError(directory.string() + ": expected a campaign's directory with summary.json, found none");
   return summary;
@@ -147,9 +150,11 @@ Json make_report(const std::filesystem::path& directory) {
     add_signatures(report, directory, summary, counts);
     return report;
   } catch (const Json::exception&) {
-    throw FormatError((directory / "summary.json").string() + ": expected a campaign's summary, found something else");
+    throw corpus::FormatError((directory / "summary.json").string() +
+                              ": expected a campaign's summary, found something else");
   } catch (const std::out_of_range&) {
-    throw FormatError((directory / "summary.json").string() + ": expected a campaign's summary, found something else");
+    throw corpus::FormatError((directory / "summary.json").string() +
+                              ": expected a campaign's summary, found something else");
   }
 }
 
@@ -187,10 +192,10 @@ std::string report_text(const Json& report) {
 }
 
 Json read_report(const std::filesystem::path& file) {
-  Json report = Json::parse(read_whole(file), nullptr, false);
+  Json report = Json::parse(fuzz::read_whole(file), nullptr, false);
   if (!report.is_object() || report.value("format", Json()) != 1 || !report.contains("rates"))
-    throw FormatError(file.string() + ": expected a report of `graze report`, found something else");
+    throw corpus::FormatError(file.string() + ": expected a report of `graze report`, found something else");
   return report;
 }
 
-}  // namespace graze
+}  // namespace graze::reports

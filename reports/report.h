@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace graze {
+namespace graze::reports {
 
 // summary.json of a campaign's directory.   Throws: UsageError where there is none.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
@@ -29,4 +29,4 @@ std::string report_text(const nlohmann::ordered_json& report);
 // A report that was written before.   Throws: FormatError.
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -14,17 +14,19 @@
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/carded_signatures.h"
 #include "fuzz/minimise/case_facts.h"
-#include "fuzz/campaign/result_files.h"
-#include "reports/findings.h"
-#include "reports/failure_cards.h"
 #include "reports/csv.h"
+#include "reports/failure_cards.h"
+#include "reports/findings.h"
 #include "reports/page.h"
 #include "reports/tables.h"
 #include "reports/wilson.h"
 
-namespace graze {
+namespace graze::reports {
+
+using fuzz::Json;
 namespace {
 
 namespace fs = std::filesystem;
@@ -53,7 +55,7 @@ TEST(Wilson, BoundOfNoneIsTheRuleOfThree) {
 
 // A summary of these lanes, with the same counts in each stratum.
 Json summary_of(const std::vector<std::string>& lanes, const std::vector<std::string>& strata,
-                const LaneCounts& counts) {
+                const analysis::LaneCounts& counts) {
   Json summary = {
       {"spec", {{"seed", 1}, {"pairs", 1000 * strata.size()}, {"strata", strata}, {"lanes", lanes}}},
       {"build", {{"version", "0"}, {"commit", "c"}, {"compiler", "g"}, {"cuda", nullptr}, {"device", nullptr}}},
@@ -206,16 +208,17 @@ class ReportTest : public testing::Test {
   static void TearDownTestSuite() { fs::remove_all(root_); }
 
   static void run(const std::string& name, int threads, std::uint64_t seed = 3) {
-    const Bench bench = make_bench({"moller_1997/*", "interval_overlap/*", "exact/f32/cpu"}, Executor::twin);
-    Campaign c;
+    const fuzz::LanesUnderTest under_test =
+        fuzz::select_lanes({"moller_1997/*", "interval_overlap/*", "exact/f32/cpu"}, fuzz::Executor::twin);
+    fuzz::Campaign c;
     c.seed = seed;
-    c.sources = stratum_sources(c.seed, 30'000, {"near_edge_edge", "extreme_scale", "thesis"});
-    c.bench = &bench;
+    c.sources = strata::stratum_sources(c.seed, 30'000, {"near_edge_edge", "extreme_scale", "thesis"});
+    c.under_test = &under_test;
     c.threads = threads;
     c.directory = root_ / name;
-    c.spec = campaign_spec(c);
-    c.build = build_info(bench);
-    run_campaign(c, std::atomic<bool>(false), [](const Progress&) {});
+    c.spec = fuzz::campaign_spec(c);
+    c.build = fuzz::build_info(under_test);
+    fuzz::run_campaign(c, std::atomic<bool>(false), [](const fuzz::Progress&) {});
   }
 
   static inline fs::path root_;
@@ -231,7 +234,8 @@ TEST_F(ReportTest, SameBytesAgainAndForOtherThreads) {
 }
 
 TEST_F(ReportTest, AgreesWithTheSummary) {
-  const Json report = make_report(root_ / "one"), summary = Json::parse(read_whole(root_ / "one" / "summary.json"));
+  const Json report = make_report(root_ / "one"),
+             summary = Json::parse(fuzz::read_whole(root_ / "one" / "summary.json"));
   EXPECT_EQ(report["answer"].size(), 5u);
   ASSERT_EQ(report["rates"].size(), report["lanes"].size() * 4);  // three strata, and all
   for (const Json& row : report["rates"]) {
@@ -244,7 +248,7 @@ TEST_F(ReportTest, AgreesWithTheSummary) {
     EXPECT_EQ(row["differs_from_cpu"].is_null(), lane.ends_with("/cpu"));
   }
   EXPECT_EQ(report["signatures"].size(), summary["signatures"].size());
-  EXPECT_EQ(report["cards"].size(), carded_signatures(summary).size());
+  EXPECT_EQ(report["cards"].size(), fuzz::carded_signatures(summary).size());
   EXPECT_GT(report["cards"].size(), 10u);
   std::set<std::string> kinds;
   for (const Json& row : report["side_by_side"]) kinds.insert(row["kind"]);
@@ -253,21 +257,23 @@ TEST_F(ReportTest, AgreesWithTheSummary) {
 
 TEST_F(ReportTest, CardsWithoutTheMinimiserSayWhatTheSignatureDoes) {
   const Json report = make_report(root_ / "one");
-  const Bench bench = make_bench({"moller_1997/*", "interval_overlap/*"}, Executor::twin);
+  const fuzz::LanesUnderTest under_test =
+      fuzz::select_lanes({"moller_1997/*", "interval_overlap/*"}, fuzz::Executor::twin);
   for (const Json& card : report["cards"]) {
     const Json& signature = report["signatures"][card["signature"].get<std::size_t>()];
     EXPECT_EQ(card["minimised"], false);
     Pair pair;
     for (int i = 0; i < kCoordinates; ++i)
-      coordinates(pair)[i] = parse_float32(card["pair"]["hex"][static_cast<std::size_t>(i)].get<std::string>()).value();
+      coordinates(pair)[i] =
+          corpus::parse_float32(card["pair"]["hex"][static_cast<std::size_t>(i)].get<std::string>()).value();
     std::vector<const Lane*> apart;
-    const std::vector<Verdict> verdicts = decide(bench, pair, apart);
+    const std::vector<Verdict> verdicts = decide(under_test, pair, apart);
     std::size_t compared = 0;
     for (const Json& row : card["verdicts"]) {
       const std::string lane = report["lanes"][row["lane"].get<std::size_t>()]["id"];
       EXPECT_EQ(lane.substr(0, lane.find('/')), signature["algorithm"]);
-      for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
-        if (bench.lanes[l]->id != lane) continue;
+      for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
+        if (under_test.lanes[l]->id != lane) continue;
         EXPECT_EQ(row["verdict"], name(verdicts[l])) << lane;
         ++compared;
       }
@@ -281,15 +287,16 @@ TEST_F(ReportTest, CardsWithoutTheMinimiserSayWhatTheSignatureDoes) {
 
 TEST_F(ReportTest, CardsTellWhatTheMinimiserStored) {
   run("minimised", 2);
-  const Json summary = Json::parse(read_whole(root_ / "minimised" / "summary.json"));
-  const Bench bench = make_bench(summary["spec"]["lanes"].get<std::vector<std::string>>(), Executor::twin);
-  for (const std::size_t place : carded_signatures(summary)) {
+  const Json summary = Json::parse(fuzz::read_whole(root_ / "minimised" / "summary.json"));
+  const fuzz::LanesUnderTest under_test =
+      fuzz::select_lanes(summary["spec"]["lanes"].get<std::vector<std::string>>(), fuzz::Executor::twin);
+  for (const std::size_t place : fuzz::carded_signatures(summary)) {
     const fs::path file = root_ / "minimised" / summary["signatures"][place]["case"].get<std::string>();
-    store_facts(bench, file);
+    fuzz::store_facts(under_test, file);
     Json pair = Json::array();
     for (int i = 0; i < kCoordinates; ++i)
-      pair.push_back(fmt::format("{:a}", coordinates(shown_case(read_pairs(file)).pair)[i]));
-    write_whole(fs::path(file).replace_extension(".maps.json"), Json({{"pair", pair}, {"title", "t"}}).dump());
+      pair.push_back(fmt::format("{:a}", coordinates(fuzz::shown_case(corpus::read_pairs(file)).pair)[i]));
+    fuzz::write_whole(fs::path(file).replace_extension(".maps.json"), Json({{"pair", pair}, {"title", "t"}}).dump());
   }
   Json report = make_report(root_ / "minimised");
   for (const Json& card : report["cards"]) {
@@ -300,10 +307,10 @@ TEST_F(ReportTest, CardsTellWhatTheMinimiserStored) {
     EXPECT_TRUE(contains(card["snippets"][0]["text"], "g++") || contains(card["snippets"][0]["text"], "nvcc"));
   }
   // Facts of another pair are not shown.
-  const fs::path facts = facts_file(root_ / "minimised" / report["cards"][0]["file"].get<std::string>());
-  Json other = Json::parse(read_whole(facts));
+  const fs::path facts = fuzz::facts_file(root_ / "minimised" / report["cards"][0]["file"].get<std::string>());
+  Json other = Json::parse(fuzz::read_whole(facts));
   other["pair"] = "0x0p+0";
-  write_whole(facts, other.dump());
+  fuzz::write_whole(facts, other.dump());
   report = make_report(root_ / "minimised");
   EXPECT_TRUE(report["cards"][0]["sentences"].empty());
   EXPECT_FALSE(report["cards"][1]["sentences"].empty());
@@ -416,17 +423,17 @@ TEST(Page, OfManySignaturesIsUnderEightMebibytes) {
     const std::string key = "segment/22/skew/+2^-" + std::to_string(i) + "/guigue_devillers_2003:+-+-+-+-";
     summary["signatures"].push_back({{"key", key}, {"count", 99'999'999'999}, {"case", "cases/1.pairs"}});
   }
-  write_whole(directory / "cases/1.pairs", "graze-pairs 1\n" + pair_text(pair) +
-                                               " | stratum=s seed=1 index=1 truth=disjoint contact=none "
-                                               "margin=1e-30 margin_ulps=1.25\n");
+  fuzz::write_whole(directory / "cases/1.pairs", "graze-pairs 1\n" + fuzz::pair_text(pair) +
+                                                     " | stratum=s seed=1 index=1 truth=disjoint contact=none "
+                                                     "margin=1e-30 margin_ulps=1.25\n");
   Json pair_hex = Json::array();
   for (int i = 0; i < kCoordinates; ++i) pair_hex.push_back(fmt::format("{:a}", coordinates(pair)[i]));
-  write_whole(directory / "cases/1.maps.json",
-              Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump());
-  write_whole(directory / "summary.json", summary.dump());
+  fuzz::write_whole(directory / "cases/1.maps.json",
+                    Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump());
+  fuzz::write_whole(directory / "summary.json", summary.dump());
   const Json report = make_report(directory);
   const std::string html = page(report);
-  EXPECT_EQ(report["cards"].size(), kMostCards);
+  EXPECT_EQ(report["cards"].size(), fuzz::kMostCards);
   EXPECT_EQ(report["signatures"].size(), kMostSignatures);
   EXPECT_EQ(report["signature_count"], 12'000);
   EXPECT_LT(html.size(), 8u << 20);
@@ -438,11 +445,11 @@ TEST(Report, NeedsACampaign) {
   EXPECT_THROW(make_report("/nonexistent"), UsageError);
   const fs::path directory = fs::temp_directory_path() / ("graze_damaged_" + std::to_string(getpid()));
   fs::create_directories(directory);
-  write_whole(directory / "summary.json", R"({"spec": {}, "strata": {}})");
-  EXPECT_THROW(make_report(directory), FormatError);
-  EXPECT_THROW(read_report(directory / "summary.json"), FormatError);
+  fuzz::write_whole(directory / "summary.json", R"({"spec": {}, "strata": {}})");
+  EXPECT_THROW(make_report(directory), corpus::FormatError);
+  EXPECT_THROW(read_report(directory / "summary.json"), corpus::FormatError);
   fs::remove_all(directory);
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::reports

@@ -6,7 +6,7 @@
 #include "reports/margin_figure.h"
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 nlohmann::ordered_json example() {
@@ -53,4 +53,4 @@ TEST(MarginFigure, DrawsALineForEachCpuLane) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::reports

@@ -12,7 +12,7 @@
 
 #include "corpus/pair_format.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 struct Embedded {
@@ -106,7 +106,7 @@ std::string vertices(SnippetKind kind, const Vec3<float> (&triangle)[3], char la
   std::string text;
   for (int i = 0; i < 3; ++i) {
     const Vec3<float>& v = triangle[i];
-    const std::string x = hex_float(v.x), y = hex_float(v.y), z = hex_float(v.z);
+    const std::string x = corpus::hex_float(v.x), y = corpus::hex_float(v.y), z = corpus::hex_float(v.z);
     // Nine digits are nearer to a float32 than to the middle between it and the next, through a double as well.
     const std::string decimals = fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z);
     if (kind == SnippetKind::python) {
@@ -179,4 +179,4 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
   return text.append(rest);
 }
 
-}  // namespace graze
+}  // namespace graze::reports

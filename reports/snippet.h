@@ -9,7 +9,7 @@
 #include "core/pair.h"
 #include "core/verdict.h"
 
-namespace graze {
+namespace graze::reports {
 
 // cpp, cuda, gtest: the algorithm's own source, which shows a lane's verdict. python, cgal: programs that decide the
 // pair exactly. obj: a Wavefront file. The texts are snippets/*.in.
@@ -36,4 +36,4 @@ std::string snippet(SnippetKind kind, const SnippetCase& found);
 // The text of core/ID.h and all it includes as one source, without includes and guards of its own.
 std::string amalgamated_source(std::string_view algorithm_id);
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -11,7 +11,7 @@
 #include "oracle/truth.h"
 #include "reports/snippet.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
@@ -55,8 +55,8 @@ TEST(Snippet, ObjDecimalsReadAsTheSameBits) {
     const std::string word = line.substr(2, line.find(' ', 2) - 2);
     const float once = std::strtof(word.c_str(), nullptr),
                 twice = static_cast<float>(std::strtod(word.c_str(), nullptr));
-    EXPECT_EQ(hex_float(once), hex_float(x)) << line;
-    EXPECT_EQ(hex_float(twice), hex_float(x)) << line;
+    EXPECT_EQ(corpus::hex_float(once), corpus::hex_float(x)) << line;
+    EXPECT_EQ(corpus::hex_float(twice), corpus::hex_float(x)) << line;
   }
 }
 
@@ -69,8 +69,8 @@ TEST(Snippet, PythonDecidesTheWholeCorpus) {
   int count = 0, disjoint = 0;
   for (const auto& item : std::filesystem::recursive_directory_iterator(GRAZE_SOURCE_DIR "/corpus")) {
     if (item.path().extension() != ".pairs") continue;
-    for (const Entry& entry : read_pairs(item.path())) {
-      const Truth t = truth(entry.pair);
+    for (const corpus::Entry& entry : corpus::read_pairs(item.path())) {
+      const oracle::Truth t = oracle::truth(entry.pair);
       if (t.verdict == Verdict::declined) continue;
       disjoint += t.verdict == Verdict::disjoint;
       std::ofstream(folder / (std::to_string(count++) + ".py"))
@@ -106,4 +106,4 @@ TEST(Snippet, PythonContradictsAWrongTruth) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::reports

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace graze {
+namespace graze::reports {
 
 using Json = nlohmann::ordered_json;
 
@@ -38,7 +38,7 @@ Json rates(const CampaignCounts& counts) {
   Json rows = Json::array();
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     for_each_stratum(counts, [&](const Json& place, const StratumCounts& stratum) {
-      const LaneCounts& lane = stratum.lanes[l];
+      const analysis::LaneCounts& lane = stratum.lanes[l];
       rows.push_back({{"lane", l},
                       {"stratum", place},
                       {"false_positive", to_json(share_of(lane.false_positive, stratum.pairs - stratum.intersects))},
@@ -141,4 +141,4 @@ Json extremes(const CampaignCounts& counts) {
   return rows;
 }
 
-}  // namespace graze
+}  // namespace graze::reports

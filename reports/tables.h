@@ -8,7 +8,7 @@
 #include "reports/counts.h"
 #include "reports/wilson.h"
 
-namespace graze {
+namespace graze::reports {
 
 // {"count", "of", "share", "low", "high"}, rounded to 5 significant digits.
 nlohmann::ordered_json to_json(const Share& share);
@@ -42,4 +42,4 @@ constexpr const char* side_of(Bucket bucket) { return bucket < 0 ? "intersects" 
 // floor(log2) of the margins of a bucket other than 0, in ulps.
 constexpr int exponent_of(Bucket bucket) { return (bucket < 0 ? -bucket : bucket) + kBucketLowest - 1; }
 
-}  // namespace graze
+}  // namespace graze::reports

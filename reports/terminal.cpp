@@ -7,7 +7,7 @@
 
 #include "corpus/pair_format.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -80,12 +80,12 @@ void print_summary(std::ostream& out, const Json& summary, const Json& oracle) {
                      grouped(oracle["gmp"]), oracle["apart"].dump());
 }
 
-void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes,
+void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
                 std::span<const Verdict> verdicts) {
   for (int v = 0; v < 6; ++v) {
     const Vec3<float>& p = v < 3 ? pair.a[v] : pair.b[v - 3];
     out << fmt::format("  {}[{}]  {:>15} {:>15} {:>15}   {} {} {}\n", v < 3 ? 'a' : 'b', v % 3, p.x, p.y, p.z,
-                       hex_float(p.x), hex_float(p.y), hex_float(p.z));
+                       corpus::hex_float(p.x), corpus::hex_float(p.y), corpus::hex_float(p.z));
   }
   out << fmt::format("  truth: {}, contact {}, margin {} ({} ulps)\n", name(truth.verdict), name(truth.contact),
                      truth.margin, truth.margin_ulps);
@@ -107,4 +107,4 @@ void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::sp
   }
 }
 
-}  // namespace graze
+}  // namespace graze::reports

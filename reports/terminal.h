@@ -10,7 +10,7 @@
 #include "core/pair.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::reports {
 
 // What summary.json holds, as two tables: errors by stratum and algorithm, and by lane;
 // and which exact decisions stand behind them (see Outcome).
@@ -18,10 +18,10 @@ void print_summary(std::ostream& out, const nlohmann::ordered_json& summary, con
 
 // One pair: its coordinates in decimals and hex floats, the truth, and a verdict for each lane, wrong ones marked.
 // Requires: verdicts[i] is what lanes[i] says.
-void print_pair(std::ostream& out, const Pair& pair, const Truth& truth, std::span<const Lane* const> lanes,
+void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
                 std::span<const Verdict> verdicts);
 
 // 1234567 as "1,234,567".
 std::string grouped(std::uint64_t number);
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -12,7 +12,7 @@
 
 #include "reports/terminal.h"
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 // A colour a kind of cell, in its order, then ink and paper. Right verdicts are greys, wrong ones vermilion and blue of
@@ -26,7 +26,7 @@ constexpr const char* kCellNames[] = {"disjoint",       "intersects", "false pos
 constexpr int kZoom = 2;  // of a sheet: its panels' pixels and its letters'
 constexpr int kMargin = 16;
 constexpr int kLine = 24;  // of text
-constexpr int kSide = kZoom * kMapSize;
+constexpr int kSide = kZoom * analysis::kMapSize;
 constexpr int kLanesARow = 4;
 
 struct Image {
@@ -74,22 +74,22 @@ struct Image {
   }
 };
 
-Image picture(const UlpPanel& panel) {
-  Image image(kMapSize, kMapSize, kPaper);
+Image picture(const analysis::UlpPanel& panel) {
+  Image image(analysis::kMapSize, analysis::kMapSize, kPaper);
   std::transform(panel.cells.begin(), panel.cells.end(), image.colours.begin(),
-                 [](Cell cell) { return static_cast<std::uint8_t>(cell); });
+                 [](analysis::Cell cell) { return static_cast<std::uint8_t>(cell); });
   constexpr int kNear = 3, kLength = 8;
-  for (const int at : {kMapCentre - kNear - kLength + 1, kMapCentre + kNear}) {
-    image.fill(at, kMapCentre, kLength, 1, kInk);
-    image.fill(kMapCentre, at, 1, kLength, kInk);
+  for (const int at : {analysis::kMapCentre - kNear - kLength + 1, analysis::kMapCentre + kNear}) {
+    image.fill(at, analysis::kMapCentre, kLength, 1, kInk);
+    image.fill(analysis::kMapCentre, at, 1, kLength, kInk);
   }
   return image;
 }
 
-std::string counts_of(const UlpPanel& panel) {
-  const std::array<int, kCellKinds> counts = panel.counts();
+std::string counts_of(const analysis::UlpPanel& panel) {
+  const std::array<int, analysis::kCellKinds> counts = panel.counts();
   std::string text;
-  for (std::size_t kind = panel.lane ? 2 : 0; kind < kCellKinds; ++kind) {
+  for (std::size_t kind = panel.lane ? 2 : 0; kind < analysis::kCellKinds; ++kind) {
     if (counts[kind] > 0)
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(static_cast<std::uint64_t>(counts[kind])),
                           kCellNames[kind]);
@@ -98,10 +98,10 @@ std::string counts_of(const UlpPanel& panel) {
 }
 
 // For each kind, whether some panel has it.
-std::array<bool, kCellKinds> kinds_in(const UlpMap& map) {
-  std::array<bool, kCellKinds> found{};
-  for (const UlpPanel& panel : map.panels) {
-    for (const Cell cell : panel.cells) found[static_cast<std::size_t>(cell)] = true;
+std::array<bool, analysis::kCellKinds> kinds_in(const analysis::UlpMap& map) {
+  std::array<bool, analysis::kCellKinds> found{};
+  for (const analysis::UlpPanel& panel : map.panels) {
+    for (const analysis::Cell cell : panel.cells) found[static_cast<std::size_t>(cell)] = true;
   }
   return found;
 }
@@ -124,33 +124,33 @@ std::vector<std::string> hex(const Pair& pair) {
 
 }  // namespace
 
-std::string panel_png(const UlpPanel& panel) { return picture(panel).png(); }
+std::string panel_png(const analysis::UlpPanel& panel) { return picture(panel).png(); }
 
-std::string sheet_png(const UlpMap& map) {
+std::string sheet_png(const analysis::UlpMap& map) {
   const int lanes = static_cast<int>(map.panels.size()) - 1;
   const int columns = 1 + std::min(lanes, kLanesARow), rows = std::max(1, (lanes + kLanesARow - 1) / kLanesARow);
   const int row_height = kSide + 2 * kLine + kMargin;
   Image sheet(kMargin + columns * (kSide + kMargin), kMargin + rows * row_height + 3 * kLine, kPaper);
   for (int p = 0; p <= lanes; ++p) {
-    const UlpPanel& panel = map.panels[static_cast<std::size_t>(p)];
+    const analysis::UlpPanel& panel = map.panels[static_cast<std::size_t>(p)];
     const int column = p == 0 ? 0 : 1 + (p - 1) % kLanesARow, row = p == 0 ? 0 : (p - 1) / kLanesARow;
     const int left = kMargin + column * (kSide + kMargin), top = kMargin + row * row_height;
     sheet.write(left, top, panel.name());
     sheet.write(left, top + kLine, counts_of(panel));
     const Image small = picture(panel);
-    for (int i = 0; i < kMapSize * kMapSize; ++i) {
-      sheet.fill(left + i % kMapSize * kZoom, top + 2 * kLine + i / kMapSize * kZoom, kZoom, kZoom,
+    for (int i = 0; i < analysis::kMapSize * analysis::kMapSize; ++i) {
+      sheet.fill(left + i % analysis::kMapSize * kZoom, top + 2 * kLine + i / analysis::kMapSize * kZoom, kZoom, kZoom,
                  small.colours[static_cast<std::size_t>(i)]);
     }
   }
   int top = kMargin + rows * row_height;
   sheet.write(kMargin, top,
               fmt::format("{} to the right, {} upwards; a cell is an ulp; the cross is at the pair itself",
-                          name_of_coordinate(map.moved.x), name_of_coordinate(map.moved.y)));
+                          analysis::name_of_coordinate(map.moved.x), analysis::name_of_coordinate(map.moved.y)));
   top += kLine;
   int left = kMargin;
-  const std::array<bool, kCellKinds> found = kinds_in(map);
-  for (std::uint8_t kind = 0; kind < kCellKinds; ++kind) {
+  const std::array<bool, analysis::kCellKinds> found = kinds_in(map);
+  for (std::uint8_t kind = 0; kind < analysis::kCellKinds; ++kind) {
     if (!found[kind]) continue;
     std::string name = kCellNames[kind];
     sheet.fill(left, top, 16, 16, kInk);
@@ -161,22 +161,22 @@ std::string sheet_png(const UlpMap& map) {
   return sheet.png();
 }
 
-nlohmann::ordered_json to_json(const UlpMap& map) {
-  const std::string x = name_of_coordinate(map.moved.x), y = name_of_coordinate(map.moved.y);
+nlohmann::ordered_json to_json(const analysis::UlpMap& map) {
+  const std::string x = analysis::name_of_coordinate(map.moved.x), y = analysis::name_of_coordinate(map.moved.y);
   nlohmann::ordered_json panels = nlohmann::ordered_json::array();
-  for (const UlpPanel& panel : map.panels)
+  for (const analysis::UlpPanel& panel : map.panels)
     panels.push_back({{"name", panel.name()}, {"png", base64(panel_png(panel))}});
   nlohmann::ordered_json legend = nlohmann::ordered_json::array();
-  const std::array<bool, kCellKinds> found = kinds_in(map);
-  for (std::size_t kind = 0; kind < kCellKinds; ++kind) {
+  const std::array<bool, analysis::kCellKinds> found = kinds_in(map);
+  for (std::size_t kind = 0; kind < analysis::kCellKinds; ++kind) {
     const auto& [red, green, blue] = kPalette[kind];
     if (found[kind])
       legend.push_back({{"colour", fmt::format("#{:02x}{:02x}{:02x}", red, green, blue)}, {"means", kCellNames[kind]}});
   }
-  return {{"title", fmt::format("{} and {} moved by up to {} ulps", x, y, kMapCentre)},
+  return {{"title", fmt::format("{} and {} moved by up to {} ulps", x, y, analysis::kMapCentre)},
           {"x", x},
           {"y", y},
-          {"size", kMapSize},
+          {"size", analysis::kMapSize},
           {"legend", legend},
           {"pair", hex(map.pair)},
           {"panels", panels}};
@@ -186,4 +186,4 @@ bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair) {
   return json.is_object() && json.value("pair", nlohmann::ordered_json()) == hex(pair);
 }
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -8,20 +8,20 @@
 
 #include "analysis/ulp_map.h"
 
-namespace graze {
+namespace graze::reports {
 
 // One panel, kMapSize pixels a side. The bytes depend on nothing but the panel and the PNG library.
-std::string panel_png(const UlpPanel& panel);
+std::string panel_png(const analysis::UlpPanel& panel);
 
 // All panels with their names and counts, at twice that size: the truth and four lanes in the first row, then four
 // lanes a row; below what the coordinates and colours are.
-std::string sheet_png(const UlpMap& map);
+std::string sheet_png(const analysis::UlpMap& map);
 
 // {"title", "x", "y", "size", "legend": [{"colour", "means"}], "panels": [{"name", "png"}]} as a report's page wants
 // it, PNGs in base64; and "pair", its 18 coordinates in hex.
-nlohmann::ordered_json to_json(const UlpMap& map);
+nlohmann::ordered_json to_json(const analysis::UlpMap& map);
 
 // Whether that is of this pair.
 bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair);
 
-}  // namespace graze
+}  // namespace graze::reports

@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace graze {
+namespace graze::reports {
 namespace {
 
 struct Picture {
@@ -31,60 +31,62 @@ struct Picture {
 const Pair kPair{{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}}, {{0.75f, 0.75f, 0}, {0.75f, 0.75f, 1}, {0.5f, 0.75f, 1}}};
 
 // One row of each kind of cell, over and over.
-UlpMap striped(int lanes) {
-  UlpMap map{kPair, {9, 10}, {}};
+analysis::UlpMap striped(int lanes) {
+  analysis::UlpMap map{kPair, {9, 10}, {}};
   for (int p = 0; p <= lanes; ++p) {
-    UlpPanel panel{p == 0 ? nullptr : &graze::lanes()[static_cast<std::size_t>(p - 1)], {}};
-    for (int cell = 0; cell < kMapSize * kMapSize; ++cell)
-      panel.cells.push_back(static_cast<Cell>(cell / kMapSize % (p == 0 ? 2 : kCellKinds)));
+    analysis::UlpPanel panel{p == 0 ? nullptr : &graze::lanes()[static_cast<std::size_t>(p - 1)], {}};
+    for (int cell = 0; cell < analysis::kMapSize * analysis::kMapSize; ++cell)
+      panel.cells.push_back(
+          static_cast<analysis::Cell>(cell / analysis::kMapSize % (p == 0 ? 2 : analysis::kCellKinds)));
     map.panels.push_back(panel);
   }
   return map;
 }
 
 TEST(UlpMapPicture, HasAColourAKindAndACrossAroundThePair) {
-  const UlpMap map = striped(1);
+  const analysis::UlpMap map = striped(1);
   const Picture picture(panel_png(map.panels[1]));
-  ASSERT_EQ(picture.width, kMapSize);
-  ASSERT_EQ(picture.height, kMapSize);
+  ASSERT_EQ(picture.width, analysis::kMapSize);
+  ASSERT_EQ(picture.height, analysis::kMapSize);
   const auto at = [&](int column, int row) {
-    return picture.pixels[static_cast<std::size_t>(row * kMapSize + column)];
+    return picture.pixels[static_cast<std::size_t>(row * analysis::kMapSize + column)];
   };
   std::set<std::uint32_t> colours;
-  for (int row = 0; row < kCellKinds; ++row) colours.insert(at(0, row));
-  EXPECT_EQ(colours.size(), std::size_t{kCellKinds});
+  for (int row = 0; row < analysis::kCellKinds; ++row) colours.insert(at(0, row));
+  EXPECT_EQ(colours.size(), std::size_t{analysis::kCellKinds});
   int ink = 0;
-  for (int row = 0; row < kMapSize; ++row) {
-    for (int column = 0; column < kMapSize; ++column) {
-      if (at(column, row) != at(0, row % kCellKinds)) {
+  for (int row = 0; row < analysis::kMapSize; ++row) {
+    for (int column = 0; column < analysis::kMapSize; ++column) {
+      if (at(column, row) != at(0, row % analysis::kCellKinds)) {
         EXPECT_EQ(at(column, row), 0u);
-        EXPECT_TRUE(column == kMapCentre || row == kMapCentre);
+        EXPECT_TRUE(column == analysis::kMapCentre || row == analysis::kMapCentre);
         ++ink;
       }
     }
   }
   EXPECT_EQ(ink, 32);
-  EXPECT_EQ(at(kMapCentre, kMapCentre), at(0, kMapCentre % kCellKinds));  // the pair's own cell shows
+  EXPECT_EQ(at(analysis::kMapCentre, analysis::kMapCentre),
+            at(0, analysis::kMapCentre % analysis::kCellKinds));  // the pair's own cell shows
 }
 
 TEST(UlpMapPicture, SheetsHoldAllPanelsAtTwiceTheSize) {
-  const UlpMap map = striped(8);
+  const analysis::UlpMap map = striped(8);
   const Picture one(sheet_png(striped(1))), nine(sheet_png(map));
-  EXPECT_GT(one.width, 2 * 2 * kMapSize);
-  EXPECT_GT(nine.width, 5 * 2 * kMapSize);
-  EXPECT_GT(nine.height, one.height + 2 * kMapSize);
-  const std::uint32_t declined = Picture(panel_png(map.panels[1])).pixels[4 * kMapSize];
+  EXPECT_GT(one.width, 2 * 2 * analysis::kMapSize);
+  EXPECT_GT(nine.width, 5 * 2 * analysis::kMapSize);
+  EXPECT_GT(nine.height, one.height + 2 * analysis::kMapSize);
+  const std::uint32_t declined = Picture(panel_png(map.panels[1])).pixels[4 * analysis::kMapSize];
   int found = 0;
   for (const std::uint32_t pixel : nine.pixels) found += pixel == declined;
-  const int rows = kMapSize / kCellKinds;  // that are declined, of each lane
-  EXPECT_NEAR(found, 8 * 4 * rows * kMapSize, 8 * 4 * 32 + 14 * 14);
+  const int rows = analysis::kMapSize / analysis::kCellKinds;  // that are declined, of each lane
+  EXPECT_NEAR(found, 8 * 4 * rows * analysis::kMapSize, 8 * 4 * 32 + 14 * 14);
   EXPECT_EQ(sheet_png(map), sheet_png(striped(8)));
 }
 
 TEST(UlpMapPicture, JsonIsThePairsOwn) {
   const nlohmann::ordered_json json = to_json(striped(2));
   EXPECT_EQ(json["x"], "b[0].x");
-  EXPECT_EQ(json["size"], kMapSize);
+  EXPECT_EQ(json["size"], analysis::kMapSize);
   EXPECT_EQ(json["legend"][0], (nlohmann::ordered_json{{"colour", "#eeeeee"}, {"means", "disjoint"}}));
   ASSERT_EQ(json["panels"].size(), 3u);
   EXPECT_EQ(json["panels"][0]["name"], "truth");
@@ -101,4 +103,4 @@ TEST(UlpMapPicture, JsonIsThePairsOwn) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::reports

@@ -5,9 +5,8 @@
 
 #include "strata/draws.h"
 
-namespace graze {
+namespace graze::strata {
 inline namespace GRAZE_FP {
-namespace strata {
 
 // Where a contact's numbers come from. Integers: nothing that is built of them rounds, in double or in float32,
 // as (place + 2 * weight * step) <= 2^24.
@@ -172,6 +171,5 @@ GRAZE_INLINE Pair exact_contact(Draws& draws) {
   return shuffled(draws, rounded(contact.draft));
 }
 
-}  // namespace strata
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::strata

@@ -10,7 +10,7 @@
 #include "strata/strata.h"
 #include "strata/testing.h"
 
-namespace graze::testing {
+namespace graze::strata::testing {
 namespace {
 
 TEST(NearContacts, HaveBothVerdicts) {
@@ -162,4 +162,4 @@ TEST(Parallel, NormalsAreParallelAndPlanesNot) {
 }
 
 }  // namespace
-}  // namespace graze::testing
+}  // namespace graze::strata::testing

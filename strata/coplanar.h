@@ -5,9 +5,8 @@
 
 #include "strata/draws.h"
 
-namespace graze {
+namespace graze::strata {
 inline namespace GRAZE_FP {
-namespace strata {
 
 struct GridPoint {
   int i, j;
@@ -150,6 +149,5 @@ GRAZE_HD inline Pair parallel(Draws& draws) {
   }
 }
 
-}  // namespace strata
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::strata

@@ -17,9 +17,8 @@
 #define GRAZE_INLINE inline
 #endif
 
-namespace graze {
+namespace graze::strata {
 inline namespace GRAZE_FP {
-namespace strata {
 
 using Vec = Vec3<double>;
 
@@ -162,6 +161,5 @@ GRAZE_INLINE Pair shuffled(Draws& draws, const Pair& pair) {
   return result;
 }
 
-}  // namespace strata
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::strata

@@ -9,7 +9,7 @@
 
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::strata {
 
 inline constexpr std::uint64_t kGoldenSeed = 1;
 inline constexpr std::uint64_t kGoldenPairs = 10'000;
@@ -50,4 +50,4 @@ inline constexpr std::uint64_t kGoldenHashes[] = {
 };
 static_assert(std::size(kGoldenHashes) == kStrataCount);
 
-}  // namespace graze
+}  // namespace graze::strata

@@ -19,7 +19,7 @@
 
 #include "core/fnv1a.h"
 
-namespace graze {
+namespace graze::strata {
 namespace {
 
 using Triangle = std::array<Vec3<float>, 3>;
@@ -175,4 +175,4 @@ MeshPairs read_mesh_pairs(const std::filesystem::path& file, const std::optional
   return result;
 }
 
-}  // namespace graze
+}  // namespace graze::strata

@@ -13,7 +13,7 @@
 
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::strata {
 
 struct MeshPairs {
   std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the other, in file order
@@ -35,4 +35,4 @@ struct MeshPairs {
 MeshPairs read_mesh_pairs(const std::filesystem::path& file,
                           const std::optional<std::filesystem::path>& other = std::nullopt);
 
-}  // namespace graze
+}  // namespace graze::strata

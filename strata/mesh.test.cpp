@@ -14,7 +14,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace graze {
+namespace graze::strata {
 namespace {
 
 using Index = std::pair<std::uint32_t, std::uint32_t>;
@@ -248,4 +248,4 @@ TEST_F(MeshFile, WhatDoesNotParseIsAnError) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::strata

@@ -5,9 +5,8 @@
 
 #include "strata/contact.h"
 
-namespace graze {
+namespace graze::strata {
 inline namespace GRAZE_FP {
-namespace strata {
 
 GRAZE_HD inline Pair far_from_origin(Draws& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain());
@@ -64,6 +63,5 @@ GRAZE_HD inline Pair mixed_scale(Draws& draws) {
   return finished(draws, draft, push);
 }
 
-}  // namespace strata
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::strata

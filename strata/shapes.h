@@ -4,9 +4,8 @@
 
 #include "strata/contact.h"
 
-namespace graze {
+namespace graze::strata {
 inline namespace GRAZE_FP {
-namespace strata {
 
 // Length over height 2^10 … 2^23, log-uniform.
 GRAZE_HD inline Shape draw_sliver_shape(Draws& draws) {
@@ -118,6 +117,5 @@ GRAZE_HD inline Pair shared_edge(Draws& draws) {
   return shuffled(draws, rounded(draft));
 }
 
-}  // namespace strata
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::strata

@@ -10,7 +10,7 @@
 #include "strata/strata.h"
 #include "strata/testing.h"
 
-namespace graze::testing {
+namespace graze::strata::testing {
 namespace {
 
 // Length over height.
@@ -117,4 +117,4 @@ TEST(MixedScale, SizesDifferByUpTo2To40) {
 }
 
 }  // namespace
-}  // namespace graze::testing
+}  // namespace graze::strata::testing

@@ -9,7 +9,7 @@
 #include "core/margin/axis.h"
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::strata {
 
 enum class Stratum : std::uint8_t {
   uniform,
@@ -78,6 +78,6 @@ inline namespace GRAZE_FP {
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index);
 
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::strata
 
 #include "strata/strata.inl"

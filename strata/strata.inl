@@ -6,9 +6,8 @@
 #include "strata/scale.h"
 #include "strata/shapes.h"
 
-namespace graze {
+namespace graze::strata {
 inline namespace GRAZE_FP {
-namespace strata {
 
 GRAZE_HD inline Vec3<float> draw_uniform(Draws& draws) {
   return {draws.real_float(), draws.real_float(), draws.real_float()};
@@ -39,8 +38,6 @@ GRAZE_HD inline Pair lattice(Draws& draws) {
   return {{draw_lattice(draws), draw_lattice(draws), draw_lattice(draws)},
           {draw_lattice(draws), draw_lattice(draws), draw_lattice(draws)}};
 }
-
-}  // namespace strata
 
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index) {
   using strata::Touch;
@@ -89,4 +86,4 @@ GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t
 }
 
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::strata

@@ -12,7 +12,7 @@
 
 #include "strata/golden.h"
 
-namespace graze {
+namespace graze::strata {
 namespace {
 
 TEST(Strata, RowsAreInTheOrderOfTheEnumeration) {
@@ -145,4 +145,4 @@ TEST(Thesis, IsTheReferenceAgainstTheListingsTriangles) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::strata

@@ -12,7 +12,7 @@
 
 #include "strata/strata.h"
 
-namespace graze::testing {
+namespace graze::strata::testing {
 
 using Int = __int128;  // holds products of five coordinates of 24 bits
 
@@ -123,4 +123,4 @@ inline bool disjoint_pair(const Pair& pair) {
   return disjoint(converted<long double>(pair.a), converted<long double>(pair.b));
 }
 
-}  // namespace graze::testing
+}  // namespace graze::strata::testing

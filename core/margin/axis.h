@@ -28,7 +28,7 @@ inline namespace GRAZE_FP {
 // coordinate (all zero: as 2^-149). offset: floor(log2(m / s)), s the longest side of the box around both triangles;
 // the end is open, and where one point is all.
 // Requires: finite coordinates; compiled without contraction, on host and device alike.
-GRAZE_HD inline std::int8_t extreme_of(const Pair& pair, Axis axis) {
+GRAZE_HD inline std::int8_t place_on_axis(const Pair& pair, Axis axis) {
   if (axis == Axis::none) return 0;
   const float* c = &pair.a[0].x;
   double largest = 0, extent = 0;

@@ -8,7 +8,7 @@
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 constexpr std::uint32_t kBlockPairs = 1u << 22;  // decided together; a multiple of kThreads
@@ -30,7 +30,7 @@ struct Buffers {
   ~Buffers() { cudaStreamDestroy(stream); }
 };
 
-class CudaEngine final : public Engine {
+class CudaEngine final : public DeviceEngine {
  public:
   CudaEngine(int ordinal, std::span<const Lane* const> lanes) : ordinal_(ordinal), lanes_(lanes.begin(), lanes.end()) {
     if (lanes.size() > kMostLanes) throw std::runtime_error("the engine takes 32 lanes at most");
@@ -42,7 +42,7 @@ class CudaEngine final : public Engine {
 
   EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) override {
     check(cudaSetDevice(ordinal_));
-    const EngineBlock empty = begin(kStrata[stratum].axis);
+    const EngineBlock empty = begin(strata::kStrata[stratum].axis);
     const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, count));
     EngineBlock blocks[kBlocksAtOnce];
     for (int k = 0; k < kBlocksAtOnce; ++k) blocks[k] = with_memory(empty, *buffers_[k], block_pairs);
@@ -169,16 +169,16 @@ class CudaEngine final : public Engine {
 
 }  // namespace
 
-std::vector<std::unique_ptr<Engine>> open_engines(std::span<const Lane* const> cuda_lanes) {
+std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const> cuda_lanes) {
   int devices = 0;
   if (cudaGetDeviceCount(&devices) != cudaSuccess) {
     cudaGetLastError();  // clears it
     devices = 0;
   }
-  std::vector<std::unique_ptr<Engine>> engines;
+  std::vector<std::unique_ptr<DeviceEngine>> engines;
   for (int ordinal = 0; ordinal < devices; ++ordinal)
     engines.push_back(std::make_unique<CudaEngine>(ordinal, cuda_lanes));
   return engines;
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

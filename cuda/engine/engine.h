@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "core/margin/bucket.h"
 #include "core/lanes.h"
+#include "core/margin/bucket.h"
 
-namespace graze {
+namespace graze::cuda {
 
 inline constexpr int kEngineCases = 4;  // kept of each signature
 
@@ -33,22 +33,22 @@ struct EngineResult {
   // By bucket plus kBucketMost: pairs, intersecting ones, then of each lane: false positives, false negatives,
   // declined, differing from the cpu lane (always 0 here: no cpu lane runs).
   std::vector<std::uint64_t> counts;
-  std::vector<std::uint64_t> extreme_counts;  // the same by extreme_of plus kBucketMost; empty without an axis
+  std::vector<std::uint64_t> extreme_counts;  // the same by place_on_axis plus kBucketMost; empty without an axis
   std::vector<EngineSignature> signatures;
   std::vector<std::uint64_t> undecided;  // indices, sorted
   std::uint64_t disagreements = 0;
 };
 
 // One device. One thread at a time.
-class Engine {
+class DeviceEngine {
  public:
-  virtual ~Engine() = default;
+  virtual ~DeviceEngine() = default;
 
   // Pairs [first, first + count) of the stratum (its place in kStrata).   Throws: std::runtime_error on any CUDA error.
   virtual EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) = 0;
 };
 
 // An engine for each CUDA device.   Requires: CUDA lanes.   Returns: none without a device.
-std::vector<std::unique_ptr<Engine>> open_engines(std::span<const Lane* const> cuda_lanes);
+std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const> cuda_lanes);
 
-}  // namespace graze
+}  // namespace graze::cuda

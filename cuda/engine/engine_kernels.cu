@@ -8,7 +8,7 @@
 #include "core/margin/tie_proof.h"
 #include "cuda/lanes/kernels.cuh"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 using exact::Relation;
@@ -216,7 +216,7 @@ __global__ void __launch_bounds__(kThreads) place_extremes(EngineBlock block) {
   if (i >= block.pairs.count) return;
   float c[kCoordinates];
   load(block.pairs, i, c);
-  block.extremes[i] = block.buckets[i] == kUndecided ? kUndecided : extreme_of(pair_of(c), block.axis);
+  block.extremes[i] = block.buckets[i] == kUndecided ? kUndecided : place_on_axis(pair_of(c), block.axis);
 }
 
 // By bucket, or by extreme. A warp a word: the first thread of each bucket counts all pairs of that bucket.
@@ -228,15 +228,15 @@ __global__ void __launch_bounds__(kThreads) tally(EngineBlock block, bool by_ext
   for (int i = static_cast<int>(threadIdx.x); i < counters; i += kThreads) counts[i] = 0;
   __syncthreads();
   std::uint32_t disagreements = 0;
-  const std::uint32_t words = (block.pairs.count + 31) / 32, lane_of_warp = threadIdx.x % 32;
+  const std::uint32_t words = (block.pairs.count + 31) / 32, thread_of_warp = threadIdx.x % 32;
   for (std::uint32_t word = (blockIdx.x * kThreads + threadIdx.x) / 32; word < words;
        word += gridDim.x * kThreads / 32) {
-    const std::uint32_t i = word * 32 + lane_of_warp;
+    const std::uint32_t i = word * 32 + thread_of_warp;
     const std::int8_t bucket = i < block.pairs.count ? buckets[i] : kUndecided;
     const std::uint32_t known = __ballot_sync(0xffffffffu, bucket != kUndecided);
     const std::uint32_t same = __match_any_sync(0xffffffffu, bucket);
-    disagreements += lane_of_warp == 0 ? __popc(block.wrong[word] & known) : 0;
-    if (bucket == kUndecided || static_cast<unsigned>(__ffs(static_cast<int>(same)) - 1) != lane_of_warp) continue;
+    disagreements += thread_of_warp == 0 ? __popc(block.wrong[word] & known) : 0;
+    if (bucket == kUndecided || static_cast<unsigned>(__ffs(static_cast<int>(same)) - 1) != thread_of_warp) continue;
     const std::uint32_t truth = block.truth[word];
     std::uint32_t* row = counts + (bucket + kBucketMost);
     const auto count = [&](int counter, std::uint32_t pairs) {
@@ -286,4 +286,4 @@ void launch_engine(const EngineBlock& block, cudaStream_t stream) {
   check(cudaGetLastError());
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

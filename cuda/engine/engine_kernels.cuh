@@ -8,7 +8,7 @@
 #include "cuda/engine/engine.h"
 #include "cuda/lanes/exact_kernels.cuh"
 
-namespace graze {
+namespace graze::cuda {
 
 inline constexpr std::int8_t kUndecided = 127;  // a bucket, or an extreme, that is not known
 inline constexpr int kMostLanes = 32;
@@ -78,4 +78,4 @@ GRAZE_HD constexpr std::size_t engine_counters(int lanes) {
 // Requires: truth and the lanes' words are written, the lists of places are empty.
 void launch_engine(const EngineBlock& block, cudaStream_t stream);
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -9,7 +9,7 @@
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 std::string version(int packed) { return std::to_string(packed / 1000) + "." + std::to_string(packed % 1000 / 10); }
@@ -92,4 +92,4 @@ std::unique_ptr<Device> open_device(std::string& why_not) {
   return std::make_unique<CudaDevice>();
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

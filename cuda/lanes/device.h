@@ -11,7 +11,7 @@
 
 #include "core/lanes.h"
 
-namespace graze {
+namespace graze::cuda {
 
 // One lane's verdicts on a block of pairs; bit i % 64 of word i / 64 belongs to pair i.
 struct LaneBits {
@@ -37,4 +37,4 @@ class Device {
 // The first CUDA device; null when there is none, with the reason in `why_not` ("no device", "built without CUDA").
 std::unique_ptr<Device> open_device(std::string& why_not);
 
-}  // namespace graze
+}  // namespace graze::cuda

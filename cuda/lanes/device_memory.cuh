@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace graze {
+namespace graze::cuda {
 
 // Throws: std::runtime_error with CUDA's message and the place of the call.
 inline void check(cudaError_t error, std::source_location where = std::source_location::current()) {
@@ -43,4 +43,4 @@ class DeviceArray {
   std::size_t count_ = 0;
 };
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace graze {
+namespace graze::cuda {
 
 // A block of pairs: 18 arrays of `stride` floats, ax0[] ay0[] … bz2[], of which `count` are in use.
 struct DevicePairs {
@@ -13,4 +13,4 @@ struct DevicePairs {
   std::uint32_t count;
 };
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -6,7 +6,7 @@
 
 #include "cuda/lanes/kernels.cuh"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 using exact::Stage;
@@ -121,4 +121,4 @@ void DeviceExact::decide(DevicePairs pairs, std::uint32_t* intersects, std::uint
   check(cudaGetLastError());
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

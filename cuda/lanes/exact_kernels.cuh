@@ -11,7 +11,7 @@
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/device_pairs.h"
 
-namespace graze {
+namespace graze::cuda {
 
 // Places of pairs in a block, for another kernel.
 struct Places {
@@ -50,4 +50,4 @@ class DeviceExact {
 void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream);
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -5,7 +5,7 @@
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/trace.h"
 
-namespace graze {
+namespace graze::cuda {
 inline namespace GRAZE_FP {
 
 template <class Real>
@@ -79,4 +79,4 @@ extern const DeviceKernels<LaunchDecide> GRAZE_DECIDE_KERNELS =
 extern const DeviceKernels<LaunchTrace> GRAZE_TRACE_KERNELS =
     trace_launchers(std::make_integer_sequence<int, kAlgorithmCount>());
 
-}  // namespace graze
+}  // namespace graze::cuda

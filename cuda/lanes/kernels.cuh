@@ -10,7 +10,7 @@
 #include "core/algorithms/algorithms.h"
 #include "cuda/lanes/device_pairs.h"
 
-namespace graze {
+namespace graze::cuda {
 
 inline constexpr int kThreads = 256;
 
@@ -26,4 +26,4 @@ using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;
 extern const DeviceKernels<LaunchDecide> kDecideNofma, kDecideFma;
 extern const DeviceKernels<LaunchTrace> kTraceNofma, kTraceFma;
 
-}  // namespace graze
+}  // namespace graze::cuda

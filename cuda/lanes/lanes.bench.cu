@@ -25,7 +25,7 @@
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 constexpr std::uint32_t kPairs = 1u << 24;
@@ -140,7 +140,7 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
   float* columns;
   check(cudaMallocHost(&columns, kFloats * sizeof(float)));
   bool same = true;
-  for (int stratum = 0; stratum < kStrataCount; ++stratum) {
+  for (int stratum = 0; stratum < strata::kStrataCount; ++stratum) {
     std::uint64_t differ = 0, hash_of_device = fnv1a(""), hash_of_host = fnv1a("");
     for (std::uint64_t round = first; round < end; ++round) {
       resident.hold(stratum, round * kPairs);
@@ -169,8 +169,8 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
       hash_of_device = hashed(of_device, hash_of_device);
       hash_of_host = hashed(of_host, hash_of_host);
     }
-    std::cout << kStrata[stratum].id << ": " << (end - first) * kPairs << " pairs, " << differ << " differ, hashes "
-              << std::hex << hash_of_device << ' ' << hash_of_host << std::dec << std::endl;
+    std::cout << strata::kStrata[stratum].id << ": " << (end - first) * kPairs << " pairs, " << differ
+              << " differ, hashes " << std::hex << hash_of_device << ' ' << hash_of_host << std::dec << std::endl;
     same = same && differ == 0 && hash_of_device == hash_of_host;
   }
   check(cudaFreeHost(columns));
@@ -216,26 +216,26 @@ void add_all(Resident& resident) {
       check(cudaGetLastError());
     });
   });
-  for (int stratum = 0; stratum < kStrataCount; ++stratum) {
+  for (int stratum = 0; stratum < strata::kStrataCount; ++stratum) {
     for (const Lane& lane : lanes()) {
       if (!lane.is_cuda()) continue;
-      add(lane.id + '/' + std::string(kStrata[stratum].id),
+      add(lane.id + '/' + std::string(strata::kStrata[stratum].id),
           [&resident, &lane, stratum](benchmark::State& state) { measure_lane(state, resident, stratum, lane); });
     }
   }
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cuda
 
 // `graze_device_bench compare FIRST END` compares the exact lanes of device and host instead of measuring.
 int main(int argc, char** argv) try {
   if (argc == 4 && std::string_view(argv[1]) == "compare")
-    return graze::device_is_host(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;
+    return graze::cuda::device_is_host(std::stoull(argv[2]), std::stoull(argv[3])) ? 0 : 1;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   std::string why_not;
-  const std::unique_ptr<graze::Device> device = graze::open_device(why_not);
+  const std::unique_ptr<graze::cuda::Device> device = graze::cuda::open_device(why_not);
   if (!device) {
     std::cout << "graze_device_bench: skipped, " << why_not << '\n';
     return 0;
@@ -245,8 +245,8 @@ int main(int argc, char** argv) try {
   benchmark::AddCustomContext("nvcc", device->toolkit);
   benchmark::AddCustomContext("flags", GRAZE_FLAGS);
   benchmark::AddCustomContext("commit", GRAZE_COMMIT);
-  graze::Resident resident;
-  graze::add_all(resident);
+  graze::cuda::Resident resident;
+  graze::cuda::add_all(resident);
   benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
   return 0;

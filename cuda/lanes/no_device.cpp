@@ -7,15 +7,15 @@
 #include "cuda/engine/engine.h"
 #include "cuda/twin/prove.h"
 
-namespace graze {
+namespace graze::cuda {
 
 std::unique_ptr<Device> open_device(std::string& why_not) {
   why_not = "built without CUDA";
   return nullptr;
 }
 
-std::vector<std::unique_ptr<Engine>> open_engines(std::span<const Lane* const>) { return {}; }
+std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const>) { return {}; }
 
 ProofRecord prove_twin(const ProofOptions&) { throw std::runtime_error("a proof needs a device: built without CUDA"); }
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -7,16 +7,16 @@
 
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace {
 
 // A kernel a stratum: one for all would need the registers and the stack of the dearest.
-template <Stratum stratum>
+template <strata::Stratum stratum>
 __global__ void generate_pairs(float* coordinates, std::uint32_t count, std::uint64_t seed, std::uint64_t first) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= count) return;
-  const Pair pair = generate(seed, stratum, first + i);
+  const Pair pair = strata::generate(seed, stratum, first + i);
   const float* values = &pair.a[0].x;
   for (int c = 0; c < kCoordinates; ++c) coordinates[static_cast<std::size_t>(c) * count + i] = values[c];
 }
@@ -46,7 +46,7 @@ using Generate = void (*)(float*, std::uint32_t, std::uint64_t, std::uint64_t);
 
 template <std::size_t... kStratum>
 constexpr std::array<Generate, sizeof...(kStratum)> generators(std::index_sequence<kStratum...>) {
-  return {generate_pairs<static_cast<Stratum>(kStratum)>...};
+  return {generate_pairs<static_cast<strata::Stratum>(kStratum)>...};
 }
 
 constexpr std::uint32_t kBlock = 256;
@@ -57,7 +57,7 @@ constexpr std::uint32_t blocks(std::uint32_t threads) { return (threads + kBlock
 
 void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
                      cudaStream_t stream) {
-  static constexpr auto kGenerators = generators(std::make_index_sequence<kStrataCount>());
+  static constexpr auto kGenerators = generators(std::make_index_sequence<strata::kStrataCount>());
   kGenerators[static_cast<std::size_t>(stratum)]<<<blocks(count), kBlock, 0, stream>>>(coordinates, count, seed, first);
 }
 
@@ -71,4 +71,4 @@ void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::
   compare_hashes<<<blocks(count), kBlock, 0, stream>>>(a, b, count, first, differences);
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -8,7 +8,7 @@
 
 #include "cuda/lanes/device_pairs.h"
 
-namespace graze {
+namespace graze::cuda {
 
 inline constexpr std::uint32_t kExamples = 8;
 
@@ -28,4 +28,4 @@ void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::ui
 void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,
                            Differences* differences, cudaStream_t stream);
 
-}  // namespace graze
+}  // namespace graze::cuda

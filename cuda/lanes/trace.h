@@ -8,7 +8,7 @@
 
 #include "core/policy.h"
 
-namespace graze {
+namespace graze::cuda {
 inline namespace GRAZE_FP {
 
 // Order matters. Any NaN counts as one value: processors differ in their signs and payloads.
@@ -46,4 +46,4 @@ struct TracePolicy {
 };
 
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::cuda

@@ -10,7 +10,7 @@
 #include "cuda/twin/twin.h"
 #include "cuda/twin/twin_table.h"
 
-namespace graze {
+namespace graze::cuda {
 
 extern const TwinTable kTwinsWrong;  // contracted with the right product first
 
@@ -22,14 +22,14 @@ Verdict decide(DecideBlock block, const Pair& pair) {
   return intersects ? Verdict::intersects : declined ? Verdict::declined : Verdict::disjoint;
 }
 
-const std::string& text(const Entry& entry, const char* key) {
-  const std::string* value = field(entry, key);
+const std::string& text(const corpus::Entry& entry, const char* key) {
+  const std::string* value = corpus::field(entry, key);
   if (!value) throw std::runtime_error("a canary without " + std::string(key));
   return *value;
 }
 
 // The lane "ALGORITHM/SCALAR" of the canary, in this target.
-const Lane& lane_of(const Entry& canary, Target target) {
+const Lane& lane_of(const corpus::Entry& canary, Target target) {
   const std::string id = text(canary, "lane") + "/" + std::string(name(target));
   for (const Lane& lane : lanes()) {
     if (lane.id == id) return lane;
@@ -37,27 +37,27 @@ const Lane& lane_of(const Entry& canary, Target target) {
   throw std::runtime_error("no lane " + id);
 }
 
-Verdict twin_says(const Entry& canary, Target target) {
+Verdict twin_says(const corpus::Entry& canary, Target target) {
   const Lane& lane = lane_of(canary, target);
   return decide(twin_block(lane.algorithm, lane.scalar, target), canary.pair);
 }
 
-std::vector<Entry> canaries(const std::string& kind) {
-  std::vector<Entry> all = read_pairs(GRAZE_SOURCE_DIR "/cuda/twin/canaries.pairs");
-  std::erase_if(all, [&](const Entry& entry) { return text(entry, "kind") != kind; });
+std::vector<corpus::Entry> canaries(const std::string& kind) {
+  std::vector<corpus::Entry> all = corpus::read_pairs(GRAZE_SOURCE_DIR "/cuda/twin/canaries.pairs");
+  std::erase_if(all, [&](const corpus::Entry& entry) { return text(entry, "kind") != kind; });
   return all;
 }
 
-void expect_every_kernel(const std::vector<Entry>& entries) {
+void expect_every_kernel(const std::vector<corpus::Entry>& entries) {
   std::set<std::string> kernels;
-  for (const Entry& entry : entries) kernels.insert(text(entry, "lane"));
+  for (const corpus::Entry& entry : entries) kernels.insert(text(entry, "lane"));
   EXPECT_EQ(kernels.size(), std::size_t{2} * kAlgorithmCount);
 }
 
 TEST(Canaries, CudaFmaAndCudaNofmaDiffer) {
-  const std::vector<Entry> all = canaries("cuda_nofma");
+  const std::vector<corpus::Entry> all = canaries("cuda_nofma");
   expect_every_kernel(all);
-  for (const Entry& canary : all) {
+  for (const corpus::Entry& canary : all) {
     EXPECT_EQ(name(twin_says(canary, Target::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
     EXPECT_EQ(name(twin_says(canary, Target::cuda_nofma)), text(canary, "other")) << text(canary, "name");
     EXPECT_NE(text(canary, "cuda_fma"), text(canary, "other"));
@@ -65,9 +65,9 @@ TEST(Canaries, CudaFmaAndCudaNofmaDiffer) {
 }
 
 TEST(Canaries, AWrongContractionRuleIsCaught) {
-  const std::vector<Entry> all = canaries("right_first");
+  const std::vector<corpus::Entry> all = canaries("right_first");
   expect_every_kernel(all);
-  for (const Entry& canary : all) {
+  for (const corpus::Entry& canary : all) {
     const Lane& lane = lane_of(canary, Target::cuda_fma);
     const TwinRow& wrong =
         kTwinsWrong.rows[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
@@ -78,14 +78,14 @@ TEST(Canaries, AWrongContractionRuleIsCaught) {
 
 TEST(Canaries, CpuFmaAndCudaFmaDiffer) {
 #if defined(__clang__)
-  const std::vector<Entry> all = canaries("cpu_fma_clang");
+  const std::vector<corpus::Entry> all = canaries("cpu_fma_clang");
 #else
-  const std::vector<Entry> all = canaries("cpu_fma_gcc");
+  const std::vector<corpus::Entry> all = canaries("cpu_fma_gcc");
 #endif
   ASSERT_FALSE(all.empty());
   if (!runs_on_this_cpu(lane_of(all[0], Target::cpu_fma))) GTEST_SKIP() << "this processor has no FMA instructions";
   std::map<std::string, int> differ;
-  for (const Entry& canary : all) {
+  for (const corpus::Entry& canary : all) {
     EXPECT_EQ(name(twin_says(canary, Target::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
     differ[text(canary, "lane")] +=
         decide(lane_of(canary, Target::cpu_fma).decide, canary.pair) != twin_says(canary, Target::cuda_fma);
@@ -104,7 +104,7 @@ TEST(Canaries, CpuFmaAndCudaFmaDiffer) {
 TEST(Canaries, CpuFmaAndCpuDiffer) {
   std::map<std::string, int> differ;
   for (const char* kind : {"cuda_nofma", "cpu_fma_gcc", "cpu_fma_clang", "right_first"}) {
-    for (const Entry& canary : canaries(kind)) {
+    for (const corpus::Entry& canary : canaries(kind)) {
       if (!runs_on_this_cpu(lane_of(canary, Target::cpu_fma))) GTEST_SKIP() << "this processor has no FMA instructions";
       differ[text(canary, "lane")] += decide(lane_of(canary, Target::cpu_fma).decide, canary.pair) !=
                                       decide(lane_of(canary, Target::cpu).decide, canary.pair);
@@ -114,4 +114,4 @@ TEST(Canaries, CpuFmaAndCpuDiffer) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cuda

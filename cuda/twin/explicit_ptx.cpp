@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/twin/explicit_ptx.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 constexpr const char* kFma[] = {
@@ -27,4 +27,4 @@ std::string explicit_ptx(bool contracted, bool wrong_rule) {
   return !contracted ? joined(kNofma) : wrong_rule ? joined(kFmaWrong) : joined(kFma);
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -4,8 +4,8 @@
 
 #include <string>
 
-namespace graze {
+namespace graze::cuda {
 
 std::string explicit_ptx(bool contracted, bool wrong_rule);
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 template <class Count>
@@ -28,8 +28,9 @@ std::uint64_t LaneProof::twin_pairs() const {
 std::uint64_t LaneProof::twin_differences() const {
   return total(*this, [](const StratumProof& s) { return s.twin_verdict_differences + s.twin_trace_differences; });
 }
-bool ProofRecord::proven() const {
-  return !lanes.empty() && std::all_of(lanes.begin(), lanes.end(), [](const LaneProof& lane) { return lane.proven(); });
+bool ProofRecord::verified() const {
+  return !lanes.empty() &&
+         std::all_of(lanes.begin(), lanes.end(), [](const LaneProof& lane) { return lane.verified(); });
 }
 
 nlohmann::ordered_json to_json(const ProofRecord& record) {
@@ -59,4 +60,4 @@ nlohmann::ordered_json to_json(const ProofRecord& record) {
           {"seed", record.seed},     {"seconds", record.seconds}, {"lanes", std::move(lanes)}};
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -12,13 +12,13 @@
 #include "core/lanes.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_memory.cuh"
-#include "cuda/twin/explicit_ptx.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
+#include "cuda/twin/explicit_ptx.h"
 #include "cuda/twin/twin_table.h"
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 constexpr std::uint32_t kBlockPairs = 1u << 23;  // a block of pairs: 604 MB of coordinates
@@ -60,9 +60,9 @@ class Prover {
       if (!lane.is_cuda() || lane.is_exact() || !matches_any(options.lanes, lane.id)) continue;
       lanes_.push_back(&lane);
       const TwinRow& row = twin_row(lane.algorithm, lane.scalar, lane.target);
-      record_.lanes.push_back({lane.id, row.hash, row.trace_hash, std::vector<StratumProof>(kStrataCount)});
-      for (int s = 0; s < kStrataCount; ++s)
-        record_.lanes.back().strata[static_cast<std::size_t>(s)].stratum = kStrata[s].id;
+      record_.lanes.push_back({lane.id, row.hash, row.trace_hash, std::vector<StratumProof>(strata::kStrataCount)});
+      for (int s = 0; s < strata::kStrataCount; ++s)
+        record_.lanes.back().strata[static_cast<std::size_t>(s)].stratum = strata::kStrata[s].id;
       auto& module = explicit_[lane.target];
       if (!module) module = std::make_unique<ExplicitKernels>(lane.target == Target::cuda_fma, options.wrong_rule);
     }
@@ -74,9 +74,9 @@ class Prover {
     record_.driver = device.driver;
     record_.toolkit = device.toolkit;
     record_.seed = options_.seed;
-    for (int s = 0; s < kStrataCount; ++s) {
+    for (int s = 0; s < strata::kStrataCount; ++s) {
       const auto count = [&](std::uint64_t all) {
-        return all / kStrataCount + (static_cast<std::uint64_t>(s) < all % kStrataCount);
+        return all / strata::kStrataCount + (static_cast<std::uint64_t>(s) < all % strata::kStrataCount);
       };
       const std::uint64_t pairs = count(options_.pairs), twin_pairs = std::min(pairs, count(options_.twin_pairs));
       for (std::uint64_t first = 0; first < pairs; first += kBlockPairs) {
@@ -98,7 +98,7 @@ class Prover {
       differences += row.verdict_differences + row.trace_differences;
       twin_differences += row.twin_verdict_differences + row.twin_trace_differences;
     }
-    return std::string(kStrata[s].id) + ": " + std::to_string(differences) + " differences on the device, " +
+    return std::string(strata::kStrata[s].id) + ": " + std::to_string(differences) + " differences on the device, " +
            std::to_string(twin_differences) + " from the twin, " + std::to_string(static_cast<int>(record_.seconds)) +
            " s";
   }
@@ -234,4 +234,4 @@ ProofRecord prove_twin(const ProofOptions& options) {
   return Prover(options).run(*device);
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace graze {
+namespace graze::cuda {
 
 struct ProofOptions {
   std::uint64_t pairs = 10'000'000'000;    // a lane, all strata together
@@ -38,7 +38,7 @@ struct LaneProof {
   std::uint64_t differences() const;
   std::uint64_t twin_pairs() const;
   std::uint64_t twin_differences() const;
-  bool proven() const { return pairs() > 0 && twin_pairs() > 0 && differences() == 0 && twin_differences() == 0; }
+  bool verified() const { return pairs() > 0 && twin_pairs() > 0 && differences() == 0 && twin_differences() == 0; }
 };
 
 struct ProofRecord {
@@ -47,7 +47,7 @@ struct ProofRecord {
   double seconds = 0;
   std::vector<LaneProof> lanes;
 
-  bool proven() const;  // every lane
+  bool verified() const;  // every lane
 };
 
 // Throws: std::runtime_error without a device, and on any CUDA error.
@@ -56,4 +56,4 @@ ProofRecord prove_twin(const ProofOptions& options);
 // The record as cuda/proofs keeps it.
 nlohmann::ordered_json to_json(const ProofRecord& record);
 
-}  // namespace graze
+}  // namespace graze::cuda

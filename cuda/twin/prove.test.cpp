@@ -7,7 +7,7 @@
 
 #include "cuda/lanes/device.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 bool no_device(std::string& why) { return open_device(why) == nullptr; }
@@ -15,7 +15,7 @@ bool no_device(std::string& why) { return open_device(why) == nullptr; }
 TEST(ProveTwin, FindsNoDifference) {
   if (std::string why; no_device(why)) GTEST_SKIP() << why;
   const ProofRecord record = prove_twin({.pairs = 2'000'000, .twin_pairs = 200'000});
-  for (const LaneProof& lane : record.lanes) EXPECT_TRUE(lane.proven()) << lane.lane;
+  for (const LaneProof& lane : record.lanes) EXPECT_TRUE(lane.verified()) << lane.lane;
   EXPECT_EQ(record.lanes.size(), 20u);
 }
 
@@ -29,12 +29,12 @@ TEST(ProveTwin, CatchesTheRightProductFirst) {
 TEST(ProofRecord, NeedsPairsAndNoDifference) {
   ProofRecord record;
   record.lanes = {{"lane", "hash", "trace", {{"uniform", 10, 0, 0, 5, 0, 0}}}};
-  EXPECT_TRUE(record.proven());
+  EXPECT_TRUE(record.verified());
   record.lanes[0].strata[0].twin_trace_differences = 1;
-  EXPECT_FALSE(record.proven());
+  EXPECT_FALSE(record.verified());
   record.lanes[0].strata[0] = {"uniform", 10, 0, 0, 0, 0, 0};
-  EXPECT_FALSE(record.proven());
-  EXPECT_FALSE(ProofRecord{}.proven());
+  EXPECT_FALSE(record.verified());
+  EXPECT_FALSE(ProofRecord{}.verified());
 }
 
 TEST(ProofRecord, IsWrittenInFull) {
@@ -49,4 +49,4 @@ TEST(ProofRecord, IsWrittenInFull) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cuda

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 std::vector<std::string> lines_of(const std::string& path) {
@@ -55,4 +55,4 @@ TEST(StoredPtx, HasNoPathOfItsMachine) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cuda

@@ -3,7 +3,7 @@
 
 #include "cuda/lanes/device_memory.cuh"
 
-namespace graze {
+namespace graze::cuda {
 
 std::vector<std::uint64_t> run_ptx(const std::string& ptx, const std::string& kernel, const void* inputs,
                                    std::size_t count, std::size_t input_bytes, std::size_t slots) {
@@ -29,4 +29,4 @@ std::vector<std::uint64_t> run_ptx(const std::string& ptx, const std::string& ke
   return result;
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

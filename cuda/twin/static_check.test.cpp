@@ -19,7 +19,7 @@
 
 #include "cuda/twin/generator/ptx_writer.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 // The kernels' machine code in a cubin, an ELF file: the sections .text.KERNEL.
@@ -202,4 +202,4 @@ INSTANTIATE_TEST_SUITE_P(Types, RandomPrograms, testing::Values("f32", "f64"),
                          [](const auto& row) { return std::string(row.param); });
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cuda

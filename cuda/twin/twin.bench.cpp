@@ -7,14 +7,14 @@
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 constexpr std::size_t kPairs = 1 << 14;
 
-std::vector<Pair> pairs_of(Stratum stratum) {
+std::vector<Pair> pairs_of(strata::Stratum stratum) {
   std::vector<Pair> pairs;
-  for (std::uint64_t i = 0; i < kPairs; ++i) pairs.push_back(generate(1, stratum, i));
+  for (std::uint64_t i = 0; i < kPairs; ++i) pairs.push_back(strata::generate(1, stratum, i));
   return pairs;
 }
 
@@ -30,7 +30,7 @@ Bits run(DecideBlock decide, const std::vector<Pair>& pairs) {
   return bits;
 }
 
-void measure(benchmark::State& state, DecideBlock decide, Stratum stratum, const Lane* same_as) {
+void measure(benchmark::State& state, DecideBlock decide, strata::Stratum stratum, const Lane* same_as) {
   const std::vector<Pair> pairs = pairs_of(stratum);
   if (same_as && run(decide, pairs) != run(same_as->decide, pairs))
     return state.SkipWithError("the twin differs from the cpu lane");
@@ -39,7 +39,7 @@ void measure(benchmark::State& state, DecideBlock decide, Stratum stratum, const
 }
 
 const bool kRegistered = [] {
-  for (Stratum stratum : {Stratum::uniform, Stratum::near_edge_edge}) {
+  for (strata::Stratum stratum : {strata::Stratum::uniform, strata::Stratum::near_edge_edge}) {
     const Lane* cpu = nullptr;
     for (const Lane& lane : lanes()) {
       if (lane.target == Target::cpu) cpu = &lane;
@@ -49,7 +49,7 @@ const bool kRegistered = [] {
       if (!decide) continue;
       const Lane* same_as = lane.target == Target::cuda_nofma ? cpu : nullptr;
       const std::string name =
-          lane.id + (lane.is_cuda() ? " (twin)/" : "/") + std::string(kStrata[static_cast<int>(stratum)].id);
+          lane.id + (lane.is_cuda() ? " (twin)/" : "/") + std::string(strata::kStrata[static_cast<int>(stratum)].id);
       benchmark::RegisterBenchmark(name.c_str(),
                                    [=](benchmark::State& state) { measure(state, decide, stratum, same_as); });
     }
@@ -58,4 +58,4 @@ const bool kRegistered = [] {
 }();
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cuda

@@ -6,7 +6,7 @@
 #include "core/error.h"
 #include "cuda/twin/twin_table.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 // What a record in cuda/proofs says of one kernel; see twin_generator/proofs.h.
@@ -58,7 +58,7 @@ std::string twin_evidence(int algorithm, Scalar scalar, Target target) {
   const TwinRow& row = twin_row(algorithm, scalar, target);
   for (const Proof& proof : kProofs) {
     if (row.decide && proof.hash == row.hash && proof.trace_hash == row.trace_hash) {
-      return fmt::format("twin, proven on {}, nvcc {}, {:.3g} pairs", proof.device, proof.toolkit, proof.pairs);
+      return fmt::format("twin, verified on {}, nvcc {}, {:.3g} pairs", proof.device, proof.toolkit, proof.pairs);
     }
   }
   return "twin";
@@ -75,4 +75,4 @@ Verdict decide_fusing(int algorithm, Scalar scalar, const Pair& pair, std::span<
   return row.decide_fusing(pair, fused.data());
 }
 
-}  // namespace graze
+}  // namespace graze::cuda

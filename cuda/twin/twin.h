@@ -9,7 +9,7 @@
 
 #include "core/lanes.h"
 
-namespace graze {
+namespace graze::cuda {
 
 // The twin of a published CUDA lane; null where there is none.
 DecideBlock twin_block(int algorithm, Scalar scalar, Target target);
@@ -29,7 +29,7 @@ const char* twin_toolkit();
 const char* twin_hash(int algorithm, Scalar scalar, Target target);
 const char* twin_trace_hash(int algorithm, Scalar scalar, Target target);
 
-// "twin, proven on NVIDIA H100 80GB HBM3, nvcc 13.0.88, 1.2e+10 pairs" where a record in cuda/proofs says so of this
+// "twin, verified on NVIDIA H100 80GB HBM3, nvcc 13.0.88, 1.2e+10 pairs" where a record in cuda/proofs says so of this
 // very kernel, else "twin".
 std::string twin_evidence(int algorithm, Scalar scalar, Target target);
 
@@ -53,4 +53,4 @@ std::span<const ContractionSite> contraction_sites(int algorithm, Scalar scalar)
 // is cuda-fma. Bit i % 64 of word i / 64 belongs to site i.   Requires: a word for each 64 sites begun.
 Verdict decide_fusing(int algorithm, Scalar scalar, const Pair& pair, std::span<const std::uint64_t> fused);
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -12,7 +12,7 @@
 #include "cuda/twin/twin_table.h"
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::cuda {
 namespace {
 
 constexpr std::uint64_t kSeed = 3;
@@ -21,8 +21,8 @@ constexpr std::uint64_t kSeed = 3;
 const std::vector<Pair>& sample() {
   static const std::vector<Pair> pairs = [] {
     std::vector<Pair> all;
-    for (int s = 0; s < kStrataCount; ++s) {
-      for (std::uint64_t i = 0; i < 8000; ++i) all.push_back(generate(kSeed, kStrata[s].stratum, i));
+    for (int s = 0; s < strata::kStrataCount; ++s) {
+      for (std::uint64_t i = 0; i < 8000; ++i) all.push_back(strata::generate(kSeed, strata::kStrata[s].stratum, i));
     }
     return all;
   }();
@@ -174,4 +174,4 @@ TEST(Twin, BlocksOfAnyLengthFillWholeWords) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::cuda

@@ -9,7 +9,7 @@
 #include "cuda/twin/twin_ops_logic.h"
 #include "cuda/twin/twin_table.h"
 
-namespace graze {
+namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace ptx {
 
@@ -92,4 +92,4 @@ constexpr TwinTable table_of(const std::tuple<Kernel...>*) {
 
 extern const TwinTable GRAZE_TWINS = ptx::table_of(static_cast<const ptx::Kernels*>(nullptr));
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -14,7 +14,7 @@
 
 #include "core/vec3.h"
 
-namespace graze {
+namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace ptx {
 
@@ -227,4 +227,4 @@ struct SomeFused {
 
 }  // namespace ptx
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::cuda

@@ -17,7 +17,7 @@
 #include "cuda/twin/ptx_testing.h"
 #include "cuda/twin/twin.h"
 
-namespace graze {
+namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace ptx {
 namespace {
@@ -408,4 +408,4 @@ TEST(TwinOps, SomeFusedRoundsTwiceWhereTheBitIsClear) {
 }  // namespace
 }  // namespace ptx
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::cuda

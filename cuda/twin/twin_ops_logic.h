@@ -4,7 +4,7 @@
 
 #include "cuda/twin/twin_ops.h"
 
-namespace graze {
+namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace ptx {
 
@@ -162,4 +162,4 @@ To to_integer(From x) {
 
 }  // namespace ptx
 }  // namespace GRAZE_FP
-}  // namespace graze
+}  // namespace graze::cuda

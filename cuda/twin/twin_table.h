@@ -8,7 +8,7 @@
 #include "core/algorithms/algorithms.h"
 #include "cuda/twin/twin.h"
 
-namespace graze {
+namespace graze::cuda {
 
 struct TwinRow {
   DecideBlock decide = nullptr;
@@ -30,4 +30,4 @@ extern const TwinTable kTwinsFma, kTwinsFmaPortable, kTwinsNofma;
 // A lane's row for this processor; one without functions where there is no twin.
 const TwinRow& twin_row(int algorithm, Scalar scalar, Target target);
 
-}  // namespace graze
+}  // namespace graze::cuda

@@ -13,11 +13,11 @@
 
 #include "build_info.h"
 #include "core/error.h"
-#include "fuzz/campaign/gpu_engine.h"
 #include "fuzz/campaign/cpu_engine.h"
+#include "fuzz/campaign/gpu_engine.h"
 #include "fuzz/campaign/result_files.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kBatchPairs = 65536;                         // a transaction
@@ -58,40 +58,41 @@ std::optional<Batch> next_batch(const Campaign& campaign, const std::vector<std:
 Json campaign_spec(const Campaign& campaign) {
   Json strata = Json::array(), lane_ids = Json::array();
   std::uint64_t pairs = 0;
-  for (const Source& source : campaign.sources) {
+  for (const strata::PairSource& source : campaign.sources) {
     strata.push_back(source.id);
     pairs += source.pairs;
   }
-  for (const Lane* lane : campaign.bench->lanes) lane_ids.push_back(lane->id);
+  for (const Lane* lane : campaign.under_test->lanes) lane_ids.push_back(lane->id);
   return {{"seed", campaign.seed}, {"pairs", pairs}, {"strata", strata}, {"lanes", lane_ids}};
 }
 
-Json build_info(const Bench& bench) {
+Json build_info(const LanesUnderTest& under_test) {
   Json info = {{"version", GRAZE_VERSION},
                {"commit", GRAZE_COMMIT},
                {"compiler", GRAZE_COMPILER},
                {"cuda", nullptr},
                {"device", nullptr}};
   if (*GRAZE_NVCC) info["cuda"] = std::string("nvcc ") + GRAZE_NVCC;
-  if (bench.device) info["device"] = bench.device->name + ", driver " + bench.device->driver;
+  if (under_test.device) info["device"] = under_test.device->name + ", driver " + under_test.device->driver;
   info["executors"] = Json::object();
-  for (std::size_t l = 0; l < bench.lanes.size(); ++l) {
-    if (bench.lanes[l]->is_cuda()) info["executors"][bench.lanes[l]->id] = bench.evidence(l);
+  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
+    if (under_test.lanes[l]->is_cuda()) info["executors"][under_test.lanes[l]->id] = under_test.evidence(l);
   }
   return info;
 }
 
-std::vector<std::unique_ptr<Engine>> choose_engines(const Campaign& campaign, EngineChoice choice) {
-  if (choice == EngineChoice::cpu || (choice == EngineChoice::automatic && !campaign.bench->device)) return {};
-  if (!campaign.bench->device) throw std::runtime_error("expected a CUDA device for the GPU engine, found none");
+std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& campaign, EngineChoice choice) {
+  if (choice == EngineChoice::cpu || (choice == EngineChoice::automatic && !campaign.under_test->device)) return {};
+  if (!campaign.under_test->device) throw std::runtime_error("expected a CUDA device for the GPU engine, found none");
   std::string hindrance;
-  for (std::size_t l = 0; l < campaign.bench->lanes.size(); ++l) {
-    if (!campaign.bench->on_device(l) || campaign.bench->on_both(l)) hindrance = campaign.bench->lanes[l]->id;
+  for (std::size_t l = 0; l < campaign.under_test->lanes.size(); ++l) {
+    if (!campaign.under_test->on_device(l) || campaign.under_test->on_both(l))
+      hindrance = campaign.under_test->lanes[l]->id;
   }
-  for (const Source& source : campaign.sources) {
+  for (const strata::PairSource& source : campaign.sources) {
     if (source.stratum < 0) hindrance = source.id;
   }
-  if (hindrance.empty()) return open_engines(campaign.bench->lanes);
+  if (hindrance.empty()) return cuda::open_engines(campaign.under_test->lanes);
   if (choice == EngineChoice::automatic) return {};
   throw UsageError("expected lanes that run on the device alone, and strata, for the GPU engine; found " + hindrance);
 }
@@ -103,11 +104,11 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
   Store store(campaign.directory, campaign.spec, campaign.build);
-  DeviceJudge device(campaign);
+  GpuEngine device(campaign);
   Progress progress;
   progress.disagreements_of_source.resize(campaign.sources.size());
   std::vector<std::uint64_t> done;
-  for (const Source& source : campaign.sources) {
+  for (const strata::PairSource& source : campaign.sources) {
     done.push_back(store.done(static_cast<int>(done.size())));
     progress.total += source.pairs;
     progress.done += done.back();
@@ -140,4 +141,4 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
   return outcome;
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

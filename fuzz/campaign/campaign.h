@@ -12,18 +12,19 @@
 #include <vector>
 
 #include "cuda/engine/engine.h"
-#include "fuzz/lanes_under_test.h"
-#include "strata/source.h"
 #include "fuzz/campaign/store.h"
+#include "fuzz/lanes_under_test.h"
+#include "strata/pair_source.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 struct Campaign {
   std::uint64_t seed = 1;
-  std::vector<Source> sources;
-  const Bench* bench = nullptr;                  // the lanes, and what runs them
-  int threads = 0;                               // 0: one a core
-  std::vector<std::unique_ptr<Engine>> engines;  // the devices' engines, which share it; none: the CPU engine
+  std::vector<strata::PairSource> sources;
+  const LanesUnderTest* under_test = nullptr;  // the lanes, and what runs them
+  int threads = 0;                             // 0: one a core
+  std::vector<std::unique_ptr<cuda::DeviceEngine>>
+      engines;  // the devices' engines, which share it; none: the CPU engine
   std::filesystem::path directory;
   Json spec;  // what makes this campaign another one; see campaign_spec
   Json build;
@@ -41,7 +42,7 @@ struct Progress {
 Json campaign_spec(const Campaign& campaign);
 
 // Version, commit, compiler, toolkit, device, and for each CUDA lane what ran it.
-Json build_info(const Bench& bench);
+Json build_info(const LanesUnderTest& under_test);
 
 // What judges the pairs. automatic: the devices where they can, which is where all lanes are theirs and all sources
 // are strata; else the CPU.
@@ -49,7 +50,7 @@ enum class EngineChoice { automatic, cpu, gpu };
 
 // The engines that take the campaign; none for the CPU engine.
 // Throws: UsageError when the GPU engine is asked for and cannot take it; std::runtime_error without a device.
-std::vector<std::unique_ptr<Engine>> choose_engines(const Campaign& campaign, EngineChoice choice);
+std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& campaign, EngineChoice choice);
 
 struct Outcome {
   Json summary;
@@ -61,4 +62,4 @@ struct Outcome {
 Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& report);
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -15,7 +15,7 @@
 #include "fuzz/campaign/result_files.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,12 +39,12 @@ class CampaignTest : public testing::Test {
   Campaign campaign(const std::string& name, int threads, std::uint64_t pairs = 200'000) const {
     Campaign c;
     c.seed = 3;
-    c.sources = stratum_sources(c.seed, pairs, {"near_edge_edge", "degenerate", "extreme_scale"});
-    c.bench = &bench_;
+    c.sources = strata::stratum_sources(c.seed, pairs, {"near_edge_edge", "degenerate", "extreme_scale"});
+    c.under_test = &under_test_;
     c.threads = threads;
     c.directory = root_ / name;
     c.spec = campaign_spec(c);
-    c.build = build_info(bench_);
+    c.build = build_info(under_test_);
     return c;
   }
 
@@ -55,7 +55,7 @@ class CampaignTest : public testing::Test {
   }
 
   fs::path root_;
-  Bench bench_ = make_bench({"*/f32/*"}, Executor::twin);
+  LanesUnderTest under_test_ = select_lanes({"*/f32/*"}, Executor::twin);
 };
 
 TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
@@ -88,7 +88,7 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
   std::uint64_t failures = 0;
   for (const auto& row : summary["signatures"]) {
     failures += row["count"].get<std::uint64_t>();
-    const auto cases = read_pairs(root_ / "counts" / row["case"].get<std::string>());
+    const auto cases = corpus::read_pairs(root_ / "counts" / row["case"].get<std::string>());
     ASSERT_FALSE(cases.empty());
     EXPECT_LE(cases.size(), kKeptCases);
     EXPECT_LE(cases.size(), row["count"].get<std::uint64_t>());
@@ -101,22 +101,22 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
 
 TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
   Campaign c = campaign("extremes", 2);
-  c.sources = stratum_sources(c.seed, 8000, {"extreme_scale", "far_from_origin", "degenerate"});
+  c.sources = strata::stratum_sources(c.seed, 8000, {"extreme_scale", "far_from_origin", "degenerate"});
   c.spec = campaign_spec(c);
   const Json strata = run(c)["strata"];
   EXPECT_FALSE(strata["degenerate"].contains("extremes"));
-  for (const Source& source : c.sources) {
+  for (const strata::PairSource& source : c.sources) {
     if (source.axis == Axis::none) continue;
     std::map<std::string, std::map<std::string, std::uint64_t>> expected;
     for (std::uint64_t index = 0; index < source.pairs; ++index) {
       const Pair pair = source.pair(index);
-      const bool truth = cgal_verdict(pair) == Verdict::intersects;
-      auto& cell = expected[std::to_string(exponent_of(source.axis, extreme_of(pair, source.axis)))];
+      const bool truth = oracle::cgal_verdict(pair) == Verdict::intersects;
+      auto& cell = expected[std::to_string(exponent_of(source.axis, place_on_axis(pair, source.axis)))];
       ++cell["pairs"];
-      for (std::size_t l = 0; l < bench_.lanes.size(); ++l) {
+      for (std::size_t l = 0; l < under_test_.lanes.size(); ++l) {
         std::uint64_t intersects = 0, declined = 0;
-        bench_.on_host[l](&pair, 1, &intersects, &declined);
-        if (declined || (intersects != 0) != truth) ++cell[bench_.lanes[l]->id];
+        under_test_.on_host[l](&pair, 1, &intersects, &declined);
+        if (declined || (intersects != 0) != truth) ++cell[under_test_.lanes[l]->id];
       }
     }
     const Json& extremes = strata[source.id]["extremes"];
@@ -157,39 +157,40 @@ TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
 }
 
 // A device that is its twin, but for the eighth pair of every block.
-class WrongOnce final : public Device {
+class WrongOnce final : public cuda::Device {
  public:
   void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
-              std::vector<LaneBits>& bits) override {
-    bits.assign(cuda_lanes.size(), {Bits((pairs.size() + 63) / 64), Bits((pairs.size() + 63) / 64)});
+              std::vector<cuda::LaneBits>& bits) override {
+    bits.assign(cuda_lanes.size(),
+                {analysis::Bits((pairs.size() + 63) / 64), analysis::Bits((pairs.size() + 63) / 64)});
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
       const Lane& lane = *cuda_lanes[l];
-      twin_block(lane.algorithm, lane.scalar, lane.target)(pairs.data(), pairs.size(), bits[l].intersects.data(),
-                                                           bits[l].declined.data());
+      cuda::twin_block(lane.algorithm, lane.scalar, lane.target)(pairs.data(), pairs.size(), bits[l].intersects.data(),
+                                                                 bits[l].declined.data());
       bits[l].intersects[0] ^= 1u << 7;
     }
   }
 };
 
 TEST_F(CampaignTest, ReportsEachDifferenceOfDeviceAndTwin) {
-  bench_ = make_bench({"moller_1997/f32/cuda-fma"}, Executor::twin);
-  bench_.device = std::make_unique<WrongOnce>();
+  under_test_ = select_lanes({"moller_1997/f32/cuda-fma"}, Executor::twin);
+  under_test_.device = std::make_unique<WrongOnce>();
   const Json summary = run(campaign("apart", 2, 4000));
   const auto apart = std::find_if(summary["signatures"].begin(), summary["signatures"].end(),
                                   [](const Json& row) { return row["key"] == "executors/moller_1997/f32/cuda-fma"; });
   ASSERT_NE(apart, summary["signatures"].end());
   EXPECT_EQ((*apart)["count"], 3);  // one a stratum
-  const auto cases = read_pairs(root_ / "apart" / (*apart)["case"].get<std::string>());
+  const auto cases = corpus::read_pairs(root_ / "apart" / (*apart)["case"].get<std::string>());
   EXPECT_EQ(*field(cases.at(0), "index"), "7");
-  EXPECT_EQ(bench_.evidence(0).substr(0, 15), "device and twin");
+  EXPECT_EQ(under_test_.evidence(0).substr(0, 15), "device and twin");
 }
 
-TEST(Source, SharesPairsEvenlyAndRefusesUnknownStrata) {
-  const auto sources = stratum_sources(1, 10, {"near_*"});
+TEST(PairSource, SharesPairsEvenlyAndRefusesUnknownStrata) {
+  const auto sources = strata::stratum_sources(1, 10, {"near_*"});
   ASSERT_EQ(sources.size(), 4u);
   EXPECT_EQ(sources[0].pairs, 3u);
   EXPECT_EQ(sources[3].pairs, 2u);
-  EXPECT_THROW(stratum_sources(1, 10, {"nearly_*"}), UsageError);
+  EXPECT_THROW(strata::stratum_sources(1, 10, {"nearly_*"}), UsageError);
 }
 
 TEST(SignatureCount, KeepsTheSmallestCasesInWhateverOrderTheyCome) {
@@ -205,4 +206,4 @@ TEST(SignatureCount, KeepsTheSmallestCasesInWhateverOrderTheyCome) {
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::fuzz

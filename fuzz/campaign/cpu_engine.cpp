@@ -10,7 +10,7 @@
 #include "analysis/signature.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 constexpr std::size_t kBlockPairs = 1024;   // a task; a multiple of 64
@@ -19,11 +19,11 @@ constexpr std::uint64_t kGmpSample = 1024;  // GMP confirms one pair in so many,
 // Judges one block of pairs: host lanes, twins and oracle here, device lanes from their bits.
 class BlockJudge {
  public:
-  BlockJudge(const Campaign& campaign, int source, const std::vector<LaneBits>& device_bits)
-      : campaign_(campaign), bench_(*campaign.bench), source_(source), device_bits_(device_bits) {
-    host_bits_.resize(bench_.lanes.size());
-    views_.resize(bench_.lanes.size());
-    verdicts_.resize(bench_.lanes.size());
+  BlockJudge(const Campaign& campaign, int source, const std::vector<cuda::LaneBits>& device_bits)
+      : campaign_(campaign), under_test_(*campaign.under_test), source_(source), device_bits_(device_bits) {
+    host_bits_.resize(under_test_.lanes.size());
+    views_.resize(under_test_.lanes.size());
+    verdicts_.resize(under_test_.lanes.size());
   }
 
   // `begin` is the first pair's place among the device lanes' bits.
@@ -33,67 +33,67 @@ class BlockJudge {
     truth_.assign(words, 0);
     buckets_.resize(pairs.size());
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Verdict verdict = cgal_verdict(pairs[i]);
+      const Verdict verdict = oracle::cgal_verdict(pairs[i]);
       truth_[i / 64] |= std::uint64_t{verdict == Verdict::intersects} << (i % 64);
-      buckets_[i] = margin_bucket(pairs[i], verdict);
+      buckets_[i] = oracle::margin_bucket(pairs[i], verdict);
     }
     result.cgal += pairs.size();
 
     std::size_t next_device = 0;
-    for (std::size_t l = 0; l < bench_.lanes.size(); ++l) {
-      if (bench_.on_host[l]) {
-        LaneBits& bits = host_bits_[l];
+    for (std::size_t l = 0; l < under_test_.lanes.size(); ++l) {
+      if (under_test_.on_host[l]) {
+        cuda::LaneBits& bits = host_bits_[l];
         bits.intersects.resize(words);
         bits.declined.resize(words);
-        bench_.on_host[l](pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
+        under_test_.on_host[l](pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
         views_[l] = {bits.intersects, bits.declined};
       }
-      if (!bench_.on_device(l)) continue;
-      const LaneBits& bits = device_bits_[next_device++];
-      const LaneVerdicts twin = views_[l];
+      if (!under_test_.on_device(l)) continue;
+      const cuda::LaneBits& bits = device_bits_[next_device++];
+      const analysis::LaneVerdicts twin = views_[l];
       views_[l] = {std::span(bits.intersects).subspan(begin / 64, words),
                    std::span(bits.declined).subspan(begin / 64, words)};
-      for (std::size_t i = 0; bench_.on_both(l) && i < pairs.size(); ++i) {
+      for (std::size_t i = 0; under_test_.on_both(l) && i < pairs.size(); ++i) {
         if (views_[l].at(i) == twin.at(i)) continue;
-        result.executors_apart[bench_.lanes[l]->id].add(CaseKey{indices[i], source_});
+        result.executors_apart[under_test_.lanes[l]->id].add(CaseKey{indices[i], source_});
       }
     }
 
-    const JudgedBlock block{pairs.size(), truth_, buckets_, views_};
+    const analysis::JudgedBlock block{pairs.size(), truth_, buckets_, views_};
     result.tally.add(block);
     if (const Axis axis = campaign_.sources[static_cast<std::size_t>(source_)].axis; axis != Axis::none) {
       extremes_.resize(pairs.size());
-      for (std::size_t i = 0; i < pairs.size(); ++i) extremes_[i] = extreme_of(pairs[i], axis);
-      result.extremes.add(JudgedBlock{pairs.size(), truth_, extremes_, views_});
+      for (std::size_t i = 0; i < pairs.size(); ++i) extremes_[i] = place_on_axis(pairs[i], axis);
+      result.extremes.add(analysis::JudgedBlock{pairs.size(), truth_, extremes_, views_});
     }
-    const Bits wrong = disagreements(block);
+    const analysis::Bits wrong = analysis::disagreements(block);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const std::uint64_t index = indices[i];
-      const bool disagreement = test_bit(wrong, i);
+      const bool disagreement = analysis::test_bit(wrong, i);
       if (!disagreement && index % kGmpSample != 0) continue;
-      const bool intersects = test_bit(truth_, i);
-      const Contact contact = gmp_contact(pairs[i]);
+      const bool intersects = analysis::test_bit(truth_, i);
+      const Contact contact = oracle::gmp_contact(pairs[i]);
       ++result.gmp;
       if ((contact != Contact::none) != intersects) {
-        throw OracleApart(
+        throw oracle::OracleApart(
             fmt::format("the oracle's two decisions differ on {}:{}:{}: CGAL says {}, GMP says contact {}", source_id(),
                         campaign_.seed, index, intersects ? "intersects" : "disjoint", name(contact)));
       }
       if (!disagreement) continue;
       for (std::size_t l = 0; l < views_.size(); ++l) {
         verdicts_[l] = views_[l].at(i);
-        if (bench_.lanes[l]->is_exact() && (verdicts_[l] == Verdict::intersects) != intersects) {
-          throw OracleApart(fmt::format("{} and the oracle differ on {}:{}:{}: it says {}, the oracle {}",
-                                        bench_.lanes[l]->id, source_id(), campaign_.seed, index, name(verdicts_[l]),
-                                        intersects ? "intersects" : "disjoint"));
+        if (under_test_.lanes[l]->is_exact() && (verdicts_[l] == Verdict::intersects) != intersects) {
+          throw oracle::OracleApart(fmt::format("{} and the oracle differ on {}:{}:{}: it says {}, the oracle {}",
+                                                under_test_.lanes[l]->id, source_id(), campaign_.seed, index,
+                                                name(verdicts_[l]), intersects ? "intersects" : "disjoint"));
         }
       }
       ++result.disagreements;
-      const Shape hulls = shape(pairs[i]);
-      for_each_algorithm(bench_.lanes, [&](std::size_t first, std::size_t count) {
-        const Signature failure =
-            signature(contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
-                      std::span(bench_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
+      const oracle::Shape hulls = oracle::shape(pairs[i]);
+      analysis::for_each_algorithm(under_test_.lanes, [&](std::size_t first, std::size_t count) {
+        const analysis::Signature failure = analysis::signature(
+            contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
+            std::span(under_test_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
         if (failure.wrong()) result.signatures[failure].add(CaseKey{index, source_});
       });
     }
@@ -103,14 +103,14 @@ class BlockJudge {
   const std::string& source_id() const { return campaign_.sources[static_cast<std::size_t>(source_)].id; }
 
   const Campaign& campaign_;
-  const Bench& bench_;
+  const LanesUnderTest& under_test_;
   int source_;
-  const std::vector<LaneBits>& device_bits_;
-  Bits truth_;
+  const std::vector<cuda::LaneBits>& device_bits_;
+  analysis::Bits truth_;
   std::vector<Bucket> buckets_;
   std::vector<std::int8_t> extremes_;
-  std::vector<LaneBits> host_bits_;
-  std::vector<LaneVerdicts> views_;
+  std::vector<cuda::LaneBits> host_bits_;
+  std::vector<analysis::LaneVerdicts> views_;
   std::vector<Verdict> verdicts_;
 };
 
@@ -118,7 +118,7 @@ class BlockJudge {
 
 BatchResult judge(const Campaign& campaign, int source_number, std::size_t count,
                   const std::function<std::uint64_t(std::size_t)>& index_of) {
-  const Source& source = campaign.sources[static_cast<std::size_t>(source_number)];
+  const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(source_number)];
   std::vector<Pair> pairs(count);
   std::vector<std::uint64_t> indices(count);
   const std::size_t blocks = (count + kBlockPairs - 1) / kBlockPairs;
@@ -129,11 +129,11 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
     }
   });
 
-  const std::vector<const Lane*> device_lanes = campaign.bench->device_lanes();
-  std::vector<LaneBits> device_bits;
-  if (!device_lanes.empty()) campaign.bench->device->decide(pairs, device_lanes, device_bits);
+  const std::vector<const Lane*> device_lanes = campaign.under_test->device_lanes();
+  std::vector<cuda::LaneBits> device_bits;
+  if (!device_lanes.empty()) campaign.under_test->device->decide(pairs, device_lanes, device_bits);
 
-  const BatchResult empty(Tally(cpu_twins(campaign.bench->lanes)));
+  const BatchResult empty(analysis::Tally(analysis::cpu_twins(campaign.under_test->lanes)));
   tbb::enumerable_thread_specific<BatchResult> results(empty);
   tbb::enumerable_thread_specific<BlockJudge> judges([&] { return BlockJudge(campaign, source_number, device_bits); });
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
@@ -146,4 +146,4 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
   return total;
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

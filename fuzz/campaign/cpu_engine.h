@@ -6,11 +6,11 @@
 
 #include "fuzz/campaign/campaign.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 // Judges `count` pairs of the source, whose indices are index_of(0), index_of(1), …; on the threads at hand.
 // Throws: OracleApart when two exact decisions differ.
 BatchResult judge(const Campaign& campaign, int source, std::size_t count,
                   const std::function<std::uint64_t(std::size_t)>& index_of);
 
-}  // namespace graze
+}  // namespace graze::fuzz

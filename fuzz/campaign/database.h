@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace graze {
+namespace graze::fuzz {
 
 class Database {
  public:
@@ -99,4 +99,4 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> handle_;
 };
 
-}  // namespace graze
+}  // namespace graze::fuzz

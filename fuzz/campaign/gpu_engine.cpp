@@ -11,17 +11,17 @@
 #include "fuzz/campaign/cpu_engine.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 // See SignatureBits.
-Signature unpacked(SignatureBits bits) {
+analysis::Signature unpacked(cuda::SignatureBits bits) {
   const auto take = [&bits](int count) {
     const int field = static_cast<int>(bits & ((1u << count) - 1));
     bits >>= count;
     return field;
   };
-  Signature s;
+  analysis::Signature s;
   for (char& mark : s.marks) mark = "_.+-?"[take(3)];
   s.bucket = static_cast<Bucket>(take(8) - kBucketMost);
   s.shape.dimension_a = take(2);
@@ -33,7 +33,7 @@ Signature unpacked(SignatureBits bits) {
 }
 
 // Counts as EngineResult lays them out.
-void add(const std::vector<std::uint64_t>& counts, int lanes, Tally& tally) {
+void add(const std::vector<std::uint64_t>& counts, int lanes, analysis::Tally& tally) {
   const auto counter = [&](int c, int b) {
     return counts[static_cast<std::size_t>(c * kBucketCount + b + kBucketMost)];
   };
@@ -45,11 +45,11 @@ void add(const std::vector<std::uint64_t>& counts, int lanes, Tally& tally) {
   }
 }
 
-void add(const EngineResult& found, int source, int lanes, BatchResult& result) {
+void add(const cuda::EngineResult& found, int source, int lanes, BatchResult& result) {
   add(found.counts, lanes, result.tally);
   if (!found.extreme_counts.empty()) add(found.extreme_counts, lanes, result.extremes);
   for (int b = 0; b < kBucketCount; ++b) result.device += found.counts[static_cast<std::size_t>(b)];
-  for (const EngineSignature& row : found.signatures) {
+  for (const cuda::EngineSignature& row : found.signatures) {
     SignatureCount one;
     one.count = row.count;
     for (const std::uint64_t index : row.cases) {
@@ -62,13 +62,13 @@ void add(const EngineResult& found, int source, int lanes, BatchResult& result) 
 
 }  // namespace
 
-BatchResult DeviceJudge::judge(int source, std::uint64_t first, std::uint64_t count) {
+BatchResult GpuEngine::judge(int source, std::uint64_t first, std::uint64_t count) {
   const std::size_t engines = campaign_.engines.size();
-  std::vector<std::future<std::vector<EngineResult>>> runs;
+  std::vector<std::future<std::vector<cuda::EngineResult>>> runs;
   for (std::size_t e = 0; e < engines; ++e) {
     const std::uint64_t begin = count * e / engines, end = count * (e + 1) / engines;
     runs.push_back(std::async(std::launch::async, [&, e, begin, end] {
-      std::vector<EngineResult> parts;
+      std::vector<cuda::EngineResult> parts;
       for (std::uint64_t at = begin; at < end; at += parts.back().done) {
         parts.push_back(campaign_.engines[e]->run(
             campaign_.seed, campaign_.sources[static_cast<std::size_t>(source)].stratum, first + at, end - at));
@@ -76,11 +76,11 @@ BatchResult DeviceJudge::judge(int source, std::uint64_t first, std::uint64_t co
       return parts;
     }));
   }
-  const std::vector<const Lane*>& lanes = campaign_.bench->lanes;
-  BatchResult result{Tally(cpu_twins(lanes))};
+  const std::vector<const Lane*>& lanes = campaign_.under_test->lanes;
+  BatchResult result{analysis::Tally(analysis::cpu_twins(lanes))};
   std::vector<std::uint64_t> undecided;
   for (auto& run : runs) {
-    for (const EngineResult& found : run.get()) {
+    for (const cuda::EngineResult& found : run.get()) {
       add(found, source, static_cast<int>(lanes.size()), result);
       undecided.insert(undecided.end(), found.undecided.begin(), found.undecided.end());
     }
@@ -88,14 +88,14 @@ BatchResult DeviceJudge::judge(int source, std::uint64_t first, std::uint64_t co
   confirm(source, result);
   constexpr std::size_t kAtOnce = 65536;
   for (std::size_t at = 0; at < undecided.size(); at += kAtOnce) {
-    result.add(graze::judge(campaign_, source, std::min(kAtOnce, undecided.size() - at),
-                            [&](std::size_t i) { return undecided[at + i]; }));
+    result.add(fuzz::judge(campaign_, source, std::min(kAtOnce, undecided.size() - at),
+                           [&](std::size_t i) { return undecided[at + i]; }));
   }
   return result;
 }
 
-void DeviceJudge::confirm(int source, BatchResult& result) {
-  std::map<std::uint64_t, std::vector<Signature>> fresh;
+void GpuEngine::confirm(int source, BatchResult& result) {
+  std::map<std::uint64_t, std::vector<analysis::Signature>> fresh;
   for (const auto& [signature, found] : result.signatures) {
     SignatureCount& known = confirmed_[signature];
     const std::vector<CaseKey> before = known.cases;
@@ -106,17 +106,17 @@ void DeviceJudge::confirm(int source, BatchResult& result) {
   }
   std::vector<std::uint64_t> indices;
   for (const auto& [index, signatures] : fresh) indices.push_back(index);
-  const BatchResult judged = graze::judge(campaign_, source, indices.size(), [&](std::size_t i) { return indices[i]; });
+  const BatchResult judged = fuzz::judge(campaign_, source, indices.size(), [&](std::size_t i) { return indices[i]; });
   for (const auto& [index, signatures] : fresh) {
-    for (const Signature& signature : signatures) {
+    for (const analysis::Signature& signature : signatures) {
       const auto found = judged.signatures.find(signature);
       const bool same = found != judged.signatures.end() &&
                         std::find(found->second.cases.begin(), found->second.cases.end(), CaseKey{index, source}) !=
                             found->second.cases.end();
       if (!same) {
-        throw OracleApart(fmt::format("the device and the oracle differ on {}:{}:{}: the device says {}",
-                                      campaign_.sources[static_cast<std::size_t>(source)].id, campaign_.seed, index,
-                                      key(signature)));
+        throw oracle::OracleApart(fmt::format("the device and the oracle differ on {}:{}:{}: the device says {}",
+                                              campaign_.sources[static_cast<std::size_t>(source)].id, campaign_.seed,
+                                              index, analysis::key(signature)));
       }
     }
   }
@@ -124,4 +124,4 @@ void DeviceJudge::confirm(int source, BatchResult& result) {
   result.gmp += judged.gmp;
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -7,12 +7,12 @@
 
 #include "fuzz/campaign/campaign.h"
 
-namespace graze {
+namespace graze::fuzz {
 
-class DeviceJudge {
+class GpuEngine {
  public:
   // Requires: campaign outlives this, and its sources are strata.
-  explicit DeviceJudge(const Campaign& campaign) : campaign_(campaign) {}
+  explicit GpuEngine(const Campaign& campaign) : campaign_(campaign) {}
 
   // Pairs [first, first + count) of the source, shared by the campaign's engines.
   // Throws: OracleApart when a kept case is not what the device says.
@@ -23,7 +23,7 @@ class DeviceJudge {
   void confirm(int source, BatchResult& result);
 
   const Campaign& campaign_;
-  std::map<Signature, SignatureCount> confirmed_;  // what is kept so far
+  std::map<analysis::Signature, SignatureCount> confirmed_;  // what is kept so far
 };
 
-}  // namespace graze
+}  // namespace graze::fuzz

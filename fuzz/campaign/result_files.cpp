@@ -13,7 +13,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/minimise/minimised_cases.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 // A name for the signature's file.
@@ -21,23 +21,23 @@ std::string case_name(const std::string& key) { return fmt::format("cases/{:016x
 
 std::string case_text(const Campaign& campaign, const std::string& key, const SignatureCount& found) {
   std::ostringstream out;
-  write_header(out);
+  corpus::write_header(out);
   out << "# " << key << ": " << found.count << " pairs\n";
   for (const CaseKey& c : found.cases) {
-    const Source& source = campaign.sources[static_cast<std::size_t>(c.source)];
+    const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(c.source)];
     const Pair pair = source.pair(c.index);
-    Entry entry{
+    corpus::Entry entry{
         pair, {{"stratum", source.id}, {"seed", std::to_string(campaign.seed)}, {"index", std::to_string(c.index)}}, 0};
-    for (auto& part : truth_fields(truth(pair))) entry.fields.push_back(std::move(part));
+    for (auto& part : truth_fields(oracle::truth(pair))) entry.fields.push_back(std::move(part));
     entry.fields.push_back({"signature", key});
-    write_entry(out, entry);
+    corpus::write_entry(out, entry);
   }
   return out.str();
 }
 
 }  // namespace
 
-std::vector<std::pair<std::string, std::string>> truth_fields(const Truth& t) {
+std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& t) {
   return {{"truth", std::string(name(t.verdict))},
           {"contact", std::string(name(t.contact))},
           {"margin", fmt::format("{}", t.margin)},
@@ -60,7 +60,7 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
 
 Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
   std::vector<std::string> lane_ids;
-  for (const Lane* lane : campaign.bench->lanes) lane_ids.push_back(lane->id);
+  for (const Lane* lane : campaign.under_test->lanes) lane_ids.push_back(lane->id);
   Json results = store.results(campaign.sources, lane_ids);
 
   const auto by_key = store.signatures();
@@ -95,4 +95,4 @@ void append_timing(const std::filesystem::path& directory, const Json& run, cons
   write_whole(file, timings.dump(1) + "\n");
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

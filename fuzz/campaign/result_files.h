@@ -8,10 +8,10 @@
 #include "fuzz/campaign/campaign.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 // The truth as fields of a case: truth, contact, margin, margin_ulps.
-std::vector<std::pair<std::string, std::string>> truth_fields(const Truth& truth);
+std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& truth);
 
 // Writes summary.json and cases/ from what the store holds; a case file that has not changed keeps what the minimiser
 // put into it.   Returns: the summary.
@@ -26,4 +26,4 @@ void write_whole(const std::filesystem::path& file, const std::string& text);
 // Adds a run to timings.json, the only file that depends on when, where and by which engine the campaign ran.
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle = {});
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 constexpr int kApplicationId = 0x67726173;  // "gras"
@@ -48,7 +48,7 @@ std::int64_t total(const Database& database, std::string_view name) {
 
 // Adds the tally to two tables of its own: of pairs, and of the lanes' errors.
 void add_tally(const Database& database, const std::string& pairs, const std::string& wrong, int source,
-               const Tally& tally) {
+               const analysis::Tally& tally) {
   Statement add_pairs(database, ("INSERT INTO " + pairs +
                                  " VALUES(?1, ?2, ?3, ?4) ON CONFLICT DO UPDATE SET pairs = pairs + ?3, "
                                  "intersects = intersects + ?4")
@@ -63,7 +63,7 @@ void add_tally(const Database& database, const std::string& pairs, const std::st
     if (tally.pairs(bucket) == 0) continue;
     add_pairs(source, b, tally.pairs(bucket), tally.intersects(bucket)).run();
     for (int l = 0; l < tally.lane_count(); ++l) {
-      const LaneCounts& lane = tally.lane(l, bucket);
+      const analysis::LaneCounts& lane = tally.lane(l, bucket);
       if (lane.any())
         add_wrong(source, l, b, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu).run();
     }
@@ -190,7 +190,7 @@ void Store::commit(int source, std::uint64_t pairs, const BatchResult& result) {
       }
       trim(id, kKeptCases).run();
     };
-    for (const auto& [signature, found] : result.signatures) add(key(signature), found);
+    for (const auto& [signature, found] : result.signatures) add(analysis::key(signature), found);
     for (const auto& [lane, found] : result.executors_apart) add("executors/" + lane, found);
     Statement(database_, "INSERT INTO done VALUES(?1, ?2) ON CONFLICT DO UPDATE SET pairs = pairs + ?2")(source, pairs)
         .run();
@@ -218,16 +218,16 @@ std::uint64_t Store::signature_count() const {
   return static_cast<std::uint64_t>(integer(database_, "SELECT count(*) FROM signature"));
 }
 
-Json Store::results(const std::vector<Source>& sources, const std::vector<std::string>& lanes) const {
+Json Store::results(const std::vector<strata::PairSource>& sources, const std::vector<std::string>& lanes) const {
   Json strata = Json::object();
-  for (const Source& source : sources) {
+  for (const strata::PairSource& source : sources) {
     Json& row =
         strata[source.id] = {{"pairs", 0}, {"intersects", 0}, {"lanes", Json::object()}, {"margins", Json::object()}};
     for (const std::string& lane : lanes)
       row["lanes"][lane] = {{"false_positive", 0}, {"false_negative", 0}, {"declined", 0}, {"differs_from_cpu", 0}};
     if (source.axis != Axis::none) row["extremes"][std::string(name(source.axis))] = Json::object();
   }
-  const auto source_at = [&](const Statement& row) -> const Source& {
+  const auto source_at = [&](const Statement& row) -> const strata::PairSource& {
     return sources.at(static_cast<std::size_t>(row.integer(0)));
   };
   const auto add = [](Json& total, std::int64_t more) { total = total.get<std::int64_t>() + more; };
@@ -254,7 +254,7 @@ Json Store::results(const std::vector<Source>& sources, const std::vector<std::s
     if (errors(wrong))
       row["margins"][name_of_bucket(static_cast<Bucket>(wrong.integer(2)))]["wrong"][lane] = errors(wrong);
   }
-  const auto extreme = [&](const Source& source, std::int64_t bucket) -> Json& {
+  const auto extreme = [&](const strata::PairSource& source, std::int64_t bucket) -> Json& {
     const int exponent = exponent_of(source.axis, static_cast<std::int8_t>(bucket));
     return strata[source.id]["extremes"][std::string(name(source.axis))][std::to_string(exponent)];
   };
@@ -281,4 +281,4 @@ Json Store::oracle() const {
           {"apart", 0}};
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

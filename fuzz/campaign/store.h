@@ -14,9 +14,9 @@
 #include "analysis/signature.h"
 #include "analysis/tally.h"
 #include "fuzz/campaign/database.h"
-#include "strata/source.h"
+#include "strata/pair_source.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 using Json = nlohmann::ordered_json;
 
@@ -43,11 +43,11 @@ struct SignatureCount {
 
 // What one batch found; all of it adds.
 struct BatchResult {
-  explicit BatchResult(const Tally& empty) : tally(empty), extremes(empty) {}
+  explicit BatchResult(const analysis::Tally& empty) : tally(empty), extremes(empty) {}
 
-  Tally tally;
-  Tally extremes;  // by extreme_of; empty without an axis
-  std::map<Signature, SignatureCount> signatures;
+  analysis::Tally tally;
+  analysis::Tally extremes;  // by place_on_axis; empty without an axis
+  std::map<analysis::Signature, SignatureCount> signatures;
   std::map<std::string, SignatureCount> executors_apart;  // by lane: device and twin differ
   std::uint64_t disagreements = 0;                        // pairs on which some lane is wrong
   std::uint64_t cgal = 0;                                 // pairs decided by CGAL
@@ -73,7 +73,7 @@ class Store {
   Json oracle() const;
 
   // Of all that is committed: {"strata": …, "disagreements": …}, in a fixed order.
-  Json results(const std::vector<Source>& sources, const std::vector<std::string>& lanes) const;
+  Json results(const std::vector<strata::PairSource>& sources, const std::vector<std::string>& lanes) const;
 
   std::map<std::string, SignatureCount> signatures() const;
   std::uint64_t signature_count() const;
@@ -82,4 +82,4 @@ class Store {
   Database database_;
 };
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -5,7 +5,7 @@
 #include <map>
 #include <string_view>
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 // Whether two lanes of one scalar that ran have different marks.
@@ -33,7 +33,7 @@ std::vector<std::size_t> carded_signatures(const Json& summary) {
   for (std::size_t place = 0; place < rows.size(); ++place) {
     const std::string key = rows[place]["key"];
     // Pairs on which a device and its twin differ are nobody's failure.
-    if (!key.starts_with("executors/")) of_algorithm[algorithm_of(key)].push_back({place, key});
+    if (!key.starts_with("executors/")) of_algorithm[analysis::algorithm_of(key)].push_back({place, key});
   }
   std::vector<std::size_t> cards;
   for (const auto& [algorithm, own] : of_algorithm) {
@@ -50,4 +50,4 @@ std::vector<std::size_t> carded_signatures(const Json& summary) {
   return cards;
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

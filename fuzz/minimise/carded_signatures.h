@@ -6,7 +6,7 @@
 
 #include "fuzz/campaign/store.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 inline constexpr std::size_t kMostCards = 40;
 
@@ -16,4 +16,4 @@ inline constexpr std::size_t kMostCards = 40;
 // Requires: what summary.json holds.
 std::vector<std::size_t> carded_signatures(const Json& summary);
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 Json summary_of(const std::vector<std::string>& keys) {
@@ -42,4 +42,4 @@ TEST(Cards, AlgorithmsShareThem) {
 TEST(Cards, OfACampaignWithoutFailuresAreNone) { EXPECT_TRUE(carded_signatures(summary_of({})).empty()); }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -6,14 +6,14 @@
 #include <filesystem>
 
 #include "corpus/pair_format.h"
-#include "fuzz/lanes_under_test.h"
 #include "fuzz/campaign/store.h"
+#include "fuzz/lanes_under_test.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 // The case of a file that a report shows: what it was minimised to, or else the first.
 // Requires: at least one entry.
-const Entry& shown_case(const std::vector<Entry>& entries);
+const corpus::Entry& shown_case(const std::vector<corpus::Entry>& entries);
 
 // The 18 hex floats, as a file of pairs has them.
 std::string pair_text(const Pair& pair);
@@ -22,9 +22,9 @@ std::filesystem::path facts_file(const std::filesystem::path& case_file);
 
 // {"pair", "verdicts": {lane: verdict}, "sentences": [of the algorithm in the case's signature]}.
 // Throws: std::runtime_error where a device and its twin differ.
-Json case_facts(const Bench& bench, const Entry& entry);
+Json case_facts(const LanesUnderTest& under_test, const corpus::Entry& entry);
 
 // Writes the case's facts, unless they are there for the same pair and lanes.
-void store_facts(const Bench& bench, const std::filesystem::path& case_file);
+void store_facts(const LanesUnderTest& under_test, const std::filesystem::path& case_file);
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -11,7 +11,7 @@
 #include "fuzz/minimise/moves.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 constexpr std::size_t kBlockPairs = 64;  // one word of verdicts
@@ -35,19 +35,19 @@ std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs)
 }
 
 // A device takes one thread at a time.
-std::vector<Verdict> decide_in_turn(const Bench& bench, const Pair& pair) {
+std::vector<Verdict> decide_in_turn(const LanesUnderTest& under_test, const Pair& pair) {
   static std::mutex mutex;
   std::vector<const Lane*> apart;
   std::unique_lock lock(mutex, std::defer_lock);
-  if (bench.device) lock.lock();
-  return decide(bench, pair, apart);
+  if (under_test.device) lock.lock();
+  return decide(under_test, pair, apart);
 }
 
 // Replaces the worst pair so far by this one, if its margin is larger. Bounds decide nearly always.
 void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
   const MarginBounds bounds = margin_bounds(pair, verdict);
   if (std::ldexp(bounds.hi, -log2_ulp(pair)) <= result.worst_ulps) return;
-  const double ulps = std::fabs(truth(pair).margin_ulps);
+  const double ulps = std::fabs(oracle::truth(pair).margin_ulps);
   if (ulps <= result.worst_ulps) return;
   result.worst = pair;
   result.worst_ulps = ulps;
@@ -58,20 +58,20 @@ void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
 Judged judged(const Pair& pair) {
   const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
   return {r.intersects ? Verdict::intersects : Verdict::disjoint, static_cast<Contact>(r.contact + 1),
-          Shape{r.dimension_a, r.dimension_b, r.coplanar}, r.margin_sign};
+          oracle::Shape{r.dimension_a, r.dimension_b, r.coplanar}, r.margin_sign};
 }
 
-std::vector<Failure> failures_of(const Bench& bench, const Pair& pair) {
+std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& pair) {
   std::vector<Failure> failures;
   if (!is_finite(pair)) return failures;
   const Judged truth_of_pair = judged(pair);
-  const std::vector<Verdict> verdicts = decide_in_turn(bench, pair);
-  for_each_algorithm(bench.lanes, [&](std::size_t first, std::size_t count) {
+  const std::vector<Verdict> verdicts = decide_in_turn(under_test, pair);
+  analysis::for_each_algorithm(under_test.lanes, [&](std::size_t first, std::size_t count) {
     Failure failure{truth_of_pair, {}, {}, {}};
     bool wrong = false;
     for (std::size_t l = first; l < first + count; ++l) {
-      const Lane& lane = *bench.lanes[l];
-      const DecideBlock on_host = block_on_host(lane);
+      const Lane& lane = *under_test.lanes[l];
+      const DecideBlock on_host = cuda::block_on_host(lane);
       if (!on_host) throw std::runtime_error(lane.id + ": expected a twin to minimise with, found none");
       failure.lanes.push_back(&lane);
       failure.on_host.push_back(on_host);
@@ -92,9 +92,10 @@ bool fails_alike(const Failure& failure, const Pair& pair) {
   return !decided_alike(failure, {pair}).empty() && judged(pair) == failure.truth;
 }
 
-Signature signature_of(const Failure& failure, const Pair& pair) {
-  return signature(failure.truth.contact, failure.truth.shape, margin_bucket(pair, failure.truth.verdict),
-                   failure.truth.verdict, failure.lanes, failure.verdicts);
+analysis::Signature signature_of(const Failure& failure, const Pair& pair) {
+  return analysis::signature(failure.truth.contact, failure.truth.shape,
+                             oracle::margin_bucket(pair, failure.truth.verdict), failure.truth.verdict, failure.lanes,
+                             failure.verdicts);
 }
 
 std::vector<Pair> simpler_moves(const Pair& pair, int kind) {
@@ -115,7 +116,7 @@ std::vector<Pair> simpler_moves(const Pair& pair, int kind) {
 }
 
 Minimised minimise(const Failure& failure, const Pair& pair) {
-  Minimised result{pair, 0, pair, std::fabs(truth(pair).margin_ulps)};
+  Minimised result{pair, 0, pair, std::fabs(oracle::truth(pair).margin_ulps)};
   // The simplest pair that a kind of move makes of the current one and that fails alike, if any.
   const auto improve = [&](int kind) {
     const std::vector<Pair> simpler = simpler_moves(result.pair, kind);
@@ -140,13 +141,13 @@ Minimised minimise(const Failure& failure, const Pair& pair) {
   return result;
 }
 
-void confirm(const Bench& bench, const Failure& failure, const Pair& pair) {
-  const Truth t = truth(pair);
-  const Judged by_oracle{t.verdict, t.contact, shape(pair), (t.margin > 0) - (t.margin < 0)};
-  if (by_oracle != failure.truth) throw OracleApart("the minimiser's truth and the oracle's differ");
-  const std::vector<Failure> failures = failures_of(bench, pair);
+void confirm(const LanesUnderTest& under_test, const Failure& failure, const Pair& pair) {
+  const oracle::Truth t = oracle::truth(pair);
+  const Judged by_oracle{t.verdict, t.contact, oracle::shape(pair), (t.margin > 0) - (t.margin < 0)};
+  if (by_oracle != failure.truth) throw oracle::OracleApart("the minimiser's truth and the oracle's differ");
+  const std::vector<Failure> failures = failures_of(under_test, pair);
   if (std::find(failures.begin(), failures.end(), failure) == failures.end())
     throw std::runtime_error("expected the minimised pair to fail as the original does, found that it does not");
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -9,7 +9,7 @@
 #include "fuzz/lanes_under_test.h"
 #include "fuzz/minimise/simplicity.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 // What is true of a pair and must stay when it shrinks: all of its signature but the margin's size. Shrinking
 // runs to the threshold, so a margin that had to keep its size would keep the coordinates long; its sign says whether
@@ -17,7 +17,7 @@ namespace graze {
 struct Judged {
   Verdict verdict = Verdict::declined;
   Contact contact = Contact::unknown;
-  Shape shape;
+  oracle::Shape shape;
   int margin_sign = 0;
   bool operator==(const Judged&) const = default;
 };
@@ -29,20 +29,20 @@ Judged judged(const Pair& pair);
 // One algorithm's failure: the truth, and what each of its lanes says of it. A pair fails alike when all of it holds.
 struct Failure {
   Judged truth;
-  std::vector<const Lane*> lanes;    // of one algorithm, those of the bench
+  std::vector<const Lane*> lanes;    // of one algorithm, those of the under_test
   std::vector<DecideBlock> on_host;  // of each: the host lane or the twin
   std::vector<Verdict> verdicts;     // of each
   bool operator==(const Failure&) const = default;
 };
 
-// The failures of a pair, one for each algorithm of the bench that is wrong on it; none for coordinates that are not
-// finite.   Throws: OracleApart; std::runtime_error where the bench's device and the twin differ.
-std::vector<Failure> failures_of(const Bench& bench, const Pair& pair);
+// The failures of a pair, one for each algorithm of the under_test that is wrong on it; none for coordinates that are
+// not finite.   Throws: OracleApart; std::runtime_error where the under_test's device and the twin differ.
+std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& pair);
 
 bool fails_alike(const Failure& failure, const Pair& pair);
 
 // The signature of a pair that fails alike, its own margin's bucket included.
-Signature signature_of(const Failure& failure, const Pair& pair);
+analysis::Signature signature_of(const Failure& failure, const Pair& pair);
 
 struct Minimised {
   Pair pair;                     // not one of its single moves is simpler and fails alike
@@ -60,7 +60,7 @@ Minimised minimise(const Failure& failure, const Pair& pair);
 std::vector<Pair> simpler_moves(const Pair& pair, int kind);
 
 // Throws: OracleApart unless CGAL and GMP say of the pair what the failure does; std::runtime_error unless all lanes of
-// the bench do, on the device where it has one.
-void confirm(const Bench& bench, const Failure& failure, const Pair& pair);
+// the under_test do, on the device where it has one.
+void confirm(const LanesUnderTest& under_test, const Failure& failure, const Pair& pair);
 
-}  // namespace graze
+}  // namespace graze::fuzz

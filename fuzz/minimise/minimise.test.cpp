@@ -12,22 +12,22 @@
 #include "corpus/pair_format.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/minimise/moves.h"
-#include "strata/strata.h"
 #include "oracle/truth.h"
+#include "strata/strata.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
 
-const Bench& bench() {
-  static const Bench all = make_bench({}, Executor::twin);
+const LanesUnderTest& under_test() {
+  static const LanesUnderTest all = select_lanes({}, Executor::twin);
   return all;
 }
 
 std::string text(const Pair& pair) {
   std::ostringstream out;
-  write_entry(out, {pair, {}, 0});
+  corpus::write_entry(out, {pair, {}, 0});
   return out.str();
 }
 
@@ -46,12 +46,12 @@ struct Case {
 };
 
 // The first failures of a stratum, `most` of each algorithm.
-std::vector<Case> cases_of(Stratum stratum, std::size_t most) {
+std::vector<Case> cases_of(strata::Stratum stratum, std::size_t most) {
   std::vector<Case> found;
   std::vector<std::size_t> of_algorithm(lanes().size());
   for (std::uint64_t index = 0; index < 3000; ++index) {
-    const Pair pair = generate(kSeed, stratum, index);
-    for (Failure& failure : failures_of(bench(), pair)) {
+    const Pair pair = strata::generate(kSeed, stratum, index);
+    for (Failure& failure : failures_of(under_test(), pair)) {
       if (++of_algorithm[static_cast<std::size_t>(failure.lanes.front()->algorithm)] > most) continue;
       const std::string name = std::to_string(index) + " " + std::string(failure.lanes.front()->info->id);
       found.push_back({pair, std::move(failure), name});
@@ -101,8 +101,8 @@ TEST(Simplicity, ComparesInTheStatedOrder) {
 // Any two of many pairs: one is simpler, or their bits are the same; and going on from one to the next never returns.
 TEST(Simplicity, IsATotalOrder) {
   std::vector<Pair> pairs;
-  for (const StratumInfo& row : kStrata) {
-    for (std::uint64_t index = 0; index < 12; ++index) pairs.push_back(generate(kSeed, row.stratum, index));
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    for (std::uint64_t index = 0; index < 12; ++index) pairs.push_back(strata::generate(kSeed, row.stratum, index));
   }
   std::sort(pairs.begin(), pairs.end(), [](const Pair& l, const Pair& r) { return simplicity(l) < simplicity(r); });
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -147,7 +147,7 @@ TEST(Moves, AreFiniteWhateverThePair) {
   }
 }
 
-class MinimiseStratum : public testing::TestWithParam<StratumInfo> {};
+class MinimiseStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
 // Same failure by the oracle itself, simpler or equal, 1-minimal by trying all moves again, and a fixed point.
 TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
@@ -158,11 +158,11 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
     const Minimised found = minimise(c.failure, c.pair);
     EXPECT_LE(simplicity(found.pair), simplicity(c.pair));
 
-    const Truth t = truth(found.pair);
-    EXPECT_EQ(t.contact, gmp_contact(c.pair));
-    EXPECT_EQ(shape(found.pair), shape(c.pair));
-    EXPECT_EQ(std::signbit(t.margin), std::signbit(truth(c.pair).margin));
-    EXPECT_EQ(t.margin == 0, truth(c.pair).margin == 0);
+    const oracle::Truth t = oracle::truth(found.pair);
+    EXPECT_EQ(t.contact, oracle::gmp_contact(c.pair));
+    EXPECT_EQ(oracle::shape(found.pair), oracle::shape(c.pair));
+    EXPECT_EQ(std::signbit(t.margin), std::signbit(oracle::truth(c.pair).margin));
+    EXPECT_EQ(t.margin == 0, oracle::truth(c.pair).margin == 0);
     for (std::size_t l = 0; l < c.failure.lanes.size(); ++l) {
       std::uint64_t before[2], after[2];
       c.failure.on_host[l](&c.pair, 1, &before[0], &before[1]);
@@ -170,10 +170,10 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
       EXPECT_EQ(before[0], after[0]) << c.failure.lanes[l]->id;
       EXPECT_EQ(before[1], after[1]) << c.failure.lanes[l]->id;
     }
-    EXPECT_NO_THROW(confirm(bench(), c.failure, found.pair));
-    EXPECT_NO_THROW(confirm(bench(), c.failure, found.worst));
-    EXPECT_EQ(std::fabs(truth(found.worst).margin_ulps), found.worst_ulps);
-    EXPECT_GE(found.worst_ulps, std::fabs(truth(c.pair).margin_ulps));
+    EXPECT_NO_THROW(confirm(under_test(), c.failure, found.pair));
+    EXPECT_NO_THROW(confirm(under_test(), c.failure, found.worst));
+    EXPECT_EQ(std::fabs(oracle::truth(found.worst).margin_ulps), found.worst_ulps);
+    EXPECT_GE(found.worst_ulps, std::fabs(oracle::truth(c.pair).margin_ulps));
     EXPECT_GE(found.worst_ulps, std::fabs(t.margin_ulps));
 
     std::vector<Pair> moved;
@@ -194,7 +194,7 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Every, MinimiseStratum, testing::ValuesIn(kStrata),
+INSTANTIATE_TEST_SUITE_P(Every, MinimiseStratum, testing::ValuesIn(strata::kStrata),
                          [](const auto& row) { return std::string(row.param.id); });
 
 TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
@@ -202,72 +202,72 @@ TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
   for (const float scale : {0x1p-149f, 1e-30f, 1e37f}) {
     Pair pair = pair_of({-1, -1, 0, 3, -1, 0, -1, 3, 0, 0, 0, -1, 0, 0, 1, 1, 1, 2});
     for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] *= scale;
-    const std::vector<Failure> failures = failures_of(bench(), pair);
+    const std::vector<Failure> failures = failures_of(under_test(), pair);
     ASSERT_FALSE(failures.empty()) << scale;
     for (const Failure& failure : failures) {
       const Minimised found = minimise(failure, pair);
-      EXPECT_NO_THROW(confirm(bench(), failure, found.pair));
+      EXPECT_NO_THROW(confirm(under_test(), failure, found.pair));
       EXPECT_LE(nontrivial_magnitudes(found.pair), nontrivial_magnitudes(pair));
     }
   }
 }
 
 TEST(Minimise, ConfirmRefusesAnotherFailure) {
-  const std::vector<Case> cases = cases_of(Stratum::near_edge_edge, 1);
+  const std::vector<Case> cases = cases_of(strata::Stratum::near_edge_edge, 1);
   ASSERT_GE(cases.size(), 2u);
   const Pair apart = pair_of({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5});
   for (const Case& c : cases) {
-    EXPECT_NO_THROW(confirm(bench(), c.failure, c.pair));
-    EXPECT_ANY_THROW(confirm(bench(), c.failure, apart));
+    EXPECT_NO_THROW(confirm(under_test(), c.failure, c.pair));
+    EXPECT_ANY_THROW(confirm(under_test(), c.failure, apart));
     Failure other = c.failure;
     other.verdicts.front() = other.verdicts.front() == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint;
-    EXPECT_ANY_THROW(confirm(bench(), other, c.pair));
+    EXPECT_ANY_THROW(confirm(under_test(), other, c.pair));
   }
 }
 
 TEST(Minimise, NothingFailsOnPairsThatAreRightOrNotFinite) {
   Pair pair = pair_of({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 5, 1, 0, 5, 0, 1, 5});
-  EXPECT_TRUE(failures_of(bench(), pair).empty());
+  EXPECT_TRUE(failures_of(under_test(), pair).empty());
   pair.a[0].x = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_TRUE(failures_of(bench(), pair).empty());
+  EXPECT_TRUE(failures_of(under_test(), pair).empty());
 }
 
 TEST(MinimisedCases, StandBeforeTheOriginalsAndAreRecognised) {
   std::ostringstream out;
-  write_header(out);
+  corpus::write_header(out);
   out << "# a comment\n";
-  const std::vector<Case> cases = cases_of(Stratum::near_edge_edge, 2);
+  const std::vector<Case> cases = cases_of(strata::Stratum::near_edge_edge, 2);
   for (const Case& c : cases) {
-    write_entry(out, {c.pair, {{"signature", key(signature_of(c.failure, c.pair))}}, 0});
+    corpus::write_entry(out, {c.pair, {{"signature", analysis::key(signature_of(c.failure, c.pair))}}, 0});
   }
   const auto read = [](const std::string& from) {
     std::istringstream in(from);
-    PairReader reader(in, "test");
-    std::vector<Entry> entries;
-    while (std::optional<Entry> entry = reader.next()) entries.push_back(std::move(*entry));
+    corpus::PairReader reader(in, "test");
+    std::vector<corpus::Entry> entries;
+    while (std::optional<corpus::Entry> entry = reader.next()) entries.push_back(std::move(*entry));
     return entries;
   };
   const std::string fresh = out.str();
-  const std::vector<Entry> entries = read(fresh);
-  EXPECT_FALSE(has_result(bench(), entries));
-  const std::vector<MinimisedCase> results = minimise_cases(bench(), entries);
+  const std::vector<corpus::Entry> entries = read(fresh);
+  EXPECT_FALSE(has_result(under_test(), entries));
+  const std::vector<MinimisedCase> results = minimise_cases(under_test(), entries);
   ASSERT_FALSE(results.empty());
   const std::string once = with_results(fresh, entries, results);
-  const std::vector<Entry> all = read(once);
+  const std::vector<corpus::Entry> all = read(once);
   ASSERT_EQ(all.size(), entries.size() + 2 * results.size());
   EXPECT_EQ(*field(all[0], "kind"), "minimised");
   EXPECT_EQ(*field(all[1], "kind"), "worst");
   for (std::size_t i = 0; i < entries.size(); ++i)
     EXPECT_TRUE(same_bits(all[2 * results.size() + i].pair, entries[i].pair));
-  EXPECT_TRUE(has_result(bench(), all));
-  EXPECT_EQ(with_results(once, all, minimise_cases(bench(), all)), once);
+  EXPECT_TRUE(has_result(under_test(), all));
+  EXPECT_EQ(with_results(once, all, minimise_cases(under_test(), all)), once);
   EXPECT_TRUE(is_minimised_from(once, fresh));
   EXPECT_TRUE(is_minimised_from(fresh, fresh));
   EXPECT_FALSE(is_minimised_from("", fresh));
   EXPECT_FALSE(is_minimised_from(once + "x", fresh));
   EXPECT_FALSE(is_minimised_from(once, once + fresh.substr(fresh.find('#'))));
-  EXPECT_FALSE(has_result(make_bench({"*/f32/cpu"}), all));
+  EXPECT_FALSE(has_result(select_lanes({"*/f32/cpu"}), all));
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::fuzz

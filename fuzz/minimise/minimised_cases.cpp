@@ -9,52 +9,52 @@
 #include "fuzz/campaign/result_files.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
-bool has_kind(const Entry& entry, std::string_view kind) {
-  const std::string* value = field(entry, "kind");
+bool has_kind(const corpus::Entry& entry, std::string_view kind) {
+  const std::string* value = corpus::field(entry, "kind");
   return value && *value == kind;
 }
 
-bool is_result(const Entry& entry) { return is_minimised(entry) || has_kind(entry, "worst"); }
+bool is_result(const corpus::Entry& entry) { return is_minimised(entry) || has_kind(entry, "worst"); }
 
 // The cases to minimise, in their order.
-std::vector<const Entry*> originals(const std::vector<Entry>& entries) {
+std::vector<const corpus::Entry*> originals(const std::vector<corpus::Entry>& entries) {
   const bool only_results = std::all_of(entries.begin(), entries.end(), is_result);
-  std::vector<const Entry*> found;
-  for (const Entry& entry : entries) {
+  std::vector<const corpus::Entry*> found;
+  for (const corpus::Entry& entry : entries) {
     if (only_results || !is_result(entry)) found.push_back(&entry);
   }
   return found;
 }
 
-std::string name_of(const Entry& entry) {
-  const std::string *from = field(entry, "from"), *name = field(entry, "name");
-  return numbers_of(entry).value_or(from ? *from : name ? *name : "");
+std::string name_of(const corpus::Entry& entry) {
+  const std::string *from = corpus::field(entry, "from"), *name = corpus::field(entry, "name");
+  return corpus::numbers_of(entry).value_or(from ? *from : name ? *name : "");
 }
 
 bool is_of_algorithm(const std::string& key, const Failure& failure) {
   return key.find(fmt::format("/{}:", failure.lanes.front()->info->id)) != std::string::npos;
 }
 
-Entry result_entry(const MinimisedCase& result, const Pair& pair, const char* kind, const std::string& from) {
-  Entry entry{pair, {{"kind", kind}}, 0};
+corpus::Entry result_entry(const MinimisedCase& result, const Pair& pair, const char* kind, const std::string& from) {
+  corpus::Entry entry{pair, {{"kind", kind}}, 0};
   if (!from.empty()) entry.fields.push_back({"from", from});
-  for (auto& part : truth_fields(truth(pair))) entry.fields.push_back(std::move(part));
-  entry.fields.push_back({"signature", key(signature_of(result.failure, pair))});
+  for (auto& part : truth_fields(oracle::truth(pair))) entry.fields.push_back(std::move(part));
+  entry.fields.push_back({"signature", analysis::key(signature_of(result.failure, pair))});
   return entry;
 }
 
 }  // namespace
 
-bool is_minimised(const Entry& entry) { return has_kind(entry, "minimised"); }
+bool is_minimised(const corpus::Entry& entry) { return has_kind(entry, "minimised"); }
 
-std::vector<MinimisedCase> minimise_cases(const Bench& bench, const std::vector<Entry>& entries) {
+std::vector<MinimisedCase> minimise_cases(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries) {
   std::vector<MinimisedCase> results;
-  for (const Entry* entry : originals(entries)) {
-    const std::string* recorded = field(*entry, "signature");
-    for (const Failure& failure : failures_of(bench, entry->pair)) {
+  for (const corpus::Entry* entry : originals(entries)) {
+    const std::string* recorded = corpus::field(*entry, "signature");
+    for (const Failure& failure : failures_of(under_test, entry->pair)) {
       if (recorded && !is_of_algorithm(*recorded, failure)) continue;
       const std::string from = name_of(*entry);
       MinimisedCase found{failure, minimise(failure, entry->pair), recorded ? *recorded : "", from, from, entry->pair};
@@ -79,28 +79,29 @@ std::vector<MinimisedCase> minimise_cases(const Bench& bench, const std::vector<
     }
   }
   for (const MinimisedCase& result : results) {
-    confirm(bench, result.failure, result.result.pair);
-    confirm(bench, result.failure, result.result.worst);
+    confirm(under_test, result.failure, result.result.pair);
+    confirm(under_test, result.failure, result.result.worst);
   }
   return results;
 }
 
-std::string with_results(const std::string& text, const std::vector<Entry>& entries,
+std::string with_results(const std::string& text, const std::vector<corpus::Entry>& entries,
                          const std::vector<MinimisedCase>& results) {
   std::ostringstream out;
-  const std::vector<const Entry*> cases = originals(entries);
+  const std::vector<const corpus::Entry*> cases = originals(entries);
   std::istringstream in(text);
   std::size_t number = 0;
   for (std::string line; std::getline(in, line);) {
     ++number;
-    const auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.line == number; });
+    const auto entry =
+        std::find_if(entries.begin(), entries.end(), [&](const corpus::Entry& e) { return e.line == number; });
     const bool is_case = entry != entries.end() && std::find(cases.begin(), cases.end(), &*entry) != cases.end();
     if (is_case && &*entry == cases.front()) {
       for (const MinimisedCase& r : results) {
-        Entry minimised = result_entry(r, r.result.pair, "minimised", r.from);
+        corpus::Entry minimised = result_entry(r, r.result.pair, "minimised", r.from);
         minimised.fields.push_back({"single_moves", std::to_string(r.result.single_moves)});
-        write_entry(out, minimised);
-        write_entry(out, result_entry(r, r.result.worst, "worst", r.worst_from));
+        corpus::write_entry(out, minimised);
+        corpus::write_entry(out, result_entry(r, r.result.worst, "worst", r.worst_from));
       }
     }
     if (entry == entries.end() || is_case) out << line << '\n';
@@ -108,11 +109,11 @@ std::string with_results(const std::string& text, const std::vector<Entry>& entr
   return out.str();
 }
 
-bool has_result(const Bench& bench, const std::vector<Entry>& entries) {
-  const Entry &result = entries.front(), &first = *originals(entries).front();
-  const std::string* recorded = field(result, "signature");
+bool has_result(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries) {
+  const corpus::Entry &result = entries.front(), &first = *originals(entries).front();
+  const std::string* recorded = corpus::field(result, "signature");
   if (!is_result(result) || is_result(first) || !recorded) return false;
-  const std::vector<Failure> failures = failures_of(bench, first.pair);
+  const std::vector<Failure> failures = failures_of(under_test, first.pair);
   return std::any_of(failures.begin(), failures.end(), [&](const Failure& failure) {
     return fails_alike(failure, result.pair) && key(signature_of(failure, result.pair)) == *recorded;
   });
@@ -123,4 +124,4 @@ bool is_minimised_from(const std::string& text, const std::string& fresh) {
   return text.size() >= fresh.size() && text.starts_with(fresh.substr(0, head)) && text.ends_with(fresh.substr(head));
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -9,7 +9,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/minimise/minimise.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 struct MinimisedCase {
   Failure failure;
@@ -20,23 +20,23 @@ struct MinimisedCase {
 };
 
 // Whether the entry is what a case was minimised to.
-bool is_minimised(const Entry& entry);
+bool is_minimised(const corpus::Entry& entry);
 
 // One result for all cases with the same recorded signature, of its algorithm: the simplest one, and the worst pair of
 // all. Cases without a record have one for each algorithm that is wrong. What is minimised already counts as a case
 // only where there is no other. Each result is confirmed.
-// Returns: nothing of cases on which no lane of the bench is wrong.   Throws: OracleApart, std::runtime_error.
-std::vector<MinimisedCase> minimise_cases(const Bench& bench, const std::vector<Entry>& entries);
+// Returns: nothing of cases on which no lane of the under_test is wrong.   Throws: OracleApart, std::runtime_error.
+std::vector<MinimisedCase> minimise_cases(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries);
 
 // The text of a file with these results in place of those that it may hold already.
 // Requires: entries are those of the text.
-std::string with_results(const std::string& text, const std::vector<Entry>& entries,
+std::string with_results(const std::string& text, const std::vector<corpus::Entry>& entries,
                          const std::vector<MinimisedCase>& results);
 
 // Whether the file holds the result for its first case on these lanes.
-bool has_result(const Bench& bench, const std::vector<Entry>& entries);
+bool has_result(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries);
 
 // Whether the file is `fresh` as a campaign writes it, but for results of the minimiser.
 bool is_minimised_from(const std::string& text, const std::string& fresh);
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -10,7 +10,7 @@
 
 #include "core/margin/margin.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 using Pairs = std::vector<Pair>;
@@ -257,4 +257,4 @@ void append_moves(const Pair& pair, int kind, Pairs& moved) {
   frames(pair, kind - 71, moved);
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

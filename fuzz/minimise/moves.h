@@ -7,7 +7,7 @@
 
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 // The moves come in kinds, in this order:
 //   0..6    a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits or not at
@@ -31,4 +31,4 @@ inline constexpr int kMoveKinds = 77;
 // Requires: finite coordinates, 0 <= kind < kMoveKinds.
 void append_moves(const Pair& pair, int kind, std::vector<Pair>& moved);
 
-}  // namespace graze
+}  // namespace graze::fuzz

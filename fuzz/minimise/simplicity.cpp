@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace graze {
+namespace graze::fuzz {
 
 Simplicity simplicity(const Pair& pair) {
   constexpr std::uint32_t kOne = 0x3f800000u;
@@ -39,4 +39,4 @@ Simplicity simplicity(const Pair& pair) {
   return s;
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

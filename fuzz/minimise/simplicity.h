@@ -8,7 +8,7 @@
 
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 // The first count that differs decides, the smaller being the simpler:
 //   1. different magnitudes other than 0 and 1
@@ -32,4 +32,4 @@ Simplicity simplicity(const Pair& pair);
 // How many different magnitudes other than 0 and 1 the pair has.
 inline int nontrivial_magnitudes(const Pair& pair) { return simplicity(pair).counts[0]; }
 
-}  // namespace graze
+}  // namespace graze::fuzz

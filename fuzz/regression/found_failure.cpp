@@ -14,7 +14,7 @@
 #include "core/fnv1a.h"
 #include "fuzz/minimise/minimised_cases.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 std::string word(const Json& build, const char* key, const char* otherwise) {
@@ -32,12 +32,12 @@ std::string seen_by(const Json& build, std::string_view kind, const std::string&
 std::string without_marks(const std::string& signature) { return signature.substr(0, signature.rfind(':')); }
 
 // The pair's signatures, one an algorithm, right or wrong.
-std::vector<Signature> signatures_of(const Pair& pair, const Replay& seen) {
-  const Shape hulls = shape(pair);
-  const Bucket bucket = margin_bucket(pair, seen.truth.verdict);
-  std::vector<Signature> result;
+std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& seen) {
+  const oracle::Shape hulls = oracle::shape(pair);
+  const Bucket bucket = oracle::margin_bucket(pair, seen.truth.verdict);
+  std::vector<analysis::Signature> result;
   for (std::size_t first = 0; first < seen.marks.size(); first += 2 * kTargetCount) {
-    Signature s{seen.truth.contact, hulls, bucket, published_lanes()[first].algorithm, {}};
+    analysis::Signature s{seen.truth.contact, hulls, bucket, published_lanes()[first].algorithm, {}};
     for (std::size_t i = 0; i < s.marks.size(); ++i) s.marks[i] = seen.marks[first + i];
     result.push_back(s);
   }
@@ -45,33 +45,33 @@ std::vector<Signature> signatures_of(const Pair& pair, const Replay& seen) {
 }
 
 // Requires: the summary is whole; a missing part throws Json::exception.
-std::vector<Sighting> sightings_of_summary(const std::filesystem::path& directory, const Json& summary,
+std::vector<FoundFailure> found_in_summary(const std::filesystem::path& directory, const Json& summary,
                                            const std::vector<std::string>& globs, std::size_t most) {
   const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
-  std::vector<Sighting> sightings;
+  std::vector<FoundFailure> failures;
   std::map<std::string, std::size_t> place, taken;    // of a signature in the list; signatures of an algorithm
   for (const Json& row : summary.at("signatures")) {  // the commonest first
     const std::string recorded = row.at("key");
     if (!matches_any(globs, recorded)) continue;
     const std::filesystem::path file = directory / row.at("case").get<std::string>();
-    const std::vector<Entry> entries = read_pairs(file);
-    if (entries.empty()) throw FormatError(file.string() + ": expected at least one case, found none");
-    const std::string* own = field(entries.front(), "signature");
+    const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
+    if (entries.empty()) throw corpus::FormatError(file.string() + ": expected at least one case, found none");
+    const std::string* own = corpus::field(entries.front(), "signature");
     const std::string& signature = own ? *own : recorded;
     const std::uint64_t count = row.at("count");
     if (const auto known = place.find(signature); known != place.end()) {
-      sightings[known->second].count += count;
-    } else if (taken[algorithm_of(signature)]++ < most) {
-      place.emplace(signature, sightings.size());
-      sightings.push_back({signature, entries.front(), count, seen});
+      failures[known->second].count += count;
+    } else if (taken[analysis::algorithm_of(signature)]++ < most) {
+      place.emplace(signature, failures.size());
+      failures.push_back({signature, entries.front(), count, seen});
     }
   }
-  return sightings;
+  return failures;
 }
 
 }  // namespace
 
-std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directory,
+std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most) {
   const std::filesystem::path file = directory / "summary.json";
   std::ifstream in(file);
@@ -80,74 +80,74 @@ std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directo
     const Json summary = Json::parse(in);
     if (!summary.at("complete").get<bool>())
       throw UsageError(directory.string() + ": expected a finished campaign, found one that was interrupted");
-    return sightings_of_summary(directory, summary, globs, most);
+    return found_in_summary(directory, summary, globs, most);
   } catch (const Json::exception&) {
-    throw FormatError(file.string() + ": expected a campaign's summary, found something else");
+    throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
   }
 }
 
-std::vector<Sighting> sightings_of_cases(const std::vector<Entry>& entries, const Json& build,
+std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entries, const Json& build,
                                          std::span<const Lane* const> run, const DecideLanes& decide) {
-  std::vector<Sighting> sightings;
+  std::vector<FoundFailure> failures;
   std::set<std::string> taken;
-  const auto take = [&](const std::string& signature, const Entry& entry) {
+  const auto take = [&](const std::string& signature, const corpus::Entry& entry) {
     if (!taken.insert(signature).second) return;
     std::ostringstream bits;
-    write_entry(bits, {entry.pair});
-    sightings.push_back({signature, entry, 1, seen_by(build, "case", bits.str())});
+    corpus::write_entry(bits, {entry.pair});
+    failures.push_back({signature, entry, 1, seen_by(build, "case", bits.str())});
   };
   const bool minimised = std::any_of(entries.begin(), entries.end(), is_minimised);
-  for (const Entry& entry : entries) {
+  for (const corpus::Entry& entry : entries) {
     if (minimised && !is_minimised(entry)) continue;
-    if (const std::string* signature = field(entry, "signature")) {
+    if (const std::string* signature = corpus::field(entry, "signature")) {
       take(*signature, entry);
       continue;
     }
     const Replay now = replay(entry.pair, run, decide);
     if (now.truth.verdict == Verdict::declined) continue;
-    for (const Signature& s : signatures_of(entry.pair, now)) {
-      if (s.wrong()) take(key(s), entry);
+    for (const analysis::Signature& s : signatures_of(entry.pair, now)) {
+      if (s.wrong()) take(analysis::key(s), entry);
     }
   }
-  return sightings;
+  return failures;
 }
 
-Added add(RegressionCorpus& corpus, const Sighting& sighting, std::span<const Lane* const> run,
+Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> run,
           const DecideLanes& decide) {
-  const auto known = corpus.find(sighting.signature);
-  if (known != corpus.end() && known->second.last == sighting.seen) return Added::known;
+  const auto known = corpus.find(failure.signature);
+  if (known != corpus.end() && known->second.last == failure.seen) return Added::known;
 
-  const Replay now = replay(sighting.entry.pair, run, decide);
-  const std::string algorithm = algorithm_of(sighting.signature);
-  const CaseState state = state_after(CaseState::failing, sighting.signature, now.marks);
+  const Replay now = replay(failure.entry.pair, run, decide);
+  const std::string algorithm = analysis::algorithm_of(failure.signature);
+  const CaseState state = state_after(CaseState::failing, failure.signature, now.marks);
   if (known != corpus.end()) {
     RegressionCase& c = known->second;
-    c.count += sighting.count;
-    c.last = sighting.seen;
+    c.count += failure.count;
+    c.last = failure.seen;
     if (c.state != CaseState::fixed || state == CaseState::fixed) return Added::seen_again;
   }
   std::string found = "none";
   if (now.truth.verdict != Verdict::declined) {
-    for (const Signature& s : signatures_of(sighting.entry.pair, now)) {
-      if (algorithm_of(key(s)) == algorithm) found = key(s);
+    for (const analysis::Signature& s : signatures_of(failure.entry.pair, now)) {
+      if (analysis::algorithm_of(analysis::key(s)) == algorithm) found = analysis::key(s);
     }
   }
-  if (without_marks(found) != without_marks(sighting.signature)) {
-    throw std::runtime_error(fmt::format("expected a pair with the signature {}, found {}", sighting.signature, found));
+  if (without_marks(found) != without_marks(failure.signature)) {
+    throw std::runtime_error(fmt::format("expected a pair with the signature {}, found {}", failure.signature, found));
   }
 
-  RegressionCase c{fmt::format("{}_{:016x}", algorithm, fnv1a(sighting.signature)),
-                   sighting.entry.pair,
+  RegressionCase c{fmt::format("{}_{:016x}", algorithm, fnv1a(failure.signature)),
+                   failure.entry.pair,
                    std::string(name(now.truth.verdict)),
                    std::string(name(now.truth.contact)),
                    state,
-                   sighting.count,
+                   failure.count,
                    now.marks,
-                   sighting.seen,
-                   sighting.seen};
-  c.other = other_fields(sighting.entry);
+                   failure.seen,
+                   failure.seen};
+  c.other = other_fields(failure.entry);
   if (known == corpus.end()) {
-    corpus.emplace(sighting.signature, std::move(c));
+    corpus.emplace(failure.signature, std::move(c));
     return Added::as_new;
   }
   c.name = known->second.name;
@@ -157,4 +157,4 @@ Added add(RegressionCorpus& corpus, const Sighting& sighting, std::span<const La
   return Added::seen_again;
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sightings: failures on their way into the regression corpus, from a campaign's directory or from single cases.
+// Failures: failures on their way into the regression corpus, from a campaign's directory or from single cases.
 #pragma once
 
 #include <filesystem>
@@ -10,34 +10,34 @@
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/regression/regression.h"
 
-namespace graze {
+namespace graze::fuzz {
 
-struct Sighting {
+struct FoundFailure {
   std::string signature;
-  Entry entry;
+  corpus::Entry entry;
   std::uint64_t count;  // pairs of this signature
   std::string seen;     // by which build, and in what: "commit, compiler, toolkit, device; campaign HASH"
 };
 
 // The first entry of each file of cases, where the campaign's signature matches one of the shell patterns (or there is
-// none). A minimised entry has a signature of its own: those that became one are one sighting, counted together.
+// none). A minimised entry has a signature of its own: those that became one are one failure, counted together.
 // Of each algorithm only the `most` commonest.
 // Throws: UsageError for a directory that holds no finished campaign; FormatError.
-std::vector<Sighting> sightings_of_campaign(const std::filesystem::path& directory,
+std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most);
 
-// One sighting a signature of the entries: that of the field `signature`, or those of all algorithms that are wrong.
+// One failure a signature of the entries: that of the field `signature`, or those of all algorithms that are wrong.
 // Minimised entries stand for all.
-std::vector<Sighting> sightings_of_cases(const std::vector<Entry>& entries, const Json& build,
+std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entries, const Json& build,
                                          std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 enum class Added { as_new, seen_again, known };
 
-// A signature's first sighting becomes a case, after a replay; further ones count. A case that was fixed and is wrong
-// again is failing again, with the new pair. The same sighting twice running counts once, so that an interrupted
+// A signature's first failure becomes a case, after a replay; further ones count. A case that was fixed and is wrong
+// again is failing again, with the new pair. The same failure twice running counts once, so that an interrupted
 // command can be run again.
 // Throws: std::runtime_error when the pair is not one of the signature.
-Added add(RegressionCorpus& corpus, const Sighting& sighting, std::span<const Lane* const> lanes,
+Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> lanes,
           const DecideLanes& decide);
 
-}  // namespace graze
+}  // namespace graze::fuzz

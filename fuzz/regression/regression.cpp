@@ -9,7 +9,7 @@
 #include "analysis/signature.h"
 #include "fuzz/campaign/result_files.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 constexpr std::size_t kLanesOfAlgorithm = 2 * kTargetCount;
@@ -29,15 +29,15 @@ std::string text_of(const Marks& marks) {
 
 // What a line of the file must hold, or an error that names it.
 struct Line {
-  const Entry& entry;
+  const corpus::Entry& entry;
   std::string where;
 
   [[noreturn]] void fail(const std::string& expected, const std::string& found) const {
-    throw FormatError(fmt::format("{}: expected {}, found {}", where, expected, found));
+    throw corpus::FormatError(fmt::format("{}: expected {}, found {}", where, expected, found));
   }
 
   const std::string& text(std::string_view key) const {
-    const std::string* value = field(entry, key);
+    const std::string* value = corpus::field(entry, key);
     if (!value) fail(fmt::format("a field {}", key), "none");
     return *value;
   }
@@ -52,7 +52,7 @@ struct Line {
 
   std::uint64_t count() const {
     const std::string& word = text("count");
-    const std::optional<std::uint64_t> value = parse_whole(word);
+    const std::optional<std::uint64_t> value = corpus::parse_whole(word);
     if (!value) fail("a whole number as count", '\'' + word + '\'');
     return *value;
   }
@@ -101,7 +101,7 @@ std::string_view name(CaseState state) {
   return kNames[static_cast<int>(state)];
 }
 
-std::vector<std::pair<std::string, std::string>> other_fields(const Entry& entry) {
+std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entry& entry) {
   std::vector<std::pair<std::string, std::string>> others;
   for (const auto& own : entry.fields) {
     if (std::find(std::begin(kOwnFields), std::end(kOwnFields), own.first) == std::end(kOwnFields))
@@ -112,14 +112,14 @@ std::vector<std::pair<std::string, std::string>> other_fields(const Entry& entry
 
 RegressionCorpus read_regressions(const std::filesystem::path& file) {
   RegressionCorpus corpus;
-  for (const Entry& entry : read_pairs(file)) {
+  for (const corpus::Entry& entry : corpus::read_pairs(file)) {
     const Line line{entry, fmt::format("{}:{}", file.string(), entry.line)};
     RegressionCase c{line.text("name"), entry.pair,   line.text("truth"), line.text("contact"), line.state(),
                      line.count(),      line.marks(), line.text("first"), line.text("last")};
     c.other = other_fields(entry);
     const std::string& signature = line.text("signature");
     if (std::none_of(published_lanes().begin(), published_lanes().end(),
-                     [&](auto& l) { return l.info->id == algorithm_of(signature); }))
+                     [&](auto& l) { return l.info->id == analysis::algorithm_of(signature); }))
       line.fail("the signature of an algorithm's failure", '\'' + signature + '\'');
     if (!corpus.emplace(signature, std::move(c)).second) line.fail("every signature once", "a second " + signature);
   }
@@ -128,33 +128,33 @@ RegressionCorpus read_regressions(const std::filesystem::path& file) {
 
 void write_regressions(const std::filesystem::path& file, const RegressionCorpus& corpus) {
   std::ostringstream out;
-  write_header(out);
+  corpus::write_header(out);
   out << "# Kept by `graze corpus`: a case a signature, ordered by it. lanes: the marks of the last replay.\n";
   for (const auto& [signature, c] : corpus) {
-    Entry entry{c.pair,
-                {{"name", c.name},
-                 {"truth", c.truth},
-                 {"contact", c.contact},
-                 {"state", std::string(name(c.state))},
-                 {"count", std::to_string(c.count)},
-                 {"signature", signature},
-                 {"lanes", text_of(c.marks)},
-                 {"first", c.first},
-                 {"last", c.last}},
-                0};
+    corpus::Entry entry{c.pair,
+                        {{"name", c.name},
+                         {"truth", c.truth},
+                         {"contact", c.contact},
+                         {"state", std::string(name(c.state))},
+                         {"count", std::to_string(c.count)},
+                         {"signature", signature},
+                         {"lanes", text_of(c.marks)},
+                         {"first", c.first},
+                         {"last", c.last}},
+                        0};
     entry.fields.insert(entry.fields.end(), c.other.begin(), c.other.end());
-    write_entry(out, entry);
+    corpus::write_entry(out, entry);
   }
   write_whole(file, out.str());
 }
 
 Replay replay(const Pair& pair, std::span<const Lane* const> run, const DecideLanes& decide) {
-  Replay result{truth(pair), Marks(published_lanes().size(), '_')};
+  Replay result{oracle::truth(pair), Marks(published_lanes().size(), '_')};
   for (int r = 0; r < kReplays; ++r) {
     std::vector<const Lane*> apart;
     const std::vector<Verdict> verdicts = decide(pair, apart);
     for (std::size_t l = 0; l < run.size(); ++l) {
-      const char now = mark(verdicts[l], result.truth.verdict);
+      const char now = analysis::mark(verdicts[l], result.truth.verdict);
       if (char* known = mark_of(result.marks, *run[l])) *known = r == 0 || *known == now ? now : '~';
     }
     for (const Lane* lane : apart) {
@@ -166,7 +166,7 @@ Replay replay(const Pair& pair, std::span<const Lane* const> run, const DecideLa
 
 CaseState state_after(CaseState before, const std::string& signature, const Marks& now) {
   if (before == CaseState::flaky || now.find('~') != now.npos) return CaseState::flaky;
-  const std::string id = algorithm_of(signature), seen = signature.substr(signature.rfind(':') + 1);
+  const std::string id = analysis::algorithm_of(signature), seen = signature.substr(signature.rfind(':') + 1);
   bool all_right = true;
   for (const Lane& lane : published_lanes()) {
     const char m = now[static_cast<std::size_t>(lane.index)];
@@ -205,4 +205,4 @@ Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> run, cons
   return result;
 }
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The regression corpus: failures that were seen, one case a signature, all in one file of pairs, and what has become
-// of them since. Nothing in it depends on the clock, and the same sightings in the same order give the same bytes.
+// of them since. Nothing in it depends on the clock, and the same failures in the same order give the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 #include "corpus/pair_format.h"
 #include "oracle/truth.h"
 
-namespace graze {
+namespace graze::fuzz {
 
 // failing: a lane of the signature's algorithm is wrong. fixed: all that were are right. flaky: a verdict differed
 // between replays, or between a device and its twin; replays that agree later prove nothing, so it stays flaky.
@@ -35,12 +35,12 @@ struct RegressionCase {
   CaseState state = CaseState::failing;
   std::uint64_t count = 0;  // pairs that were seen with this signature
   Marks marks;
-  std::string first, last;                                      // sightings; see fuzz/regression/found_failure.h
+  std::string first, last;                                      // failures; see fuzz/regression/found_failure.h
   std::vector<std::pair<std::string, std::string>> other = {};  // fields that the case came with
 };
 
 // The fields of an entry that say nothing which a case keeps itself.
-std::vector<std::pair<std::string, std::string>> other_fields(const Entry& entry);
+std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entry& entry);
 
 // By signature, as it was first seen.
 using RegressionCorpus = std::map<std::string, RegressionCase>;
@@ -51,11 +51,12 @@ RegressionCorpus read_regressions(const std::filesystem::path& file);
 // Replaces the file in one step.
 void write_regressions(const std::filesystem::path& file, const RegressionCorpus& corpus);
 
-// Each lane's verdict on a pair, and in apart the lanes that disagree with themselves; see decide in fuzz/lanes_under_test.h.
+// Each lane's verdict on a pair, and in apart the lanes that disagree with themselves; see decide in
+// fuzz/lanes_under_test.h.
 using DecideLanes = std::function<std::vector<Verdict>(const Pair&, std::vector<const Lane*>& apart)>;
 
 struct Replay {
-  Truth truth;
+  oracle::Truth truth;
   Marks marks;
 };
 
@@ -81,4 +82,4 @@ struct Verified {
 // Returns: what differs from the record; lanes without a record, or that did not run, differ from nothing.
 Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
-}  // namespace graze
+}  // namespace graze::fuzz

@@ -11,7 +11,7 @@
 
 #include "fuzz/regression/found_failure.h"
 
-namespace graze {
+namespace graze::fuzz {
 namespace {
 
 // A vertex of b on the face of a: they touch.
@@ -55,7 +55,7 @@ struct Regression : testing::Test {
     std::filesystem::remove(file);
     ASSERT_EQ(add({kSignature, {kTouching, {{"stratum", "lattice"}}}, 7, "here; campaign 1"}), Added::as_new);
   }
-  Added add(const Sighting& sighting) { return graze::add(corpus, sighting, liars.lanes, liars.decide()); }
+  Added add(const FoundFailure& failure) { return fuzz::add(corpus, failure, liars.lanes, liars.decide()); }
   std::vector<std::string> changes() {
     std::vector<std::string> texts;
     for (const Change& change : verify(corpus, liars.lanes, liars.decide()).changes) texts.push_back(change.what);
@@ -71,7 +71,7 @@ struct Regression : testing::Test {
     std::ofstream(file) << bad;
     try {
       read_regressions(file);
-    } catch (const FormatError& error) {
+    } catch (const corpus::FormatError& error) {
       return std::string(error.what()).substr(file.string().size());
     }
     return "";
@@ -106,11 +106,11 @@ TEST_F(Regression, BadLinesAreNamed) {
   EXPECT_EQ(read_error("signature=" + kSignature, "signature=point"),
             ":3: expected the signature of an algorithm's failure, found 'point'");
   write_regressions(file, corpus);
-  const Entry twice = read_pairs(file).front();
+  const corpus::Entry twice = corpus::read_pairs(file).front();
   std::ofstream again(file, std::ios::app);
-  write_entry(again, twice);
+  corpus::write_entry(again, twice);
   again.close();
-  EXPECT_THROW(read_regressions(file), FormatError);
+  EXPECT_THROW(read_regressions(file), corpus::FormatError);
 }
 
 TEST_F(Regression, ASignatureIsStoredOnceAndCounted) {
@@ -194,18 +194,18 @@ TEST_F(Regression, AnEditedTruthShows) {
   EXPECT_EQ(changes(), Texts{"fixed -> failing"});
 }
 
-TEST(Sightings, OfACaseAreAllItsWrongAlgorithms) {
+TEST(Failures, OfACaseAreAllItsWrongAlgorithms) {
   Liars liars;
   liars.wrong.insert("separating_axes/f32/cpu");
   const Json build{{"commit", "c"}, {"compiler", "GNU 1"}, {"cuda", nullptr}, {"device", "H100"}, {"executors", {}}};
-  const auto found = sightings_of_cases({{kTouching}, {kShifted}}, build, liars.lanes, liars.decide());
+  const auto found = found_in_cases({{kTouching}, {kShifted}}, build, liars.lanes, liars.decide());
   ASSERT_EQ(found.size(), 2u);  // the second pair has the same two
   EXPECT_EQ(found[0].signature, kSignature);
   EXPECT_EQ(found[1].signature, "point/22/skew/0/separating_axes:-.......");
   EXPECT_TRUE(found[0].seen.starts_with("c, GNU 1, no nvcc, H100; case ")) << found[0].seen;
-  EXPECT_EQ(found[0].seen, sightings_of_cases({{kTouching}}, build, liars.lanes, liars.decide())[0].seen);
-  EXPECT_NE(found[0].seen, sightings_of_cases({{kShifted}}, build, liars.lanes, liars.decide())[0].seen);
+  EXPECT_EQ(found[0].seen, found_in_cases({{kTouching}}, build, liars.lanes, liars.decide())[0].seen);
+  EXPECT_NE(found[0].seen, found_in_cases({{kShifted}}, build, liars.lanes, liars.decide())[0].seen);
 }
 
 }  // namespace
-}  // namespace graze
+}  // namespace graze::fuzz

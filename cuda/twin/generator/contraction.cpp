@@ -34,7 +34,7 @@
 
 #include "cuda/twin/generator/flow.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 namespace {
 
 bool is_float(const Instruction& i) { return !i.is_label() && (i.op.back() == "f32" || i.op.back() == "f64"); }
@@ -302,4 +302,4 @@ Contracted contract(const Module& module, const Kernel& kernel, Rule rule) {
   return Rewriter(module, kernel, fusions, order).rewrite();
 }
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

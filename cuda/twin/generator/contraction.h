@@ -7,7 +7,7 @@
 
 #include "cuda/twin/generator/ptx.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 
 enum class Rule {
   ptxas,        // what ptxas does at -O1 and above
@@ -30,4 +30,4 @@ struct Contracted {
 // Throws: PtxError for a rounding mode or an operation that cannot be written out.
 Contracted contract(const Module& module, const Kernel& kernel, Rule rule = Rule::ptxas);
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

@@ -6,7 +6,7 @@
 
 #include <sstream>
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 namespace {
 
 // The module of one kernel with these instructions; T in them stands for the type.
@@ -167,4 +167,4 @@ TEST_P(Contraction, SitesAreTheFrontEndsAndPtxass) {
 }
 
 }  // namespace
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <regex>
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -349,4 +349,4 @@ std::string cpp_statement(const Module& module, const Kernel& kernel, const Inst
   return guard + Statement(module, kernel, instruction).statement();
 }
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

@@ -6,7 +6,7 @@
 
 #include "cuda/twin/generator/ptx.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 
 // "%f32" as "f32_", which is no type; "$L__BB0_3" as "L__BB0_3".
 std::string identifier(std::string name);
@@ -18,4 +18,4 @@ std::string cpp_type(const std::string& type);
 // Throws: PtxError for an instruction that is unknown or cannot be replayed.
 std::string cpp_statement(const Module& module, const Kernel& kernel, const Instruction& instruction);
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

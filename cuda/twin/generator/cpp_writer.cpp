@@ -11,7 +11,7 @@
 #include "cuda/twin/generator/cpp_statement.h"
 #include "cuda/twin/generator/ptx_writer.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -95,4 +95,4 @@ void write_cpp(std::ostream& out, const Module& module, Rule rule) {
   out << fmt::format("\nusing Kernels = std::tuple<{}>;\n", fmt::join(all, ", "));
 }
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

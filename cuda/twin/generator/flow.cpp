@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 namespace {
 
 // The registers named within an operand: "[%rd1+4]", "{%r1,%r2}", "%p1|%p2", "!%p3".
@@ -122,4 +122,4 @@ std::vector<Block> blocks(const Module& module, const Kernel& kernel) {
   return result;
 }
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

@@ -8,7 +8,7 @@
 
 #include "cuda/twin/generator/ptx.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 
 // Registers that an instruction reads and writes; memory operands are read.
 std::vector<std::string> registers_read(const Instruction& instruction);
@@ -24,4 +24,4 @@ struct Block {
 // Throws: PtxError for a jump to a label that is not there.
 std::vector<Block> blocks(const Module& module, const Kernel& kernel);
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

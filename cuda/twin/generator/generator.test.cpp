@@ -9,7 +9,7 @@
 #include "cuda/twin/generator/proofs.h"
 #include "cuda/twin/generator/ptx_writer.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 namespace {
 
 Module module_of(const std::string& body) {
@@ -85,8 +85,9 @@ TEST(TwinGenerator, StoredPtxReadsAsTheSame) {
       "$L__BB0_1;\n"
       "st.global.v2.f32 [%rd1+4], {%f1, %f2};\n$L__BB0_1:\nmov.f32 %f3, 0f3F800000;");
   module.toolkit = "13.0.88";
-  module.files = {
-      {1, "/home/me/graze/cuda/lanes/kernels.cu"}, {2, "/home/me/graze/./core/vec3.h"}, {3, "/usr/include/c++/12/cmath"}};
+  module.files = {{1, "/home/me/graze/cuda/lanes/kernels.cu"},
+                  {2, "/home/me/graze/./core/vec3.h"},
+                  {3, "/usr/include/c++/12/cmath"}};
   std::ostringstream first, second;
   write_stored(first, module, "/home/me/graze");
   std::istringstream in(first.str());
@@ -146,4 +147,4 @@ TEST(TwinGenerator, ProofsWithoutDifferencesBecomeRows) {
 }
 
 }  // namespace
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

@@ -9,7 +9,7 @@
 #include "cuda/twin/generator/proofs.h"
 #include "cuda/twin/generator/ptx_writer.h"
 
-using namespace graze::twin;
+using namespace graze::cuda::twin;
 
 namespace {
 

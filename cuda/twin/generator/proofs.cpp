@@ -8,7 +8,7 @@
 
 #include "cuda/twin/generator/ptx.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 
 void write_proofs(std::ostream& out, const std::vector<std::string>& records) {
   for (const std::string& path : records) {
@@ -29,4 +29,4 @@ void write_proofs(std::ostream& out, const std::vector<std::string>& records) {
   }
 }
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

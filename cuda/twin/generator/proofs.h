@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 
 // Writes a row {"hash", "trace hash", "device", "toolkit", pairs}, for each lane without any difference in the records.
 // Throws: PtxError for a file that is no record.
 void write_proofs(std::ostream& out, const std::vector<std::string>& records);
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

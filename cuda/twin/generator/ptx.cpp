@@ -5,7 +5,7 @@
 #include <istream>
 #include <regex>
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 namespace {
 
 std::string trimmed(std::string_view text) {
@@ -217,4 +217,4 @@ std::string register_type(const Kernel& kernel, std::string_view name) {
 
 Module read_ptx(std::istream& in, const std::string& path) { return Reader(in, path).read(); }
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 
 // what() is one line: "FILE:LINE: why: INSTRUCTION".
 struct PtxError : std::runtime_error {
@@ -83,4 +83,4 @@ struct Module {
 // Throws: PtxError for what this reader does not know; an unknown instruction is the writers' affair.
 Module read_ptx(std::istream& in, const std::string& path);
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

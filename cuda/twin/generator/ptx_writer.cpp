@@ -8,7 +8,7 @@
 
 #include "core/fnv1a.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 namespace {
 
 void write_head(std::ostream& out, const Module& module) {
@@ -95,4 +95,4 @@ std::string kernel_hash(const Kernel& kernel, const Contracted& contracted) {
   return fmt::format("{:016x}", hash);
 }
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

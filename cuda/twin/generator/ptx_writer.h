@@ -9,7 +9,7 @@
 #include "cuda/twin/generator/contraction.h"
 #include "cuda/twin/generator/ptx.h"
 
-namespace graze::twin {
+namespace graze::cuda::twin {
 
 // The module in one spelling on every machine: paths relative to `root`, neither comments of nvcc nor mangled names of
 // inlined functions, but with the source lines of what may be contracted.
@@ -22,4 +22,4 @@ void write_explicit(std::ostream& out, const Module& module, Rule rule);
 // kernel's own name do not enter. 16 hexadecimal digits (FNV-1a, 64 bits).
 std::string kernel_hash(const Kernel& kernel, const Contracted& contracted);
 
-}  // namespace graze::twin
+}  // namespace graze::cuda::twin

@@ -5,7 +5,7 @@ import { count, percent } from './format';
 import type { Report } from './report';
 import { sortable_table } from './sortable_table';
 
-// "20 lanes: twin, proven on …", one line an evidence word.
+// "20 lanes: twin, verified on …", one line an evidence word.
 function executors(report: Report): Child[] {
   const by_evidence = new Map<string, number>();
   for (const lane of report.lanes) {

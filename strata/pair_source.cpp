@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "strata/source.h"
+#include "strata/pair_source.h"
 
 #include <algorithm>
 
@@ -7,16 +7,17 @@
 #include "core/lanes.h"
 #include "strata/strata.h"
 
-namespace graze {
+namespace graze::strata {
 
-std::vector<Source> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs) {
+std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
+                                        const std::vector<std::string>& globs) {
   for (const std::string& glob : globs) {
     if (std::none_of(std::begin(kStrata), std::end(kStrata),
                      [&](const StratumInfo& row) { return matches_any({glob}, row.id); })) {
       throw UsageError("expected a stratum (see `graze strata`), found '" + glob + "'");
     }
   }
-  std::vector<Source> sources;
+  std::vector<PairSource> sources;
   for (const StratumInfo& row : kStrata) {
     if (!matches_any(globs, row.id)) continue;
     sources.push_back({std::string(row.id), 0,
@@ -28,4 +29,4 @@ std::vector<Source> stratum_sources(std::uint64_t seed, std::uint64_t pairs, con
   return sources;
 }
 
-}  // namespace graze
+}  // namespace graze::strata

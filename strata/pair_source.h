@@ -10,9 +10,9 @@
 #include "core/margin/axis.h"
 #include "core/pair.h"
 
-namespace graze {
+namespace graze::strata {
 
-struct Source {
+struct PairSource {
   std::string id;
   std::uint64_t pairs = 0;  // how many of them the campaign takes: indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;
@@ -22,6 +22,6 @@ struct Source {
 
 // The strata whose names match (all of them for an empty list), `pairs` shared evenly, the first ones taking the rest.
 // Throws: UsageError when a pattern matches none.
-std::vector<Source> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs);
+std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs);
 
-}  // namespace graze
+}  // namespace graze::strata

@@ -186,10 +186,7 @@ __global__ void __launch_bounds__(kThreads, 2) relate(EngineBlock block) {
   for_listed(block, kRelated, [&](std::uint32_t i, const float* c) {
     Relation r;
     if (numbers::relate_quickly(c, c + 9, r)) return settle(block, i, r);
-    const int bits = numbers::grid_of(c, c + 9).bits;
-    const int grid = (bits > numbers::kDoubleBits) + (bits > numbers::kNarrowBits) + (bits > numbers::kIntBits) +
-                     (bits > numbers::kLongBits);
-    block.lists[kByDoubles + grid].add(i);
+    block.lists[kByDoubles + numbers::AllNumbers::place(numbers::grid_of(c, c + 9))].add(i);
   });
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Four kernels: one thread a pair for the first attempt, which needs few registers; then the pairs that it left, where
-// floats or doubles hold all determinants; then those that this left, on 128-bit integers; then those that these
-// left, on wide integers. Hard pairs are listed, so that a warp does not wait for one of them in 32.
+// Four kernels: the screen, one thread for each pair, which needs few registers; then the pairs that it left, where
+// floats or doubles hold all determinants; then those that this left, on 128-bit integers; then those that these left,
+// on wide integers. Hard pairs are listed, so that a warp does not wait for one of them in 32.
 #include "cuda/lanes/exact_kernels.cuh"
 
 #include "cuda/lanes/kernels.cuh"
@@ -10,7 +10,9 @@ namespace graze::cuda {
 namespace {
 
 using exact::Stage;
-using exact::detail::Answer;
+using exact::detail::Finding;
+using exact::detail::Grid;
+using exact::detail::NumberKinds;
 
 __device__ bool is_finite(float x) { return (exact::detail::bits_of(x) & 0x7f800000u) != 0x7f800000u; }
 
@@ -20,22 +22,29 @@ __device__ void count(unsigned long long* stages, Stage stage, std::uint32_t pai
 
 __device__ void set_bit(std::uint32_t* words, std::uint32_t i) { atomicOr(&words[i / 32], 1u << i % 32); }
 
+// The decision in the smallest of the kinds that holds the grid.
+template <class Kinds>
+__device__ bool decide_in(const float* c, const Grid& grid) {
+  return Kinds::visit(grid,
+                      [&](auto numbers) { return exact::detail::decide<decltype(numbers)>(c, c + 9, grid.exponent); });
+}
+
 __global__ void __launch_bounds__(kThreads, 3) decide_most(DevicePairs pairs, Places left, std::uint32_t* intersects,
                                                            std::uint32_t* declined, unsigned long long* stages) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
   bool finite = true;
-  Answer answer = Answer::disjoint;
+  Finding found = Finding::disjoint;
   if (i < pairs.count) {
     float c[kCoordinates];
     load(pairs, i, c);
     for (float x : c) finite = finite && is_finite(x);
-    if (finite) answer = exact::detail::by_planes_quickly(c, c + 9);
-    if (answer == Answer::unsure && exact::detail::shared_vertex(c, c + 9) >= 0) answer = Answer::intersects;
-    if (answer == Answer::unsure) left.add(i);
+    if (finite) found = exact::detail::screen(c, c + 9);
+    if (found == Finding::unsure && exact::detail::shared_vertex(c, c + 9) >= 0) found = Finding::intersects;
+    if (found == Finding::unsure) left.add(i);
   }
-  const std::uint32_t yes_word = __ballot_sync(0xffffffffu, answer == Answer::crosses || answer == Answer::intersects);
+  const std::uint32_t yes_word = __ballot_sync(0xffffffffu, found == Finding::crosses || found == Finding::intersects);
   const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
-  const std::uint32_t decided = __ballot_sync(0xffffffffu, i < pairs.count && answer != Answer::unsure);
+  const std::uint32_t decided = __ballot_sync(0xffffffffu, i < pairs.count && found != Finding::unsure);
   if (threadIdx.x % 32 != 0) return;
   intersects[i / 32] = yes_word;
   declined[i / 32] = declined_word;
@@ -44,39 +53,37 @@ __global__ void __launch_bounds__(kThreads, 3) decide_most(DevicePairs pairs, Pl
 
 __global__ void __launch_bounds__(kThreads, 2)
     decide_left(DevicePairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
-  using namespace exact::detail;
+  using Numbers = NumberKinds<exact::detail::SingleNumbers, exact::detail::DoubleNumbers>;
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
     const std::uint32_t i = from.at[n];
     float c[kCoordinates];
     load(pairs, i, c);
-    const Grid grid = grid_of(c, c + 9);
-    if (grid.bits > kDoubleBits) {
+    const Grid grid = exact::detail::grid_of(c, c + 9);
+    if (!Numbers::hold(grid)) {
       left.add(i);
       continue;
     }
-    const bool singles = grid.bits <= kSingleBits && grid.exponent >= -30 && grid.exponent <= 30;
-    if (singles ? decide<SingleNumbers>(c, c + 9, 0) : decide<DoubleNumbers>(c, c + 9, 0)) set_bit(intersects, i);
+    if (decide_in<Numbers>(c, grid)) set_bit(intersects, i);
     count(stages, Stage::doubles, 1);
   }
 }
 
 __global__ void __launch_bounds__(kThreads) decide_on_int128(DevicePairs pairs, Places from, Places left,
                                                              std::uint32_t* intersects, unsigned long long* stages) {
+  using Numbers = NumberKinds<exact::detail::NarrowNumbers, exact::detail::IntNumbers>;
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
     const std::uint32_t i = from.at[n];
     float c[kCoordinates];
     load(pairs, i, c);
-    const exact::detail::Grid grid = exact::detail::grid_of(c, c + 9);
+    const Grid grid = exact::detail::grid_of(c, c + 9);
     bool yes;
-    if (grid.bits <= exact::detail::kIntBits) {
-      yes = grid.bits <= exact::detail::kNarrowBits
-                ? exact::detail::decide<exact::detail::NarrowNumbers>(c, c + 9, grid.exponent)
-                : exact::detail::decide<exact::detail::IntNumbers>(c, c + 9, grid.exponent);
+    if (Numbers::hold(grid)) {
+      yes = decide_in<Numbers>(c, grid);
       count(stages, Stage::int128, 1);
     } else {
-      const Answer answer = by_planes(exact::detail::triangles<exact::detail::BoundedNumbers>(c, c + 9));
-      yes = answer == Answer::crosses || answer == Answer::intersects;
-      if (answer == Answer::unsure) {
+      const Finding found = by_planes(exact::detail::triangles<exact::detail::BoundedNumbers>(c, c + 9));
+      yes = found == Finding::crosses || found == Finding::intersects;
+      if (found == Finding::unsure) {
         left.add(i);
       } else {
         count(stages, Stage::bounded, 1);
@@ -92,11 +99,8 @@ __global__ void __launch_bounds__(kThreads)
     const std::uint32_t i = from.at[n];
     float c[kCoordinates];
     load(pairs, i, c);
-    const exact::detail::Grid grid = exact::detail::grid_of(c, c + 9);
-    const bool yes = grid.bits <= exact::detail::kLongBits
-                         ? exact::detail::decide<exact::detail::LongNumbers>(c, c + 9, grid.exponent)
-                         : exact::detail::decide<exact::detail::WideNumbers>(c, c + 9, 0);
-    if (yes) set_bit(intersects, i);
+    const Grid grid = exact::detail::grid_of(c, c + 9);
+    if (decide_in<exact::detail::MultiwordNumbers>(c, grid)) set_bit(intersects, i);
     count(stages, Stage::wide, 1);
   }
 }

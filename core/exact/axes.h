@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// What projections on axes show of the Minkowski difference D = { x - y : x in a, y in b }, which holds the origin
+// exactly when a and b meet.
+#pragma once
+
+#include "core/exact/triangles.h"
+#include "core/exact/vector.h"
+
+namespace graze::exact::detail {
+
+// What the axes looked at so far have shown.
+struct AxisEvidence {
+  bool separated = false;
+  bool touching = false;            // the origin lies on a face of D that is not all of D
+  bool flat = true;                 // D has no volume
+  bool coplanar = true;             // nor has the hull of all six points
+  unsigned face_a = 7, face_b = 7;  // the vertices that may belong to the common set
+
+  // The projections of the vertices on an axis.
+  template <class T>
+  GRAZE_HD void look(const T (&a)[3], const T (&b)[3]) {
+    const T least_a = least(a), most_a = most(a), least_b = least(b), most_b = most(b);
+    const bool extends = least_a < most_a || least_b < most_b;
+    separated = separated || most_a < least_b || most_b < least_a;
+    flat = flat && !extends;
+    coplanar = coplanar && !extends && least_a == least_b;
+    if (most_a == least_b) touch(a, b, most_a, extends);
+    if (most_b == least_a) touch(a, b, least_a, extends);
+  }
+
+  template <class T>
+  GRAZE_HD void touch(const T (&a)[3], const T (&b)[3], const T& at, bool extends) {
+    touching = touching || extends;
+    for (unsigned i = 0; i < 3; ++i) {
+      if (!(a[i] == at)) face_a &= ~(1u << i);
+      if (!(b[i] == at)) face_b &= ~(1u << i);
+    }
+  }
+};
+
+template <class Numbers>
+GRAZE_HD void look_along(const Triangles<Numbers>& t, const Vec<typename Numbers::M>& n, AxisEvidence& seen) {
+  using T = typename Numbers::T;
+  T a[3], b[3];
+  for (int i = 0; i < 3; ++i) {
+    a[i] = dot<T>(n, t.a[i] - t.a[0]);
+    b[i] = dot<T>(n, t.b[i] - t.a[0]);
+  }
+  seen.look(a, b);
+}
+
+// Square to each edge, in the projection on a coordinate plane.
+template <class Numbers>
+GRAZE_HD void look_in_plane(const Triangles<Numbers>& t, typename Numbers::D VecOf<Numbers>::*x,
+                            typename Numbers::D VecOf<Numbers>::*y, AxisEvidence& seen) {
+  using M = typename Numbers::M;
+  for (int edge = 0; edge < 6; ++edge) {
+    const VecOf<Numbers>* v = edge < 3 ? t.a : t.b;
+    const int from = edge % 3, to = from == 2 ? 0 : from + 1;
+    const VecOf<Numbers> e = v[to] - v[from];
+    M a[3], b[3];
+    for (int i = 0; i < 3; ++i) {
+      const VecOf<Numbers> p = t.a[i] - t.a[0], q = t.b[i] - t.a[0];
+      a[i] = M(e.*x) * (p.*y) - M(e.*y) * (p.*x);
+      b[i] = M(e.*x) * (q.*y) - M(e.*y) * (q.*x);
+    }
+    seen.look(a, b);
+  }
+}
+
+// The axes that decide when D lies in a plane through the origin, n being its normal: the projection along a
+// coordinate axis that is not square to n keeps it in shape, and its edges are edges of a and b. Without a normal D is
+// a segment or a point: then some projection shows it beside the origin, or else some coordinate.
+template <class Numbers>
+GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, AxisEvidence& seen) {
+  using D = typename Numbers::D;
+  using V = VecOf<Numbers>;
+  const typename Numbers::M zero(0);
+  const bool none = is_zero(n);
+  if (none || !(n.z == zero)) look_in_plane<Numbers>(t, &V::x, &V::y, seen);
+  if (none || (n.z == zero && !(n.x == zero))) look_in_plane<Numbers>(t, &V::y, &V::z, seen);
+  if (none || (n.z == zero && n.x == zero)) look_in_plane<Numbers>(t, &V::z, &V::x, seen);
+  if (!none) return;
+  D V::*const axes[3] = {&V::x, &V::y, &V::z};
+  for (D V::*x : axes) {
+    const D a[3] = {t.a[0].*x, t.a[1].*x, t.a[2].*x}, b[3] = {t.b[0].*x, t.b[1].*x, t.b[2].*x};
+    seen.look(a, b);
+  }
+}
+
+// The axes that decide. When D has a volume, its faces are square to 11 axes: the normals of a and b, and the products
+// of their edges. When it has none, they show whether its plane holds the origin. An axis too many does no harm.
+template <class Numbers>
+GRAZE_HD AxisEvidence look(const Triangles<Numbers>& t, bool verdict_only) {
+  AxisEvidence seen;
+  const typename Numbers::M zero(0);
+  NormalOf<Numbers> n{zero, zero, zero};
+  for (int axis = 0; axis < 11 && !(verdict_only && seen.separated); ++axis) {
+    const int i = axis / 3, j = axis % 3;
+    const NormalOf<Numbers> along =
+        axis == 10  ? normal<Numbers>(t.a)
+        : axis == 9 ? normal<Numbers>(t.b)
+                    : cross<typename Numbers::M>(t.a[i == 2 ? 0 : i + 1] - t.a[i], t.b[j == 2 ? 0 : j + 1] - t.b[j]);
+    look_along<Numbers>(t, along, seen);
+    if (is_zero(n)) n = along;
+  }
+  if (seen.separated || !seen.flat) return seen;
+  AxisEvidence in_plane;
+  look_flat<Numbers>(t, n, in_plane);
+  in_plane.flat = true;
+  in_plane.coplanar = seen.coplanar;
+  return in_plane;
+}
+
+}  // namespace graze::exact::detail

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The decision by axes: separating axes of the Minkowski difference of a and b. Proper, coplanar and degenerate pairs
+// alike, with contact, margin's sign and shape.
+// Reference: the theorem is that of Gottschalk, Lin and Manocha 1996 (OBBTree).
+#pragma once
+
+#include "core/exact/axes.h"
+#include "core/exact/results.h"
+#include "core/exact/triangles.h"
+
+namespace graze::exact::detail {
+
+// Rank of up to four vectors.
+template <class Numbers>
+GRAZE_HD int rank(const VecOf<Numbers> (&v)[4]) {
+  using M = typename Numbers::M;
+  using T = typename Numbers::T;
+  int most_so_far = 0;
+  for (int i = 0; i < 4; ++i) {
+    if (is_zero(v[i])) continue;
+    most_so_far = most_so_far < 1 ? 1 : most_so_far;
+    for (int j = 0; j < i; ++j) {
+      const Vec<M> n = cross<M>(v[i], v[j]);
+      if (is_zero(n)) continue;
+      most_so_far = most_so_far < 2 ? 2 : most_so_far;
+      for (int k = 0; k < j; ++k) {
+        if (!(dot<T>(n, v[k]) == T(0))) return 3;
+      }
+    }
+  }
+  return most_so_far;
+}
+
+// The directions that the vertices in the mask span; zero vectors for the rest.
+template <class D>
+GRAZE_HD void directions(const Vec<D> (&v)[3], unsigned mask, Vec<D>& first, Vec<D>& second) {
+  const int from = mask & 1 ? 0 : mask & 2 ? 1 : 2;
+  first = mask & 2 ? v[1] - v[from] : v[0] - v[0];
+  second = mask & 4 ? v[2] - v[from] : v[0] - v[0];
+}
+
+// When a and b meet, the origin lies inside one face F of D, which is the difference of a face A of a and a face B of
+// b; their insides meet, so the common set, which is that of A and B, has dimension dim A + dim B - dim F.
+template <class Numbers>
+GRAZE_HD Relation by_axes(const Triangles<Numbers>& t) {
+  const AxisEvidence seen = look<Numbers>(t, false);
+  VecOf<Numbers> v[4];
+  const VecOf<Numbers> zero = t.a[0] - t.a[0];
+  const auto dimension = [&](unsigned in_a, unsigned in_b) {
+    v[0] = v[1] = v[2] = v[3] = zero;
+    if (in_a) directions(t.a, in_a, v[0], v[1]);
+    if (in_b) directions(t.b, in_b, v[2], v[3]);
+    return rank<Numbers>(v);
+  };
+  Relation r;
+  r.dimension_a = dimension(7, 0);
+  r.dimension_b = dimension(0, 7);
+  r.coplanar = seen.coplanar;
+  r.intersects = !seen.separated;
+  if (seen.separated) return r;
+  r.margin_sign = seen.flat || seen.touching ? 0 : -1;
+  r.contact = dimension(seen.face_a, 0) + dimension(0, seen.face_b) - dimension(seen.face_a, seen.face_b);
+  return r;
+}
+
+}  // namespace graze::exact::detail

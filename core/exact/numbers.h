@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// The kinds of numbers that decide, each exact or saying that it is not, and the choice of the smallest exact kind that
+// holds a pair. On the pair's grid coordinates have so many bits, differences one more, and a determinant is less than
+// 6 times the product of three differences:
+//   bounded    doubles with an error bound; see core/exact/error_bound.h
+//   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; in floats so up to 6 bits:
+//              6 * 2^(3 * 7) < 2^24
+//   int128     up to 30 bits: minors fit in 64 bits; up to 40 bits: less than 6 * 2^(3 * 41) < 2^127
+//   wide       up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant than 6 * 2^(3 * 91) < 2^319;
+//              else multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840
+// Integers do not round: what is exact here does not depend on rounding modes, contraction or optimisation.
+#pragma once
+
+#include <cstdint>
+
+#include "core/exact/error_bound.h"
+#include "core/exact/grid.h"
+#include "core/exact/results.h"
+#include "core/exact/vector.h"
+#include "core/exact/wide_integer.h"
+
+namespace graze::exact::detail {
+
+// In each kind, D are coordinates and their differences, M minors, T determinants.
+// Of a determinant, positive, negative and zero say what is beyond doubt.
+struct BoundedNumbers {
+  using D = double;
+  using M = Bounded;
+  using T = Bounded;
+  GRAZE_HD bool positive(const T& x) const { return x.value > kDeterminantError * x.size; }
+  GRAZE_HD bool negative(const T& x) const { return x.value < -kDeterminantError * x.size; }
+  GRAZE_HD bool zero(const T& x) const { return x.size == 0; }
+  GRAZE_HD bool is_proper(const Vec<M>&) const { return false; }
+};
+
+// Holds grids of up to `bits` bits.
+template <class Difference, class Minor, class Determinant, int bits, Stage stage>
+struct ExactNumbers {
+  using D = Difference;
+  using M = Minor;
+  using T = Determinant;
+  static constexpr Stage kStage = stage;
+  GRAZE_HD static bool holds(const Grid& grid) { return grid.bits <= bits; }
+  GRAZE_HD bool positive(const T& x) const { return x > T(0); }
+  GRAZE_HD bool negative(const T& x) const { return x < T(0); }
+  GRAZE_HD bool zero(const T& x) const { return x == T(0); }
+  GRAZE_HD bool is_proper(const Vec<M>& normal) const { return !is_zero(normal); }
+};
+
+inline constexpr int kSingleBits = 6, kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40, kLongBits = 90,
+                     kFloatBits = 277;  // of all floats, as multiples of 2^-149
+using DoubleNumbers = ExactNumbers<double, double, double, kDoubleBits, Stage::doubles>;
+using NarrowNumbers = ExactNumbers<std::int64_t, std::int64_t, Int128, kNarrowBits, Stage::int128>;
+using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128, kIntBits, Stage::int128>;
+using LongNumbers = ExactNumbers<Wide<2>, Wide<3>, Wide<5>, kLongBits, Stage::wide>;
+using WideNumbers = ExactNumbers<Wide<5>, Wide<9>, Wide<14>, kFloatBits, Stage::wide>;
+
+// For devices. Coordinates are not scaled: determinants must not leave the range of a float.
+struct SingleNumbers : ExactNumbers<float, float, float, kSingleBits, Stage::doubles> {
+  GRAZE_HD static bool holds(const Grid& grid) {
+    return grid.bits <= kSingleBits && grid.exponent >= -30 && grid.exponent <= 30;
+  }
+};
+
+// Kinds of numbers, the smallest first.
+template <class Kind, class... Larger>
+struct NumberKinds {
+  // How many of the kinds are too small for the grid: the place of the first one that holds it.
+  GRAZE_HD static int place(const Grid& grid) { return (int{!Kind::holds(grid)} + ... + int{!Larger::holds(grid)}); }
+
+  GRAZE_HD static bool hold(const Grid& grid) { return (Kind::holds(grid) || ... || Larger::holds(grid)); }
+
+  // Calls visit(kind) with the first kind that holds the grid, the last one unasked.
+  // Requires: hold(grid).   Returns: what the call returned.
+  template <class Visit>
+  GRAZE_HD static auto visit(const Grid& grid, const Visit& visit) {
+    if constexpr (sizeof...(Larger) > 0) {
+      if (!Kind::holds(grid)) return NumberKinds<Larger...>::visit(grid, visit);
+    }
+    return visit(Kind());
+  }
+};
+using MachineNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers>;
+using MultiwordNumbers = NumberKinds<LongNumbers, WideNumbers>;
+using AllNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers, LongNumbers, WideNumbers>;
+
+}  // namespace graze::exact::detail

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pair in the numbers of one kind.
+#pragma once
+
+#include "core/exact/grid.h"
+#include "core/exact/numbers.h"
+#include "core/exact/vector.h"
+
+namespace graze::exact::detail {
+
+template <class Numbers>
+using VecOf = Vec<typename Numbers::D>;
+
+template <class Numbers>
+using NormalOf = Vec<typename Numbers::M>;
+
+template <class Numbers>
+struct Triangles {
+  VecOf<Numbers> a[3], b[3];
+};
+
+// A coordinate on its grid: integers are multiples of 1 / scale, and the widest of 2^-149; floating point is not
+// scaled.
+GRAZE_HD inline void convert(float x, double, float& out) { out = x; }
+GRAZE_HD inline void convert(float x, double, double& out) { out = static_cast<double>(x); }
+GRAZE_HD inline void convert(float x, double scale, std::int64_t& out) { out = static_cast<std::int64_t>(x * scale); }
+GRAZE_HD inline void convert(float x, double scale, Wide<2>& out) {
+  const double integer = x < 0 ? x * -scale : x * scale;
+  const auto high = static_cast<std::uint64_t>(integer * 0x1p-64);
+  out.limb[0] = static_cast<std::uint64_t>(integer - static_cast<double>(high) * 0x1p64);
+  out.limb[1] = high;
+  if (x < 0) out = -out;
+}
+GRAZE_HD inline void convert(float x, double, Wide<5>& out) {
+  const std::uint32_t bits = bits_of(x), exponent = bits >> 23 & 0xffu, fraction = bits & 0x7fffffu;
+  const std::uint32_t shift = exponent == 0 ? 0 : exponent - 1;
+  const std::uint64_t mantissa = exponent == 0 ? fraction : fraction | 0x800000u;
+  out = Wide<5>(0);
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    if (i == shift / 64) out.limb[i] = mantissa << shift % 64;
+    if (i == shift / 64 + 1 && shift % 64 > 40) out.limb[i] = mantissa >> (64 - shift % 64);
+  }
+  if (bits >> 31) out = -out;
+}
+
+template <class Numbers>
+GRAZE_HD Triangles<Numbers> triangles(const float* a, const float* b, int exponent = 0) {
+  const double scale = power_of_two(-exponent);
+  Triangles<Numbers> t;
+  for (int i = 0; i < 3; ++i) {
+    convert(a[3 * i], scale, t.a[i].x);
+    convert(a[3 * i + 1], scale, t.a[i].y);
+    convert(a[3 * i + 2], scale, t.a[i].z);
+    convert(b[3 * i], scale, t.b[i].x);
+    convert(b[3 * i + 1], scale, t.b[i].y);
+    convert(b[3 * i + 2], scale, t.b[i].z);
+  }
+  return t;
+}
+
+template <class Numbers>
+GRAZE_HD NormalOf<Numbers> normal(const VecOf<Numbers> (&v)[3]) {
+  return cross<typename Numbers::M>(v[1] - v[0], v[2] - v[0]);
+}
+
+}  // namespace graze::exact::detail

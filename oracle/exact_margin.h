@@ -6,7 +6,7 @@
 
 #include <gmpxx.h>
 
-#include "core/margin/margin.h"
+#include "core/margin/directions.h"
 #include "oracle/integer_pair.h"
 
 namespace graze::oracle {
@@ -23,11 +23,11 @@ struct SquaredMargin {
 SquaredMargin exact_distance(const LargePair& pair, int exponent);
 
 // The least overlap of two intersecting hulls along the nonzero ones of these axes; zero if there is none.
-// axes: bit i stands for separating axis i of core/margin/margin.h.   Exact: always.
+// axes: bit i stands for separating axis i of core/margin/directions.h.   Exact: always.
 SquaredMargin exact_depth(const LargePair& pair, int exponent, std::uint32_t axes);
 
-// How far apart the hulls are along direction d of core/margin/margin.h: a lower bound of their distance, zero if they
-// are not separated.   Exact: always.
+// How far apart the hulls are along direction d of core/margin/directions.h: a lower bound of their distance, zero if
+// they are not separated.   Exact: always.
 SquaredMargin exact_separation(const LargePair& pair, int exponent, int d);
 
 // floor(log2(|margin|)).   Requires: margin is not zero.   Exact: always.
@@ -36,7 +36,7 @@ int floor_log2(const SquaredMargin& margin);
 // |margin|, rounded to nearest once. Nonzero margins lie in [2^-705, 2^130], so the double is always normal.
 double rounded(const SquaredMargin& margin);
 
-// Direction d as in core/margin/margin.h, exactly; generic in the integer.
+// Direction d as in core/margin/directions.h, exactly; generic in the integer.
 template <class Int>
 Vec3<Int> integer_direction(const Vec3<Int> (&a)[3], const Vec3<Int> (&b)[3], int d) {
   const auto edge = [](const Vec3<Int>(&p)[3], int i) { return p[(i + 1) % 3] - p[i]; };

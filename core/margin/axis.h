@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "core/margin/bucket.h"
-#include "core/margin/margin.h"
+#include "core/pair.h"
 
 namespace graze {
 

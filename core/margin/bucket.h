@@ -33,6 +33,13 @@ inline std::string name_of_bucket(Bucket bucket) {
   return (bucket < 0 ? "-2^" : "+2^") + std::to_string(k);
 }
 
+// floor(log2(x)) for a positive normal x; less than any such for zero.
+GRAZE_HD inline int floor_log2(double x) {
+  std::uint64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return static_cast<int>(bits >> 52) - 1023;
+}
+
 // log2 of the float32 ulp of the pair's largest coordinate in magnitude: in [-149, 104].
 // Requires: finite coordinates.
 GRAZE_HD inline int log2_ulp(const Pair& pair) {

@@ -3,11 +3,17 @@
 // smaller. The bounds of core/margin/margin.h leave only those open.
 #pragma once
 
-#include "core/exact/exact.h"
-#include "core/margin/margin.h"
+#include <cstdint>
+
+#include "core/exact/grid.h"
+#include "core/exact/numbers.h"
+#include "core/exact/triangles.h"
+#include "core/exact/vector.h"
+#include "core/exact/wide_integer.h"
+#include "core/margin/directions.h"
 
 namespace graze {
-namespace margin_tie {
+namespace tie_proof {
 
 using Big = exact::detail::Wide<8>;
 using Vector = exact::detail::Vec<Big>;
@@ -28,7 +34,7 @@ GRAZE_HD inline Big shifted_up(const Big& x, int bits) {
   return result;
 }
 
-// Direction number d of core/margin/margin.h.
+// Direction number d of core/margin/directions.h.
 GRAZE_HD inline Vector direction(const Vector (&a)[3], const Vector (&b)[3], int d) {
   using exact::detail::cross;
   const auto edge = [](const Vector(&v)[3], int i) { return v[i == 2 ? 0 : i + 1] - v[i]; };
@@ -43,13 +49,13 @@ GRAZE_HD inline Vector direction(const Vector (&a)[3], const Vector (&b)[3], int
   return cross<Big>(cross<Big>(e, between), e);
 }
 
-}  // namespace margin_tie
+}  // namespace tie_proof
 
-// Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin/margin.h). On their grid
-// coordinates have at most kIntBits = 40 bits, a direction at most 3 * 41 + 4, the gap along it 170, and its square 340
-// of 512. Returns: false also where the numbers are too large to tell.
+// Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin/directions.h). On
+// their grid coordinates have at most kIntBits = 40 bits, a direction at most 3 * 41 + 4, the gap along it 170, and its
+// square 340 of 512. Returns: false also where the numbers are too large to tell.
 GRAZE_HD inline bool are_apart_by(const float* a, const float* b, int d, int exponent) {
-  using namespace margin_tie;
+  using namespace tie_proof;
   const exact::detail::Grid grid = exact::detail::grid_of(a, b);
   const int shift = exponent - grid.exponent;
   if (grid.bits > exact::detail::kIntBits || shift > 120 || shift < -80) return false;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The directions along which the margin of two triangles is measured, by number, and bounds of a margin that name them.
+#pragma once
+
+#include <cstdint>
+
+#include "core/vec3.h"
+
+namespace graze {
+
+// Directions along which two triangles are compared. i and j run over 0..2; edge i goes from vertex i to i + 1.
+//   3i + j: a's edge i x b's edge j     9, 10: normal of a, of b     (these 11 are the separating axes)
+//   11 + 3i + j: from a's edge i square to it towards b[j]     20 + 3i + j: from b's edge j towards a[i]
+//   29 + 3i + j: from a[i] to b[j]
+inline constexpr int kNormalA = 9, kNormalB = 10, kSeparatingAxes = 11;
+inline constexpr int kFromEdgeA = 11, kFromEdgeB = 20, kFromVertex = 29, kDirections = 38;
+
+// lo <= |margin| <= hi.
+struct MarginBounds {
+  double lo, hi;
+  int direction;       // disjoint: the direction whose separation is lo
+  std::uint32_t axes;  // intersecting: bit i is set when axis i may be the one of least overlap
+};
+
+inline namespace GRAZE_FP {
+
+// What an axis sees of the triangles beyond the feature it is square to, where its projections are all equal: of an
+// edge, seen[0] is the third vertex of the same triangle, and seen[1] and [2] stand for the other triangle; of a face,
+// all three are the other triangle's vertices.   Returns: how many are of the feature's own triangle.
+template <class Real>
+GRAZE_HD int seen_from_axis(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], int axis, Vec3<Real> (&seen)[3]) {
+  if (axis >= kNormalA) {
+    for (int k = 0; k < 3; ++k) seen[k] = axis == kNormalA ? b[k] - a[0] : a[k] - b[0];
+    return 0;
+  }
+  const int i = axis / 3, j = axis % 3;
+  seen[0] = a[(i + 2) % 3] - a[i];
+  seen[1] = b[j] - a[i];
+  seen[2] = b[(j + 2) % 3] - a[i];
+  return 1;
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze

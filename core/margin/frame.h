@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pair in double, and the arithmetic that certified bounds of its margin are computed with.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "core/margin/directions.h"
+#include "core/pair.h"
+#include "core/vec3.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+
+// Unit roundoff of double. Bounds computed with it hold with and without contraction: it only removes roundings.
+inline constexpr double kHalfUlp = 0x1p-53;
+
+// The pair in double. Every difference of coordinates carries one relative error of at most
+// kHalfUlp, or none at all when `exact`. No product of up to six of them over- or underflows: 2^-894 to 2^780.
+struct MarginFrame {
+  Vec3<double> a[3], b[3], edge_a[3], edge_b[3];
+  bool exact;
+};
+
+GRAZE_HD inline Vec3<double> magnitudes(const Vec3<double>& v) { return {fabs(v.x), fabs(v.y), fabs(v.z)}; }
+
+// One instruction each, which fmin and fmax with their care for NaN are not.
+GRAZE_HD inline double lesser(double x, double y) { return x < y ? x : y; }
+GRAZE_HD inline double greater(double x, double y) { return x > y ? x : y; }
+
+GRAZE_HD inline Vec3<double> widen(const Vec3<float>& v) { return {double(v.x), double(v.y), double(v.z)}; }
+
+// Whether the difference of any two coordinates is exact in double: they are multiples of 2^(low - 150) below
+// 2^(high - 126), so differences are integers of high - low + 25 bits, and 53 are at hand.
+GRAZE_HD inline bool differences_are_exact(const Pair& pair) {
+  std::uint32_t low = 255, high = 0;
+  const float* c = &pair.a[0].x;
+  for (int i = 0; i < kCoordinates; ++i) {
+    std::uint32_t bits;
+    memcpy(&bits, &c[i], sizeof bits);
+    bits &= 0x7fffffffu;
+    if (bits == 0) continue;
+    const std::uint32_t exponent = bits < 0x800000u ? 1u : bits >> 23;
+    low = exponent < low ? exponent : low;
+    high = exponent > high ? exponent : high;
+  }
+  return high <= low + 28;
+}
+
+GRAZE_HD inline MarginFrame make_margin_frame(const Pair& pair) {
+  MarginFrame f;
+  f.exact = differences_are_exact(pair);
+  for (int i = 0; i < 3; ++i) {
+    f.a[i] = widen(pair.a[i]);
+    f.b[i] = widen(pair.b[i]);
+  }
+  for (int i = 0; i < 3; ++i) {
+    f.edge_a[i] = f.a[(i + 1) % 3] - f.a[i];
+    f.edge_b[i] = f.b[(i + 1) % 3] - f.b[i];
+  }
+  return f;
+}
+
+// a*b - c*d by Kahan: relative error at most 2 kHalfUlp, and zero exactly when the products are equal.
+// Reference: Jeannerod, Louvet and Muller 2013, theorem 1.1.
+GRAZE_HD inline double difference_of_products(double a, double b, double c, double d) {
+  const double cd = c * d;
+  const double error = fma(-c, d, cd);
+  return fma(a, b, -cd) + error;
+}
+
+GRAZE_HD inline Vec3<double> accurate_cross(const Vec3<double>& u, const Vec3<double>& v) {
+  return {difference_of_products(u.y, v.z, u.z, v.y), difference_of_products(u.z, v.x, u.x, v.z),
+          difference_of_products(u.x, v.y, u.y, v.x)};
+}
+
+// Direction number d of core/margin/directions.h. Its length carries no meaning.
+GRAZE_HD inline Vec3<double> direction(const MarginFrame& f, int d) {
+  if (d == kNormalA) return accurate_cross(f.edge_a[0], f.edge_a[1]);
+  if (d == kNormalB) return accurate_cross(f.edge_b[0], f.edge_b[1]);
+  if (d < kSeparatingAxes) return accurate_cross(f.edge_a[d / 3], f.edge_b[d % 3]);
+  const int first = d < kFromEdgeB ? kFromEdgeA : d < kFromVertex ? kFromEdgeB : kFromVertex;
+  const int i = (d - first) / 3, j = (d - first) % 3;
+  const Vec3<double> between = f.b[j] - f.a[i];
+  if (first == kFromVertex) return between;
+  const Vec3<double>& edge = first == kFromEdgeA ? f.edge_a[i] : f.edge_b[j];
+  return accurate_cross(accurate_cross(edge, between), edge);
+}
+
+struct Interval {
+  double lo, hi;
+};
+
+// Extends bounds of a least and a greatest value by the value `at`, known up to `error`.
+GRAZE_HD inline void include(Interval& least, Interval& most, double at, double error) {
+  least = {lesser(least.lo, at - error), lesser(least.hi, at + error)};
+  most = {greater(most.lo, at - error), greater(most.hi, at + error)};
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze

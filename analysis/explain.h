@@ -32,7 +32,7 @@ std::string_view name(Cause cause);
 
 // A value that the algorithm asked its policy about, or a comparison.
 struct Step {
-  std::string line;           // "core/algorithms/moller_1997.h:107"
+  std::string line;           // "core/algorithms/moller_1997.h:96"
   std::string_view site;      // what the policy was asked about; empty for a comparison of the algorithm's own
   std::string_view relation;  // empty for a value
   oracle::Beside left, right, difference;  // a value is `left`

@@ -138,7 +138,7 @@ TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
   ASSERT_GE(lane.decisive, 0);
   const Step& step = lane.steps[static_cast<std::size_t>(lane.decisive)];
   EXPECT_TRUE(step.wrong());
-  EXPECT_EQ(step.line.substr(0, 31), "core/algorithms/moller_1997.h:1");
+  EXPECT_TRUE(step.line.starts_with("core/algorithms/moller_1997.h:")) << step.line;
   EXPECT_EQ(step.site, "separation");
   EXPECT_NE(sentence(explanation, lane.lane->algorithm).find(": rounding turns the gap between two interval ends"),
             std::string::npos);
@@ -193,7 +193,7 @@ TEST(Explain, ASentenceTellsOfACoplanarFlip) {
        {"guigue_devillers_2003/f32 (cuda-fma) says disjoint, but the triangles meet in a segment, 1.23e-09 deep: "
         "nvcc fuses the product into the addition at core/vec3.h:",
         "which turns an orientation of exactly -4.64625e-18 into ",
-        "so that the comparison at core/algorithms/guigue_devillers_2003.h:131 goes the wrong way; "
+        "so that the comparison at core/algorithms/guigue_devillers_2003.h:132 goes the wrong way; "
         "without contraction it is right."})
     EXPECT_NE(text.find(part), std::string::npos) << text;
 }

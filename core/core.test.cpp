@@ -5,6 +5,8 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <random>
 #include <set>
 
@@ -124,6 +126,17 @@ TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndTargetsAndTheExactLanes) {
 }
 
 // Figure 3.4 of the thesis: both plane tests pass and the projections overlap, yet the triangles are apart.
+TEST(Algorithms, IncludeNoOtherAlgorithm) {
+  for (const Lane& lane : published_lanes()) {
+    std::ifstream in(std::string(GRAZE_SOURCE_DIR "/core/algorithms/") + std::string(lane.info->id) + ".h");
+    const std::string header{std::istreambuf_iterator<char>(in), {}};
+    ASSERT_NE(header.find("#include \"core/algorithms/algorithm.h\""), header.npos) << lane.info->id;
+    for (const Lane& other : published_lanes())
+      EXPECT_EQ(header.find("algorithms/" + std::string(other.info->id) + ".h"), header.npos)
+          << other.info->id << " in " << lane.info->id;
+  }
+}
+
 TEST(ProjectedSat, HasTheFalsePositiveOfTheThesis) {
   const Pair pair{{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{1, 1, 4}, {6, 6, 4}, {6, 6, -1}}};
   Vec3<double> a[3], b[3];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Snippets as texts, and the Python one run over the whole corpus: its 32 axes against the oracle. The others are
 // compiled and run by cli/emit.test.cpp.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -27,8 +28,15 @@ TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
 }
 
 TEST(Snippet, HoldsNothingItDoesNotNeed) {
-  EXPECT_EQ(amalgamated_source("moller_1997").find("ProjectedSat"), std::string::npos);
+  // An AlgorithmInfo begins with the algorithm's id in quotes: its own, and no other's.
+  for (const Lane& lane : published_lanes()) {
+    const std::string source = amalgamated_source(lane.info->id);
+    for (const Lane& other : published_lanes())
+      EXPECT_EQ(source.find(fmt::format("\"{}\"", other.info->id)) != source.npos, other.info == lane.info)
+          << other.info->id << " in " << lane.info->id;
+  }
   EXPECT_NE(amalgamated_source("guigue_devillers_2003").find("Vec2<Real> drop("), std::string::npos);
+  EXPECT_EQ(amalgamated_source("separating_axes").find("struct Plane"), std::string::npos);
 }
 
 TEST(Snippet, ANameCannotEndItsComment) {

@@ -8,9 +8,9 @@
 #include "core/algorithms/guigue_devillers_2003.h"
 #include "core/algorithms/interval_overlap.h"
 #include "core/algorithms/moller_1997.h"
-#include "core/pair.h"
 #include "core/algorithms/projected_sat.h"
 #include "core/algorithms/separating_axes.h"
+#include "core/pair.h"
 
 namespace graze {
 inline namespace GRAZE_FP {

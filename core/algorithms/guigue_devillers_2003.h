@@ -3,7 +3,8 @@
 // Journal of Graphics Tools 8(1), 2003. In the paper's symbols p1 q1 r1 are a, p2 q2 r2 are b.
 #pragma once
 
-#include "core/algorithms/moller_1997.h"
+#include "core/algorithms/algorithm.h"
+#include "core/algorithms/vec2.h"
 
 namespace graze {
 inline namespace GRAZE_FP {

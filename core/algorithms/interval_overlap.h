@@ -3,7 +3,10 @@
 // Schneider and Eberly, Geometric Tools for Computer Graphics (2002), pages 539 to 542.
 #pragma once
 
-#include "core/algorithms/projected_sat.h"
+#include "core/algorithms/algorithm.h"
+#include "core/algorithms/plane.h"
+#include "core/algorithms/plane_projection.h"
+#include "core/algorithms/range.h"
 
 namespace graze {
 inline namespace GRAZE_FP {

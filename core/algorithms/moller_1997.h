@@ -4,21 +4,10 @@
 #pragma once
 
 #include "core/algorithms/algorithm.h"
+#include "core/algorithms/vec2.h"
 
 namespace graze {
 inline namespace GRAZE_FP {
-
-template <class Real>
-struct Vec2 {
-  Real x, y;
-};
-
-// v without the component along the axis.
-template <class Real>
-GRAZE_HD Vec2<Real> drop(const Vec3<Real>& v, int axis) {
-  return axis == 0 ? Vec2<Real>{v.y, v.z} : axis == 1 ? Vec2<Real>{v.x, v.z} : Vec2<Real>{v.x, v.y};
-}
-
 namespace moller_1997 {
 
 // Whether segments pq and rs share a point; parallel ones never do (others' edges then meet instead).

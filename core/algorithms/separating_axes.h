@@ -3,7 +3,8 @@
 // for triangles: both face normals, the nine cross products of edges, and the six in-plane edge normals.
 #pragma once
 
-#include "core/algorithms/projected_sat.h"
+#include "core/algorithms/algorithm.h"
+#include "core/algorithms/range.h"
 
 namespace graze {
 inline namespace GRAZE_FP {

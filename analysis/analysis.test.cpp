@@ -3,6 +3,7 @@
 
 #include "analysis/signature.h"
 #include "analysis/tally.h"
+#include "core/algorithms/algorithms.h"
 
 namespace graze::analysis {
 namespace {
@@ -60,13 +61,13 @@ TEST(Disagreements, AreThePairsOnWhichSomeLaneIsNotRight) {
 TEST(CpuTwins, PointToTheCpuLaneOfTheSameAlgorithmAndScalar) {
   std::vector<const Lane*> some;
   for (const Lane& lane : lanes()) {
-    if (lane.target != Target::cuda_nofma) some.push_back(&lane);
+    if (lane.variant != Variant::cuda_nofma) some.push_back(&lane);
   }
   const std::vector<int> twins = cpu_twins(some);
   for (std::size_t l = 0; l < some.size(); ++l) {
     ASSERT_GE(twins[l], 0);
     const Lane& twin = *some[static_cast<std::size_t>(twins[l])];
-    EXPECT_EQ(twin.target, Target::cpu);
+    EXPECT_EQ(twin.variant, Variant::cpu);
     EXPECT_EQ(twin.info, some[l]->info);
     EXPECT_EQ(twin.scalar, some[l]->scalar);
   }
@@ -81,23 +82,43 @@ TEST(Signature, NamesTheWrongLanesAndHowCloseTheCallWas) {
   const std::vector wrong{Verdict::intersects, Verdict::declined}, right{Verdict::disjoint, Verdict::disjoint};
   const Signature failure = signature(Contact::none, {2, 1, true}, make_bucket(1, -3), Verdict::disjoint, run, wrong);
   EXPECT_TRUE(failure.wrong());
-  EXPECT_EQ(key(failure), "none/21/coplanar/+2^-3/moller_1997:+____?__");
+  EXPECT_EQ(key(failure), "none/21/coplanar/+2^-3/moller_1997:+f32/cpu;?f64/cpu-fma");
   EXPECT_FALSE(signature(Contact::none, {}, make_bucket(1, -3), Verdict::disjoint, run, right).wrong());
   EXPECT_EQ(mark(Verdict::disjoint, Verdict::intersects), '-');
   EXPECT_EQ(mark(Verdict::intersects, Verdict::intersects), '.');
 }
 
-TEST(ForEachAlgorithm, VisitsRunsOfLanes) {
+TEST(Signature, AKeyIsReadBack) {
+  for (const char* text : {"none/21/coplanar/+2^-3/moller_1997:+f32/cpu;?f64/cpu-fma", "area/00/skew/0/mine:",
+                           "point/22/skew/-2^5/mine:-f32/cpu/plane_distance=abs:1e-6,orientation=rel:16;+f64/cpu"}) {
+    const std::optional<Signature> read = parse_signature(text);
+    ASSERT_TRUE(read) << text;
+    EXPECT_EQ(key(*read), text);
+  }
+  const std::optional<Signature> read = parse_signature("point/22/skew/0/mine:-f32/cpu/a=abs:1,b=rel:2;+f64/cpu");
+  ASSERT_EQ(read->wrong_lanes.size(), 2u);
+  EXPECT_EQ(read->mark_of("f32/cpu/a=abs:1,b=rel:2"), '-');
+  EXPECT_EQ(read->mark_of("f64/cpu"), '+');
+  EXPECT_EQ(read->mark_of("f32/cpu"), '.');
+  for (const char* text : {"", "point", "point/22/skew/0/mine", "dot/22/skew/0/mine:", "point/23/skew/0/mine:",
+                           "point/22/flat/0/mine:", "point/22/skew/2^3/mine:", "point/22/skew/0/mine:f32/cpu",
+                           "point/22/skew/0/:+f32/cpu", "point/22/skew/0/mine:+", "executors/moller_1997/f32/cuda-fma"})
+    EXPECT_FALSE(parse_signature(text)) << text;
+}
+
+TEST(ForEachSubject, VisitsRunsOfLanes) {
   std::vector<const Lane*> some;
   for (const Lane& lane : lanes()) {
     if (lane.scalar == Scalar::f32) some.push_back(&lane);
   }
-  std::size_t visits = 0;
-  for_each_algorithm(some, [&](std::size_t first, std::size_t count) {
-    EXPECT_EQ(first, 4 * visits++);
-    EXPECT_EQ(count, 4u);
+  std::size_t visits = 0, lanes_visited = 0;
+  for_each_subject(some, [&](std::size_t first, std::size_t count) {
+    for (std::size_t l = first; l < first + count; ++l) EXPECT_EQ(some[l]->info, some[first]->info);
+    visits += 1;
+    lanes_visited += count;
   });
-  EXPECT_EQ(visits, some.size() / 4);
+  EXPECT_EQ(visits, std::size_t{kAlgorithmCount});
+  EXPECT_EQ(lanes_visited + 2, some.size());  // all but the exact ones
 }
 
 }  // namespace

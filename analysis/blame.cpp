@@ -8,10 +8,7 @@ namespace {
 class Fusing {
  public:
   Fusing(const Lane& lane, const Pair& pair)
-      : lane_(lane),
-        pair_(pair),
-        sites_(cuda::contraction_sites(lane.algorithm, lane.scalar)),
-        bits_(sites_.size() / 64 + 1) {}
+      : lane_(lane), pair_(pair), sites_(cuda::contraction_sites(lane)), bits_(sites_.size() / 64 + 1) {}
 
   std::size_t size() const { return sites_.size(); }
   void set(std::size_t site, bool fused) {
@@ -21,7 +18,7 @@ class Fusing {
   void set_all(bool fused) {
     for (std::size_t i = 0; i < size(); ++i) set(i, fused);
   }
-  Verdict verdict() const { return cuda::decide_fusing(lane_.algorithm, lane_.scalar, pair_, bits_); }
+  Verdict verdict() const { return cuda::decide_fusing(lane_, pair_, bits_); }
   std::vector<cuda::ContractionSite> fused() const {
     std::vector<cuda::ContractionSite> result;
     for (std::size_t i = 0; i < size(); ++i) {

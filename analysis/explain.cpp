@@ -11,7 +11,23 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::string_view kSites[] = {"plane_distance", "parallel", "orientation", "separation"};
+#pragma GCC diagnostic push
+#pragma GCC diagnostic error "-Wswitch"  // a new site needs its name here
+std::string_view name_of(Site site) {
+  switch (site) {
+    case Site::plane_distance:
+      return "plane_distance";
+    case Site::parallel:
+      return "parallel";
+    case Site::orientation:
+      return "orientation";
+    case Site::separation:
+      return "separation";
+  }
+  return "";
+}
+#pragma GCC diagnostic pop
+
 constexpr std::string_view kRelations[] = {"<", "<=", "==", ">", ">="};
 
 // "core/vec3.h:46", wherever the compiler found the file.
@@ -27,8 +43,8 @@ struct Algorithm {
   int bits_needed_f32, bits_needed_f64;
 };
 
-// Where roots or quotients leave a tie open in any precision, the verdict may be right in some and wrong in others for
-// ever: there, fewer than half of kMostBits must be enough to be called so.
+// Where roots or quotients leave a tie open in every precision, the verdict may be right with some numbers of bits and
+// wrong with others, without end. There, a number of bits is called enough only when it is less than half of kMostBits.
 Algorithm study(int algorithm, const Pair& pair, Verdict truth) {
   const oracle::Exactly exactly = oracle::decide_exactly(algorithm, pair);
   int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair, truth, 24) : 0;
@@ -58,14 +74,13 @@ WrongOf wrong_of(const Lane& lane, const std::vector<Pair>& pairs, Verdict truth
   return {static_cast<int>(wrong), static_cast<int>(pairs.size())};
 }
 
-const Lane& without_contraction(const Lane& lane) {
-  const Target target = lane.is_cuda() ? Target::cuda_nofma : Target::cpu;
-  return lanes()[static_cast<std::size_t>(lane.index + static_cast<int>(target) - static_cast<int>(lane.target))];
-}
+// The same source on the same kind of processor, with every operation rounded as written.
+const Lane& rounded_counterpart(const Lane& lane) { return *counterpart(lane, rounded_variant(lane.variant)); }
 
 Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth, const oracle::Exactly& exactly) {
   if (exactly.verdict != truth) return Cause::logic;
-  if (decide_lane(without_contraction(lane), pair) == truth) return Cause::contraction;
+  if (decide_lane(rounded_counterpart(lane), pair) == truth)
+    return info_of(lane.variant).arithmetic == Arithmetic::fast ? Cause::fast_math : Cause::contraction;
   const auto limited = [&](bool upper, bool lower) {
     return oracle::decide_limited(lane.algorithm, lane.scalar, pair, {upper, lower});
   };
@@ -75,8 +90,8 @@ Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth, const oracle::
   return limited(true, true).first == oracle::RangeEvent::overflow ? Cause::overflow : Cause::underflow;
 }
 
-// Where more bits and wider exponents are both needed, the comparison that went wrong tells which failed first: a value
-// that is no number any more, or one lost for being less than the least normal number, is not for rounding to answer.
+// Where more bits and wider exponents are both needed, the comparison that went wrong tells which failed first: when a
+// value is not a number any more, or is lost because it is less than the least normal number, rounding is not to blame.
 Cause refined(const LaneExplanation& lane, const Pair& pair) {
   const Step* told = lane.told();
   if (lane.cause != Cause::rounding || !told) return lane.cause;
@@ -111,7 +126,7 @@ void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth, const o
     const bool wrong = seen.compared && seen.held != exact[i].held;
     if (seen.site || wrong) {
       const int place = static_cast<int>(result.steps.size());
-      result.steps.push_back({line_of(seen.where), seen.site ? kSites[static_cast<int>(*seen.site)] : "",
+      result.steps.push_back({line_of(seen.where), seen.site ? name_of(*seen.site) : "",
                               seen.compared ? kRelations[static_cast<int>(seen.relation)] : "", exact[i].left,
                               exact[i].right, exact[i].difference, seen.held, exact[i].held});
       if (wrong && result.first_wrong < 0) result.first_wrong = place;
@@ -139,7 +154,7 @@ LaneExplanation explain_lane(const Lane& lane, Verdict verdict, const Pair& pair
       .scalings = wrong_of(lane, neighbours.scalings, truth)};
   add_steps(result, pair, truth, algorithm.exactly);
   result.cause = refined(result, pair);
-  if (lane.target == Target::cuda_fma) result.contractions = blame(lane, pair);
+  if (!cuda::contraction_sites(lane).empty()) result.contractions = blame(lane, pair);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
     const std::vector<Pair>& nudged = neighbours.nudged[c];
     result.matters[c] =
@@ -151,7 +166,7 @@ LaneExplanation explain_lane(const Lane& lane, Verdict verdict, const Pair& pair
 }  // namespace
 
 std::string_view name(Cause cause) {
-  constexpr std::string_view kNames[] = {"rounding", "contraction", "overflow", "underflow", "logic"};
+  constexpr std::string_view kNames[] = {"rounding", "contraction", "fast math", "overflow", "underflow", "logic"};
   return kNames[static_cast<int>(cause)];
 }
 
@@ -159,16 +174,16 @@ Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
   Explanation result{pair, oracle::truth(pair), {}};
   const Verdict right = result.truth.verdict;
   if (right == Verdict::declined) return result;
-  std::map<int, Algorithm> algorithms;
+  std::map<const AlgorithmInfo*, Algorithm> algorithms;
   std::optional<Neighbours> neighbours;
   for (const Lane* lane : lanes) {
-    if (lane->is_exact()) continue;
+    if (lane->exact) continue;
     const Verdict verdict = decide_lane(*lane, pair);
     if (verdict == right) continue;
     if (!neighbours) neighbours.emplace(pair, right);
-    auto found = algorithms.find(lane->algorithm);
+    auto found = algorithms.find(lane->info);
     if (found == algorithms.end()) {
-      found = algorithms.emplace(lane->algorithm, study(lane->algorithm, pair, right)).first;
+      found = algorithms.emplace(lane->info, study(lane->algorithm, pair, right)).first;
     }
     result.lanes.push_back(explain_lane(*lane, verdict, pair, right, found->second, *neighbours));
   }

@@ -22,12 +22,13 @@ namespace graze::analysis {
 // The first that holds:
 //   logic        the algorithm in exact arithmetic gives the wrong verdict too
 //   contraction  the same source without contraction, on the same kind of processor, is right
-//   overflow, underflow   the scalar's mantissa with exponents without limits is right (without contraction); the end
-//                of the exponents that alone makes it wrong, or if both or neither do, the one first left
-//                (also where longer mantissas are needed as well, but it is the range that made the comparison go
-//                wrong)
+//   fast math    the same, of a lane whose operations the compiler was allowed to rewrite or approximate
+//   overflow, underflow   with the scalar's mantissa and unlimited exponents it is right, not contracted. Overflow
+//                where the upper limit alone makes it wrong, underflow where the lower one alone does; where both or
+//                neither do, the limit that is exceeded first. Also where a longer mantissa is needed as well, but the
+//                limit made the comparison go wrong.
 //   rounding     otherwise
-enum class Cause { rounding, contraction, overflow, underflow, logic };
+enum class Cause { rounding, contraction, fast_math, overflow, underflow, logic };
 std::string_view name(Cause cause);
 
 // A value that the algorithm asked its policy about, or a comparison.
@@ -80,9 +81,9 @@ Explanation explain(const Pair& pair, std::span<const Lane* const> lanes);
 
 // One English sentence on a wrong algorithm, for a bug report; empty when no lane of it is wrong. It names the lanes
 // that are wrong alike, with the numbers of one of them.
-std::string sentence(const Explanation& explanation, int algorithm);
+std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject);
 
-// A sentence for each wrong algorithm, a line each.
+// One sentence for each wrong algorithm, each on a line of its own.
 std::vector<std::string> sentences(const Explanation& explanation);
 
 nlohmann::ordered_json to_json(const LaneExplanation& lane);

@@ -88,6 +88,8 @@ std::string reason(const LaneExplanation& lane) {
       if (lane.contractions.sites.empty()) return "the compiler fuses products into additions" + then;
       return fmt::format("nvcc fuses the product{} into the addition{} at {}{}", plural, plural,
                          list(lane.contractions.sites), then);
+    case Cause::fast_math:
+      return "the compiler may rewrite or approximate operations here, and what it computed is not known";
     case Cause::overflow:
       return fmt::format("an intermediate result is too large for {}{}", scalar, then);
     case Cause::underflow:
@@ -101,6 +103,7 @@ std::string remedy(const LaneExplanation& lane) {
   const int own = lane.lane->scalar == Scalar::f32 ? 24 : 53;
   if (lane.cause == Cause::logic) return "no arithmetic would help";
   if (lane.cause == Cause::contraction) return "without contraction it is right";
+  if (lane.cause == Cause::fast_math) return "with every operation rounded as written it is right";
   const bool range = lane.cause == Cause::overflow || lane.cause == Cause::underflow;
   const std::string bits =
       lane.bits_needed == 0     ? fmt::format("no mantissa of up to {} bits would be enough", oracle::kMostBits)
@@ -148,23 +151,23 @@ nlohmann::ordered_json to_json(const WrongOf& count) { return {{"wrong", count.w
 
 }  // namespace
 
-std::string sentence(const Explanation& explanation, int algorithm) {
+std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject) {
   const LaneExplanation* first = nullptr;  // to be told of: rather one whose values are known to be its own
   const auto known = [](const LaneExplanation& lane) { return lane.evidence <= Evidence::hash; };
   for (const LaneExplanation& lane : explanation.lanes) {
-    if (lane.lane->algorithm != algorithm) continue;
+    if (lane.lane->info != subject) continue;
     if (!first || (!known(*first) && known(lane))) first = &lane;
   }
   if (!first) return "";
   std::string same, others;
   for (const LaneExplanation& lane : explanation.lanes) {
-    if (lane.lane->algorithm != algorithm) continue;
-    const std::string_view target = name(lane.lane->target);
+    if (lane.lane->info != subject) continue;
+    const std::string_view variant = name(lane.lane->variant);
     if (alike(*first, lane)) {
-      same += fmt::format("{}{}", same.empty() ? "" : ", ", target);
+      same += fmt::format("{}{}", same.empty() ? "" : ", ", variant);
     } else {
       others +=
-          fmt::format("{}{}/{} ({})", others.empty() ? "" : ", ", name(lane.lane->scalar), target, name(lane.cause));
+          fmt::format("{}{}/{} ({})", others.empty() ? "" : ", ", name(lane.lane->scalar), variant, name(lane.cause));
     }
   }
   const Lane& lane = *first->lane;
@@ -176,7 +179,7 @@ std::string sentence(const Explanation& explanation, int algorithm) {
 std::vector<std::string> sentences(const Explanation& explanation) {
   std::vector<std::string> result;
   for (const LaneExplanation& lane : explanation.lanes) {
-    const std::string text = sentence(explanation, lane.lane->algorithm);
+    const std::string text = sentence(explanation, lane.lane->info);
     if (result.empty() || result.back() != text) result.push_back(text);
   }
   return result;

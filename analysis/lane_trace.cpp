@@ -32,7 +32,7 @@ Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Pa
 // How well the run of a contracting lane is known to be its own.
 Evidence evidence(const Lane& lane, const Pair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
-  const cuda::TraceBlock twin = cuda::twin_trace(lane.algorithm, lane.scalar, lane.target);
+  const cuda::TraceBlock twin = cuda::twin_trace(lane);
   if (!twin) return Evidence::verdict;
   std::uint64_t hash = 0;
   twin(&pair, 1, &hash);
@@ -53,9 +53,10 @@ Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, cons
 }
 
 Replay replay(const Lane& lane, const Pair& pair) {
-  if (lane.target == Target::cpu || lane.target == Target::cuda_nofma)
+  if (info_of(lane.variant).arithmetic == Arithmetic::rounded)
     return {Contraction::none, Evidence::source, run_led(lane, pair, Contraction::none, {})};
   Replay best;
+  if (!lane.explainable) return best;
   for (const Contraction rule : {Contraction::nvcc, Contraction::left}) {
     Trace<double> run = run_led(lane, pair, rule, {});
     const Evidence found = evidence(lane, pair, run);

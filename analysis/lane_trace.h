@@ -19,7 +19,7 @@ struct Replay {
   Trace<double> run;
 };
 
-// The lane's run on the pair.
+// The lane's run on the pair; without evidence for a lane whose operations the compiler rewrites.
 Replay replay(const Lane& lane, const Pair& pair);
 
 // The same in other circumstances: the algorithm in the lane's scalar and by that rule, led down the path.

@@ -6,37 +6,101 @@
 #include <algorithm>
 
 namespace graze::analysis {
+namespace {
+
+constexpr std::string_view kWrongMarks = "+-?";
+
+// Takes the text before the next `end` off the front of `rest`; nothing without one.
+std::optional<std::string_view> take_until(std::string_view& rest, char end) {
+  const std::size_t at = rest.find(end);
+  if (at == rest.npos) return std::nullopt;
+  const std::string_view part = rest.substr(0, at);
+  rest.remove_prefix(at + 1);
+  return part;
+}
+
+std::optional<Contact> contact_of(std::string_view word) {
+  for (const Contact contact : {Contact::none, Contact::point, Contact::segment, Contact::area, Contact::unknown}) {
+    if (name(contact) == word) return contact;
+  }
+  return std::nullopt;
+}
+
+std::optional<Bucket> bucket_of(std::string_view word) {
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    if (name_of_bucket(static_cast<Bucket>(b)) == word) return static_cast<Bucket>(b);
+  }
+  return std::nullopt;
+}
+
+// "+f32/cpu;-f64/cpu".
+std::optional<std::vector<WrongLane>> wrong_lanes_of(std::string_view text) {
+  std::vector<WrongLane> lanes;
+  while (!text.empty()) {
+    if (kWrongMarks.find(text.front()) == text.npos) return std::nullopt;
+    const std::size_t end = std::min(text.find(';'), text.size());
+    lanes.push_back({std::string(text.substr(1, end - 1)), text.front()});
+    if (lanes.back().lane.empty()) return std::nullopt;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lanes;
+}
+
+}  // namespace
 
 char mark(Verdict lane, Verdict truth) {
   if (lane == Verdict::declined) return truth == Verdict::declined ? '.' : '?';
   return lane == truth ? '.' : lane == Verdict::intersects ? '+' : '-';
 }
 
-bool Signature::wrong() const {
-  return std::any_of(marks.begin(), marks.end(), [](char m) { return m != '.' && m != '_'; });
+char Signature::mark_of(std::string_view lane_within_subject) const {
+  for (const WrongLane& wrong : wrong_lanes) {
+    if (wrong.lane == lane_within_subject) return wrong.mark;
+  }
+  return '.';
 }
 
 Signature signature(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts) {
-  Signature s{contact, shape, bucket, lanes.front()->algorithm, {}};
-  s.marks.fill('_');
+  Signature s{contact, shape, bucket, std::string(lanes.front()->info->id), {}};
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    s.marks[static_cast<std::size_t>(lanes[l]->scalar) * kTargetCount + static_cast<std::size_t>(lanes[l]->target)] =
-        mark(verdicts[l], truth);
+    if (const char m = mark(verdicts[l], truth); m != '.')
+      s.wrong_lanes.push_back({lanes[l]->lane_name().within_subject(), m});
   }
   return s;
 }
 
 std::string key(const Signature& s) {
-  const auto first_lane = static_cast<std::size_t>(s.algorithm) * 2 * kTargetCount;
-  return fmt::format("{}/{}{}/{}/{}/{}:{}", name(s.contact), s.shape.dimension_a, s.shape.dimension_b,
-                     s.shape.coplanar ? "coplanar" : "skew", name_of_bucket(s.bucket), lanes()[first_lane].info->id,
-                     std::string_view(s.marks.data(), s.marks.size()));
+  std::string text = fmt::format("{}/{}{}/{}/{}/{}:", name(s.contact), s.shape.dimension_a, s.shape.dimension_b,
+                                 s.shape.coplanar ? "coplanar" : "skew", name_of_bucket(s.bucket), s.subject);
+  for (std::size_t l = 0; l < s.wrong_lanes.size(); ++l)
+    text += fmt::format("{}{}{}", l > 0 ? ";" : "", s.wrong_lanes[l].mark, s.wrong_lanes[l].lane);
+  return text;
 }
 
-std::string algorithm_of(const std::string& key) {
-  const std::size_t colon = key.rfind(':'), slash = key.rfind('/', colon);
-  return key.substr(slash + 1, colon - slash - 1);
+std::optional<Signature> parse_signature(std::string_view key) {
+  Signature s;
+  std::string_view rest = key;
+  const auto contact_word = take_until(rest, '/'), dimensions = take_until(rest, '/'), shape = take_until(rest, '/'),
+             margin = take_until(rest, '/'), subject = take_until(rest, ':');
+  if (!contact_word || !dimensions || !shape || !margin || !subject || subject->empty()) return std::nullopt;
+  const std::optional<Contact> contact = contact_of(*contact_word);
+  const std::optional<Bucket> bucket = bucket_of(*margin);
+  const auto is_dimension = [](char c) { return c >= '0' && c <= '2'; };
+  const bool shaped = dimensions->size() == 2 && is_dimension((*dimensions)[0]) && is_dimension((*dimensions)[1]) &&
+                      (*shape == "coplanar" || *shape == "skew");
+  auto wrong_lanes = wrong_lanes_of(rest);
+  if (!contact || !bucket || !shaped || !wrong_lanes) return std::nullopt;
+  return Signature{*contact,
+                   {(*dimensions)[0] - '0', (*dimensions)[1] - '0', *shape == "coplanar"},
+                   *bucket,
+                   std::string(*subject),
+                   std::move(*wrong_lanes)};
+}
+
+std::string subject_of(std::string_view key) {
+  const std::optional<Signature> signature = parse_signature(key);
+  return signature ? signature->subject : "";
 }
 
 }  // namespace graze::analysis

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signatures: the bucket key of an algorithm's failure. Pairs with one signature fail alike.
+// Signatures: the bucket key of a subject's failure. Pairs with one signature fail alike.
 #pragma once
 
-#include <array>
 #include <compare>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "analysis/tally.h"
 #include "core/lanes.h"
@@ -17,35 +19,49 @@ namespace graze::analysis {
 // How a lane's answer compares with the truth: '.' right, '+' false positive, '-' false negative, '?' declined.
 char mark(Verdict lane, Verdict truth);
 
-// One algorithm's failure on a pair. One algorithm a signature: a pair on which several fail has several.
+// A lane that is wrong: its mark, and its name within the subject, such as "f32/cpu-fma".
+struct WrongLane {
+  std::string lane;
+  char mark;
+  auto operator<=>(const WrongLane&) const = default;
+};
+
+// One subject's failure on a pair: a pair on which several fail has several. Lanes that are right, or did not run, are
+// not in it.
 struct Signature {
   Contact contact = Contact::none;
   oracle::Shape shape;
   Bucket bucket = 0;
-  int algorithm = 0;
-  std::array<char, 2 * kTargetCount> marks{};  // f32, then f64, each in the order of Target; '_': did not run
+  std::string subject;
+  std::vector<WrongLane> wrong_lanes;  // in the order of the lane table
 
-  bool wrong() const;  // whether any lane is
+  bool wrong() const { return !wrong_lanes.empty(); }
+  // Of a lane of the subject; '.' also for one that is right, or did not run.
+  char mark_of(std::string_view lane_within_subject) const;
   auto operator<=>(const Signature&) const = default;
 };
 
-// Requires: lanes are of one algorithm, verdicts theirs.
+// Requires: lanes are of one subject, verdicts theirs.
 Signature signature(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts);
 
-// "point/22/skew/-2^-3/moller_1997:+-__..__": contact, dimensions, coplanar or skew, margin bucket, algorithm, marks.
+// "point/22/skew/-2^-3/moller_1997:+f32/cpu;-f64/cuda-fma": contact, dimensions of the two hulls, coplanar or skew,
+// margin bucket, subject, and the wrong lanes, each after its mark.
 std::string key(const Signature& signature);
 
-// "moller_1997" of such a key.
-std::string algorithm_of(const std::string& key);
+// The inverse of key; nothing for a text that is no key.
+std::optional<Signature> parse_signature(std::string_view key);
 
-// Calls visit(first, count) for each run of lanes of one algorithm, but for the exact lanes, which have no failures.
+// "moller_1997" of such a key; empty for a text that is no key.
+std::string subject_of(std::string_view key);
+
+// Calls visit(first, count) for each run of lanes of one subject, but for exact lanes, which have no failures.
 // Requires: lanes in table order.
 template <class Visit>
-void for_each_algorithm(std::span<const Lane* const> lanes, Visit visit) {
+void for_each_subject(std::span<const Lane* const> lanes, Visit visit) {
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
-    for (end = first; end < lanes.size() && lanes[end]->algorithm == lanes[first]->algorithm;) ++end;
-    if (!lanes[first]->is_exact()) visit(first, end - first);
+    for (end = first; end < lanes.size() && lanes[end]->info == lanes[first]->info;) ++end;
+    if (!lanes[first]->exact) visit(first, end - first);
   }
 }
 

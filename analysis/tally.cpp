@@ -72,9 +72,7 @@ std::vector<int> cpu_twins(std::span<const Lane* const> lanes) {
   std::vector<int> twins(lanes.size(), -1);
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     for (std::size_t c = 0; c < lanes.size(); ++c) {
-      if (lanes[c]->target == Target::cpu && lanes[c]->algorithm == lanes[l]->algorithm &&
-          lanes[c]->scalar == lanes[l]->scalar)
-        twins[l] = static_cast<int>(c);
+      if (lanes[c] == counterpart(*lanes[l], Variant::cpu)) twins[l] = static_cast<int>(c);
     }
   }
   return twins;

@@ -20,7 +20,7 @@ class Panels {
  public:
   explicit Panels(std::span<const Lane* const> lanes) : lanes_{nullptr} {
     for (const Lane* lane : lanes) {
-      if (!lane->is_exact()) lanes_.push_back(lane);
+      if (!lane->exact) lanes_.push_back(lane);
     }
     for (const Lane* lane : lanes_) blocks_.push_back(lane ? block_of(*lane) : nullptr);
   }
@@ -99,7 +99,7 @@ Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row) {
   Pair result = pair;
   const auto move = [&](int coordinate, int ulps) {
     float& c = coordinates(result)[coordinate];
-    if (ulps != 0) c = strata::nudged(c, ulps);  // a step of none would make +0 of -0
+    if (ulps != 0) c = strata::nudged(c, ulps);  // a step of zero would turn -0 into +0
   };
   move(moved.x, column - kMapCentre);
   move(moved.y, kMapCentre - row);

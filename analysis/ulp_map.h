@@ -17,7 +17,7 @@
 
 namespace graze::analysis {
 
-inline constexpr int kMapSize = 256;             // cells a side
+inline constexpr int kMapSize = 256;             // cells on each side
 inline constexpr int kMapCentre = kMapSize / 2;  // column and row of the pair itself
 inline constexpr int kMapSample = 1024;          // the oracle confirms one cell in so many, and the pair itself
 

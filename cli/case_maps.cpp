@@ -31,7 +31,7 @@ bool map_case(const fuzz::LanesUnderTest& under_test, const std::filesystem::pat
   const Pair pair = corpus::read_pairs(case_file).at(0).pair;
   std::vector<const Lane*> lanes;
   std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
-               [&](const Lane* lane) { return lane->info->id == analysis::algorithm_of(signature); });
+               [&](const Lane* lane) { return lane->info->id == analysis::subject_of(signature); });
   if (!again && is_current(Json::parse(fuzz::read_whole(file), nullptr, false), pair, lanes)) return false;
   const analysis::UlpMap map = analysis::ulp_map(pair, lanes, analysis::liveliest_coordinates(pair, lanes));
   fuzz::write_whole(file, reports::to_json(map).dump(1) + "\n");

@@ -71,7 +71,7 @@ void add_check(CLI::App& app, int&) {
   auto options = std::make_shared<CheckOptions>();
   command->add_option("file", options->file, "File of pairs (18 numbers a line), or - for standard input")->required();
   add_lane_options(*command, options->lanes);
-  command->add_flag("--json", options->json, "One JSON object a line");
+  command->add_flag("--json", options->json, "One JSON object for each pair, on a line of its own");
   command->add_flag("--truth-only", options->truth_only, "Run just the oracle");
   command->callback([options] { check(*options); });
 }

@@ -42,7 +42,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair);
 
-// What runs the CUDA lanes of the under_test, in one line: each kind of evidence once. Empty without CUDA lanes.
+// What runs the CUDA lanes under test, in one line: each kind of evidence once. Empty without CUDA lanes.
 std::string cuda_evidence(const fuzz::LanesUnderTest& under_test);
 
 }  // namespace graze::cli

@@ -149,9 +149,9 @@ void add_corpus(CLI::App& app, int& status) {
   corpus->footer("Example: graze corpus --help");
   auto options = std::make_shared<CorpusOptions>();
 
-  CLI::App* command =
-      add_verb(*corpus, "add", "Keep failures: a case a signature, with how often and where it was first and last seen",
-               "Example: graze corpus add near_edge_edge:1:42 --corpus regression", options);
+  CLI::App* command = add_verb(
+      *corpus, "add", "Keep failures: one case for each signature, how often and where it was first and last seen",
+      "Example: graze corpus add near_edge_edge:1:42 --corpus regression", options);
   command
       ->add_option("cases", options->names,
                    "Directories of campaigns (the first case of each signature), files of cases, or STRATUM:SEED:INDEX")

@@ -42,7 +42,7 @@ std::string emit(reports::SnippetKind kind, const std::string& name, const std::
     for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
       if (verdicts[l] == t.verdict || (reports::shows_lanes(kind) && !reports::shows(kind, *under_test.lanes[l])))
         continue;
-      const bool is_recorded = signature && under_test.lanes[l]->info->id == analysis::algorithm_of(*signature);
+      const bool is_recorded = signature && under_test.lanes[l]->info->id == analysis::subject_of(*signature);
       if (!wrong || (is_recorded && under_test.lanes[*wrong]->info != under_test.lanes[l]->info)) wrong = l;
     }
     if (wrong)

@@ -11,7 +11,7 @@
 
 namespace graze::cli {
 
-// The first case on which a lane of the under_test is wrong that the snippet can show, and the first such lane, if it
+// The first case on which a lane under test is wrong that the snippet can show, and the first such lane, if it
 // can be of the algorithm in the case's signature. Where the kind shows no lane: the first case on which any lane is
 // wrong, or else the first case. `name` is what the user called the cases. Throws: std::runtime_error when there is
 // none, or none with finite coordinates.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze explain`: why each wrong lane is wrong on a case, in numbers and in one sentence an algorithm.
+// `graze explain`: why each wrong lane is wrong on a case, in numbers and in one sentence for each algorithm.
 #include "analysis/explain.h"
 
 #include <fmt/format.h>
@@ -63,7 +63,7 @@ std::string free_coordinates(const analysis::LaneExplanation& lane) {
 void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before) {
   fmt::print("  {}: {}, cause: {}\n", lane.lane->id, name(lane.verdict), name(lane.cause));
   const auto steps = [](const analysis::LaneExplanation& l) { return to_json(l)["steps"]; };
-  if (before && before->lane->algorithm == lane.lane->algorithm && before->lane->scalar == lane.lane->scalar &&
+  if (before && before->lane->info == lane.lane->info && before->lane->scalar == lane.lane->scalar &&
       lane.evidence == analysis::Evidence::source && steps(*before) == steps(lane)) {
     fmt::print("    values: those of {}\n", before->lane->id);
   } else {
@@ -111,7 +111,7 @@ void explain_cases(const ExplainOptions& options) {
     const analysis::LaneExplanation* before = nullptr;
     for (const analysis::LaneExplanation& lane : explanation.lanes) {
       print_lane(lane, before);
-      if (lane.lane->target == Target::cpu) before = &lane;
+      if (lane.lane->variant == Variant::cpu) before = &lane;
     }
     if (explanation.lanes.empty()) {
       fmt::print("  {}\n", explanation.truth.verdict == Verdict::declined
@@ -132,7 +132,7 @@ void add_explain(CLI::App& app, int& status) {
   auto options = std::make_shared<ExplainOptions>();
   command->add_option("case", options->name, "A file of pairs, or STRATUM:SEED:INDEX")->required();
   add_globs(*command, "--lanes", options->globs, "Only lanes that match a pattern");
-  command->add_flag("--json", options->json, "One JSON object a line, with all values");
+  command->add_flag("--json", options->json, "One JSON object for each case, on a line of its own, with all values");
   command->callback([options, &status] {
     explain_cases(*options);
     status = 0;

@@ -115,7 +115,7 @@ void add_fuzz(CLI::App& app, int& status) {
   command->add_option("--seed", options->seed, "Seed of all strata")
       ->check(whole_number(0, kMostWhole))
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "Threads; 0 for one a core; results do not depend on it")
+  command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
       ->check(whole_number(0, 4096))
       ->capture_default_str();
   command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")

@@ -22,7 +22,7 @@ void print_lanes(bool json) {
                       {"status", here},
                       {"algorithm", lane.info->id},
                       {"scalar", name(lane.scalar)},
-                      {"target", name(lane.target)},
+                      {"target", name(lane.variant)},
                       {"paper", lane.info->paper},
                       {"coplanar", lane.info->coplanar},
                       {"degenerate", lane.info->degenerate},

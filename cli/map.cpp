@@ -63,7 +63,7 @@ void print_counts(const analysis::UlpMap& map) {
   }
 }
 
-// One picture, or one a panel where a directory is asked for.
+// One picture, or one for each panel where a directory is asked for.
 void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
   if (out.extension() == ".png") {
     fuzz::write_whole(out, reports::sheet_png(map));
@@ -103,8 +103,8 @@ void map_case(const MapOptions& options) {
 void add_map(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
       "map",
-      "Draw the verdicts around a case as two of its coordinates move by single ulps, a panel for the truth and "
-      "one a lane");
+      "Draw the verdicts around a case as two of its coordinates move by single ulps, one panel for the truth "
+      "and one for each lane");
   command->footer("Example: graze map mixed_scale:1:3 --lanes '*/f32/cpu'");
   auto options = std::make_shared<MapOptions>();
   command->add_option("case", options->name, "A file of pairs, the first of which is drawn, or STRATUM:SEED:INDEX")

@@ -137,7 +137,6 @@ void minimize_directory(MinimizeOptions options) {
     const Json& row = summary["signatures"][place];
     // Pairs on which a device and its twin differ are kept too; they are nobody's failure.
     const std::string key = row["key"];
-    if (key.starts_with("executors/")) continue;
     files.push_back(directory / row["case"].get<std::string>());
     to_map.push_back(std::binary_search(cards.begin(), cards.end(), place) ? key : "");
   }
@@ -196,7 +195,7 @@ void add_minimize(CLI::App& app, int&) {
       ->required();
   command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file");
   command->add_flag("--again", options->again, "Of a directory, also what is minimised already");
-  command->add_option("--threads", options->threads, "Threads; 0 for one a core; results do not depend on it")
+  command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
       ->check(whole_number(0, 4096))
       ->capture_default_str();
   add_lane_options(*command, options->lanes);

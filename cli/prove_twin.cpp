@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze prove-twin`: on a device, proves that the twins give its verdicts, and writes the record.
+// `graze prove-twin`: on a device, verifies that the twins give its verdicts, and writes the record.
 #include <fmt/format.h>
 
 #include <memory>

@@ -17,42 +17,46 @@ namespace {
 
 enum class Compared { same, changed, nothing };
 
-// Compares two keys of one algorithm, the marks only of lanes that ran both times ('_' stands for one that did not).
-Compared compare(const std::string& recorded, const std::string& now) {
-  const std::size_t marks = now.find(':');
-  if (recorded.size() != now.size()) return Compared::changed;
-  bool ran_both_times = false;
-  for (std::size_t i = marks + 1; i < now.size(); ++i) {
-    if (recorded[i] == '_' || now[i] == '_') continue;
-    if (recorded[i] != now[i]) return Compared::changed;
-    ran_both_times = true;
+// Compares the signature on record with that of now: everything but the lanes, and of these the ones on record that
+// ran.
+Compared compare(const analysis::Signature& recorded, const analysis::Signature& now,
+                 std::span<const Lane* const> run) {
+  const auto ran = [&](const std::string& lane) {
+    return std::any_of(run.begin(), run.end(), [&](const Lane* l) { return l->lane_name().within_subject() == lane; });
+  };
+  bool compared = false;
+  for (const analysis::WrongLane& wrong : recorded.wrong_lanes) {
+    if (!ran(wrong.lane)) continue;
+    if (now.mark_of(wrong.lane) != wrong.mark) return Compared::changed;
+    compared = true;
   }
-  if (recorded.compare(0, marks, now, 0, marks) != 0) return Compared::changed;
-  return ran_both_times ? Compared::same : Compared::nothing;
+  analysis::Signature r = recorded, n = now;
+  r.wrong_lanes.clear();
+  n.wrong_lanes.clear();
+  return r != n ? Compared::changed : compared ? Compared::same : Compared::nothing;
 }
 
 // Prints the pair's signatures, and whether the recorded one still holds.   Returns: whether it changed.
 bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std::span<const Lane* const> run,
                         std::span<const Verdict> verdicts) {
-  const std::string* recorded = corpus::field(entry, "signature");
+  const std::string* text = corpus::field(entry, "signature");
+  const std::optional<analysis::Signature> recorded = text ? analysis::parse_signature(*text) : std::nullopt;
   const oracle::Shape hulls = oracle::shape(entry.pair);
   const Bucket bucket = oracle::margin_bucket(entry.pair, t.verdict);
   Compared compared = Compared::nothing;
-  analysis::for_each_algorithm(run, [&](std::size_t first, std::size_t count) {
-    const analysis::Signature failure = analysis::signature(t.contact, hulls, bucket, t.verdict,
-                                                            run.subspan(first, count), verdicts.subspan(first, count));
-    const std::string now = analysis::key(failure);
-    const std::string algorithm = "/" + std::string(run[first]->info->id) + ":";
-    const bool is_recorded = recorded && recorded->find(algorithm) != std::string::npos;
-    if (is_recorded) compared = compare(*recorded, now);
-    if (failure.wrong()) {
-      std::cout << "  signature: " << now << (is_recorded && compared == Compared::same ? "  (as recorded)" : "")
-                << '\n';
+  analysis::for_each_subject(run, [&](std::size_t first, std::size_t count) {
+    const analysis::Signature now = analysis::signature(t.contact, hulls, bucket, t.verdict, run.subspan(first, count),
+                                                        verdicts.subspan(first, count));
+    const bool is_recorded = recorded && recorded->subject == now.subject;
+    if (is_recorded) compared = compare(*recorded, now, run.subspan(first, count));
+    if (now.wrong()) {
+      std::cout << "  signature: " << analysis::key(now)
+                << (is_recorded && compared == Compared::same ? "  (as recorded)" : "") << '\n';
     }
   });
-  if (!recorded) return false;
-  if (compared == Compared::changed) std::cout << "  CHANGED, recorded: " << *recorded << '\n';
-  if (compared == Compared::nothing) std::cout << "  not compared, its lanes were not run: " << *recorded << '\n';
+  if (!text) return false;
+  if (compared == Compared::changed) std::cout << "  CHANGED, recorded: " << *text << '\n';
+  if (compared == Compared::nothing) std::cout << "  not compared, its lanes were not run: " << *text << '\n';
   return compared == Compared::changed;
 }
 

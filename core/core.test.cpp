@@ -2,11 +2,13 @@
 // Hand examples and laws over the whole lane table; other scalars and policies through the same source.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <boost/multiprecision/mpfr.hpp>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <random>
 #include <set>
 
@@ -66,6 +68,8 @@ const Example kExamples[] = {
 class EveryHostLane : public testing::TestWithParam<const Lane*> {};
 
 TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
+  // -ffast-math promises no NaN: interval_overlap, which divides zero by zero, is then wrong even on small integers.
+  if (info_of(GetParam()->variant).arithmetic == Arithmetic::fast) GTEST_SKIP() << "fast math promises nothing";
   for (const Example& example : kExamples) {
     if (example.projection_overlaps && GetParam()->info->id == "projected_sat") continue;
     for (int order = 0; order < 72; ++order) {
@@ -111,18 +115,50 @@ INSTANTIATE_TEST_SUITE_P(Lanes, EveryHostLane, testing::ValuesIn(host_lanes()), 
   return id;
 });
 
-TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndTargetsAndTheExactLanes) {
+TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndVariantsAndTheExactLanes) {
   std::set<std::string> ids;
   for (const Lane& lane : lanes()) {
     ids.insert(lane.id);
-    EXPECT_EQ(&lanes()[static_cast<std::size_t>(lane.index)], &lane);
+    EXPECT_EQ(find_lane(lane.id), &lane);
+    EXPECT_EQ(id_of(lane.lane_name()), lane.id);
+    EXPECT_EQ(parse_lane_name(lane.id), lane.lane_name());
     EXPECT_EQ(lane.decide == nullptr, lane.is_cuda()) << lane.id;
   }
-  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount) * 2 * kTargetCount + 2);
+  const auto built = std::count_if(std::begin(kVariants), std::end(kVariants),
+                                   [](const VariantInfo& row) { return row.arithmetic != Arithmetic::exact; });
+  EXPECT_EQ(ids.size(), static_cast<std::size_t>(kAlgorithmCount * 2 * built) + 2);
   EXPECT_TRUE(ids.contains("exact/f32/cuda"));
   EXPECT_TRUE(ids.contains("moller_1997/f32/cuda-fma"));
   EXPECT_TRUE(matches_any({"*/f32/*", "x"}, "moller_1997/f32/cpu"));
   EXPECT_FALSE(matches_any({"*/f64/*"}, "moller_1997/f32/cpu"));
+}
+
+TEST(LaneNames, AreReadBackWithTheirPolicies) {
+  for (const char* id :
+       {"moller_1997/f32/cpu", "mine/f64/cuda-fma/plane_distance=abs:1e-6,orientation=rel:16", "a/b/c/d/e"}) {
+    const std::optional<LaneName> name = parse_lane_name(id);
+    ASSERT_TRUE(name) << id;
+    EXPECT_EQ(id_of(*name), id);
+  }
+  EXPECT_EQ(parse_lane_name("a/b/c/d/e")->policy, "d/e");
+  for (const char* id : {"", "a", "a/b", "a//c", "/b/c", "a/b/", "a/b/c/"}) EXPECT_FALSE(parse_lane_name(id)) << id;
+}
+
+TEST(LaneTable, CounterpartsDifferInTheVariantAlone) {
+  const Lane& lane = *find_lane("moller_1997/f64/cuda-fma");
+  EXPECT_EQ(counterpart(lane, Variant::cpu)->id, "moller_1997/f64/cpu");
+  EXPECT_EQ(counterpart(lane, rounded_variant(lane.variant))->id, "moller_1997/f64/cuda-nofma");
+  EXPECT_EQ(counterpart(*find_lane("exact/f32/cpu"), Variant::cpu_fma), nullptr);
+}
+
+// -ffast-math must not reach the linker, which would make the whole process flush subnormal numbers to zero.
+TEST(Variants, NoneSwitchesAModeOfTheProcess) {
+  volatile float least = std::numeric_limits<float>::denorm_min();
+  const Pair pair = kExamples[0].pair;
+  for (const Lane& lane : lanes()) {
+    if (runs_on_this_cpu(lane)) decide_one(lane.decide, pair);
+    ASSERT_GT(least * 1.0f, 0.0f) << lane.id;
+  }
 }
 
 // Figure 3.4 of the thesis: both plane tests pass and the projections overlap, yet the triangles are apart.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The block functions of the host lanes. Compiled once a variant, each in its own namespace GRAZE_FP and with its
+// The block functions of the host lanes. Compiled once per variant, each in its own namespace GRAZE_FP and with its
 // own contraction flags; nothing else may be defined here, or the linker would mix the variants.
 #include "core/host_blocks.h"
 #include "core/algorithms/algorithms.h"
@@ -26,8 +26,7 @@ constexpr HostBlocks blocks(const std::tuple<Algorithm...>*) {
   return {std::array<DecideBlock, 2>{decide_block<Algorithm, float>, decide_block<Algorithm, double>}...};
 }
 
+extern const HostBlocks kHostBlocks = blocks(static_cast<const Algorithms*>(nullptr));
+
 }  // namespace GRAZE_FP
-
-extern const HostBlocks GRAZE_HOST_BLOCKS = blocks(static_cast<const Algorithms*>(nullptr));
-
 }  // namespace graze

@@ -37,40 +37,76 @@ std::vector<const AlgorithmInfo*> infos(const std::tuple<Algorithm...>*) {
   return {&Algorithm::kInfo...};
 }
 
-DecideBlock host_block(int algorithm, Scalar scalar, Target target) {
-  const auto a = static_cast<std::size_t>(algorithm), s = static_cast<std::size_t>(scalar);
-  return target == Target::cpu ? kBlocksCpu[a][s] : target == Target::cpu_fma ? kBlocksCpuFma[a][s] : nullptr;
+// The block functions of a variant; null for a device's.
+const HostBlocks* host_blocks(Variant variant) {
+#define GRAZE_BLOCKS_host(name) &name::kHostBlocks
+#define GRAZE_BLOCKS_device(name) nullptr
+#define GRAZE_VARIANT(name, id, runs_on, ...) GRAZE_BLOCKS_##runs_on(name),
+  static constexpr const HostBlocks* kTables[] = {
+#include "core/variants.inc"
+  };
+#undef GRAZE_VARIANT
+#undef GRAZE_BLOCKS_host
+#undef GRAZE_BLOCKS_device
+  return kTables[static_cast<int>(variant)];
+}
+
+Lane lane_of(const AlgorithmInfo* info, Scalar scalar, Variant variant) {
+  Lane lane{"", info, scalar, variant, "", -1, nullptr, false, false};
+  lane.id = id_of(lane.lane_name());
+  return lane;
 }
 
 std::vector<Lane> make_lanes() {
   std::vector<Lane> table;
-  const auto info = infos(static_cast<const Algorithms*>(nullptr));
-  for (int algorithm = 0; algorithm < kAlgorithmCount; ++algorithm) {
-    for (Scalar scalar : {Scalar::f32, Scalar::f64}) {
-      for (Target target : {Target::cpu, Target::cpu_fma, Target::cuda_nofma, Target::cuda_fma}) {
-        const AlgorithmInfo* row = info[static_cast<std::size_t>(algorithm)];
-        std::string id = std::string(row->id) + '/' + std::string(name(scalar)) + '/' + std::string(name(target));
-        table.push_back({static_cast<int>(table.size()), std::move(id), row, algorithm, scalar, target,
-                         host_block(algorithm, scalar, target)});
+  int algorithm = 0;
+  for (const AlgorithmInfo* info : infos(static_cast<const Algorithms*>(nullptr))) {
+    for (const Scalar scalar : {Scalar::f32, Scalar::f64}) {
+      for (const VariantInfo& row : kVariants) {
+        if (row.arithmetic == Arithmetic::exact) continue;
+        Lane& lane = table.emplace_back(lane_of(info, scalar, row.variant));
+        lane.algorithm = algorithm;
+        lane.explainable = row.arithmetic != Arithmetic::fast;
+        if (const HostBlocks* blocks = host_blocks(row.variant))
+          lane.decide = (*blocks)[static_cast<std::size_t>(algorithm)][static_cast<std::size_t>(scalar)];
       }
     }
+    ++algorithm;
   }
-  for (Target target : {Target::cpu, Target::cuda}) {
-    table.push_back({static_cast<int>(table.size()), "exact/f32/" + std::string(name(target)), &kExactInfo,
-                     kAlgorithmCount, Scalar::f32, target, target == Target::cpu ? decide_exactly : nullptr});
+  for (const Variant variant : {Variant::cpu, Variant::cuda}) {
+    Lane& lane = table.emplace_back(lane_of(&kExactInfo, Scalar::f32, variant));
+    lane.exact = true;
+    if (!lane.is_cuda()) lane.decide = decide_exactly;
   }
   return table;
 }
 
 }  // namespace
 
-bool Lane::is_exact() const { return algorithm == kAlgorithmCount; }
-
 std::string_view name(Scalar scalar) { return scalar == Scalar::f32 ? "f32" : "f64"; }
 
-std::string_view name(Target target) {
-  constexpr std::string_view kNames[] = {"cpu", "cpu-fma", "cuda-nofma", "cuda-fma", "cuda"};
-  return kNames[static_cast<int>(target)];
+std::string LaneName::within_subject() const { return scalar + '/' + variant + (policy.empty() ? "" : '/' + policy); }
+
+std::string id_of(const LaneName& name) { return name.subject + '/' + name.within_subject(); }
+
+std::optional<LaneName> parse_lane_name(std::string_view id) {
+  LaneName name;
+  bool more = true;
+  for (std::string* part : {&name.subject, &name.scalar, &name.variant}) {
+    if (!more) return std::nullopt;
+    const std::size_t end = id.find('/');
+    *part = id.substr(0, end);
+    if (part->empty()) return std::nullopt;
+    more = end != id.npos;
+    id.remove_prefix(more ? end + 1 : id.size());
+  }
+  name.policy = id;
+  if (more && name.policy.empty()) return std::nullopt;
+  return name;
+}
+
+LaneName Lane::lane_name() const {
+  return {std::string(info->id), std::string(name(scalar)), std::string(name(variant)), policy};
 }
 
 std::span<const Lane> lanes() {
@@ -78,7 +114,21 @@ std::span<const Lane> lanes() {
   return table;
 }
 
-std::span<const Lane> published_lanes() { return lanes().first(std::size_t{2} * kAlgorithmCount * kTargetCount); }
+std::span<const Lane> published_lanes() {
+  const auto end = std::find_if(lanes().begin(), lanes().end(), [](const Lane& lane) { return lane.exact; });
+  return {lanes().begin(), end};
+}
+
+const Lane* find_lane(std::string_view id) {
+  const auto found = std::find_if(lanes().begin(), lanes().end(), [&](const Lane& lane) { return lane.id == id; });
+  return found == lanes().end() ? nullptr : &*found;
+}
+
+const Lane* counterpart(const Lane& lane, Variant variant) {
+  LaneName other = lane.lane_name();
+  other.variant = name(variant);
+  return find_lane(id_of(other));
+}
 
 Verdict decide_one(DecideBlock block, const Pair& pair) {
   std::uint64_t intersects = 0, declined = 0;
@@ -87,11 +137,14 @@ Verdict decide_one(DecideBlock block, const Pair& pair) {
 }
 
 bool runs_on_this_cpu(const Lane& lane) {
+  if (lane.is_cuda()) return false;
 #if defined(__x86_64__)
-  return lane.target != Target::cpu_fma || __builtin_cpu_supports("fma");
-#else
-  return !lane.is_cuda();
+  const std::string_view needs = info_of(lane.variant).needs;
+  if (needs == "fma") return __builtin_cpu_supports("fma");
+  if (needs == "x86-64-v3")
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
 #endif
+  return true;
 }
 
 bool matches_any(const std::vector<std::string>& globs, std::string_view id) {

@@ -1,27 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lane table: one row for each way to decide a pair, `algorithm/scalar/target`.
+// The lane table: one row for each way to decide a pair, `subject/scalar/variant`, then `/policy` unless that is zero.
+// A row says what the lane is and what it can do; nothing follows from its place in the table.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/algorithms/algorithm.h"
 #include "core/pair.h"
+#include "core/variants.h"
 
 namespace graze {
 
 enum class Scalar : std::uint8_t { f32, f64 };
-
-// cpu: no contraction. cpu_fma: the host compiler's contraction. cuda_nofma: -fmad=false. cuda_fma: nvcc's default.
-// cuda: exact lanes only, whose verdicts do not depend on contraction.
-enum class Target : std::uint8_t { cpu, cpu_fma, cuda_nofma, cuda_fma, cuda };
-inline constexpr int kTargetCount = 4;  // of every published algorithm; exact lanes have cpu and cuda
-
 std::string_view name(Scalar scalar);
-std::string_view name(Target target);
+
+// The parts of a lane's name. A lane of another build or machine has a name too: the parts need not be known here.
+struct LaneName {
+  std::string subject, scalar, variant, policy;  // policy empty: zero
+
+  std::string within_subject() const;  // "f32/cpu", "f32/cpu/abs:1e-6"
+  friend bool operator==(const LaneName&, const LaneName&) = default;
+};
+
+// "moller_1997/f32/cpu"; the inverse of parse_lane_name.
+std::string id_of(const LaneName& name);
+
+// Returns: nothing unless there are three parts, none of them empty, or four; the fourth may hold more slashes.
+std::optional<LaneName> parse_lane_name(std::string_view id);
 
 // Decides pairs[0..count): bit i % 64 of word i / 64 says intersects, or declined. Unused bits become zero.
 // Requires: room for (count + 63) / 64 words in both.
@@ -36,23 +47,33 @@ constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
 Verdict decide_one(DecideBlock block, const Pair& pair);
 
 struct Lane {
-  int index;  // place in lanes()
   std::string id;
-  const AlgorithmInfo* info;
-  int algorithm;  // place in Algorithms; behind its end for exact lanes
+  const AlgorithmInfo* info;  // of the subject
   Scalar scalar;
-  Target target;
-  DecideBlock decide;  // null for CUDA lanes; see cuda/lanes/device.h
+  Variant variant;
+  std::string policy;  // empty: zero
+  // Of a published algorithm its place in Algorithms, by which code that is compiled for each of them is found; else
+  // -1.
+  int algorithm;
+  DecideBlock decide;  // on this processor; null for lanes of a device, see cuda/lanes/device.h
+  bool exact;          // right on every finite pair, and declines the others; see core/exact/exact.h
+  bool explainable;    // runs on numbers that write down every step; see core/algorithms/traced.h
 
-  bool is_cuda() const { return target != Target::cpu && target != Target::cpu_fma; }
-  bool is_exact() const;  // right on every finite pair, and declines the others; see core/exact/exact.h
+  bool is_cuda() const { return info_of(variant).runs_on == RunsOn::device; }
+  LaneName lane_name() const;
 };
 
-// All lanes, ordered by algorithm, scalar, target; the exact ones last.
+// All lanes: subject by subject, and of each f32 before f64, in the order of the variants; the exact ones last.
 std::span<const Lane> lanes();
 
-// Those of published algorithms, which can be wrong: all but the exact ones.
+// Those of published algorithms.
 std::span<const Lane> published_lanes();
+
+// The lane of that name; null for none.
+const Lane* find_lane(std::string_view id);
+
+// The same subject, scalar and policy in another variant; null for none.
+const Lane* counterpart(const Lane& lane, Variant variant);
 
 // Whether this processor can run the host lane (cpu-fma needs FMA instructions).
 bool runs_on_this_cpu(const Lane& lane);

@@ -24,7 +24,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.fil
 
 struct Corpus {
   std::vector<Case> cases;
-  std::string errors;  // of files that do not read, and entries without a name, a line each
+  std::string errors;  // of files that do not read, and entries without a name, one line for each
 };
 
 Corpus read_corpus() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time a pair of every host lane on every stratum, and beside them of CGAL's do_intersect on triangles made before,
+// Time per pair of every host lane on every stratum, and beside them of CGAL's do_intersect on triangles made before,
 // and of the oracle's two decisions. GRAZE_MESH=FILE adds the candidate pairs of a mesh as a stratum.
 // What claims to be exact must first agree with the oracle on every pair that is timed.
 #include <algorithm>
@@ -25,7 +25,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kPairs = 1 << 14;  // 1.2 MB: too many branches to learn by heart, and still in the cache
+constexpr std::size_t kPairs = 1 << 14;  // 1.2 MB: too many branches to be remembered, and still in the cache
 
 struct Block {
   std::vector<Pair> pairs;
@@ -38,7 +38,7 @@ struct PairsToTime {
   Block proper;  // the pairs of two triangles that are not degenerate: all that CGAL's do_intersect takes
 };
 
-// Writes a bit a pair, as lanes do.
+// Writes one bit for each pair, as lanes do.
 template <class Decide>
 void by_pair(std::size_t count, std::uint64_t* intersects, const Decide& decide) {
   std::fill_n(intersects, (count + 63) / 64, 0);
@@ -128,9 +128,8 @@ void add_source(const PairsToTime& source) {
     const Decide decide = [&lane](const Block& block, std::uint64_t* intersects, std::uint64_t* declined) {
       lane.decide(block.pairs.data(), block.pairs.size(), intersects, declined);
     };
-    add(lane.id, source.id, source.all, lane.is_exact(), decide);
-    if (lane.is_exact() && !source.proper.pairs.empty())
-      add(lane.id + ",proper", source.id, source.proper, true, decide);
+    add(lane.id, source.id, source.all, lane.exact, decide);
+    if (lane.exact && !source.proper.pairs.empty()) add(lane.id + ",proper", source.id, source.proper, true, decide);
   }
   if (!source.proper.pairs.empty()) {
     add("cgal_epick", source.id, source.proper, true, by_cgal<CGAL::Exact_predicates_inexact_constructions_kernel>);

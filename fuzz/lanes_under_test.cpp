@@ -9,9 +9,7 @@
 namespace graze::fuzz {
 namespace {
 
-std::string twin_evidence_of(const Lane& lane) {
-  return lane.is_exact() ? "twin, exact" : cuda::twin_evidence(lane.algorithm, lane.scalar, lane.target);
-}
+std::string twin_evidence_of(const Lane& lane) { return lane.exact ? "twin, exact" : cuda::twin_evidence(lane); }
 
 }  // namespace
 
@@ -29,10 +27,13 @@ std::string LanesUnderTest::evidence(std::size_t l) const {
 }
 
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
-  if (!lane.is_cuda()) return runs_on_this_cpu(lane) ? "available" : "unavailable (no FMA instructions)";
+  if (!lane.is_cuda()) {
+    const std::string needs(info_of(lane.variant).needs);
+    return runs_on_this_cpu(lane) ? "available" : "unavailable (no " + needs + " instructions)";
+  }
   if (device) return "available (device)";
   return cuda::block_on_host(lane) ? "available (" + twin_evidence_of(lane) + ")"
-                                   : "unavailable (" + why_no_device + ")";
+                                   : "unavailable (" + why_no_device + (lane.exact ? ")" : ", and no twin)");
 }
 
 LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The under_test: the lanes under test on this machine, and what runs each: the host, a device, a device's twin, or
-// both.
+// The lanes under test on this machine, and what runs each of them: the host, a device, the device's twin, or device
+// and twin.
 #pragma once
 
 #include <memory>
@@ -34,7 +34,7 @@ struct LanesUnderTest {
 LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
                             bool require_device = false);
 
-// What runs the lane here, or why nothing does: "available (device)", "unavailable (no FMA instructions)".
+// What runs the lane here, or why nothing does: "available (device)", "unavailable (no fma instructions)".
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device);
 
 // Each lane's verdict on one pair.

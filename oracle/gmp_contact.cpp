@@ -69,7 +69,7 @@ Contact noncoplanar(Workspace& work, const int (&sa)[3]) {
     side[i][1] = work.side.sign();
   }
 
-  // One bit an extreme point, so that what is seen from both sides counts once.
+  // One bit for each extreme point, so that what is seen from both sides counts once.
   unsigned found = 0;
   const auto vertex_a = [](int i) { return 1u << i; };
   const auto vertex_b = [](int j) { return 1u << (3 + j); };

@@ -27,7 +27,7 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
     for (int i = 0; i < 300; ++i) {
       const Pair pair = source.next();
       for (const Lane& lane : published_lanes()) {
-        if (lane.target != Target::cpu) continue;
+        if (lane.variant != Variant::cpu) continue;
         const Limited limited = decide_limited(lane.algorithm, lane.scalar, pair, {true, true});
         EXPECT_EQ(name(limited.verdict), name(decide(lane, pair))) << lane.id << hex(pair);
         overflows += limited.first == RangeEvent::overflow;

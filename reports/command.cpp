@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign as the command that runs it: lanes and strata by the fewest patterns.
+// A campaign as the command that runs it, with the ids of its lanes and strata.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "core/lanes.h"
 #include "reports/report.h"
@@ -23,57 +22,6 @@ std::string quoted(const std::string& word) {
 
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ",")); }
 
-// Patterns that match these lanes of the table and no others, none of which can be spared: at each step that which
-// matches most of those left.
-std::vector<std::string> lane_patterns(const std::vector<std::string>& ids) {
-  const std::set<std::string> wanted(ids.begin(), ids.end());
-  std::set<std::string> candidates, left = wanted;
-  for (const std::string& id : ids) {
-    const std::size_t first = id.find('/'), last = id.rfind('/');
-    const std::string algorithm = id.substr(0, first), scalar = id.substr(first, last - first),
-                      target = id.substr(last);
-    for (const std::string& a : {algorithm, std::string("*")}) {
-      for (const std::string& t : {target, std::string("/cuda-*"), std::string("/*")}) {
-        candidates.insert(a + scalar + t);
-        candidates.insert(a + (t == "/*" ? t : "/*" + t));
-      }
-    }
-    candidates.insert(id);
-    candidates.insert("*" + target);
-  }
-  std::vector<std::string> chosen;
-  while (!left.empty()) {
-    std::string best;
-    std::ptrdiff_t most = 0;
-    for (const std::string& pattern : candidates) {
-      const bool fits = std::all_of(lanes().begin(), lanes().end(), [&](const Lane& lane) {
-        return wanted.contains(lane.id) || !matches_any({pattern}, lane.id);
-      });
-      const auto matched =
-          std::count_if(left.begin(), left.end(), [&](const std::string& id) { return matches_any({pattern}, id); });
-      if (!fits || matched < most || (matched == most && !(pattern.size() < best.size()))) continue;
-      most = matched;
-      best = pattern;
-    }
-    std::erase_if(left, [&](const std::string& id) { return matches_any({best}, id); });
-    chosen.push_back(best);
-  }
-  // What came first may be covered by what came later.
-  for (std::size_t i = 0; i < chosen.size();) {
-    std::vector<std::string> others = chosen;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    const bool spare = !others.empty() && std::all_of(ids.begin(), ids.end(),
-                                                      [&](const std::string& id) { return matches_any(others, id); });
-    if (spare) {
-      chosen = others;
-    } else {
-      ++i;
-    }
-  }
-  std::sort(chosen.begin(), chosen.end());
-  return chosen;
-}
-
 }  // namespace
 
 std::string campaign_command(const Json& summary) {
@@ -91,7 +39,7 @@ std::string campaign_command(const Json& summary) {
   if (!strata.empty()) command += fmt::format(" --pairs {} --seed {}", pairs, spec.at("seed").dump());
   const bool all_strata = strata.size() == strata::kStrataCount && !spec.contains("mesh");
   if (!strata.empty() && !all_strata) command += fmt::format(" --strata {}", joined(strata));
-  if (ids.size() != lanes().size()) command += fmt::format(" --lanes '{}'", joined(lane_patterns(ids)));
+  if (ids.size() != lanes().size()) command += fmt::format(" --lanes '{}'", joined(ids));
   const Json executors = summary.at("build").value("executors", Json::object());
   const auto any = [&](std::string_view start) {
     return std::any_of(executors.begin(), executors.end(),

@@ -9,11 +9,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 ReportLane lane_of(const std::string& id) {
-  const std::size_t first = id.find('/'), last = id.rfind('/');
-  ReportLane lane{id, id.substr(0, first), id.substr(first + 1, last - first - 1), id.substr(last + 1)};
-  const auto row = std::find_if(lanes().begin(), lanes().end(), [&](const Lane& l) { return l.id == id; });
-  if (row != lanes().end()) lane.row = &*row;
-  lane.exact = lane.row && lane.row->is_exact();
+  const LaneName name = parse_lane_name(id).value_or(LaneName{id, "", "", ""});
+  ReportLane lane{id, name};
+  lane.row = find_lane(id);
+  lane.exact = lane.row && lane.row->exact;
   return lane;
 }
 
@@ -47,12 +46,17 @@ void add(StratumCounts& counts, const Json& row, const std::map<std::string, std
 
 }  // namespace
 
-int CampaignCounts::find(std::string_view algorithm, std::string_view scalar, std::string_view target) const {
+int CampaignCounts::find(const LaneName& name) const {
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    if (lanes[l].algorithm == algorithm && lanes[l].scalar == scalar && lanes[l].target == target)
-      return static_cast<int>(l);
+    if (lanes[l].name == name) return static_cast<int>(l);
   }
   return -1;
+}
+
+int CampaignCounts::counterpart(std::size_t lane, std::string_view variant) const {
+  LaneName name = lanes[lane].name;
+  name.variant = variant;
+  return find(name);
 }
 
 const StratumCounts* CampaignCounts::stratum(std::string_view id) const {
@@ -70,8 +74,9 @@ CampaignCounts counts_of(const Json& summary) {
     place.emplace(id.get<std::string>(), counts.lanes.size());
     counts.lanes.push_back(lane_of(id));
   }
-  for (ReportLane& lane : counts.lanes) {
-    if (lane.target != "cpu") lane.cpu = counts.find(lane.algorithm, lane.scalar, "cpu");
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    if (counts.lanes[l].name.variant != name(Variant::cpu))
+      counts.lanes[l].cpu = counts.counterpart(l, name(Variant::cpu));
   }
   counts.total.lanes.resize(counts.lanes.size());
   for (const auto& [id, row] : summary.at("strata").items()) {

@@ -14,7 +14,8 @@
 namespace graze::reports {
 
 struct ReportLane {
-  std::string id, algorithm, scalar, target;
+  std::string id;
+  LaneName name;
   const Lane* row = nullptr;  // in this build's table; null where it has no such lane
   bool exact = false;
   int cpu = -1;  // place of the cpu lane of the same algorithm and scalar, if that is another one
@@ -44,8 +45,9 @@ struct CampaignCounts {
   std::vector<StratumCounts> strata;
   StratumCounts total;  // id empty
 
-  // Place of a lane; -1 for none.
-  int find(std::string_view algorithm, std::string_view scalar, std::string_view target) const;
+  // Place of a lane; -1 for none. counterpart: of the same lane in another variant.
+  int find(const LaneName& name) const;
+  int counterpart(std::size_t lane, std::string_view variant) const;
   const StratumCounts* stratum(std::string_view id) const;
 };
 

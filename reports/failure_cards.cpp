@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "analysis/signature.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/carded_signatures.h"
@@ -19,49 +20,29 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// "point/22/skew/-2^-3/moller_1997:+-__..__" in its parts.
-struct Key {
-  std::string contact, dimensions, shape, margin, algorithm, marks;
-};
-
-Key parts_of(const std::string& key) {
-  Key parts;
-  std::size_t from = 0;
-  for (std::string* part : {&parts.contact, &parts.dimensions, &parts.shape, &parts.margin}) {
-    const std::size_t end = key.find('/', from);
-    *part = key.substr(from, end - from);
-    from = end + 1;
-  }
-  parts.algorithm = analysis::algorithm_of(key);
-  parts.marks = key.substr(key.rfind(':') + 1);
-  return parts;
-}
-
-// The lane's place among the marks; see analysis/signature.h.
-std::size_t place_of_mark(const ReportLane& lane) {
-  const std::size_t target = lane.target == "cpu"          ? 0
-                             : lane.target == "cpu-fma"    ? 1
-                             : lane.target == "cuda-nofma" ? 2
-                                                           : 3;
-  return (lane.scalar == "f64" ? kTargetCount : 0) + target;
+// Throws: FormatError.
+analysis::Signature signature_of(const std::string& key) {
+  const std::optional<analysis::Signature> signature = analysis::parse_signature(key);
+  if (!signature) throw corpus::FormatError("expected the key of a signature, found '" + key + "'");
+  return *signature;
 }
 
 Json signature_row(const CampaignCounts& counts, const Json& found) {
   const std::string key = found["key"];
-  const Key parts = parts_of(key);
+  const analysis::Signature signature = signature_of(key);
   std::string marks;
   for (const ReportLane& lane : counts.lanes) {
-    if (lane.algorithm == parts.algorithm) marks += parts.marks.at(place_of_mark(lane));
+    if (lane.name.subject == signature.subject) marks += signature.mark_of(lane.name.within_subject());
   }
   const double share = found["count"].get<double>() / static_cast<double>(counts.total.pairs);
   return {{"key", key},
-          {"algorithm", parts.algorithm},
+          {"algorithm", signature.subject},
           {"count", found["count"]},
           {"share", std::stod(fmt::format("{:.5g}", share))},
-          {"contact", parts.contact},
-          {"dimensions", parts.dimensions},
-          {"coplanar", parts.shape == "coplanar"},
-          {"margin", parts.margin},
+          {"contact", name(signature.contact)},
+          {"dimensions", fmt::format("{}{}", signature.shape.dimension_a, signature.shape.dimension_b)},
+          {"coplanar", signature.shape.coplanar},
+          {"margin", name_of_bucket(signature.bucket)},
           {"marks", marks},
           {"card", nullptr}};
 }
@@ -111,23 +92,24 @@ Verdict marked(char mark, Verdict truth) {
 }
 
 // Of the lanes that the minimiser ran on the pair; without its record, of those that the signature tells of.
-Json verdicts_of(const CampaignCounts& counts, const Key& key, Verdict truth, const std::optional<Json>& facts) {
+Json verdicts_of(const CampaignCounts& counts, const analysis::Signature& signature, Verdict truth,
+                 const std::optional<Json>& facts) {
   Json rows = Json::array();
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     const ReportLane& lane = counts.lanes[l];
     std::optional<Verdict> verdict;
     if (facts && facts->at("verdicts").contains(lane.id)) {
       verdict = verdict_of(facts->at("verdicts")[lane.id].get<std::string>());
-    } else if (lane.algorithm == key.algorithm && key.marks.at(place_of_mark(lane)) != '_') {
-      verdict = marked(key.marks.at(place_of_mark(lane)), truth);
+    } else if (lane.name.subject == signature.subject) {
+      verdict = marked(signature.mark_of(lane.name.within_subject()), truth);
     }
     if (verdict) rows.push_back({{"lane", l}, {"verdict", name(*verdict)}, {"wrong", *verdict != truth}});
   }
   return rows;
 }
 
-Json commands_of(const corpus::Entry& entry, const Key& key, const std::string& from) {
-  const std::string lanes = fmt::format("--lanes '{}/*'", key.algorithm);
+Json commands_of(const corpus::Entry& entry, const analysis::Signature& signature, const std::string& from) {
+  const std::string lanes = fmt::format("--lanes '{}/*'", signature.subject);
   const std::string file = fmt::format("echo '{}' > case.pairs", fuzz::pair_text(entry.pair));
   Json rows = Json::array();
   const auto add = [&](const char* label, const std::string& text) {
@@ -141,8 +123,8 @@ Json commands_of(const corpus::Entry& entry, const Key& key, const std::string& 
 }
 
 // A program that shows the first wrong lane, on the host if one of its lanes is; and the truth, by a few lines.
-Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const Key& key, Verdict truth,
-                 const Json& verdicts, const std::string& from) {
+Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const analysis::Signature& signature,
+                 Verdict truth, const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
   const std::string name =
       fmt::format("Case {}{}: contact {}, margin {} ({} ulps)", corpus::field(entry, "kind") ? "minimised from " : "",
@@ -150,7 +132,7 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
   const auto add_lane = [&](SnippetKind kind) {
     for (const Json& row : verdicts) {
       const ReportLane& lane = counts.lanes[row["lane"].get<std::size_t>()];
-      if (!row["wrong"].get<bool>() || !lane.row || lane.algorithm != key.algorithm || !shows(kind, *lane.row))
+      if (!row["wrong"].get<bool>() || !lane.row || lane.name.subject != signature.subject || !shows(kind, *lane.row))
         continue;
       const SnippetCase found{name, entry.pair, truth, lane.row, verdict_of(row["verdict"].get<std::string>())};
       rows.push_back({{"label", kSnippetKinds[static_cast<int>(kind)]}, {"text", snippet(kind, found)}});
@@ -195,14 +177,14 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
   const std::vector<corpus::Entry> entries = corpus::read_pairs(directory / file);
   if (entries.empty()) throw corpus::FormatError(file + ": expected at least one case, found none");
   const corpus::Entry& entry = fuzz::shown_case(entries);
-  const Key key = parts_of(found["key"]);
+  const analysis::Signature signature = signature_of(found["key"]);
   const Verdict truth = verdict_of(text_of(entry, "truth"));
   const std::optional<Json> facts = stored(fuzz::facts_file(directory / file), entry.pair);
   const bool minimised = corpus::field(entry, "kind") != nullptr;
   lacking.minimised += !minimised;
   lacking.explained += !facts;
   const std::string from = origin(entry);
-  const Json verdicts = verdicts_of(counts, key, truth, facts);
+  const Json verdicts = verdicts_of(counts, signature, truth, facts);
   return {{"signature", nullptr},
           {"file", file},
           {"minimised", minimised},
@@ -217,8 +199,8 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
           {"verdicts", verdicts},
           {"sentences", facts ? facts->at("sentences") : Json::array()},
           {"maps", maps_of(directory / file, entry.pair, room, lacking)},
-          {"commands", commands_of(entry, key, from)},
-          {"snippets", snippets_of(counts, entry, key, truth, verdicts, from)}};
+          {"commands", commands_of(entry, signature, from)},
+          {"snippets", snippets_of(counts, entry, signature, truth, verdicts, from)}};
 }
 
 void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t cards) {
@@ -249,26 +231,24 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
 Json signature_rows(const CampaignCounts& counts, const Json& summary) {
   Json rows = Json::array();
   for (const Json& found : summary["signatures"]) {
-    if (!found["key"].get<std::string>().starts_with("executors/")) rows.push_back(signature_row(counts, found));
+    rows.push_back(signature_row(counts, found));
   }
   return rows;
 }
 
 void add_signatures(Json& report, const std::filesystem::path& directory, const Json& summary,
                     const CampaignCounts& counts) {
+  for (const Json& found : summary.value("executors_apart", Json::array())) {
+    report["missing"].push_back(
+        fmt::format("On {} pairs {} gave another verdict on the device than by its twin: one of the two is wrong.",
+                    found.at("count").dump(), found.at("lane").get<std::string>()));
+  }
   const std::vector<std::size_t> carded = fuzz::carded_signatures(summary);
   Json rows = Json::array(), cards = Json::array();
   std::size_t count = 0, room = kMostMapBytes;
   Lacking lacking;
   for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
     const Json& found = summary["signatures"][place];
-    const std::string key = found["key"];
-    if (key.starts_with("executors/")) {
-      report["missing"].push_back(
-          fmt::format("On {} pairs {} gave another verdict on the device than by its twin: one of the two is wrong.",
-                      found["count"].dump(), key.substr(key.find('/') + 1)));
-      continue;
-    }
     ++count;
     const bool has_card = std::binary_search(carded.begin(), carded.end(), place);
     if (count > kMostSignatures && !has_card) continue;

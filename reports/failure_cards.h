@@ -14,7 +14,7 @@ namespace graze::reports {
 inline constexpr std::size_t kMostSignatures = 10'000;
 inline constexpr std::size_t kMostMapBytes = 7 << 18;
 
-// A row a signature, the commonest first.
+// One row for each signature, the commonest first.
 nlohmann::ordered_json signature_rows(const CampaignCounts& counts, const nlohmann::ordered_json& summary);
 
 // The signatures' rows, the commonest first, and the cards of those that have one (fuzz/minimise/carded_signatures.h),

@@ -110,8 +110,9 @@ std::vector<Contracted> contracted(const CampaignCounts& counts, const Places& l
   std::vector<Contracted> found;
   for (const std::size_t l : lanes) {
     const ReportLane& lane = counts.lanes[l];
-    if (lane.target != "cpu-fma" && lane.target != "cuda-fma") continue;
-    int without = lane.target == "cuda-fma" ? counts.find(lane.algorithm, lane.scalar, "cuda-nofma") : -1;
+    const std::optional<Variant> variant = variant_of_name(lane.name.variant);
+    if (!variant || info_of(*variant).arithmetic != Arithmetic::contracted) continue;
+    int without = counts.counterpart(l, name(rounded_variant(*variant)));
     if (without < 0) without = lane.cpu;
     if (without < 0) continue;
     const auto other = static_cast<std::size_t>(without);
@@ -168,9 +169,9 @@ std::string thesis(const CampaignCounts& counts, const Places& lanes) {
   std::uint64_t without_contraction = 0;
   bool ran_without = false;
   for (const std::size_t l : lanes) {
-    if (!counts.lanes[l].target.starts_with("cuda") || counts.lanes[l].cpu < 0) continue;
+    if (!counts.lanes[l].name.variant.starts_with("cuda") || counts.lanes[l].cpu < 0) continue;
     compared.push_back(l);
-    if (counts.lanes[l].target != "cuda-nofma") continue;
+    if (counts.lanes[l].name.variant != name(Variant::cuda_nofma)) continue;
     ran_without = true;
     without_contraction += differing(l);
   }
@@ -188,7 +189,7 @@ std::string thesis(const CampaignCounts& counts, const Places& lanes) {
         "lane on any of {} pairs (with 95 % confidence fewer than {}).",
         compared.size(), pairs, rate_words(bound_of_none(stratum->pairs)));
   }
-  const int own = counts.find("interval_overlap", "f32", "cuda-fma");
+  const int own = counts.find({"interval_overlap", "f32", "cuda-fma", ""});
   const auto own_place = static_cast<std::size_t>(own);
   const bool tells_own = own >= 0 && own_place != most && counts.lanes[own_place].cpu >= 0;
   return fmt::format("On the 2012 thesis's triangles the GPU differs most from the CPU in {}: on {} of {} pairs{}{}.",

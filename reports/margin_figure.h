@@ -7,8 +7,8 @@
 
 namespace graze::reports {
 
-// An SVG of 900 x 420: share of wrong verdicts over all strata, a line a lane, by margin bucket; readable on light
-// and dark ground. Requires: what summary.json holds.
+// An SVG of 900 x 420: share of wrong verdicts over all strata, one line for each lane, by margin bucket; readable on
+// light and dark ground. Requires: what summary.json holds.
 std::string margin_figure(const nlohmann::ordered_json& summary);
 
 }  // namespace graze::reports

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/margin/bucket.h"
+
 namespace graze::reports {
 namespace {
 
@@ -78,7 +80,8 @@ std::string html(const std::string& text) {
 
 std::string margin_chart(const Json& row) {
   constexpr double kWidth = 320, kHeight = 110, kBase = 90, kTop = 8;
-  constexpr int kMost = 33;  // exponents -32…31, away from zero on both sides
+  constexpr int kMost = 1 - kBucketLowest;  // exponents, away from zero on both sides
+  static_assert(kBucketHighest < kMost);
   const auto x_of = [](const Json& point) {
     if (point["side"] == "zero") return kWidth / 2;
     const double from_zero = (point["exponent"].get<double>() + kMost) / (2 * kMost) * (kWidth / 2 - 14) + 6;
@@ -94,9 +97,9 @@ std::string margin_chart(const Json& row) {
                        share > 0 ? std::min(y, kBase - 1) : kBase, point["side"] == "disjoint" ? "#0072b2" : "#d55e00");
   }
   return svg + fmt::format(
-                   "<text x=\"2\" y=\"104\">intersects, 2^31…2^-32 ulps</text><text x=\"{}\" y=\"104\" "
-                   "text-anchor=\"end\">disjoint, 2^-32…2^31</text></svg>",
-                   kWidth - 2);
+                   "<text x=\"2\" y=\"104\">intersects, 2^{0}…2^{1} ulps</text><text x=\"{2}\" y=\"104\" "
+                   "text-anchor=\"end\">disjoint, 2^{1}…2^{0}</text></svg>",
+                   kBucketHighest, kBucketLowest, kWidth - 2);
 }
 
 std::string pair_drawing(const Json& card) {

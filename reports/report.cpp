@@ -65,9 +65,9 @@ Json lanes_of(const Json& summary, const CampaignCounts& counts) {
   const Json executors = summary.at("build").value("executors", Json::object());
   for (const ReportLane& lane : counts.lanes) {
     rows.push_back({{"id", lane.id},
-                    {"algorithm", lane.algorithm},
-                    {"scalar", lane.scalar},
-                    {"target", lane.target},
+                    {"algorithm", lane.name.subject},
+                    {"scalar", lane.name.scalar},
+                    {"target", lane.name.variant},
                     {"paper", lane.row ? lane.row->info->paper : ""},
                     {"evidence", executors.value(lane.id, Json())},
                     {"exact", lane.exact}});
@@ -113,8 +113,7 @@ Json only_in(const Json& signatures, const Json& others) {
   Json rows = Json::array();
   for (const Json& row : signatures) {
     const std::string key = row.at("key");
-    if (!known.contains(key) && !key.starts_with("executors/"))
-      rows.push_back({{"key", key}, {"count", row.at("count")}});
+    if (!known.contains(key)) rows.push_back({{"key", key}, {"count", row.at("count")}});
   }
   return rows;
 }

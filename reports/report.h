@@ -23,7 +23,7 @@ std::string campaign_command(const nlohmann::ordered_json& summary);
 void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json& before,
                     const nlohmann::ordered_json& signatures, const nlohmann::ordered_json& signatures_before);
 
-// The report as text: a line a row, so that two can be compared.
+// The report as text: each row on a line of its own, so that two can be compared.
 std::string report_text(const nlohmann::ordered_json& report);
 
 // A report that was written before.   Throws: FormatError.

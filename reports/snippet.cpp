@@ -64,6 +64,19 @@ std::string type_name(std::string_view algorithm_id) {
   return std::string(text.substr(first, text.find(' ', first) - first));
 }
 
+// The flags of a variant, each with a space after it; those for x86 only where this is one.
+std::string flags_of(Variant variant) {
+  std::string text;
+  std::istringstream flags{std::string(info_of(variant).flags)};
+  for (std::string flag; flags >> flag;) {
+#ifndef __x86_64__
+    if (flag.starts_with("-m")) continue;
+#endif
+    if (flag != "-O3") text += flag + ' ';
+  }
+  return text;
+}
+
 // The line that compiles and runs the snippet; its flags are those of the lane's build.
 std::string command(SnippetKind kind, const Lane* lane) {
 #ifdef __clang__
@@ -71,20 +84,14 @@ std::string command(SnippetKind kind, const Lane* lane) {
 #else
   constexpr std::string_view kCompiler = "g++";
 #endif
-#ifdef __x86_64__
-  constexpr std::string_view kFused = "-mfma -ffp-contract=fast";
-#else
-  constexpr std::string_view kFused = "-ffp-contract=fast";
-#endif
+  const std::string flags = lane ? flags_of(lane->variant) : "";
   switch (kind) {
     case SnippetKind::cpp:
     case SnippetKind::gtest:
-      return fmt::format("{} -std=c++20 -O3 -fno-math-errno {} case.cpp{} -o case && ./case", kCompiler,
-                         lane->target == Target::cpu_fma ? kFused : "-ffp-contract=off",
+      return fmt::format("{} -std=c++20 -O3 {}case.cpp{} -o case && ./case", kCompiler, flags,
                          kind == SnippetKind::gtest ? " -lgtest -lgtest_main -pthread" : "");
     case SnippetKind::cuda:
-      return fmt::format("nvcc -std=c++20 -O3 -arch=native {}case.cu -o case && ./case",
-                         lane->target == Target::cuda_nofma ? "-fmad=false " : "");
+      return fmt::format("nvcc -std=c++20 -O3 -arch=native {}case.cu -o case && ./case", flags);
     case SnippetKind::cgal:
       return fmt::format("{} -std=c++20 case.cpp -lmpfr -lgmp -o case && ./case", kCompiler);
     case SnippetKind::python:

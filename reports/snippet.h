@@ -33,7 +33,7 @@ struct SnippetCase {
 // Requires: finite coordinates; truth is not declined; a lane that the kind shows, if it shows any.
 std::string snippet(SnippetKind kind, const SnippetCase& found);
 
-// The text of core/ID.h and all it includes as one source, without includes and guards of its own.
+// The text of core/algorithms/ID.h and all it includes as one source, without includes and guards of its own.
 std::string amalgamated_source(std::string_view algorithm_id);
 
 }  // namespace graze::reports

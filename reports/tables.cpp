@@ -79,9 +79,12 @@ Json side_by_side(const CampaignCounts& counts) {
   };
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     const ReportLane& lane = counts.lanes[l];
-    if (lane.target == "cpu") add("cpu-nofma", l, counts.find(lane.algorithm, lane.scalar, "cuda-nofma"));
-    if (lane.target == "cuda-nofma") add("nofma-fma", l, counts.find(lane.algorithm, lane.scalar, "cuda-fma"));
-    if (lane.scalar == "f32") add("f32-f64", l, counts.find(lane.algorithm, "f64", lane.target));
+    if (lane.name.variant == name(Variant::cpu)) add("cpu-nofma", l, counts.counterpart(l, name(Variant::cuda_nofma)));
+    if (lane.name.variant == name(Variant::cuda_nofma))
+      add("nofma-fma", l, counts.counterpart(l, name(Variant::cuda_fma)));
+    LaneName double_precision = lane.name;
+    double_precision.scalar = name(Scalar::f64);
+    if (lane.name.scalar == name(Scalar::f32)) add("f32-f64", l, counts.find(double_precision));
   }
   return rows;
 }

@@ -36,7 +36,7 @@ Threshold threshold(const StratumCounts& counts, std::size_t lane, int side);
 nlohmann::ordered_json thresholds(const CampaignCounts& counts);
 nlohmann::ordered_json extremes(const CampaignCounts& counts);
 
-// Of which pairs a bucket is.
+// Whether the pairs of a bucket intersect, are disjoint, or have no margin.
 constexpr const char* side_of(Bucket bucket) { return bucket < 0 ? "intersects" : bucket > 0 ? "disjoint" : "zero"; }
 
 // floor(log2) of the margins of a bucket other than 0, in ulps.

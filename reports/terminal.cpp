@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ostream>
+#include <vector>
 
 #include "corpus/pair_format.h"
 
@@ -80,6 +82,45 @@ void print_summary(std::ostream& out, const Json& summary, const Json& oracle) {
                      grouped(oracle["gmp"]), oracle["apart"].dump());
 }
 
+namespace {
+
+// One row for each subject and scalar, one column for each variant among the lanes; '-' where a lane did not run, '!'
+// where it is wrong. The exact CUDA lane stands in the columns of all device variants: it is the same in each.
+void print_verdicts(std::ostream& out, Verdict truth, std::span<const Lane* const> lanes,
+                    std::span<const Verdict> verdicts) {
+  const auto belongs = [](const Lane& lane, const VariantInfo& column) {
+    return lane.exact && lane.is_cuda() ? column.runs_on == RunsOn::device : lane.variant == column.variant;
+  };
+  std::vector<const VariantInfo*> columns;
+  for (const VariantInfo& row : kVariants) {
+    const bool shown =
+        std::any_of(lanes.begin(), lanes.end(), [&](const Lane* l) { return l->variant == row.variant; });
+    const bool for_exact_alone =
+        row.arithmetic == Arithmetic::exact && !columns.empty() && columns.back()->runs_on == RunsOn::device;
+    if (shown && !for_exact_alone) columns.push_back(&row);
+  }
+  const auto print_row = [&](const std::string& title, const auto& cell) {
+    std::string line = fmt::format("  {:<28}", title);
+    for (const VariantInfo* column : columns) line += fmt::format("{:<14}", cell(*column));
+    out << line.substr(0, line.find_last_not_of(' ') + 1) << '\n';
+  };
+  print_row("", [](const VariantInfo& column) { return std::string(column.id); });
+  for (std::size_t first = 0, end; first < lanes.size(); first = end) {
+    const Lane& lane = *lanes[first];
+    for (end = first; end < lanes.size() && lanes[end]->info == lane.info && lanes[end]->scalar == lane.scalar;) ++end;
+    print_row(fmt::format("{}/{}", lane.info->id, name(lane.scalar)), [&](const VariantInfo& column) {
+      for (std::size_t l = first; l < end; ++l) {
+        if (!belongs(*lanes[l], column)) continue;
+        const bool wrong = truth != Verdict::declined && verdicts[l] != truth;
+        return fmt::format("{}{}", name(verdicts[l]), wrong ? " !" : "");
+      }
+      return std::string("-");
+    });
+  }
+}
+
+}  // namespace
+
 void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
                 std::span<const Verdict> verdicts) {
   for (int v = 0; v < 6; ++v) {
@@ -89,22 +130,7 @@ void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth,
   }
   out << fmt::format("  truth: {}, contact {}, margin {} ({} ulps)\n", name(truth.verdict), name(truth.contact),
                      truth.margin, truth.margin_ulps);
-  out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n", "", "cpu", "cpu-fma", "cuda-nofma", "cuda-fma");
-  for (std::size_t first = 0, end; first < lanes.size(); first = end) {
-    // One row an algorithm and scalar; '-' where a lane was not run, '!' where it is wrong.
-    std::string cells[kTargetCount + 1] = {"-", "-", "-", "-", "-"};
-    for (end = first; end < lanes.size() && lanes[end]->algorithm == lanes[first]->algorithm &&
-                      lanes[end]->scalar == lanes[first]->scalar;
-         ++end) {
-      const bool wrong = truth.verdict != Verdict::declined && verdicts[end] != truth.verdict;
-      cells[static_cast<std::size_t>(lanes[end]->target)] = fmt::format("{}{}", name(verdicts[end]), wrong ? " !" : "");
-    }
-    // The exact CUDA lane is the same with contraction and without.
-    if (lanes[first]->is_exact()) cells[2] = cells[3] = cells[kTargetCount];
-    out << fmt::format("  {:<28}{:<14}{:<14}{:<14}{}\n",
-                       fmt::format("{}/{}", lanes[first]->info->id, name(lanes[first]->scalar)), cells[0], cells[1],
-                       cells[2], cells[3]);
-  }
+  print_verdicts(out, truth.verdict, lanes, verdicts);
 }
 
 }  // namespace graze::reports

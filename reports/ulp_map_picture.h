@@ -10,11 +10,11 @@
 
 namespace graze::reports {
 
-// One panel, kMapSize pixels a side. The bytes depend on nothing but the panel and the PNG library.
+// One panel, kMapSize pixels on each side. The bytes depend on nothing but the panel and the PNG library.
 std::string panel_png(const analysis::UlpPanel& panel);
 
 // All panels with their names and counts, at twice that size: the truth and four lanes in the first row, then four
-// lanes a row; below what the coordinates and colours are.
+// lanes in each row; below what the coordinates and colours are.
 std::string sheet_png(const analysis::UlpMap& map);
 
 // {"title", "x", "y", "size", "legend": [{"colour", "means"}], "panels": [{"name", "png"}]} as a report's page wants

@@ -21,7 +21,7 @@ def runs(name, *seconds, items=1000, **counters):
 def host_results():
     times = {"guigue_devillers_2003/f64/cpu": 2e-5, "interval_overlap/f32/cpu": 3e-5, "cgal_verdict": 5e-4, "gmp_contact": 2e-3}
     benchmarks = [run for name, s in times.items() for run in runs(f"{name}/thesis", s, pairs=1000)]
-    benchmarks += runs("exact/f32/cpu/thesis", 9e-5, 4e-5, 3e-5, pairs=1000)  # median: 40 ns a pair
+    benchmarks += runs("exact/f32/cpu/thesis", 9e-5, 4e-5, 3e-5, pairs=1000)  # median: 40 ns per pair
     benchmarks += runs("exact/f32/cpu,proper/thesis", 2e-5, items=800, pairs=800)  # 25 ns
     benchmarks += runs("cgal_epick/thesis", 8e-5, items=800, pairs=800)  # 100 ns
     benchmarks += runs("cgal_epeck/thesis", 16e-5, items=800, pairs=800)

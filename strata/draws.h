@@ -24,7 +24,7 @@ using Vec = Vec3<double>;
 
 // The random words of one pair, in order: Philox4x32-10 with the seed as key, and as counter the index (two
 // words), the stratum and the number of the block. The order of draws is part of a stratum's definition, and
-// C++ leaves the order within an expression open, except in braces: one draw an expression, or braces.
+// C++ leaves the order within an expression open, except in braces: one draw in each expression, or braces.
 struct Draws {
   philox4x32_key_t key;
   philox4x32_ctr_t counter;

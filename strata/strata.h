@@ -40,7 +40,7 @@ struct StratumInfo {
   Axis axis = Axis::none;  // what it varies besides the margin; campaigns count by that too
 };
 
-// One row a stratum, in the order of the enumeration.
+// One row for each stratum, in the order of the enumeration.
 inline constexpr StratumInfo kStrata[] = {
     {Stratum::uniform, "uniform", "six vertices uniform in a cube: the easy background, where errors are rare"},
     {Stratum::thesis, "thesis", "the 2012 thesis: its random triangles against its reference triangle"},

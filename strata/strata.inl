@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strata that need no construction, and the choice among all of them. The others are in strata_*.h, by family.
+// The strata that need no construction, and the choice among all. The others: contact.h, coplanar.h, shapes.h, scale.h.
 #include "strata/contact.h"
 #include "strata/coplanar.h"
 #include "strata/draws.h"

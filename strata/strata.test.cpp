@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of the strata's bits: golden hashes, purity, finiteness, and the strata that are plain draws of numbers.
-// What the others promise of their geometry is in strata_contact.test.cpp and strata_shapes.test.cpp.
+// What the others promise of their geometry is in contact.test.cpp and shapes.test.cpp.
 #include "strata/strata.h"
 
 #include <gtest/gtest.h>

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "cuda/engine/engine_kernels.cuh"
+#include "cuda/engine/engine_run.h"
+#include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
 #include "strata/strata.h"
@@ -11,11 +13,8 @@
 namespace graze::cuda {
 namespace {
 
-constexpr std::uint32_t kBlockPairs = 1u << 22;  // decided together; a multiple of kThreads
-constexpr std::uint32_t kSignatures = 1u << 18;  // a million pairs of all strata make six thousand
-constexpr std::uint32_t kMostUndecided = 1u << 26;
+constexpr EngineLimits kLimits;
 constexpr int kBlocksAtOnce = 3;
-constexpr int kBlocksBetweenLooks = 12;
 
 // The memory of one block under way. Several are, so that the last pairs of one, which keep few threads busy, do not
 // hold up the next.
@@ -25,6 +24,8 @@ struct Buffers {
   DeviceArray<float> coordinates;
   DeviceArray<std::uint32_t> truth, wrong, lane_words, places, lengths;
   DeviceArray<std::int8_t> buckets;
+  DeviceArray<LaneWords> lanes;
+  std::vector<LaneWords> lanes_on_host;  // the same
 
   Buffers() { check(cudaStreamCreate(&stream)); }
   ~Buffers() { cudaStreamDestroy(stream); }
@@ -32,32 +33,32 @@ struct Buffers {
 
 class CudaEngine final : public DeviceEngine {
  public:
-  CudaEngine(int ordinal, std::span<const Lane* const> lanes) : ordinal_(ordinal), lanes_(lanes.begin(), lanes.end()) {
-    if (lanes.size() > kMostLanes) throw std::runtime_error("the engine takes 32 lanes at most");
+  CudaEngine(int ordinal, std::span<const Lane* const> lanes)
+      : ordinal_(ordinal), lanes_(lanes.begin(), lanes.end()), groups_(lane_groups(lanes)) {
     check(cudaSetDevice(ordinal_));
     check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // else each kernel with a stack of its own size waits for it
     for (std::unique_ptr<Buffers>& buffers : buffers_) buffers = std::make_unique<Buffers>();
+    LaneGroup* groups = groups_on_device_.at_least(groups_.size());
+    check(cudaMemcpy(groups, groups_.data(), groups_.size() * sizeof *groups, cudaMemcpyHostToDevice));
   }
   ~CudaEngine() override { cudaSetDevice(ordinal_); }
 
   EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) override {
     check(cudaSetDevice(ordinal_));
     const EngineBlock empty = begin(strata::kStrata[stratum].axis);
-    const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(kBlockPairs, count));
+    const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(kLimits.block_pairs, count));
     EngineBlock blocks[kBlocksAtOnce];
     for (int k = 0; k < kBlocksAtOnce; ++k) blocks[k] = with_memory(empty, *buffers_[k], block_pairs);
-    std::uint64_t done = 0;
-    for (int b = 0; done < count; ++b) {
-      EngineBlock& block = blocks[b % kBlocksAtOnce];
-      block.pairs.count = static_cast<std::uint32_t>(std::min<std::uint64_t>(block_pairs, count - done));
-      block.pairs.stride = block.pairs.count;
-      block.first = first + done;
-      judge(block, *buffers_[b % kBlocksAtOnce], seed, stratum);
-      done += block.pairs.count;
-      if ((b + 1) % kBlocksBetweenLooks == 0 &&
-          left_to_host(empty) > kMostUndecided - kBlocksBetweenLooks * kBlockPairs)
-        break;
-    }
+    const std::uint64_t done = run_blocks(
+        kLimits, first, count,
+        [&](int b, std::uint64_t at, std::uint32_t pairs) {
+          EngineBlock& block = blocks[b % kBlocksAtOnce];
+          block.pairs.count = pairs;
+          block.pairs.stride = pairs;
+          block.first = at;
+          judge(block, *buffers_[b % kBlocksAtOnce], seed, stratum);
+        },
+        [&] { return left_to_host(empty); });
     EngineResult result = fetch(empty);
     result.done = done;
     return result;
@@ -69,16 +70,18 @@ class CudaEngine final : public DeviceEngine {
     EngineBlock block{};
     block.axis = axis;
     std::uint32_t* lengths = lengths_.at_least(2);
-    block.undecided = {undecided_.at_least(kMostUndecided), kMostUndecided, lengths};
-    block.signatures = {signatures_.at_least(kSignatures), kSignatures, lengths + 1};
+    block.undecided = {undecided_.at_least(kLimits.undecided), kLimits.undecided, lengths};
+    SignatureTable& table = block.signatures;
+    table = {nullptr, kLimits.signatures, key_words(groups_), lengths + 1};
+    table.rows = rows_.at_least(std::size_t{table.size} * table.row_words());
     block.counts = counts_.at_least(2 * counters() + 1);
     block.extreme_counts = block.counts + counters();
     block.disagreements = block.counts + 2 * counters();
     check(cudaMemset(lengths, 0, 2 * sizeof *lengths));
     check(cudaMemset(block.counts, 0, (2 * counters() + 1) * sizeof *block.counts));
-    std::vector<EngineSignature> empty(kSignatures);
-    for (EngineSignature& row : empty) std::fill_n(row.cases, kEngineCases, ~std::uint64_t{0});
-    check(cudaMemcpy(block.signatures.rows, empty.data(), empty.size() * sizeof empty[0], cudaMemcpyHostToDevice));
+    const std::size_t row_bytes = table.row_words() * sizeof *table.rows, case_bytes = kEngineCases * sizeof kNoCase;
+    check(cudaMemset(table.rows, 0, table.size * row_bytes));
+    check(cudaMemset2D(table.cases(table.rows), row_bytes, 0xff, case_bytes, table.size));  // kNoCase
     return block;
   }
 
@@ -89,19 +92,21 @@ class CudaEngine final : public DeviceEngine {
     block.wrong = buffers.wrong.at_least(words);
     block.buckets = buffers.buckets.at_least(2 * pairs);
     block.extremes = block.buckets + pairs;
-    block.lanes.count = static_cast<int>(lanes_.size());
     std::uint32_t* of_lanes = buffers.lane_words.at_least(words * (2 * lanes_.size() + 1));
     std::uint32_t* none = of_lanes + words * 2 * lanes_.size();
     check(cudaMemset(none, 0, words * sizeof *none));
+    buffers.lanes_on_host.clear();
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      const Lane& lane = *lanes_[l];
-      if (lane.is_exact()) {  // it is the truth, and declines nothing
-        block.lanes.lane[l] = {block.truth, none, lane.algorithm, -1};
-        continue;
+      if (lanes_[l]->exact) {  // it is the truth, and declines nothing
+        buffers.lanes_on_host.push_back({block.truth, none});
+      } else {
+        buffers.lanes_on_host.push_back({of_lanes + 2 * words * l, of_lanes + 2 * words * l + words});
       }
-      const int slot = static_cast<int>(lane.scalar) * kTargetCount + static_cast<int>(lane.target);
-      block.lanes.lane[l] = {of_lanes + 2 * words * l, of_lanes + 2 * words * l + words, lane.algorithm, slot};
     }
+    LaneWords* table = buffers.lanes.at_least(lanes_.size());
+    check(cudaMemcpy(table, buffers.lanes_on_host.data(), lanes_.size() * sizeof *table, cudaMemcpyHostToDevice));
+    block.lanes = {table, static_cast<std::uint32_t>(lanes_.size()), groups_on_device_.at_least(0),
+                   static_cast<std::uint32_t>(groups_.size())};
     std::uint32_t* places = buffers.places.at_least(kEngineLists * pairs);
     std::uint32_t* lengths = buffers.lengths.at_least(kEngineLists);
     for (int k = 0; k < kEngineLists; ++k) block.lists[k] = {places + pairs * static_cast<std::size_t>(k), lengths + k};
@@ -115,7 +120,7 @@ class CudaEngine final : public DeviceEngine {
     // No stratum has pairs that are not finite: nothing is declined, and `wrong` is free until it is written.
     buffers.exact.decide(block.pairs, truth, block.wrong, nullptr, stream);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      const LaneWords& words = block.lanes.lane[l];
+      const LaneWords& words = buffers.lanes_on_host[l];
       if (words.intersects == truth) continue;
       launch_lane(*lanes_[l], buffers.exact, block.pairs, const_cast<std::uint32_t*>(words.intersects),
                   const_cast<std::uint32_t*>(words.declined), stream);
@@ -133,38 +138,26 @@ class CudaEngine final : public DeviceEngine {
   EngineResult fetch(const EngineBlock& block) {
     std::uint32_t lengths[2];
     check(cudaMemcpy(lengths, block.undecided.count, sizeof lengths, cudaMemcpyDeviceToHost));
-    if (lengths[0] > kMostUndecided)
-      throw std::runtime_error("the engine left too many pairs to the host; run fewer at once");
-    if (lengths[1]) throw std::runtime_error("the engine found more signatures than it can hold");
-    EngineResult result;
-    std::vector<std::uint64_t> counts(2 * counters() + 1);
-    check(cudaMemcpy(counts.data(), block.counts, counts.size() * sizeof counts[0], cudaMemcpyDeviceToHost));
-    const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counters());
-    result.disagreements = counts.back();
-    result.counts.assign(counts.begin(), middle);
-    if (block.axis != Axis::none) result.extreme_counts.assign(middle, counts.end() - 1);
-    result.undecided.resize(lengths[0]);
-    check(cudaMemcpy(result.undecided.data(), block.undecided.indices, lengths[0] * sizeof result.undecided[0],
-                     cudaMemcpyDeviceToHost));
-    std::sort(result.undecided.begin(), result.undecided.end());
-    result.signatures.resize(kSignatures);
-    check(cudaMemcpy(result.signatures.data(), block.signatures.rows, kSignatures * sizeof result.signatures[0],
-                     cudaMemcpyDeviceToHost));
-    std::erase_if(result.signatures, [](const EngineSignature& row) { return row.bits == 0; });
-    std::sort(result.signatures.begin(), result.signatures.end(),
-              [](const EngineSignature& l, const EngineSignature& r) { return l.bits < r.bits; });
-    return result;
+    EngineTotals totals{lengths[0], lengths[1], {}, {}, {}};
+    const auto bring = [](std::vector<std::uint64_t>& to, const std::uint64_t* from, std::size_t count) {
+      to.resize(count);
+      check(cudaMemcpy(to.data(), from, count * sizeof *from, cudaMemcpyDeviceToHost));
+    };
+    bring(totals.undecided, block.undecided.indices, std::min(totals.left, kLimits.undecided));
+    bring(totals.rows, block.signatures.rows, std::size_t{block.signatures.size} * block.signatures.row_words());
+    bring(totals.counts, block.counts, 2 * counters() + 1);
+    return result_of(std::move(totals), block.signatures, groups_, block.axis);
   }
 
-  std::size_t counters() const { return engine_counters(static_cast<int>(lanes_.size())); }
+  std::size_t counters() const { return engine_counters(lanes_.size()); }
 
   int ordinal_;
   std::vector<const Lane*> lanes_;
+  std::vector<LaneGroup> groups_;
   std::unique_ptr<Buffers> buffers_[kBlocksAtOnce];
+  DeviceArray<LaneGroup> groups_on_device_;
   DeviceArray<std::uint32_t> lengths_;
-  DeviceArray<std::uint64_t> undecided_;
-  DeviceArray<unsigned long long> counts_;
-  DeviceArray<EngineSignature> signatures_;
+  DeviceArray<std::uint64_t> undecided_, counts_, rows_;
 };
 
 }  // namespace

@@ -6,32 +6,43 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/lanes.h"
 #include "core/margin/bucket.h"
+#include "core/verdict.h"
 
 namespace graze::cuda {
 
 inline constexpr int kEngineCases = 4;  // kept of each signature
 
-// A signature in bits, lowest first: 24 of marks, 3 a lane of the algorithm, f32 then f64, each in the order of Target
-// (0: did not run; 1: right; 2: false positive; 3: false negative; 4: declined); 8 of the bucket plus kBucketMost; 2 of
-// each hull's dimension; 1: coplanar; 2 of the contact's dimension plus one; 4 of the algorithm, plus one.
-using SignatureBits = std::uint64_t;
+// A run of lanes of one subject: lanes [first, first + count) of the engine's.
+struct LaneGroup {
+  std::uint32_t first, count;
+};
 
+// The groups of these lanes; exact lanes, which have no failures, are in none.   Requires: lanes in table order.
+std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes);
+
+// One subject's failure, and the pairs that fail so.
 struct EngineSignature {
-  SignatureBits bits = 0;
+  Contact contact = Contact::none;  // none: the triangles are disjoint
+  int dimension_a = 2, dimension_b = 2;
+  bool coplanar = false;
+  Bucket bucket = 0;
+  LaneGroup lanes{};
+  std::vector<Verdict> verdicts;  // of each lane of the group
   std::uint64_t count = 0;
-  std::uint64_t cases[kEngineCases] = {};  // the smallest indices; ~0 for none
+  std::vector<std::uint64_t> cases;  // the smallest indices, sorted, at most kEngineCases
+
+  Verdict truth() const { return contact == Contact::none ? Verdict::disjoint : Verdict::intersects; }
 };
 
 // What a run found. Pairs whose bucket the device cannot decide are in `undecided`, and counted nowhere else.
 struct EngineResult {
   std::uint64_t done = 0;  // pairs of the run: fewer than asked for when `undecided` was about to overflow
   // By bucket plus kBucketMost: pairs, intersecting ones, then of each lane: false positives, false negatives,
-  // declined, differing from the cpu lane (always 0 here: no cpu lane runs).
+  // declined.
   std::vector<std::uint64_t> counts;
   std::vector<std::uint64_t> extreme_counts;  // the same by place_on_axis plus kBucketMost; empty without an axis
   std::vector<EngineSignature> signatures;
@@ -44,7 +55,8 @@ class DeviceEngine {
  public:
   virtual ~DeviceEngine() = default;
 
-  // Pairs [first, first + count) of the stratum (its place in kStrata).   Throws: std::runtime_error on any CUDA error.
+  // Pairs [first, first + count) of the stratum (its place in kStrata).
+  // Throws: std::runtime_error on any CUDA error, and when signatures or undecided pairs outgrow their memory.
   virtual EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) = 0;
 };
 

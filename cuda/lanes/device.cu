@@ -10,6 +10,40 @@
 #include "cuda/lanes/kernels.cuh"
 
 namespace graze::cuda {
+
+#define GRAZE_DECLARE(name)             \
+  namespace name {                      \
+  extern const VariantKernels kKernels; \
+  }
+#define GRAZE_DECLARE_host_rounded(name)
+#define GRAZE_DECLARE_host_contracted(name)
+#define GRAZE_DECLARE_host_fast(name)
+#define GRAZE_DECLARE_device_exact(name)
+#define GRAZE_DECLARE_device_rounded(name) GRAZE_DECLARE(name)
+#define GRAZE_DECLARE_device_contracted(name) GRAZE_DECLARE(name)
+#define GRAZE_DECLARE_device_fast(name) GRAZE_DECLARE(name)
+#define GRAZE_VARIANT(name, id, runs_on, arithmetic, ...) GRAZE_DECLARE_##runs_on##_##arithmetic(name)
+#include "core/variants.inc"
+#undef GRAZE_VARIANT
+
+const VariantKernels& kernels_of(Variant variant) {
+#define GRAZE_KERNELS_host_rounded(name) nullptr
+#define GRAZE_KERNELS_host_contracted(name) nullptr
+#define GRAZE_KERNELS_host_fast(name) nullptr
+#define GRAZE_KERNELS_device_exact(name) nullptr
+#define GRAZE_KERNELS_device_rounded(name) &name::kKernels
+#define GRAZE_KERNELS_device_contracted(name) &name::kKernels
+#define GRAZE_KERNELS_device_fast(name) &name::kKernels
+#define GRAZE_VARIANT(name, id, runs_on, arithmetic, ...) GRAZE_KERNELS_##runs_on##_##arithmetic(name),
+  static constexpr const VariantKernels* kBuilt[] = {
+#include "core/variants.inc"
+  };
+#undef GRAZE_VARIANT
+  const VariantKernels* kernels = kBuilt[static_cast<int>(variant)];
+  if (!kernels) throw std::logic_error(std::string(graze::name(variant)) + ": expected a variant with device kernels");
+  return *kernels;
+}
+
 namespace {
 
 std::string version(int packed) { return std::to_string(packed / 1000) + "." + std::to_string(packed % 1000 / 10); }
@@ -18,10 +52,10 @@ std::string version(int packed) { return std::to_string(packed / 1000) + "." + s
 
 void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream) {
-  if (lane.is_exact()) return exact.decide(pairs, intersects, declined, nullptr, stream);
-  const DeviceKernels<LaunchDecide>& kernels = lane.target == Target::cuda_fma ? kDecideFma : kDecideNofma;
-  kernels[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pairs, intersects, declined,
-                                                                                           stream);
+  if (lane.exact) return exact.decide(pairs, intersects, declined, nullptr, stream);
+  kernels_of(lane.variant)
+      .decide[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pairs, intersects,
+                                                                                               declined, stream);
   check(cudaGetLastError());
 }
 
@@ -45,6 +79,7 @@ class CudaDevice final : public Device {
               std::vector<LaneBits>& bits) override {
     bits.resize(cuda_lanes.size());
     if (pairs.empty()) return;
+    check(cudaSetDevice(0));  // an engine of another device may have left that one current
     // Whole thread blocks, so that each writes whole words.
     const std::size_t stride = (pairs.size() + kThreads - 1) / kThreads * kThreads;
     staging_.resize(stride * kCoordinates);

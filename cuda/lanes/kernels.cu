@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes, and the same algorithms tracing their intermediate values. Compiled twice, each time in its own
-// namespace GRAZE_FP: with -fmad=false, and with nvcc's default contraction. Nothing else may be defined here, or the
-// linker would mix the variants. The twins are generated from the PTX of this file: see cuda/twin/twin.h.
+// The device lanes, and the same algorithms tracing their intermediate values. Compiled once for each device variant,
+// each time with its flags and in its own namespace GRAZE_FP. Nothing else may be defined here, or the linker would mix
+// the variants. The twins are generated from the PTX of this file: see cuda/twin/twin.h.
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/trace.h"
 
@@ -23,7 +23,7 @@ __device__ Triangles<Real> widened(const DevicePairs& pairs, std::uint32_t i) {
   return {{vertex(0), vertex(1), vertex(2)}, {vertex(3), vertex(4), vertex(5)}};
 }
 
-// One thread a pair. The algorithm is its place in Algorithms, so that the twin generator knows the kernel by its name.
+// One thread per pair. An algorithm is its place in Algorithms, so that the twin generator knows a kernel by name.
 template <int algorithm, class Real>
 __global__ void decide_pairs(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
@@ -72,11 +72,9 @@ constexpr DeviceKernels<LaunchTrace> trace_launchers(std::integer_sequence<int, 
   return {std::array<LaunchTrace, 2>{launch_trace<algorithm, float>, launch_trace<algorithm, double>}...};
 }
 
-}  // namespace GRAZE_FP
+extern const VariantKernels kKernels = {decide_launchers(std::make_integer_sequence<int, kAlgorithmCount>()),
+                                        trace_launchers(std::make_integer_sequence<int, kAlgorithmCount>())};
 
-extern const DeviceKernels<LaunchDecide> GRAZE_DECIDE_KERNELS =
-    decide_launchers(std::make_integer_sequence<int, kAlgorithmCount>());
-extern const DeviceKernels<LaunchTrace> GRAZE_TRACE_KERNELS =
-    trace_launchers(std::make_integer_sequence<int, kAlgorithmCount>());
+}  // namespace GRAZE_FP
 
 }  // namespace graze::cuda

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes' kernels, a table a build variant: [algorithm][scalar]. Device code only; see cuda/lanes/device.h.
+// The device lanes' kernels, in tables [algorithm][scalar], one for each device variant in a namespace of its own.
+// Device code only; see cuda/lanes/device.h.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -8,6 +9,7 @@
 #include <cstdint>
 
 #include "core/algorithms/algorithms.h"
+#include "core/variants.h"
 #include "cuda/lanes/device_pairs.h"
 
 namespace graze::cuda {
@@ -23,7 +25,13 @@ using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStrea
 
 template <class Launch>
 using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;
-extern const DeviceKernels<LaunchDecide> kDecideNofma, kDecideFma;
-extern const DeviceKernels<LaunchTrace> kTraceNofma, kTraceFma;
+
+struct VariantKernels {
+  DeviceKernels<LaunchDecide> decide;
+  DeviceKernels<LaunchTrace> trace;
+};
+
+// Throws: std::logic_error for a variant that no kernel is built in.
+const VariantKernels& kernels_of(Variant variant);
 
 }  // namespace graze::cuda

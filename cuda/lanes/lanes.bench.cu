@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs a second of every CUDA lane on pairs that already lie in the device's memory, by stratum; and beside them what
+// Pairs per second of each CUDA lane on pairs that already lie in the device's memory, by stratum; and beside them what
 // bounds them, the memory: a copy, and a kernel that only reads the pairs (72 bytes each) and writes a bit.
 // The exact lane must first give the host's bits on a sample. Prints a line and succeeds where there is no device.
 #include <benchmark/benchmark.h>
@@ -128,7 +128,7 @@ void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
   check(cudaMemcpy(stages, counts, sizeof stages, cudaMemcpyDeviceToHost));
 }
 
-// Rounds [first, end) of every stratum, each of kPairs pairs, by device and host: a line each with hashes of the
+// Rounds [first, end) of every stratum, each of kPairs pairs, by device and host: one line for each, with hashes of the
 // verdicts.   Returns: whether none differs.
 bool device_is_host(std::uint64_t first, std::uint64_t end) {
   if (first >= end) throw std::invalid_argument("expected FIRST below END");
@@ -179,7 +179,7 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
 
 void measure_lane(benchmark::State& state, Resident& resident, int stratum, const Lane& lane) {
   resident.hold(stratum);
-  if (lane.is_exact()) {
+  if (lane.exact) {
     unsigned long long stages[exact::kStages];
     const Lane& host = *(&lane - 1);  // exact/f32/cpu stands before exact/f32/cuda
     decide(resident, stages);

@@ -11,7 +11,7 @@ namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace {
 
-// A kernel a stratum: one for all would need the registers and the stack of the dearest.
+// A kernel for each stratum: one for all would need the registers and the stack of the most expensive.
 template <strata::Stratum stratum>
 __global__ void generate_pairs(float* coordinates, std::uint32_t count, std::uint64_t seed, std::uint64_t first) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;

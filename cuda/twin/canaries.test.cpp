@@ -12,7 +12,9 @@
 
 namespace graze::cuda {
 
-extern const TwinTable kTwinsWrong;  // contracted with the right product first
+namespace twin_wrong {
+extern const TwinTable kTwinTable;  // contracted with the right product first
+}
 
 namespace {
 
@@ -28,18 +30,18 @@ const std::string& text(const corpus::Entry& entry, const char* key) {
   return *value;
 }
 
-// The lane "ALGORITHM/SCALAR" of the canary, in this target.
-const Lane& lane_of(const corpus::Entry& canary, Target target) {
-  const std::string id = text(canary, "lane") + "/" + std::string(name(target));
+// The lane "ALGORITHM/SCALAR" of the canary, in this variant.
+const Lane& lane_of(const corpus::Entry& canary, Variant variant) {
+  const std::string id = text(canary, "lane") + "/" + std::string(name(variant));
   for (const Lane& lane : lanes()) {
     if (lane.id == id) return lane;
   }
   throw std::runtime_error("no lane " + id);
 }
 
-Verdict twin_says(const corpus::Entry& canary, Target target) {
-  const Lane& lane = lane_of(canary, target);
-  return decide(twin_block(lane.algorithm, lane.scalar, target), canary.pair);
+Verdict twin_says(const corpus::Entry& canary, Variant variant) {
+  const Lane& lane = lane_of(canary, variant);
+  return decide(twin_block(lane), canary.pair);
 }
 
 std::vector<corpus::Entry> canaries(const std::string& kind) {
@@ -58,8 +60,8 @@ TEST(Canaries, CudaFmaAndCudaNofmaDiffer) {
   const std::vector<corpus::Entry> all = canaries("cuda_nofma");
   expect_every_kernel(all);
   for (const corpus::Entry& canary : all) {
-    EXPECT_EQ(name(twin_says(canary, Target::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
-    EXPECT_EQ(name(twin_says(canary, Target::cuda_nofma)), text(canary, "other")) << text(canary, "name");
+    EXPECT_EQ(name(twin_says(canary, Variant::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
+    EXPECT_EQ(name(twin_says(canary, Variant::cuda_nofma)), text(canary, "other")) << text(canary, "name");
     EXPECT_NE(text(canary, "cuda_fma"), text(canary, "other"));
   }
 }
@@ -68,11 +70,11 @@ TEST(Canaries, AWrongContractionRuleIsCaught) {
   const std::vector<corpus::Entry> all = canaries("right_first");
   expect_every_kernel(all);
   for (const corpus::Entry& canary : all) {
-    const Lane& lane = lane_of(canary, Target::cuda_fma);
+    const Lane& lane = lane_of(canary, Variant::cuda_fma);
     const TwinRow& wrong =
-        kTwinsWrong.rows[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
-    EXPECT_EQ(name(twin_says(canary, Target::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
-    EXPECT_NE(decide(wrong.decide, canary.pair), twin_says(canary, Target::cuda_fma)) << text(canary, "name");
+        twin_wrong::kTwinTable.rows[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
+    EXPECT_EQ(name(twin_says(canary, Variant::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
+    EXPECT_NE(decide(wrong.decide, canary.pair), twin_says(canary, Variant::cuda_fma)) << text(canary, "name");
   }
 }
 
@@ -83,12 +85,12 @@ TEST(Canaries, CpuFmaAndCudaFmaDiffer) {
   const std::vector<corpus::Entry> all = canaries("cpu_fma_gcc");
 #endif
   ASSERT_FALSE(all.empty());
-  if (!runs_on_this_cpu(lane_of(all[0], Target::cpu_fma))) GTEST_SKIP() << "this processor has no FMA instructions";
+  if (!runs_on_this_cpu(lane_of(all[0], Variant::cpu_fma))) GTEST_SKIP() << "this processor has no FMA instructions";
   std::map<std::string, int> differ;
   for (const corpus::Entry& canary : all) {
-    EXPECT_EQ(name(twin_says(canary, Target::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
+    EXPECT_EQ(name(twin_says(canary, Variant::cuda_fma)), text(canary, "cuda_fma")) << text(canary, "name");
     differ[text(canary, "lane")] +=
-        decide(lane_of(canary, Target::cpu_fma).decide, canary.pair) != twin_says(canary, Target::cuda_fma);
+        decide(lane_of(canary, Variant::cpu_fma).decide, canary.pair) != twin_says(canary, Variant::cuda_fma);
   }
   int lanes_that_differ = 0;
   for (const auto& [lane, count] : differ) {
@@ -105,11 +107,13 @@ TEST(Canaries, CpuFmaAndCpuDiffer) {
   std::map<std::string, int> differ;
   for (const char* kind : {"cuda_nofma", "cpu_fma_gcc", "cpu_fma_clang", "right_first"}) {
     for (const corpus::Entry& canary : canaries(kind)) {
-      if (!runs_on_this_cpu(lane_of(canary, Target::cpu_fma))) GTEST_SKIP() << "this processor has no FMA instructions";
-      differ[text(canary, "lane")] += decide(lane_of(canary, Target::cpu_fma).decide, canary.pair) !=
-                                      decide(lane_of(canary, Target::cpu).decide, canary.pair);
+      if (!runs_on_this_cpu(lane_of(canary, Variant::cpu_fma)))
+        GTEST_SKIP() << "this processor has no FMA instructions";
+      differ[text(canary, "lane")] += decide(lane_of(canary, Variant::cpu_fma).decide, canary.pair) !=
+                                      decide(lane_of(canary, Variant::cpu).decide, canary.pair);
     }
   }
+  EXPECT_EQ(differ.size(), std::size_t{2} * kAlgorithmCount);  // every lane has canaries
   for (const auto& [lane, count] : differ) EXPECT_GT(count, 0) << lane;
 }
 

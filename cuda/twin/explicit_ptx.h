@@ -4,8 +4,11 @@
 
 #include <string>
 
+#include "core/variants.h"
+
 namespace graze::cuda {
 
-std::string explicit_ptx(bool contracted, bool wrong_rule);
+// Throws: std::invalid_argument for a variant without a twin.
+std::string explicit_ptx(Variant variant, bool wrong_rule);
 
 }  // namespace graze::cuda

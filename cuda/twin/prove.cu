@@ -26,8 +26,8 @@ constexpr std::uint32_t kBlockPairs = 1u << 23;  // a block of pairs: 604 MB of 
 // The explicit PTX, assembled by the driver for the device at hand.
 class ExplicitKernels {
  public:
-  ExplicitKernels(bool contracted, bool wrong_rule) {
-    const std::string ptx = explicit_ptx(contracted, wrong_rule);
+  ExplicitKernels(Variant variant, bool wrong_rule) {
+    const std::string ptx = explicit_ptx(variant, wrong_rule);
     check(cudaLibraryLoadData(&library_, ptx.c_str(), nullptr, nullptr, 0, nullptr, nullptr, 0));
   }
   ExplicitKernels(const ExplicitKernels&) = delete;
@@ -57,14 +57,14 @@ class Prover {
  public:
   explicit Prover(const ProofOptions& options) : options_(options) {
     for (const Lane& lane : lanes()) {
-      if (!lane.is_cuda() || lane.is_exact() || !matches_any(options.lanes, lane.id)) continue;
+      if (!twin_block(lane) || !matches_any(options.lanes, lane.id)) continue;
       lanes_.push_back(&lane);
-      const TwinRow& row = twin_row(lane.algorithm, lane.scalar, lane.target);
+      const TwinRow& row = twin_row(lane);
       record_.lanes.push_back({lane.id, row.hash, row.trace_hash, std::vector<StratumProof>(strata::kStrataCount)});
       for (int s = 0; s < strata::kStrataCount; ++s)
         record_.lanes.back().strata[static_cast<std::size_t>(s)].stratum = strata::kStrata[s].id;
-      auto& module = explicit_[lane.target];
-      if (!module) module = std::make_unique<ExplicitKernels>(lane.target == Target::cuda_fma, options.wrong_rule);
+      auto& module = explicit_[lane.variant];
+      if (!module) module = std::make_unique<ExplicitKernels>(lane.variant, options.wrong_rule);
     }
   }
 
@@ -119,7 +119,7 @@ class Prover {
 
   void run_lane(const Lane& lane, const DevicePairs& block) {
     const auto a = static_cast<std::size_t>(lane.algorithm), s = static_cast<std::size_t>(lane.scalar);
-    const bool fma = lane.target == Target::cuda_fma;
+    const VariantKernels& built = kernels_of(lane.variant);
     const std::size_t words = (block.count + kThreads - 1) / kThreads * (kThreads / 32);
     std::uint32_t *yes[2], *no_answer[2];
     std::uint64_t* hashes[2];
@@ -128,11 +128,11 @@ class Prover {
       no_answer[v] = run_.declined[v].at_least(words);
       hashes[v] = run_.hashes[v].at_least(block.count);
     }
-    (fma ? kDecideFma : kDecideNofma)[a][s](block, yes[0], no_answer[0], nullptr);
-    (fma ? kTraceFma : kTraceNofma)[a][s](block, hashes[0], nullptr);
+    built.decide[a][s](block, yes[0], no_answer[0], nullptr);
+    built.trace[a][s](block, hashes[0], nullptr);
     check(cudaGetLastError());
-    const TwinRow& row = twin_row(lane.algorithm, lane.scalar, lane.target);
-    ExplicitKernels& kernels = *explicit_.at(lane.target);
+    const TwinRow& row = twin_row(lane);
+    ExplicitKernels& kernels = *explicit_.at(lane.variant);
     kernels.launch(row.symbol, block.count, block, yes[1], no_answer[1]);
     kernels.launch(row.trace_symbol, block.count, block, hashes[1]);
   }
@@ -176,8 +176,8 @@ class Prover {
                      cudaMemcpyDeviceToHost));
     check(
         cudaMemcpy(hashes.data(), run_.hashes[0].at_least(0), sample * sizeof(std::uint64_t), cudaMemcpyDeviceToHost));
-    const DecideBlock decide = twin_block(lane.algorithm, lane.scalar, lane.target);
-    const TraceBlock trace = twin_trace(lane.algorithm, lane.scalar, lane.target);
+    const DecideBlock decide = twin_block(lane);
+    const TraceBlock trace = twin_trace(lane);
 
     constexpr std::size_t kPart = 1 << 14;
     std::atomic<std::size_t> next = 0;
@@ -218,7 +218,7 @@ class Prover {
   const ProofOptions& options_;
   ProofRecord record_;
   std::vector<const Lane*> lanes_;
-  std::map<Target, std::unique_ptr<ExplicitKernels>> explicit_;
+  std::map<Variant, std::unique_ptr<ExplicitKernels>> explicit_;
   LaneRun run_;
   DeviceArray<float> coordinates_;
   DeviceArray<Differences> differences_;

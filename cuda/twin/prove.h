@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The proof that the twins are right on a device. Over all strata, and in every CUDA lane, verdicts and trace hashes of
+// Verifies the twins on a device. Over all strata, and in every CUDA lane, verdicts and trace hashes of
 // the default build are compared with those of the explicit PTX, in which every contraction is written out and which
 // the driver assembles; and on a sample with the twin, which is generated from that explicit PTX.
 #pragma once

@@ -40,7 +40,7 @@ TEST_P(StoredPtx, IsWhatNvccWrites) {
       << "core/ or cuda/lanes/kernels.cu changed: store the new PTX with the build target graze_update_ptx";
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, StoredPtx, testing::Values("fma", "nofma"),
+INSTANTIATE_TEST_SUITE_P(Variants, StoredPtx, testing::Values("cuda_fma", "cuda_nofma"),
                          [](const auto& row) { return std::string(row.param); });
 
 TEST(StoredPtx, HasNoPathOfItsMachine) {

@@ -9,7 +9,7 @@
 
 namespace graze::cuda {
 
-// Runs the kernel (inputs, slots), one thread an input of `input_bytes`; each writes its `slots` words.
+// Runs the kernel (inputs, slots), one thread for each input of `input_bytes`; each writes its `slots` words.
 // Throws: std::runtime_error on any CUDA error.   Requires: a device.
 std::vector<std::uint64_t> run_ptx(const std::string& ptx, const std::string& kernel, const void* inputs,
                                    std::size_t count, std::size_t input_bytes, std::size_t slots);

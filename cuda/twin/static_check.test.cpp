@@ -49,7 +49,7 @@ Code read_cubin(const std::string& path) {
   return code;
 }
 
-// Floating-point operations in machine code of sm_70 to sm_120: 16 bytes an instruction, told by its low nine bits.
+// Floating-point operations in machine code of sm_70 to sm_120: 16 bytes per instruction, told by its low nine bits.
 std::map<std::string, int> operations(const std::string& code) {
   static const std::map<int, std::string> kNames = {{0x20, "FMUL"}, {0x21, "FADD"}, {0x23, "FFMA"},
                                                     {0x28, "DMUL"}, {0x29, "DADD"}, {0x2b, "DFMA"}};
@@ -63,7 +63,7 @@ std::map<std::string, int> operations(const std::string& code) {
 
 std::string generated(const std::string& name) { return std::string(GRAZE_GENERATED_DIR "/") + name; }
 
-bool has_nvcc() { return std::filesystem::exists(GRAZE_GENERATED_DIR "/fma.cubin"); }
+bool has_nvcc() { return std::filesystem::exists(GRAZE_GENERATED_DIR "/cuda_fma.cubin"); }
 
 int same_code(const Code& a, const Code& b) {
   int same = 0;
@@ -85,15 +85,16 @@ TEST_P(StaticCheck, ExplicitPtxHasTheOperationsOfTheDefaultBuild) {
   }
   RecordProperty("same_code", same_code(built, written));
   // The others differ in the order of instructions and in registers. nvcc 13.0.88: 16 of the 20 contracted ones.
-  EXPECT_GE(same_code(built, written), std::string(GetParam()) == "nofma" ? 20 : 14);
+  EXPECT_GE(same_code(built, written), std::string(GetParam()) == "cuda_nofma" ? 20 : 14);
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, StaticCheck, testing::Values("fma", "nofma"),
+INSTANTIATE_TEST_SUITE_P(Variants, StaticCheck, testing::Values("cuda_fma", "cuda_nofma"),
                          [](const auto& row) { return std::string(row.param); });
 
 TEST(StaticCheck, CatchesTheRightProductFirst) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
-  const Code built = read_cubin(generated("fma.cubin")), wrong = read_cubin(generated("fma.right_first.cubin"));
+  const Code built = read_cubin(generated("cuda_fma.cubin")),
+             wrong = read_cubin(generated("cuda_fma.right_first.cubin"));
   // Every kernel has an a*b - c*d: none is the same code. (Its counts are the same: one fused, one not.)
   EXPECT_EQ(same_code(built, wrong), 0);
 }
@@ -101,7 +102,8 @@ TEST(StaticCheck, CatchesTheRightProductFirst) {
 TEST(StaticCheck, SeesContraction) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
   // Only division and square root may contain fused operations in the build without contraction.
-  const Code contracted = read_cubin(generated("fma.cubin")), not_contracted = read_cubin(generated("nofma.cubin"));
+  const Code contracted = read_cubin(generated("cuda_fma.cubin")),
+             not_contracted = read_cubin(generated("cuda_nofma.cubin"));
   for (const auto& [kernel, code] : not_contracted) {
     if (kernel.find("decide_pairsILi2E") == std::string::npos) continue;  // moller_1997 has neither
     EXPECT_EQ(operations(code).count("FFMA") + operations(code).count("DFMA"), 0u) << kernel;

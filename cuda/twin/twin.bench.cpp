@@ -42,12 +42,12 @@ const bool kRegistered = [] {
   for (strata::Stratum stratum : {strata::Stratum::uniform, strata::Stratum::near_edge_edge}) {
     const Lane* cpu = nullptr;
     for (const Lane& lane : lanes()) {
-      if (lane.target == Target::cpu) cpu = &lane;
-      const DecideBlock decide = lane.is_cuda()               ? twin_block(lane.algorithm, lane.scalar, lane.target)
-                                 : lane.target == Target::cpu ? lane.decide
-                                                              : nullptr;
+      if (lane.variant == Variant::cpu) cpu = &lane;
+      const DecideBlock decide = lane.is_cuda()                 ? twin_block(lane)
+                                 : lane.variant == Variant::cpu ? lane.decide
+                                                                : nullptr;
       if (!decide) continue;
-      const Lane* same_as = lane.target == Target::cuda_nofma ? cpu : nullptr;
+      const Lane* same_as = lane.variant == Variant::cuda_nofma ? cpu : nullptr;
       const std::string name =
           lane.id + (lane.is_cuda() ? " (twin)/" : "/") + std::string(strata::kStrata[static_cast<int>(stratum)].id);
       benchmark::RegisterBenchmark(name.c_str(),

@@ -9,7 +9,7 @@
 namespace graze::cuda {
 namespace {
 
-// What a record in cuda/proofs says of one kernel; see twin_generator/proofs.h.
+// What a record in cuda/proofs says of one kernel; see cuda/twin/generator/proofs.h.
 struct Proof {
   std::string_view hash, trace_hash;
   std::string_view device, toolkit;
@@ -20,42 +20,71 @@ constexpr Proof kProofs[] = {
 #include "cuda/generated/twin_proofs.inc"
     {}};
 
-const TwinTable& contracted() {
+// A variant's tables: for processors with FMA instructions, and for others. Null without a twin.
+struct TwinTables {
+  const TwinTable *table = nullptr, *portable = nullptr;
+};
+
+#define GRAZE_TABLES_no_twin_rounded(name) \
+  {}
+#define GRAZE_TABLES_no_twin_contracted(name) \
+  {}
+#define GRAZE_TABLES_no_twin_fast(name) \
+  {}
+#define GRAZE_TABLES_no_twin_exact(name) \
+  {}
+#define GRAZE_TABLES_twin_rounded(name) \
+  { &twin_##name::kTwinTable, &twin_##name::kTwinTable }
+#define GRAZE_TABLES_twin_contracted(name) \
+  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable }
+#define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_TABLES_##twin##_##arithmetic(name),
+constexpr TwinTables kTables[] = {
+#include "core/variants.inc"
+};
+#undef GRAZE_VARIANT
+
+const TwinTable* twin_table(Variant variant) {
 #if defined(__x86_64__)
   static const bool has_fma = __builtin_cpu_supports("fma");
-  return has_fma ? kTwinsFma : kTwinsFmaPortable;
 #else
-  return kTwinsFmaPortable;
+  constexpr bool has_fma = false;
 #endif
+  const TwinTables& tables = kTables[static_cast<int>(variant)];
+  return has_fma ? tables.table : tables.portable;
 }
 
 }  // namespace
 
-const TwinRow& twin_row(int algorithm, Scalar scalar, Target target) {
+const TwinRow& twin_row(const Lane& lane) {
   static const TwinRow kNone;
-  const TwinTable* table = target == Target::cuda_fma     ? &contracted()
-                           : target == Target::cuda_nofma ? &kTwinsNofma
-                                                          : nullptr;
-  return table ? table->rows.at(static_cast<std::size_t>(algorithm)).at(static_cast<std::size_t>(scalar)) : kNone;
+  const TwinTable* table = twin_table(lane.variant);
+  return table && lane.algorithm >= 0
+             ? table->rows.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar))
+             : kNone;
 }
 
-DecideBlock twin_block(int algorithm, Scalar scalar, Target target) {
-  return twin_row(algorithm, scalar, target).decide;
-}
+DecideBlock twin_block(const Lane& lane) { return twin_row(lane).decide; }
+
 DecideBlock block_on_host(const Lane& lane) {
   if (lane.decide) return lane.decide;
-  return lane.is_exact() ? (&lane - 1)->decide : twin_block(lane.algorithm, lane.scalar, lane.target);
+  if (!lane.exact) return twin_block(lane);
+  const Lane* on_cpu = counterpart(lane, Variant::cpu);
+  return on_cpu ? on_cpu->decide : nullptr;
 }
 
-TraceBlock twin_trace(int algorithm, Scalar scalar, Target target) { return twin_row(algorithm, scalar, target).trace; }
-const char* twin_toolkit() { return contracted().toolkit; }
-const char* twin_hash(int algorithm, Scalar scalar, Target target) { return twin_row(algorithm, scalar, target).hash; }
-const char* twin_trace_hash(int algorithm, Scalar scalar, Target target) {
-  return twin_row(algorithm, scalar, target).trace_hash;
+TraceBlock twin_trace(const Lane& lane) { return twin_row(lane).trace; }
+const char* twin_hash(const Lane& lane) { return twin_row(lane).hash; }
+const char* twin_trace_hash(const Lane& lane) { return twin_row(lane).trace_hash; }
+
+const char* twin_toolkit() {
+  for (const VariantInfo& row : kVariants) {
+    if (const TwinTable* table = twin_table(row.variant)) return table->toolkit;
+  }
+  return "";
 }
 
-std::string twin_evidence(int algorithm, Scalar scalar, Target target) {
-  const TwinRow& row = twin_row(algorithm, scalar, target);
+std::string twin_evidence(const Lane& lane) {
+  const TwinRow& row = twin_row(lane);
   for (const Proof& proof : kProofs) {
     if (row.decide && proof.hash == row.hash && proof.trace_hash == row.trace_hash) {
       return fmt::format("twin, verified on {}, nvcc {}, {:.3g} pairs", proof.device, proof.toolkit, proof.pairs);
@@ -64,12 +93,10 @@ std::string twin_evidence(int algorithm, Scalar scalar, Target target) {
   return "twin";
 }
 
-std::span<const ContractionSite> contraction_sites(int algorithm, Scalar scalar) {
-  return twin_row(algorithm, scalar, Target::cuda_fma).sites;
-}
+std::span<const ContractionSite> contraction_sites(const Lane& lane) { return twin_row(lane).sites; }
 
-Verdict decide_fusing(int algorithm, Scalar scalar, const Pair& pair, std::span<const std::uint64_t> fused) {
-  const TwinRow& row = twin_row(algorithm, scalar, Target::cuda_fma);
+Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused) {
+  const TwinRow& row = twin_row(lane);
   if (!row.decide_fusing || fused.size() * 64 < row.sites.size())
     throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");
   return row.decide_fusing(pair, fused.data());

@@ -12,7 +12,7 @@
 namespace graze::cuda {
 
 // The twin of a published CUDA lane; null where there is none.
-DecideBlock twin_block(int algorithm, Scalar scalar, Target target);
+DecideBlock twin_block(const Lane& lane);
 
 // What gives the lane's verdicts on the host: the lane itself, or the twin of a CUDA lane; that of the exact CUDA lane
 // is the exact CPU lane, the same source. Null where there is none.
@@ -20,25 +20,25 @@ DecideBlock block_on_host(const Lane& lane);
 
 // Writes each pair's trace hash (see cuda/lanes/trace.h), the verdict folded in.
 using TraceBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* hashes);
-TraceBlock twin_trace(int algorithm, Scalar scalar, Target target);
+TraceBlock twin_trace(const Lane& lane);
 
 // Toolkit whose PTX the twins replay: "13.0.88".
 const char* twin_toolkit();
 
-// Hash of the kernel's PTX and its contractions: what a proof is a proof of. Empty where there is no twin.
-const char* twin_hash(int algorithm, Scalar scalar, Target target);
-const char* twin_trace_hash(int algorithm, Scalar scalar, Target target);
+// Hash of the kernel's PTX and its contractions: what a record in cuda/proofs holds for. Empty where there is no twin.
+const char* twin_hash(const Lane& lane);
+const char* twin_trace_hash(const Lane& lane);
 
 // "twin, verified on NVIDIA H100 80GB HBM3, nvcc 13.0.88, 1.2e+10 pairs" where a record in cuda/proofs says so of this
 // very kernel, else "twin".
-std::string twin_evidence(int algorithm, Scalar scalar, Target target);
+std::string twin_evidence(const Lane& lane);
 
 struct SourceLine {
   const char* file;  // from the repository's root; empty when there is none
   int line;
 };
 
-// An operation of a cuda-fma kernel with one rounding where the source has two.
+// An operation of a kernel with one rounding where the source has two.
 struct ContractionSite {
   SourceLine at;    // of the operation
   SourceLine from;  // into which the function with that line is inlined; what lies further out PTX does not say
@@ -46,11 +46,12 @@ struct ContractionSite {
   int ptx_line;     // of the addition
 };
 
-// The contraction sites of a cuda-fma lane, in program order.
-std::span<const ContractionSite> contraction_sites(int algorithm, Scalar scalar);
+// The contraction sites of a lane with a twin, in program order; none without a twin, or without contraction.
+std::span<const ContractionSite> contraction_sites(const Lane& lane);
 
-// The verdict of a cuda-fma lane with two roundings at every site whose bit is not set: none set is cuda-nofma, all set
-// is cuda-fma. Bit i % 64 of word i / 64 belongs to site i.   Requires: a word for each 64 sites begun.
-Verdict decide_fusing(int algorithm, Scalar scalar, const Pair& pair, std::span<const std::uint64_t> fused);
+// The verdict of a lane that has contraction sites, with two roundings at every site whose bit is not set: none set is
+// cuda-nofma, all set is the lane itself. Bit i % 64 of word i / 64 belongs to site i.   Requires: a word for each 64
+// sites begun.
+Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused);
 
 }  // namespace graze::cuda

@@ -50,20 +50,15 @@ std::string test_name(const std::string& id) {
 class Twin : public testing::TestWithParam<const Lane*> {
  protected:
   const Lane& lane() const { return *GetParam(); }
-  const Lane& sibling(Target target) const {
-    const auto found = std::find_if(lanes().begin(), lanes().end(), [&](const Lane& l) {
-      return l.algorithm == lane().algorithm && l.scalar == lane().scalar && l.target == target;
-    });
-    return *found;
-  }
-  DecideBlock twin(Target target) const { return twin_block(lane().algorithm, lane().scalar, target); }
+  const Lane& sibling(Variant variant) const { return *counterpart(lane(), variant); }
+  DecideBlock twin(Variant variant) const { return twin_block(sibling(variant)); }
 };
 
-// One test a kernel: algorithm and scalar.
+// One test for each kernel: algorithm and scalar.
 std::vector<const Lane*> cuda_fma_lanes() {
   std::vector<const Lane*> rows;
   for (const Lane& lane : lanes()) {
-    if (lane.target == Target::cuda_fma) rows.push_back(&lane);
+    if (lane.variant == Variant::cuda_fma) rows.push_back(&lane);
   }
   return rows;
 }
@@ -72,20 +67,19 @@ INSTANTIATE_TEST_SUITE_P(Lanes, Twin, testing::ValuesIn(cuda_fma_lanes()),
                          [](const auto& row) { return test_name(row.param->id); });
 
 TEST_P(Twin, EveryCudaLaneHasOne) {
-  for (Target target : {Target::cuda_fma, Target::cuda_nofma}) {
-    EXPECT_NE(twin(target), nullptr);
-    EXPECT_NE(twin_trace(lane().algorithm, lane().scalar, target), nullptr);
-    EXPECT_EQ(std::strlen(twin_hash(lane().algorithm, lane().scalar, target)), 16u);
-    EXPECT_TRUE(twin_evidence(lane().algorithm, lane().scalar, target).starts_with("twin"));
+  for (Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
+    EXPECT_NE(twin(variant), nullptr);
+    EXPECT_NE(twin_trace(sibling(variant)), nullptr);
+    EXPECT_EQ(std::strlen(twin_hash(sibling(variant))), 16u);
+    EXPECT_TRUE(twin_evidence(sibling(variant)).starts_with("twin"));
   }
-  EXPECT_EQ(twin(Target::cpu), nullptr);
-  EXPECT_STRNE(twin_hash(lane().algorithm, lane().scalar, Target::cuda_fma),
-               twin_hash(lane().algorithm, lane().scalar, Target::cuda_nofma));
+  EXPECT_EQ(twin(Variant::cpu), nullptr);
+  EXPECT_STRNE(twin_hash(sibling(Variant::cuda_fma)), twin_hash(sibling(Variant::cuda_nofma)));
 }
 
 TEST_P(Twin, WithoutContractionIsTheCpuLane) {
   ASSERT_GE(sample().size(), 100'000u);
-  EXPECT_TRUE(run(twin(Target::cuda_nofma), sample()) == run(sibling(Target::cpu).decide, sample()));
+  EXPECT_TRUE(run(twin(Variant::cuda_nofma), sample()) == run(sibling(Variant::cpu).decide, sample()));
 }
 
 // What the cpu lane's algorithm traces, compiled without contraction on this processor.
@@ -110,7 +104,7 @@ std::uint64_t traced(int algorithm, Scalar scalar, const Pair& pair, const std::
 
 TEST_P(Twin, WithoutContractionHasTheCpuLanesIntermediateBits) {
   std::vector<std::uint64_t> hashes(sample().size());
-  twin_trace(lane().algorithm, lane().scalar, Target::cuda_nofma)(sample().data(), sample().size(), hashes.data());
+  twin_trace(sibling(Variant::cuda_nofma))(sample().data(), sample().size(), hashes.data());
   int differ = 0;
   for (std::size_t i = 0; i < hashes.size(); ++i) {
     differ +=
@@ -121,35 +115,36 @@ TEST_P(Twin, WithoutContractionHasTheCpuLanesIntermediateBits) {
 
 TEST_P(Twin, ContractionChangesIntermediateBits) {
   std::vector<std::uint64_t> fused(sample().size()), unfused(sample().size());
-  twin_trace(lane().algorithm, lane().scalar, Target::cuda_fma)(sample().data(), sample().size(), fused.data());
-  twin_trace(lane().algorithm, lane().scalar, Target::cuda_nofma)(sample().data(), sample().size(), unfused.data());
+  twin_trace(sibling(Variant::cuda_fma))(sample().data(), sample().size(), fused.data());
+  twin_trace(sibling(Variant::cuda_nofma))(sample().data(), sample().size(), unfused.data());
   EXPECT_NE(fused, unfused);
 }
 
 TEST_P(Twin, WithFmaFromTheLibraryIsTheSame) {
   const auto a = static_cast<std::size_t>(lane().algorithm), s = static_cast<std::size_t>(lane().scalar);
-  EXPECT_TRUE(run(kTwinsFmaPortable.rows[a][s].decide, sample()) == run(twin(Target::cuda_fma), sample()));
+  EXPECT_TRUE(run(twin_cuda_fma_portable::kTwinTable.rows[a][s].decide, sample()) ==
+              run(twin(Variant::cuda_fma), sample()));
 }
 
 TEST_P(Twin, FusingAllSitesIsCudaFmaAndNoneIsCudaNofma) {
-  const std::size_t sites = contraction_sites(lane().algorithm, lane().scalar).size();
+  const std::size_t sites = contraction_sites(lane()).size();
   ASSERT_GT(sites, 0u);
   const std::vector<std::uint64_t> none((sites + 63) / 64, 0), all((sites + 63) / 64, ~std::uint64_t{0});
-  const Bits fused = run(twin(Target::cuda_fma), sample()), unfused = run(twin(Target::cuda_nofma), sample());
+  const Bits fused = run(twin(Variant::cuda_fma), sample()), unfused = run(twin(Variant::cuda_nofma), sample());
   int wrong = 0;
   for (std::size_t i = 0; i < sample().size(); ++i) {
     const auto says = [&](const Bits& bits) {
       return bits.intersects[i / 64] >> (i % 64) & 1 ? Verdict::intersects : Verdict::disjoint;
     };
-    wrong += decide_fusing(lane().algorithm, lane().scalar, sample()[i], all) != says(fused);
-    wrong += decide_fusing(lane().algorithm, lane().scalar, sample()[i], none) != says(unfused);
+    wrong += decide_fusing(lane(), sample()[i], all) != says(fused);
+    wrong += decide_fusing(lane(), sample()[i], none) != says(unfused);
   }
   EXPECT_EQ(wrong, 0);
 }
 
 TEST_P(Twin, SitesHaveTheirLines) {
   bool by_ptxas = false, by_front_end = false;
-  for (const ContractionSite& site : contraction_sites(lane().algorithm, lane().scalar)) {
+  for (const ContractionSite& site : contraction_sites(lane())) {
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(GRAZE_SOURCE_DIR) / site.at.file)) << site.at.file;
     EXPECT_GT(site.at.line, 0);
     (site.by_ptxas ? by_ptxas : by_front_end) = true;
@@ -158,11 +153,11 @@ TEST_P(Twin, SitesHaveTheirLines) {
 }
 
 TEST(Twin, DecideFusingRefusesTooFewBits) {
-  EXPECT_THROW(decide_fusing(0, Scalar::f32, Pair{}, {}), std::invalid_argument);
+  EXPECT_THROW(decide_fusing(*find_lane("projected_sat/f32/cuda-fma"), Pair{}, {}), std::invalid_argument);
 }
 
 TEST(Twin, BlocksOfAnyLengthFillWholeWords) {
-  const DecideBlock decide = twin_block(1, Scalar::f32, Target::cuda_fma);
+  const DecideBlock decide = twin_block(*find_lane("interval_overlap/f32/cuda-fma"));
   for (std::size_t n : {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}}) {
     std::vector<std::uint64_t> yes(2, ~std::uint64_t{0}), declined(2, ~std::uint64_t{0});
     decide(sample().data(), n, yes.data(), declined.data());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins' block functions. Compiled once a variant, each in its own namespace GRAZE_FP, with the generated kernels
+// The twins' block functions. Compiled once per variant, each in its own namespace GRAZE_FP, with the generated kernels
 // (GRAZE_TWIN_KERNELS) and without contraction by the host compiler; nothing else may be defined here, or the linker
 // would mix the variants.
 #include <string_view>
@@ -88,8 +88,9 @@ constexpr TwinTable table_of(const std::tuple<Kernel...>*) {
 }
 
 }  // namespace ptx
-}  // namespace GRAZE_FP
 
-extern const TwinTable GRAZE_TWINS = ptx::table_of(static_cast<const ptx::Kernels*>(nullptr));
+extern const TwinTable kTwinTable = ptx::table_of(static_cast<const ptx::Kernels*>(nullptr));
+
+}  // namespace GRAZE_FP
 
 }  // namespace graze::cuda

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins' functions, a table a build variant: [algorithm][scalar]. The contracted kernels are compiled twice, for
-// processors with and without FMA instructions; the verdicts are the same, the time is not.
+// The twins' functions, one table for each variant with a twin, in a namespace of its own: [algorithm][scalar]. The
+// contracted kernels are compiled twice, for processors with and without FMA instructions; the verdicts are the same,
+// the time is not.
 #pragma once
 
 #include <array>
@@ -25,9 +26,23 @@ struct TwinTable {
   const char* toolkit;
   std::array<std::array<TwinRow, 2>, kAlgorithmCount> rows;
 };
-extern const TwinTable kTwinsFma, kTwinsFmaPortable, kTwinsNofma;
+
+// twin_NAME of the variants with a twin, and twin_NAME_portable of those with contraction.
+#define GRAZE_DECLARE(name)          \
+  namespace name {                   \
+  extern const TwinTable kTwinTable; \
+  }
+#define GRAZE_DECLARE_no_twin_rounded(name)
+#define GRAZE_DECLARE_no_twin_contracted(name)
+#define GRAZE_DECLARE_no_twin_fast(name)
+#define GRAZE_DECLARE_no_twin_exact(name)
+#define GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name)
+#define GRAZE_DECLARE_twin_contracted(name) GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(twin_##name##_portable)
+#define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_DECLARE_##twin##_##arithmetic(name)
+#include "core/variants.inc"
+#undef GRAZE_VARIANT
 
 // A lane's row for this processor; one without functions where there is no twin.
-const TwinRow& twin_row(int algorithm, Scalar scalar, Target target);
+const TwinRow& twin_row(const Lane& lane);
 
 }  // namespace graze::cuda

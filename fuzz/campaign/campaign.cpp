@@ -20,8 +20,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint64_t kBatchPairs = 65536;                         // a transaction
-constexpr std::uint64_t kDeviceBatchPairs = std::uint64_t{1} << 32;  // a second or so on one device
+constexpr std::uint64_t kBatchPairs = 65536;  // a transaction of the CPU engine
 
 // The processor that this runs on.
 std::string machine_name() {
@@ -36,7 +35,7 @@ std::string machine_name() {
   return system.machine;
 }
 
-// The next batch: of the source that is least far, so that a campaign cut short has seen all of them.
+// The next batch: of the source of which the least is done, so that a campaign that is cut short has seen all of them.
 struct Batch {
   int source;
   std::uint64_t first, count;
@@ -47,7 +46,7 @@ std::optional<Batch> next_batch(const Campaign& campaign, const std::vector<std:
   for (std::size_t s = 0; s < done.size(); ++s) {
     const std::uint64_t left = campaign.sources[s].pairs - done[s];
     if (left == 0 || (next && next->first <= done[s])) continue;
-    const std::uint64_t most = campaign.engines.empty() ? kBatchPairs : kDeviceBatchPairs * campaign.engines.size();
+    const std::uint64_t most = campaign.engines.empty() ? kBatchPairs : campaign.engine_batch * campaign.engines.size();
     next = Batch{static_cast<int>(s), done[s], std::min(left, most)};
   }
   return next;

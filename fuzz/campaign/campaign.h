@@ -22,9 +22,11 @@ struct Campaign {
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
   const LanesUnderTest* under_test = nullptr;  // the lanes, and what runs them
-  int threads = 0;                             // 0: one a core
+  int threads = 0;                             // 0: one on each core
   std::vector<std::unique_ptr<cuda::DeviceEngine>>
       engines;  // the devices' engines, which share it; none: the CPU engine
+  std::uint64_t engine_batch = std::uint64_t{1}
+                               << 32;  // pairs of an engine in a transaction: a second or so on a device
   std::filesystem::path directory;
   Json spec;  // what makes this campaign another one; see campaign_spec
   Json build;

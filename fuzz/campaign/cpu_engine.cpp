@@ -82,7 +82,7 @@ class BlockJudge {
       if (!disagreement) continue;
       for (std::size_t l = 0; l < views_.size(); ++l) {
         verdicts_[l] = views_[l].at(i);
-        if (under_test_.lanes[l]->is_exact() && (verdicts_[l] == Verdict::intersects) != intersects) {
+        if (under_test_.lanes[l]->exact && (verdicts_[l] == Verdict::intersects) != intersects) {
           throw oracle::OracleApart(fmt::format("{} and the oracle differ on {}:{}:{}: it says {}, the oracle {}",
                                                 under_test_.lanes[l]->id, source_id(), campaign_.seed, index,
                                                 name(verdicts_[l]), intersects ? "intersects" : "disjoint"));
@@ -90,7 +90,7 @@ class BlockJudge {
       }
       ++result.disagreements;
       const oracle::Shape hulls = oracle::shape(pairs[i]);
-      analysis::for_each_algorithm(under_test_.lanes, [&](std::size_t first, std::size_t count) {
+      analysis::for_each_subject(under_test_.lanes, [&](std::size_t first, std::size_t count) {
         const analysis::Signature failure = analysis::signature(
             contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
             std::span(under_test_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));

@@ -14,22 +14,11 @@
 namespace graze::fuzz {
 namespace {
 
-// See SignatureBits.
-analysis::Signature unpacked(cuda::SignatureBits bits) {
-  const auto take = [&bits](int count) {
-    const int field = static_cast<int>(bits & ((1u << count) - 1));
-    bits >>= count;
-    return field;
-  };
-  analysis::Signature s;
-  for (char& mark : s.marks) mark = "_.+-?"[take(3)];
-  s.bucket = static_cast<Bucket>(take(8) - kBucketMost);
-  s.shape.dimension_a = take(2);
-  s.shape.dimension_b = take(2);
-  s.shape.coplanar = take(1) != 0;
-  s.contact = static_cast<Contact>(take(2));
-  s.algorithm = take(4) - 1;
-  return s;
+static_assert(cuda::kEngineCases >= kKeptCases);
+
+analysis::Signature signature_of(const cuda::EngineSignature& row, std::span<const Lane* const> lanes) {
+  return analysis::signature(row.contact, {row.dimension_a, row.dimension_b, row.coplanar}, row.bucket, row.truth(),
+                             lanes.subspan(row.lanes.first, row.lanes.count), row.verdicts);
 }
 
 // Counts as EngineResult lays them out.
@@ -40,22 +29,21 @@ void add(const std::vector<std::uint64_t>& counts, int lanes, analysis::Tally& t
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
     const auto bucket = static_cast<Bucket>(b);
     tally.add(bucket, counter(0, b), counter(1, b));
-    for (int l = 0; l < lanes; ++l)
-      tally.add(bucket, l, {counter(2 + 4 * l, b), counter(3 + 4 * l, b), counter(4 + 4 * l, b), 0});
+    for (int l = 0; l < lanes; ++l)  // none differs from its cpu lane: no cpu lane runs
+      tally.add(bucket, l, {counter(2 + 3 * l, b), counter(3 + 3 * l, b), counter(4 + 3 * l, b), 0});
   }
 }
 
-void add(const cuda::EngineResult& found, int source, int lanes, BatchResult& result) {
-  add(found.counts, lanes, result.tally);
-  if (!found.extreme_counts.empty()) add(found.extreme_counts, lanes, result.extremes);
+void add(const cuda::EngineResult& found, int source, std::span<const Lane* const> lanes, BatchResult& result) {
+  const int count = static_cast<int>(lanes.size());
+  add(found.counts, count, result.tally);
+  if (!found.extreme_counts.empty()) add(found.extreme_counts, count, result.extremes);
   for (int b = 0; b < kBucketCount; ++b) result.device += found.counts[static_cast<std::size_t>(b)];
   for (const cuda::EngineSignature& row : found.signatures) {
     SignatureCount one;
     one.count = row.count;
-    for (const std::uint64_t index : row.cases) {
-      if (index != ~std::uint64_t{0}) one.cases.push_back({index, source});
-    }
-    result.signatures[unpacked(row.bits)].add(one);
+    for (const std::uint64_t index : row.cases) one.cases.push_back({index, source});
+    result.signatures[signature_of(row, lanes)].add(one);
   }
   result.disagreements += found.disagreements;
 }
@@ -81,7 +69,7 @@ BatchResult GpuEngine::judge(int source, std::uint64_t first, std::uint64_t coun
   std::vector<std::uint64_t> undecided;
   for (auto& run : runs) {
     for (const cuda::EngineResult& found : run.get()) {
-      add(found, source, static_cast<int>(lanes.size()), result);
+      add(found, source, lanes, result);
       undecided.insert(undecided.end(), found.undecided.begin(), found.undecided.end());
     }
   }

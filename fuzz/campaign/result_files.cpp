@@ -9,6 +9,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "analysis/signature.h"
 #include "core/fnv1a.h"
 #include "corpus/pair_format.h"
 #include "fuzz/minimise/minimised_cases.h"
@@ -29,7 +30,7 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
     corpus::Entry entry{
         pair, {{"stratum", source.id}, {"seed", std::to_string(campaign.seed)}, {"index", std::to_string(c.index)}}, 0};
     for (auto& part : truth_fields(oracle::truth(pair))) entry.fields.push_back(std::move(part));
-    entry.fields.push_back({"signature", key});
+    if (analysis::parse_signature(key)) entry.fields.push_back({"signature", key});
     corpus::write_entry(out, entry);
   }
   return out.str();
@@ -64,16 +65,19 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
   Json results = store.results(campaign.sources, lane_ids);
 
   const auto by_key = store.signatures();
+  const auto row_of = [&](const std::string& key, const SignatureCount& found) {
+    const std::string file = case_name(key), text = case_text(campaign, key, found);
+    if (!is_minimised_from(read_whole(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
+    return file;
+  };
   std::vector<const std::pair<const std::string, SignatureCount>*> by_count;
   for (const auto& row : by_key) by_count.push_back(&row);
   std::stable_sort(by_count.begin(), by_count.end(),
                    [](auto* l, auto* r) { return l->second.count > r->second.count; });
   Json signatures = Json::array();
   for (const auto* row : by_count) {
-    const std::string file = case_name(row->first);
-    const std::string text = case_text(campaign, row->first, row->second);
-    if (!is_minimised_from(read_whole(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
-    signatures.push_back({{"key", row->first}, {"count", row->second.count}, {"case", file}});
+    signatures.push_back(
+        {{"key", row->first}, {"count", row->second.count}, {"case", row_of(row->first, row->second)}});
   }
   Json summary = {{"spec", campaign.spec},
                   {"build", campaign.build},
@@ -81,6 +85,9 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
                   {"strata", results["strata"]},
                   {"disagreements", results["disagreements"]},
                   {"signatures", signatures}};
+  // Pairs on which a device and its twin differ: nobody's failure.
+  for (const auto& [lane, found] : store.executors_apart())
+    summary["executors_apart"].push_back({{"lane", lane}, {"count", found.count}, {"case", row_of(lane, found)}});
   write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");
   return summary;
 }

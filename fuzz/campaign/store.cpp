@@ -9,7 +9,7 @@ namespace graze::fuzz {
 namespace {
 
 constexpr int kApplicationId = 0x67726173;  // "gras"
-constexpr int kFormat = 3;
+constexpr int kFormat = 4;
 
 constexpr const char* kSchema = R"(
 CREATE TABLE meta(key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
@@ -23,7 +23,7 @@ CREATE TABLE extreme(source INTEGER, bucket INTEGER, pairs INTEGER NOT NULL, int
   PRIMARY KEY(source, bucket)) WITHOUT ROWID;
 CREATE TABLE extreme_wrong(source INTEGER, lane INTEGER, bucket INTEGER, false_positive INTEGER NOT NULL, false_negative INTEGER NOT NULL,
   declined INTEGER NOT NULL, differs_from_cpu INTEGER NOT NULL, PRIMARY KEY(source, lane, bucket)) WITHOUT ROWID;
-CREATE TABLE signature(id INTEGER PRIMARY KEY, key TEXT NOT NULL UNIQUE, count INTEGER NOT NULL);
+CREATE TABLE signature(id INTEGER PRIMARY KEY, kind TEXT NOT NULL, key TEXT NOT NULL, count INTEGER NOT NULL, UNIQUE(kind, key));
 CREATE TABLE kept(signature INTEGER, case_index INTEGER, source INTEGER, PRIMARY KEY(signature, case_index, source)) WITHOUT ROWID;
 )";
 
@@ -172,14 +172,15 @@ void Store::commit(int source, std::uint64_t pairs, const BatchResult& result) {
 
     Statement add_signature(
         database_,
-        "INSERT INTO signature(key, count) VALUES(?1, ?2) ON CONFLICT DO UPDATE SET count = count + ?2 RETURNING id");
+        "INSERT INTO signature(kind, key, count) VALUES(?1, ?2, ?3) ON CONFLICT DO UPDATE SET count = count + ?3 "
+        "RETURNING id");
     Statement keep(database_, "INSERT INTO kept VALUES(?, ?, ?)");
     Statement kept(database_, "SELECT count(*), max(case_index) FROM kept WHERE signature = ?");
     Statement trim(database_,
                    "DELETE FROM kept WHERE signature = ?1 AND (case_index, source) NOT IN "
                    "(SELECT case_index, source FROM kept WHERE signature = ?1 ORDER BY case_index, source LIMIT ?2)");
-    const auto add = [&](const std::string& name, const SignatureCount& found) {
-      add_signature(name, found.count).step();
+    const auto add = [&](std::string_view kind, const std::string& name, const SignatureCount& found) {
+      add_signature(kind, name, found.count).step();
       const auto id = add_signature.integer(0);
       add_signature.run();
       kept(id).step();
@@ -190,8 +191,8 @@ void Store::commit(int source, std::uint64_t pairs, const BatchResult& result) {
       }
       trim(id, kKeptCases).run();
     };
-    for (const auto& [signature, found] : result.signatures) add(analysis::key(signature), found);
-    for (const auto& [lane, found] : result.executors_apart) add("executors/" + lane, found);
+    for (const auto& [signature, found] : result.signatures) add("signature", analysis::key(signature), found);
+    for (const auto& [lane, found] : result.executors_apart) add("executors_apart", lane, found);
     Statement(database_, "INSERT INTO done VALUES(?1, ?2) ON CONFLICT DO UPDATE SET pairs = pairs + ?2")(source, pairs)
         .run();
     database_.execute("COMMIT");
@@ -201,11 +202,16 @@ void Store::commit(int source, std::uint64_t pairs, const BatchResult& result) {
   }
 }
 
-std::map<std::string, SignatureCount> Store::signatures() const {
+std::map<std::string, SignatureCount> Store::signatures() const { return counts_of("signature"); }
+
+std::map<std::string, SignatureCount> Store::executors_apart() const { return counts_of("executors_apart"); }
+
+std::map<std::string, SignatureCount> Store::counts_of(std::string_view kind) const {
   std::map<std::string, SignatureCount> all;
   Statement query(database_,
-                  "SELECT key, count, case_index, source FROM signature JOIN kept ON signature = id ORDER BY key, "
-                  "case_index, source");
+                  "SELECT key, count, case_index, source FROM signature JOIN kept ON signature = id WHERE kind = ? "
+                  "ORDER BY key, case_index, source");
+  query(kind);
   while (query.step()) {
     SignatureCount& found = all[query.text(0)];
     found.count = static_cast<std::uint64_t>(query.integer(1));
@@ -215,7 +221,7 @@ std::map<std::string, SignatureCount> Store::signatures() const {
 }
 
 std::uint64_t Store::signature_count() const {
-  return static_cast<std::uint64_t>(integer(database_, "SELECT count(*) FROM signature"));
+  return static_cast<std::uint64_t>(integer(database_, "SELECT count(*) FROM signature WHERE kind = 'signature'"));
 }
 
 Json Store::results(const std::vector<strata::PairSource>& sources, const std::vector<std::string>& lanes) const {

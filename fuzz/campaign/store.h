@@ -75,10 +75,14 @@ class Store {
   // Of all that is committed: {"strata": …, "disagreements": …}, in a fixed order.
   Json results(const std::vector<strata::PairSource>& sources, const std::vector<std::string>& lanes) const;
 
-  std::map<std::string, SignatureCount> signatures() const;
+  std::map<std::string, SignatureCount> signatures() const;  // by key
+  // Pairs on which a device and its twin differ, by lane.
+  std::map<std::string, SignatureCount> executors_apart() const;
   std::uint64_t signature_count() const;
 
  private:
+  std::map<std::string, SignatureCount> counts_of(std::string_view kind) const;
+
   Database database_;
 };
 

@@ -3,22 +3,24 @@
 
 #include <algorithm>
 #include <map>
-#include <string_view>
+#include <set>
+
+#include "analysis/signature.h"
+#include "core/lanes.h"
 
 namespace graze::fuzz {
 namespace {
 
-// Whether two lanes of one scalar that ran have different marks.
-bool shows_contraction(const std::string& key) {
-  const std::string_view marks = std::string_view(key).substr(key.rfind(':') + 1);
-  for (std::size_t first = 0; first < marks.size(); first += kTargetCount) {
-    char seen = '_';
-    for (const char mark : marks.substr(first, kTargetCount)) {
-      if (mark != '_' && seen != '_' && mark != seen) return true;
-      if (mark != '_') seen = mark;
-    }
+// Whether two lanes of one scalar have different marks.
+bool shows_contraction(const Json& lane_ids, const std::string& key) {
+  const auto signature = analysis::parse_signature(key);
+  std::map<std::string, std::set<char>> marks;  // by scalar
+  for (const Json& id : lane_ids) {
+    const auto lane = parse_lane_name(id.get<std::string>());
+    if (signature && lane && lane->subject == signature->subject)
+      marks[lane->scalar].insert(signature->mark_of(lane->within_subject()));
   }
-  return false;
+  return std::any_of(marks.begin(), marks.end(), [](const auto& of_scalar) { return of_scalar.second.size() > 1; });
 }
 
 }  // namespace
@@ -32,8 +34,7 @@ std::vector<std::size_t> carded_signatures(const Json& summary) {
   const Json& rows = summary["signatures"];
   for (std::size_t place = 0; place < rows.size(); ++place) {
     const std::string key = rows[place]["key"];
-    // Pairs on which a device and its twin differ are nobody's failure.
-    if (!key.starts_with("executors/")) of_algorithm[analysis::algorithm_of(key)].push_back({place, key});
+    of_algorithm[analysis::subject_of(key)].push_back({place, key});
   }
   std::vector<std::size_t> cards;
   for (const auto& [algorithm, own] : of_algorithm) {
@@ -41,7 +42,7 @@ std::vector<std::size_t> carded_signatures(const Json& summary) {
     const std::size_t commonest = share - share / 4;
     std::size_t taken = 0;
     for (std::size_t i = 0; i < own.size() && taken < share; ++i) {
-      if (i >= commonest && !shows_contraction(own[i].key)) continue;
+      if (i >= commonest && !shows_contraction(summary["spec"]["lanes"], own[i].key)) continue;
       cards.push_back(own[i].place);
       ++taken;
     }

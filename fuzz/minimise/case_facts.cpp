@@ -37,7 +37,7 @@ Json case_facts(const LanesUnderTest& under_test, const corpus::Entry& entry) {
   Json facts = {{"pair", pair_text(entry.pair)}, {"verdicts", Json::object()}};
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
     facts["verdicts"][under_test.lanes[l]->id] = name(verdicts[l]);
-    if (signature && under_test.lanes[l]->info->id == analysis::algorithm_of(*signature))
+    if (signature && under_test.lanes[l]->info->id == analysis::subject_of(*signature))
       to_explain.push_back(under_test.lanes[l]);
   }
   facts["sentences"] = analysis::sentences(analysis::explain(entry.pair, to_explain));

@@ -66,7 +66,7 @@ std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& p
   if (!is_finite(pair)) return failures;
   const Judged truth_of_pair = judged(pair);
   const std::vector<Verdict> verdicts = decide_in_turn(under_test, pair);
-  analysis::for_each_algorithm(under_test.lanes, [&](std::size_t first, std::size_t count) {
+  analysis::for_each_subject(under_test.lanes, [&](std::size_t first, std::size_t count) {
     Failure failure{truth_of_pair, {}, {}, {}};
     bool wrong = false;
     for (std::size_t l = first; l < first + count; ++l) {

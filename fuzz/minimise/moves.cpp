@@ -244,17 +244,35 @@ void rearrange(const Pair& pair, Pairs& moved) {
   }
 }
 
+// In the order of moves.h: how many kinds, and what appends the moves of the i-th of them.
+constexpr struct {
+  int kinds;
+  void (*append)(const Pair& pair, int i, Pairs& moved);
+} kMoves[] = {
+    {7, [](const Pair& pair, int i, Pairs& moved) { lattices(pair, i - 1, moved); }},
+    {6, replace_vertex},
+    {3, change_axis},
+    {kCoordinates, replace_value},
+    {kCoordinates, replace_coordinate},
+    {kCoordinates, replace_two},
+    {1, [](const Pair& pair, int, Pairs& moved) { rearrange(pair, moved); }},
+    {6, frames},
+};
+
+constexpr int sum_of_kinds() {
+  int sum = 0;
+  for (const auto& row : kMoves) sum += row.kinds;
+  return sum;
+}
+static_assert(sum_of_kinds() == kMoveKinds);
+
 }  // namespace
 
 void append_moves(const Pair& pair, int kind, Pairs& moved) {
-  if (kind < 7) return lattices(pair, kind - 1, moved);
-  if (kind < 13) return replace_vertex(pair, kind - 7, moved);
-  if (kind < 16) return change_axis(pair, kind - 13, moved);
-  if (kind < 34) return replace_value(pair, kind - 16, moved);
-  if (kind < 52) return replace_coordinate(pair, kind - 34, moved);
-  if (kind < 70) return replace_two(pair, kind - 52, moved);
-  if (kind < 71) return rearrange(pair, moved);
-  frames(pair, kind - 71, moved);
+  for (const auto& row : kMoves) {
+    if (kind < row.kinds) return row.append(pair, kind, moved);
+    kind -= row.kinds;
+  }
 }
 
 }  // namespace graze::fuzz

@@ -9,20 +9,20 @@
 
 namespace graze::fuzz {
 
-// The moves come in kinds, in this order:
-//   0..6    a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits or not at
-//           all; then scaled to whole numbers, or to a size of about one, or not
-//   7..12   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of
-//           three vertices
-//   13..15  on one axis: several vertices given one value, 0, 1, -1 or one that occurs there; all translated by one
-//           vertex's value; all scaled by a power of two
-//   16..33  a value, wherever it occurs with either sign, replaced
-//   34..51  one coordinate replaced
-//   52..69  two coordinates, each replaced by 0, 1 or -1
-//   70      two axes or vertices exchanged, the triangles exchanged, an axis mirrored; a multiple of an axis added to
-//           another: once, twice, or so that a vertex's coordinate becomes 0 or the remainder of a division; all scaled
-//           by a power of two
-//   71..76  four vertices to the origin and the ends of the unit vectors, rounded to a lattice of 1 to 24 bits or not
+// The moves come in kinds, so many of each, in this order:
+//   7   a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits or not at
+//       all; then scaled to whole numbers, or to a size of about one, or not
+//   6   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of
+//       three vertices
+//   3   on one axis: several vertices given one value, 0, 1, -1 or one that occurs there; all translated by one
+//       vertex's value; all scaled by a power of two
+//   18  a value, wherever it occurs with either sign, replaced
+//   18  one coordinate replaced
+//   18  two coordinates, each replaced by 0, 1 or -1
+//   1   two axes or vertices exchanged, the triangles exchanged, an axis mirrored; a multiple of an axis added to
+//       another: once, twice, or so that a vertex's coordinate becomes 0 or the remainder of a division; all scaled
+//       by a power of two
+//   6   four vertices to the origin and the ends of the unit vectors, rounded to a lattice of 1 to 24 bits or not
 // A value is replaced by 0, a value that occurs, its half or double, a whole number up to 9, each with either sign,
 // itself rounded towards and away from zero to 1 to 23 bits or to a whole number, or its neighbours.
 inline constexpr int kMoveKinds = 77;

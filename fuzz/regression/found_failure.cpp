@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -29,17 +30,27 @@ std::string seen_by(const Json& build, std::string_view kind, const std::string&
                      fnv1a(identity));
 }
 
-std::string without_marks(const std::string& signature) { return signature.substr(0, signature.rfind(':')); }
+// The signature's pair alone: whose failure it is, but not of which lanes.
+std::optional<analysis::Signature> without_lanes(const std::string& key) {
+  std::optional<analysis::Signature> signature = analysis::parse_signature(key);
+  if (signature) signature->wrong_lanes.clear();
+  return signature;
+}
 
-// The pair's signatures, one an algorithm, right or wrong.
+// The pair's signatures, one for each subject, right or wrong.
 std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& seen) {
-  const oracle::Shape hulls = oracle::shape(pair);
-  const Bucket bucket = oracle::margin_bucket(pair, seen.truth.verdict);
+  const analysis::Signature blank{
+      seen.truth.contact, oracle::shape(pair), oracle::margin_bucket(pair, seen.truth.verdict), "", {}};
   std::vector<analysis::Signature> result;
-  for (std::size_t first = 0; first < seen.marks.size(); first += 2 * kTargetCount) {
-    analysis::Signature s{seen.truth.contact, hulls, bucket, published_lanes()[first].algorithm, {}};
-    for (std::size_t i = 0; i < s.marks.size(); ++i) s.marks[i] = seen.marks[first + i];
-    result.push_back(s);
+  for (const Lane& lane : published_lanes()) {  // in table order
+    const auto mark = seen.marks.find(lane.id);
+    if (mark == seen.marks.end()) continue;
+    const LaneName name = lane.lane_name();
+    if (result.empty() || result.back().subject != name.subject) {
+      result.push_back(blank);
+      result.back().subject = name.subject;
+    }
+    if (mark->second != '.') result.back().wrong_lanes.push_back({name.within_subject(), mark->second});
   }
   return result;
 }
@@ -61,7 +72,7 @@ std::vector<FoundFailure> found_in_summary(const std::filesystem::path& director
     const std::uint64_t count = row.at("count");
     if (const auto known = place.find(signature); known != place.end()) {
       failures[known->second].count += count;
-    } else if (taken[analysis::algorithm_of(signature)]++ < most) {
+    } else if (taken[analysis::subject_of(signature)]++ < most) {
       place.emplace(signature, failures.size());
       failures.push_back({signature, entries.front(), count, seen});
     }
@@ -118,7 +129,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   if (known != corpus.end() && known->second.last == failure.seen) return Added::known;
 
   const Replay now = replay(failure.entry.pair, run, decide);
-  const std::string algorithm = analysis::algorithm_of(failure.signature);
+  const std::string algorithm = analysis::subject_of(failure.signature);
   const CaseState state = state_after(CaseState::failing, failure.signature, now.marks);
   if (known != corpus.end()) {
     RegressionCase& c = known->second;
@@ -129,10 +140,10 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   std::string found = "none";
   if (now.truth.verdict != Verdict::declined) {
     for (const analysis::Signature& s : signatures_of(failure.entry.pair, now)) {
-      if (analysis::algorithm_of(analysis::key(s)) == algorithm) found = analysis::key(s);
+      if (s.subject == algorithm) found = analysis::key(s);
     }
   }
-  if (without_marks(found) != without_marks(failure.signature)) {
+  if (!without_lanes(found) || without_lanes(found) != without_lanes(failure.signature)) {
     throw std::runtime_error(fmt::format("expected a pair with the signature {}, found {}", failure.signature, found));
   }
 

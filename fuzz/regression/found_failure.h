@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Failures: failures on their way into the regression corpus, from a campaign's directory or from single cases.
+// Failures on their way into the regression corpus, from a campaign's directory or from single cases.
 #pragma once
 
 #include <filesystem>
@@ -26,15 +26,15 @@ struct FoundFailure {
 std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most);
 
-// One failure a signature of the entries: that of the field `signature`, or those of all algorithms that are wrong.
-// Minimised entries stand for all.
+// One failure for each signature of the entries: that of the field `signature`, or those of all algorithms that are
+// wrong. Minimised entries stand for all.
 std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entries, const Json& build,
                                          std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 enum class Added { as_new, seen_again, known };
 
 // A signature's first failure becomes a case, after a replay; further ones count. A case that was fixed and is wrong
-// again is failing again, with the new pair. The same failure twice running counts once, so that an interrupted
+// again is failing again, with the new pair. The same failure twice in a row counts once, so that an interrupted
 // command can be run again.
 // Throws: std::runtime_error when the pair is not one of the signature.
 Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> lanes,

@@ -12,17 +12,20 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kLanesOfAlgorithm = 2 * kTargetCount;
 constexpr CaseState kStates[] = {CaseState::failing, CaseState::fixed, CaseState::flaky};
 constexpr std::string_view kOwnFields[] = {"name",      "truth", "contact", "state", "count",
                                            "signature", "lanes", "first",   "last"};
 
-// "projected_sat:........,interval_overlap:--..--..": the marks by algorithm.
+constexpr std::string_view kMarks = ".+-?~";
+
+// "moller_1997:-f32/cpu.f64/cpu;projected_sat:.f32/cpu": by subject, each lane after its mark.
 std::string text_of(const Marks& marks) {
-  std::string text;
-  for (std::size_t first = 0; first < marks.size(); first += kLanesOfAlgorithm) {
-    text += fmt::format("{}{}:{}", first > 0 ? "," : "", published_lanes()[first].info->id,
-                        marks.substr(first, kLanesOfAlgorithm));
+  std::string text, last;
+  for (const auto& [id, mark] : marks) {
+    const LaneName name = parse_lane_name(id).value();
+    if (name.subject != last) text += (text.empty() ? "" : ";") + name.subject + ':';
+    text += mark + name.within_subject() + ',';
+    last = name.subject;
   }
   return text;
 }
@@ -57,27 +60,28 @@ struct Line {
     return *value;
   }
 
-  // An algorithm that the text does not name did not run; one that is none any more is an error.
+  // Lanes that the text does not name did not run; those of other builds stay in it.
   Marks marks() const {
-    Marks marks(published_lanes().size(), '_');
-    std::istringstream parts(text("lanes"));
-    for (std::string part; std::getline(parts, part, ',');) {
-      const std::string id = part.substr(0, part.find(':')), own = part.substr(std::min(id.size() + 1, part.size()));
-      const auto lane = std::find_if(published_lanes().begin(), published_lanes().end(),
-                                     [&](const Lane& l) { return l.info->id == id; });
-      if (lane == published_lanes().end()) fail("an algorithm in lanes", '\'' + id + '\'');
-      if (own.size() != kLanesOfAlgorithm || own.find_first_not_of(".+-?_~") != own.npos)
-        fail(fmt::format("{} marks of {} in lanes", kLanesOfAlgorithm, id), '\'' + own + '\'');
-      marks.replace(static_cast<std::size_t>(lane->index), kLanesOfAlgorithm, own);
+    Marks marks;
+    std::istringstream subjects(text("lanes"));
+    for (std::string subject; std::getline(subjects, subject, ';');) {
+      const std::string id = subject.substr(0, subject.find(':'));
+      std::string_view rest = std::string_view(subject).substr(std::min(id.size() + 1, subject.size()));
+      if (rest.empty()) fail("a subject and the marks of its lanes in lanes", '\'' + subject + '\'');
+      while (!rest.empty()) {
+        std::size_t end = rest.find(',');  // of the lane: at a comma that a mark follows, or the end
+        while (end != rest.npos && end + 1 < rest.size() && kMarks.find(rest[end + 1]) == kMarks.npos)
+          end = rest.find(',', end + 1);
+        const std::string lane = id + '/' + std::string(rest.substr(1, end == rest.npos ? end : end - 1));
+        if (kMarks.find(rest.front()) == kMarks.npos || end == rest.npos || !parse_lane_name(lane))
+          fail("a mark and a lane of " + id + " in lanes", '\'' + std::string(rest) + '\'');
+        marks.emplace(lane, rest.front());
+        rest.remove_prefix(end + 1);
+      }
     }
     return marks;
   }
 };
-
-// The lane's mark; null for an exact lane, which has none.
-char* mark_of(Marks& marks, const Lane& lane) {
-  return lane.is_exact() ? nullptr : &marks[static_cast<std::size_t>(lane.index)];
-}
 
 std::string verdict_of_mark(char mark, std::string_view truth) {
   switch (mark) {
@@ -118,9 +122,7 @@ RegressionCorpus read_regressions(const std::filesystem::path& file) {
                      line.count(),      line.marks(), line.text("first"), line.text("last")};
     c.other = other_fields(entry);
     const std::string& signature = line.text("signature");
-    if (std::none_of(published_lanes().begin(), published_lanes().end(),
-                     [&](auto& l) { return l.info->id == analysis::algorithm_of(signature); }))
-      line.fail("the signature of an algorithm's failure", '\'' + signature + '\'');
+    if (!analysis::parse_signature(signature)) line.fail("the signature of a failure", '\'' + signature + '\'');
     if (!corpus.emplace(signature, std::move(c)).second) line.fail("every signature once", "a second " + signature);
   }
   return corpus;
@@ -129,7 +131,7 @@ RegressionCorpus read_regressions(const std::filesystem::path& file) {
 void write_regressions(const std::filesystem::path& file, const RegressionCorpus& corpus) {
   std::ostringstream out;
   corpus::write_header(out);
-  out << "# Kept by `graze corpus`: a case a signature, ordered by it. lanes: the marks of the last replay.\n";
+  out << "# Kept by `graze corpus`: one case for each signature, ordered by it. lanes: the marks of the last replay.\n";
   for (const auto& [signature, c] : corpus) {
     corpus::Entry entry{c.pair,
                         {{"name", c.name},
@@ -149,33 +151,34 @@ void write_regressions(const std::filesystem::path& file, const RegressionCorpus
 }
 
 Replay replay(const Pair& pair, std::span<const Lane* const> run, const DecideLanes& decide) {
-  Replay result{oracle::truth(pair), Marks(published_lanes().size(), '_')};
+  Replay result{oracle::truth(pair), {}};
   for (int r = 0; r < kReplays; ++r) {
     std::vector<const Lane*> apart;
     const std::vector<Verdict> verdicts = decide(pair, apart);
     for (std::size_t l = 0; l < run.size(); ++l) {
       const char now = analysis::mark(verdicts[l], result.truth.verdict);
-      if (char* known = mark_of(result.marks, *run[l])) *known = r == 0 || *known == now ? now : '~';
+      char& known = result.marks.emplace(run[l]->id, now).first->second;
+      if (known != now) known = '~';
     }
-    for (const Lane* lane : apart) {
-      if (char* known = mark_of(result.marks, *lane)) *known = '~';
-    }
+    for (const Lane* lane : apart) result.marks[lane->id] = '~';
   }
   return result;
 }
 
 CaseState state_after(CaseState before, const std::string& signature, const Marks& now) {
-  if (before == CaseState::flaky || now.find('~') != now.npos) return CaseState::flaky;
-  const std::string id = analysis::algorithm_of(signature), seen = signature.substr(signature.rfind(':') + 1);
-  bool all_right = true;
-  for (const Lane& lane : published_lanes()) {
-    const char m = now[static_cast<std::size_t>(lane.index)];
-    if (lane.info->id != id) continue;
-    if (m != '.' && m != '_') return CaseState::failing;
-    const std::size_t at = static_cast<std::size_t>(lane.scalar) * kTargetCount + static_cast<std::size_t>(lane.target);
-    if (m == '_' && at < seen.size() && seen[at] != '.' && seen[at] != '_') all_right = false;
+  const auto differed = [](const auto& lane) { return lane.second == '~'; };
+  if (before == CaseState::flaky || std::any_of(now.begin(), now.end(), differed)) return CaseState::flaky;
+  const std::optional<analysis::Signature> seen = analysis::parse_signature(signature);
+  if (!seen) return before;
+  bool ran = false;
+  for (const auto& [id, mark] : now) {
+    if (parse_lane_name(id)->subject != seen->subject) continue;
+    if (mark != '.') return CaseState::failing;
+    ran = true;
   }
-  return all_right ? CaseState::fixed : before;
+  const bool all_ran = std::all_of(seen->wrong_lanes.begin(), seen->wrong_lanes.end(),
+                                   [&](const auto& wrong) { return now.contains(seen->subject + '/' + wrong.lane); });
+  return ran && all_ran ? CaseState::fixed : before;
 }
 
 Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> run, const DecideLanes& decide) {
@@ -187,14 +190,15 @@ Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> run, cons
     if (c.truth != truth_now || c.contact != contact_now)
       change(fmt::format("truth: was {}, {}, is {}, {}", c.truth, c.contact, truth_now, contact_now));
     for (const Lane* lane : run) {
-      char *known = mark_of(c.marks, *lane), *mark_now = mark_of(now.marks, *lane);
-      if (!known || *known == '~') continue;
-      if (*known != '_') {
+      const char mark_now = now.marks.at(lane->id);
+      const auto known = c.marks.find(lane->id);
+      if (known != c.marks.end()) {
+        if (known->second == '~') continue;
         ++result.compared;
-        const std::string was = verdict_of_mark(*known, c.truth), is = verdict_of_mark(*mark_now, truth_now);
+        const std::string was = verdict_of_mark(known->second, c.truth), is = verdict_of_mark(mark_now, truth_now);
         if (was != is) change(fmt::format("{}: was {}, is {}", lane->id, was, is));
       }
-      *known = *mark_now;
+      c.marks[lane->id] = mark_now;
     }
     c.truth = truth_now;
     c.contact = contact_now;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regression corpus: failures that were seen, one case a signature, all in one file of pairs, and what has become
-// of them since. Nothing in it depends on the clock, and the same failures in the same order give the same bytes.
+// The regression corpus: failures that were seen, one case for each signature, all in one file of pairs, and what has
+// become of them since. Nothing in it depends on the clock, and the same failures in the same order give the same
+// bytes.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +25,9 @@ namespace graze::fuzz {
 enum class CaseState { failing, fixed, flaky };
 std::string_view name(CaseState state);
 
-// A mark a lane, for all lanes in table order: those of analysis/signature.h, '_' where it did not run, and '~' where
-// its verdict differed between replays.
-using Marks = std::string;
+// The mark of each lane that ran, by the lane's name: those of analysis/signature.h, and '~' where its verdict differed
+// between replays.
+using Marks = std::map<std::string, char>;
 
 struct RegressionCase {
   std::string name;  // a word, unique

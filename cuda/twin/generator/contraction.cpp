@@ -6,7 +6,7 @@
 //   m - x, x - m, m + x, x + m            fma                           single product
 //   m1 - m2, m1 + m2                      fma of the left, mul          left before right
 //   m1 - m2, and m1 in m1 + m3            fma of m2, of m3; mul m1      a product of one use before others
-//   m - x, m + y, …                       an fma each                   shared by additions alone: duplicated
+//   m - x, m + y, …                       one fma for each              shared by additions alone: duplicated
 //   m - x, m stored, compared, multiplied add, mul                      not fused
 //   m - x, m the addend of an fma         add, mul                      not fused
 //   m + m, m - m, two equal products      add, mul                      not fused

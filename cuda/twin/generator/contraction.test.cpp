@@ -19,7 +19,7 @@ Module module_of(std::string body, const std::string& type) {
   return read_ptx(in, "test.ptx");
 }
 
-// What the pass makes of them, one instruction a line, without `ret`.
+// What the pass makes of them, one instruction on each line, without `ret`.
 std::string contracted(const std::string& body, const std::string& type, Rule rule = Rule::ptxas) {
   const Module module = module_of(body, type);
   std::string result;

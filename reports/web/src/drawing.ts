@@ -76,13 +76,13 @@ export function good_frame(card: Report['cards'][number]): Frame {
   return thin[0] ?? 'both';
 }
 
-// Half of the height that is seen: the framed points fit, however they are turned.
-export const half_height = (shape: Shape, view: View) => (1.12 * shape.radius) / view.zoom;
+// Half of the height that is seen at zoom 1: the framed points fit, however they are turned.
+export const framed_half_height = (shape: Shape) => 1.12 * shape.radius;
 
 // Where a point comes to lie on a stage of that many pixels.
 export function project(shape: Shape, p: Vec, view: View, width: number, height: number): { x: number; y: number; depth: number } {
   const { right, up, eye } = axes(view);
-  const scale = height / 2 / half_height(shape, view);
+  const scale = ((height / 2) * view.zoom) / framed_half_height(shape);
   return { x: width / 2 + scale * dot(p, right), y: height / 2 - scale * dot(p, up), depth: dot(p, eye) };
 }
 

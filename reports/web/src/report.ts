@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What report.json holds, which reports/report.cpp writes. All numbers are computed there; the page only renders.
-// Lanes and strata are referred to by place in `lanes` / `strata`. Absent things are null or empty arrays.
+// What report.json holds, which reports/report.cpp writes; tests/types.spec.ts checks real reports against it. All
+// numbers are computed there, the page only renders. Lanes and strata are referred to by their place in `lanes` and
+// `strata`. What is absent is null or an empty array.
 
 export interface Share { count: number; of: number; share: number; low: number; high: number }  // Wilson, 95 %; six significant digits are enough
 
@@ -17,32 +18,30 @@ export interface Report {
   lanes: { id: string; algorithm: string; scalar: "f32" | "f64"; target: string; paper: string; evidence: string | null;
            exact: boolean }[];
   answer: string[];                        // the five sentences
-  // One row a lane and stratum that has pairs, and one a lane with stratum null: all strata together.
+  // One row for each lane and stratum that has pairs, and one for each lane over all strata (stratum null).
   rates: { lane: number; stratum: number | null; false_positive: Share; false_negative: Share; wrong: Share; declined: number;
            differs_from_cpu: Share | null }[];
   // Side by side: left and right lane of one algorithm; `differs` is measured pair by pair where known, else null.
   // Stratum null: all strata together (as in `rates`).
   side_by_side: { kind: "cpu-nofma" | "nofma-fma" | "f32-f64"; left: number; right: number;
                   strata: { stratum: number | null; left_wrong: Share; right_wrong: Share; differs: Share | null }[] }[];
-  // Error against margin, over all strata (stratum null) and a stratum each. side: disjoint or intersecting pairs.
-  // exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have their own entry with exponent null.
-  // Only buckets that have pairs. This table is the largest: with 40 lanes and 19 strata about 60,000 points; lanes of
-  // a stratum with the same points may be left out where the lane was never wrong there (the page then draws nothing).
-  // rep: for room only stratum null is filled (a stratum each is in margins.csv); points without pairs are absent.
+  // Error against margin, over all strata (stratum null; those of each stratum are in margins.csv). side: disjoint or
+  // intersecting pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have their own entry with
+  // exponent null. Only buckets that have pairs.
   margins: { lane: number; stratum: number | null;
              points: { side: "disjoint" | "zero" | "intersects"; exponent: number | null; wrong: Share }[] }[];
   // Smallest margin (in ulps, a power of two) from which on no error was seen; `bound`: 95 % upper bound of the error
   // rate of the `above` pairs beyond it (1 - 0.05^(1/n)). null exponent: errors up to the largest margin seen.
   thresholds: { lane: number; disjoint: { exponent: number | null; above: number; bound: number };
                 intersects: { exponent: number | null; above: number; bound: number } }[];
-  // rep: a cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
-  // Extremes: kind scale: exponent of the largest coordinate; offset: log2(largest coordinate / extent of the pair).
+  // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair). A
+  // cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
   extremes: { kind: "scale" | "offset"; step: number; lane: number; cells: { exponent: number; wrong: Share }[] }[];
   signature_count: number;                 // all; `signatures` holds the first of them by pairs, `cards` say how
   signatures: {                            // every signature listed that fits (table), commonest first
     key: string; algorithm: string; count: number; share: number;   // of all pairs
     contact: string; dimensions: string; coplanar: boolean; margin: string;   // "-2^-3", "0", "2^4" ulps
-    marks: string;   // rep: for room one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
+    marks: string;   // one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
     card: number | null;                   // place in `cards`
   }[];
   cards: {
@@ -53,9 +52,7 @@ export interface Report {
     drawing: { contact: number[][]; planes_line: number[][] };              // 0, 1, 2 or more points; 0 or 2 points
     verdicts: { lane: number; verdict: "disjoint" | "intersects" | "declined"; wrong: boolean }[];   // all lanes run
     sentences: string[];                   // explain's
-    // rep: read from cases/<hash>.map.json beside the case file: this object, and "pair": the 18 hex floats of the mapped
-    // pair in one string, as write_entry has them (used only if it is the pair shown). `graze minimize DIR` writes it for
-    // carded_signatures (fuzz/minimise/carded_signatures.h on branch rep); facts (verdicts, sentences) go to cases/<hash>.json likewise.
+    // What `graze minimize DIR` stored; null where it did not, or for another pair than the one shown.
     maps: { title: string; x: string; y: string; size: number;             // "b[0].x", "b[0].y", 256; y grows upwards
             legend: { colour: string; means: string }[];                   // "#rrggbb" as in the panels, "disjoint", …
             panels: { name: string; png: string }[] } | null;              // name: "truth" or a lane id; png: base64

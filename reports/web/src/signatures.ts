@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signatures: a table of all that are listed, and a card each of the commonest.
+// Signatures: a table of all that are listed, and a card for each of the commonest.
 import { card_element, hulls, margin_words, signature_words } from './card';
 import { choice, h, section } from './dom';
 import { count, percent } from './format';

@@ -1,42 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 // The drawing of a card, to be turned by dragging and by keys.
+import { orbit, view_of } from './camera';
 import { choice, h } from './dom';
-import { good_frame, good_view, shape_of, type Frame, type View } from './drawing';
+import { good_frame, good_view, shape_of, type Frame } from './drawing';
 import { svg_projection } from './projection';
 import type { Report } from './report';
 import { has_webgl, picture, type Picture } from './view3d';
 
 const kTurn = Math.PI / 18;
-const kSteepest = Math.PI / 2 - 1e-3;
+const kZoom = 1.25;
 
 export function stage(card: Report['cards'][number]): HTMLElement {
   const frame = good_frame(card);
-  let shape = shape_of(card, frame), view = good_view(shape), visible = false;
+  let shape = shape_of(card, frame), visible = false;
   let drawn: Picture | null = null;
   const canvas = h('canvas', {}), paper = h('div', { class: 'paper' });
   const note = h('span', { class: 'scale-note' });
   const board = h('div', { class: 'board', tabindex: 0, role: 'application', 'aria-roledescription': 'turnable drawing',
     'aria-label': 'The two triangles. Arrow keys turn the drawing, plus and minus zoom, 0 resets it.' }, canvas, paper);
 
+  const { camera, set } = orbit(board, good_view(shape), draw, draw_paper);
+
   function draw_paper() {
-    paper.replaceChildren(svg_projection(shape, view, 480, 360));
+    paper.replaceChildren(svg_projection(shape, view_of(camera), 480, 360));
   }
 
   function draw() {
     if (!visible) return;
     if (has_webgl()) {
       drawn ??= picture(shape);
-      drawn.draw(canvas, view);
+      drawn.draw(canvas, camera);
     }
     board.classList.toggle('flat', !has_webgl());
     if (!has_webgl()) draw_paper();
-  }
-
-  function set(next: Partial<View>) {
-    view = { ...view, ...next };
-    view.elevation = Math.max(-kSteepest, Math.min(kSteepest, view.elevation));
-    view.zoom = Math.max(0.25, Math.min(64, view.zoom));
-    draw();
   }
 
   function look_at(frame: Frame) {
@@ -48,30 +44,16 @@ export function stage(card: Report['cards'][number]): HTMLElement {
   }
 
   function reset() {
-    view = good_view(shape);
-    draw();
+    set(good_view(shape));
     draw_paper();
   }
 
-  board.addEventListener('pointerdown', (event) => {
-    board.setPointerCapture(event.pointerId);
-    let { clientX: x, clientY: y } = event;
-    const move = (to: PointerEvent) => {
-      set({ azimuth: view.azimuth - (to.clientX - x) * 0.01, elevation: view.elevation + (to.clientY - y) * 0.01 });
-      [x, y] = [to.clientX, to.clientY];
-    };
-    const end = () => {
-      board.removeEventListener('pointermove', move);
-      draw_paper();
-    };
-    board.addEventListener('pointermove', move);
-    board.addEventListener('lostpointercapture', end, { once: true });
-  });
   board.addEventListener('keydown', (event) => {
+    const { azimuth, elevation, zoom } = view_of(camera);
     const actions: Record<string, () => void> = {
-      ArrowLeft: () => set({ azimuth: view.azimuth - kTurn }), ArrowRight: () => set({ azimuth: view.azimuth + kTurn }),
-      ArrowUp: () => set({ elevation: view.elevation + kTurn }), ArrowDown: () => set({ elevation: view.elevation - kTurn }),
-      '+': () => set({ zoom: view.zoom * 1.25 }), '=': () => set({ zoom: view.zoom * 1.25 }), '-': () => set({ zoom: view.zoom / 1.25 }),
+      ArrowLeft: () => set({ azimuth: azimuth - kTurn }), ArrowRight: () => set({ azimuth: azimuth + kTurn }),
+      ArrowUp: () => set({ elevation: elevation + kTurn }), ArrowDown: () => set({ elevation: elevation - kTurn }),
+      '+': () => set({ zoom: zoom * kZoom }), '=': () => set({ zoom: zoom * kZoom }), '-': () => set({ zoom: zoom / kZoom }),
       '0': reset, Home: reset,
     };
     const action = event.ctrlKey || event.metaKey || event.altKey ? undefined : actions[event.key];
@@ -95,7 +77,7 @@ export function stage(card: Report['cards'][number]): HTMLElement {
   return h('figure', { class: 'stage' }, board,
     h('div', { class: 'stage-tools' },
       choice('Frame', [['both', 'both triangles'], ['a', 'triangle a'], ['b', 'triangle b']], frame, (value) => look_at(value as Frame)),
-      button('−', 'Zoom out', () => set({ zoom: view.zoom / 1.25 })), button('+', 'Zoom in', () => set({ zoom: view.zoom * 1.25 })),
+      button('−', 'Zoom out', () => set({ zoom: camera.zoom / kZoom })), button('+', 'Zoom in', () => set({ zoom: camera.zoom * kZoom })),
       button('Reset', 'Reset the view', reset)),
     h('figcaption', {},
       h('span', { class: 'key-a' }, 'a'), h('span', { class: 'key-b' }, 'b'),

@@ -3,12 +3,13 @@
 // each card keeps a copy of its picture in a canvas of its own.
 import {
   AmbientLight, BufferGeometry, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Material, Mesh, MeshLambertMaterial,
-  MeshBasicMaterial, OrthographicCamera, Scene, WebGLRenderer,
+  MeshBasicMaterial, type OrthographicCamera, Scene, WebGLRenderer,
 } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
-import { axes, half_height, labels, project, type Shape, type Vec, type View } from './drawing';
+import { view_of } from './camera';
+import { framed_half_height, labels, project, type Shape, type Vec, type View } from './drawing';
 
 let renderer: WebGLRenderer | null | undefined;  // null: this browser has no WebGL
 
@@ -23,7 +24,7 @@ function shared_renderer(): WebGLRenderer | null {
 
 export const has_webgl = () => shared_renderer() !== null;
 
-export interface Picture { draw: (canvas: HTMLCanvasElement, view: View) => void; dispose: () => void }
+export interface Picture { draw: (canvas: HTMLCanvasElement, camera: OrthographicCamera) => void; dispose: () => void }
 
 const style_colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -86,10 +87,7 @@ export function picture(shape: Shape): Picture {
     line.renderOrder = 3;
   }
 
-  const camera = new OrthographicCamera();
-  camera.up.set(0, 0, 1);
-
-  function draw(canvas: HTMLCanvasElement, view: View) {
+  function draw(canvas: HTMLCanvasElement, camera: OrthographicCamera) {
     const gl = shared_renderer();
     const context = canvas.getContext('2d');
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
@@ -103,18 +101,15 @@ export function picture(shape: Shape): Picture {
     if (gl.domElement.width !== canvas.width || gl.domElement.height !== canvas.height) gl.setSize(canvas.width, canvas.height, false);
     for (const { material, name } of coloured) material.color.set(style_colour(name));
     for (const line of lines) line.material.linewidth = line.width * ratio;
-    const half = half_height(shape, view), { eye } = axes(view);
-    Object.assign(camera, { left: (-half * width) / height, right: (half * width) / height, top: half, bottom: -half, near: 0.1, far: 2e4 });
-    const far = 1e4;  // parts outside the frame may lie far in front of it
-    camera.position.set(far * eye[0], far * eye[1], far * eye[2]);
-    camera.lookAt(0, 0, 0);
+    const half = framed_half_height(shape);
+    Object.assign(camera, { left: (-half * width) / height, right: (half * width) / height, top: half, bottom: -half });
     camera.updateProjectionMatrix();
     light.position.copy(camera.position);
     gl.setClearColor(0, 0);
     gl.render(scene, camera);
     context.clearRect(0, 0, canvas.width, canvas.height);
     context.drawImage(gl.domElement, 0, 0);
-    overlay(context, view, width, height, ratio);
+    overlay(context, view_of(camera), width, height, ratio);
   }
 
   // Names of the vertices, and a contact that is a point.

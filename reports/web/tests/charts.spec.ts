@@ -9,7 +9,7 @@ const lines_of = (report: Report, shown: (lane: Report['lanes'][number]) => bool
   report.margins.filter((row) => row.stratum === null && shown(report.lanes[row.lane])).reduce((lines, row) =>
     lines + ['disjoint', 'intersects'].filter((side) => row.points.some((p) => p.side === side && p.wrong.count > 0)).length, 0);
 
-test('errors against margin: a line a lane, thresholds with their bounds', async ({ page, report }) => {
+test('errors against margin: one line for each lane, thresholds with their bounds', async ({ page, report }) => {
   await page.locator('#margin-chart').scrollIntoViewIfNeeded();
   const published = report.lanes.filter((lane) => !lane.exact && lane.scalar === 'f32' && lane.target === 'cpu');
   await expect(page.locator(kLines)).toHaveCount(lines_of(report, (lane) => published.includes(lane)));

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// The documents are true: each `$ command` of a console block is run, and must print what stands under it; what is
+// linked or named by its path exists; README files stay short.
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <vector>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = GRAZE_SOURCE_DIR;
+
+using Lines = std::vector<std::string>;
+
+Lines lines_of(const std::string& text) {
+  Lines lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+// Whether the lines from e and f on are alike; "…" stands for any number of lines.
+bool matches(const Lines& expected, std::size_t e, const Lines& found, std::size_t f) {
+  if (e == expected.size()) return f == found.size();
+  if (expected[e] == "…")
+    return matches(expected, e + 1, found, f) || (f < found.size() && matches(expected, e, found, f + 1));
+  return f < found.size() && expected[e] == found[f] && matches(expected, e + 1, found, f + 1);
+}
+
+// What was printed, abridged as the document abridged it: as many lines before and behind its "…".
+Lines abridged(const Lines& expected, const Lines& found) {
+  const auto dots = std::find(expected.begin(), expected.end(), "…");
+  const auto before = dots - expected.begin(), behind = expected.end() - dots - 1;
+  if (dots == expected.end() || before + behind >= std::ssize(found)) return found;
+  Lines lines(found.begin(), found.begin() + before);
+  lines.push_back("…");
+  lines.insert(lines.end(), found.end() - behind, found.end());
+  return lines;
+}
+
+// Runs the document's commands in one folder. Where an output differs, DOCUMENT.new has all of them as they are now.
+void expect_true_commands(const std::string& document, std::size_t least_commands) {
+  const fs::path file = kRoot / document, renewed = file.string() + ".new";
+  const Lines lines = lines_of(contents(file));
+  const Shell shell(file.stem().string());
+  std::ostringstream text;
+  std::size_t commands = 0;
+  bool in_console = false, all_match = true;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    text << lines[i] << '\n';
+    if (lines[i].starts_with("```")) in_console = lines[i] == "```console";
+    if (!in_console || !lines[i].starts_with("$ ")) continue;
+    ++commands;
+    Lines expected;
+    while (i + 1 < lines.size() && !lines[i + 1].starts_with("$ ") && !lines[i + 1].starts_with("```"))
+      expected.push_back(lines[++i]);
+    const Ran ran = shell(lines[i - expected.size()].substr(2));
+    const Lines found = lines_of(ran.out + ran.err);
+    const bool match = matches(expected, 0, found, 0);
+    all_match = all_match && match;
+    EXPECT_TRUE(match) << lines[i - expected.size()] << '\n' << ran.out << ran.err;
+    for (const std::string& line : match ? expected : abridged(expected, found)) text << line << '\n';
+  }
+  EXPECT_GE(commands, least_commands);
+  if (all_match) {
+    fs::remove(renewed);
+  } else {
+    std::ofstream(renewed) << text.str();
+    ADD_FAILURE() << "expected " << document << " to be true; as it would be: " << renewed.string();
+  }
+}
+
+TEST(Docs, ReadmePrintsWhatItSays) { expect_true_commands("README.md", 5); }
+
+TEST(Docs, TourPrintsWhatItSays) { expect_true_commands("docs/tour.md", 20); }
+
+TEST(Docs, AbridgesAsBefore) {
+  EXPECT_EQ(abridged({"a", "…", "z"}, {"a", "b", "c", "y"}), (Lines{"a", "…", "y"}));
+  EXPECT_EQ(abridged({"a", "…"}, {"b", "c"}), (Lines{"b", "…"}));
+  EXPECT_EQ(abridged({"a", "b"}, {"c"}), Lines{"c"});
+  EXPECT_EQ(abridged({"a", "…", "z"}, {"q"}), Lines{"q"});
+}
+
+std::vector<fs::path> documents() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(kRoot)) {
+    if (entry.path().extension() == ".md") files.push_back(entry.path());
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory() || name.starts_with(".") || name.starts_with("build") || name == "out") continue;
+    for (const auto& inner : fs::recursive_directory_iterator(entry))
+      if (inner.path().extension() == ".md" && inner.path().string().find("node_modules") == std::string::npos)
+        files.push_back(inner.path());
+  }
+  return files;
+}
+
+// [links](to/files), and `folder/file.h` or `folder/` in code.
+TEST(Docs, WhatTheyNameExists) {
+  const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
+  const std::regex path(R"(`([a-z]+/[A-Za-z0-9_./-]*(\.(h|inl|cuh?|cpp|ts|py|md|json|pairs|cmake|txt)|/))`)");
+  int links = 0, paths = 0;
+  for (const fs::path& file : documents()) {
+    const std::string text = contents(file);
+    for (std::sregex_iterator found(text.begin(), text.end(), link), end; found != end; ++found, ++links)
+      EXPECT_TRUE(fs::exists(file.parent_path() / (*found)[1].str())) << file << " links " << (*found)[1];
+    for (std::sregex_iterator found(text.begin(), text.end(), path), end; found != end; ++found) {
+      const std::string name = (*found)[1];
+      if (!fs::exists(kRoot / name.substr(0, name.find('/')) / "CMakeLists.txt")) continue;  // not one of our folders
+      ++paths;
+      EXPECT_TRUE(fs::exists(kRoot / name)) << file << " names " << name;
+    }
+  }
+  EXPECT_GE(links, 15);
+  EXPECT_GE(paths, 15);
+}
+
+TEST(Docs, ReadmesAreShort) {
+  EXPECT_LE(lines_of(contents(kRoot / "README.md")).size(), 120u);
+  int folders = 0;
+  for (const auto& entry : fs::directory_iterator(kRoot)) {
+    if (!fs::exists(entry.path() / "CMakeLists.txt") || entry.path().filename().string().starts_with("build")) continue;
+    ++folders;
+    const fs::path readme = entry.path() / "README.md";
+    EXPECT_TRUE(fs::exists(readme)) << readme;
+    EXPECT_LE(lines_of(contents(readme)).size(), 15u) << readme;
+  }
+  EXPECT_GE(folders, 9);
+}
+
+}  // namespace
+}  // namespace graze::cli

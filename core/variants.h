@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The variants as C++ sees them; core/variants.inc is the table.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace graze {
+
+enum class Variant : std::uint8_t {
+#define GRAZE_VARIANT(name, ...) name,
+#include "core/variants.inc"
+#undef GRAZE_VARIANT
+};
+
+enum class Arithmetic : std::uint8_t { rounded, contracted, fast, exact };
+enum class RunsOn : std::uint8_t { host, device };
+enum class Twin : std::uint8_t { no_twin, twin };
+
+struct VariantInfo {
+  Variant variant;
+  std::string_view id;
+  RunsOn runs_on;
+  Arithmetic arithmetic;
+  Twin twin;
+  std::string_view needs;
+  std::string_view flags;
+};
+
+inline constexpr VariantInfo kVariants[] = {
+#define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, needs, flags) \
+  {Variant::name, id, RunsOn::runs_on, Arithmetic::arithmetic, Twin::twin, needs, flags},
+#include "core/variants.inc"
+#undef GRAZE_VARIANT
+};
+
+constexpr const VariantInfo& info_of(Variant variant) { return kVariants[static_cast<int>(variant)]; }
+constexpr std::string_view name(Variant variant) { return info_of(variant).id; }
+
+constexpr std::optional<Variant> variant_of_name(std::string_view id) {
+  for (const VariantInfo& row : kVariants) {
+    if (row.id == id) return row.variant;
+  }
+  return std::nullopt;
+}
+
+// The variant on the same kind of processor in which every operation rounds as written.
+constexpr Variant rounded_variant(Variant variant) {
+  for (const VariantInfo& row : kVariants) {
+    if (row.runs_on == info_of(variant).runs_on && row.arithmetic == Arithmetic::rounded) return row.variant;
+  }
+  return variant;
+}
+
+}  // namespace graze

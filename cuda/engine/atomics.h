@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// The atomic operations that the engine needs, on a device and on the host alike.
+#pragma once
+
+#include <cstdint>
+
+#include "core/vec3.h"
+
+namespace graze::cuda {
+
+// Reads what another thread published, and whatever it wrote before that.
+GRAZE_HD inline std::uint64_t load_published(const std::uint64_t* at) {
+#ifdef __CUDA_ARCH__
+  std::uint64_t value;
+  asm volatile("ld.acquire.gpu.u64 %0, [%1];" : "=l"(value) : "l"(at) : "memory");
+  return value;
+#else
+  return __atomic_load_n(at, __ATOMIC_ACQUIRE);
+#endif
+}
+
+// Lets other threads read what this one wrote before.
+GRAZE_HD inline void publish(std::uint64_t* at, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  asm volatile("st.release.gpu.u64 [%0], %1;" : : "l"(at), "l"(value) : "memory");
+#else
+  __atomic_store_n(at, value, __ATOMIC_RELEASE);
+#endif
+}
+
+// A glance without order.
+GRAZE_HD inline std::uint64_t load_relaxed(const std::uint64_t* at) {
+#ifdef __CUDA_ARCH__
+  return *const_cast<const volatile std::uint64_t*>(at);
+#else
+  return __atomic_load_n(at, __ATOMIC_RELAXED);
+#endif
+}
+
+// Writes `to` where `from` stands.   Returns: whether it did.
+GRAZE_HD inline bool replace(std::uint64_t* at, std::uint64_t from, std::uint64_t to) {
+#ifdef __CUDA_ARCH__
+  return atomicCAS(reinterpret_cast<unsigned long long*>(at), from, to) == from;
+#else
+  return __atomic_compare_exchange_n(at, &from, to, false, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE);
+#endif
+}
+
+// Returns: what stood there before.
+GRAZE_HD inline std::uint64_t lower_to(std::uint64_t* at, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  return atomicMin(reinterpret_cast<unsigned long long*>(at), value);
+#else
+  std::uint64_t old = __atomic_load_n(at, __ATOMIC_RELAXED);
+  while (value < old && !__atomic_compare_exchange_n(at, &old, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+  return old;
+#endif
+}
+
+GRAZE_HD inline void add(std::uint64_t* at, std::uint64_t value) {
+#ifdef __CUDA_ARCH__
+  atomicAdd(reinterpret_cast<unsigned long long*>(at), value);
+#else
+  __atomic_fetch_add(at, value, __ATOMIC_RELAXED);
+#endif
+}
+
+// Returns: what stood there before.
+GRAZE_HD inline std::uint32_t add_one(std::uint32_t* at) {
+#ifdef __CUDA_ARCH__
+  return atomicAdd(at, 1u);
+#else
+  return __atomic_fetch_add(at, 1u, __ATOMIC_RELAXED);
+#endif
+}
+
+// Adds one for each calling thread; on a device by one operation for the threads of a warp that meet at one address.
+GRAZE_HD inline void count_one(std::uint64_t* at) {
+#ifdef __CUDA_ARCH__
+  const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(at));
+  if (static_cast<unsigned>(__ffs(static_cast<int>(together)) - 1) == threadIdx.x % 32)
+    add(at, static_cast<std::uint64_t>(__popc(together)));
+#else
+  add(at, 1);
+#endif
+}
+
+}  // namespace graze::cuda

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// One block of pairs under way through the engine's steps, wherever its memory lies; and the keys of its signatures.
+#pragma once
+
+#include <cstdint>
+
+#include "core/margin/axis.h"
+#include "cuda/engine/engine.h"
+#include "cuda/engine/signature_table.h"
+#include "cuda/lanes/places.h"
+
+namespace graze::cuda {
+
+inline constexpr std::int8_t kUndecided = 127;  // a bucket, or an extreme, that is not known
+
+// A lane's verdicts: bit i % 32 of word i / 32 belongs to pair i.
+struct LaneWords {
+  const std::uint32_t *intersects, *declined;
+};
+
+struct LaneTable {
+  const LaneWords* lanes;
+  std::uint32_t count;
+  const LaneGroup* groups;
+  std::uint32_t group_count;
+};
+
+// Indices of pairs for the host; `count` goes on past `size`.
+struct IndexList {
+  std::uint64_t* indices;
+  std::uint32_t size;
+  std::uint32_t* count;
+};
+
+// Pairs whose bucket single precision left open, disjoint ones and intersecting ones; disjoint ones that double left
+// open as well; those that need their relation; of these the ones that need all axes, by the numbers that hold them;
+// and intersecting ones that double left open although their margin is not zero.
+enum EngineList {
+  kOpenGaps,
+  kOpenDepths,
+  kTies,
+  kRelated,
+  kByDoubles,
+  kByNarrow,
+  kByInts,
+  kByLong,
+  kByWide,
+  kDepths,
+  kEngineLists
+};
+
+struct EngineBlock {
+  DevicePairs pairs;
+  std::uint64_t first;  // index of the block's first pair
+  const std::uint32_t* truth;
+  std::uint32_t* wrong;  // pairs on which some lane is
+  std::int8_t* buckets;
+  LaneTable lanes;
+  Places lists[kEngineLists];
+  SignatureTable signatures;
+  IndexList undecided;
+  std::uint64_t* counts;  // see EngineResult
+  Axis axis;
+  std::int8_t* extremes;  // written and counted unless axis is none
+  std::uint64_t* extreme_counts;
+  std::uint64_t* disagreements;
+};
+
+inline constexpr std::uint32_t kCountersOfPairs = 2, kCountersOfLane = 3;
+
+GRAZE_HD constexpr std::size_t engine_counters(std::size_t lanes) {
+  return (kCountersOfPairs + kCountersOfLane * lanes) * kBucketCount;
+}
+
+GRAZE_HD inline bool bit(const std::uint32_t* words, std::uint32_t i) { return words[i / 32] >> (i % 32) & 1; }
+
+// How a lane's verdict compares with the truth. Two bits in a key.
+enum class Mark : std::uint8_t { right, false_positive, false_negative, declined };
+inline constexpr std::uint32_t kMarksOfWord = 32;
+
+GRAZE_HD inline Mark mark_of(const LaneWords& lane, std::uint32_t i, bool truth) {
+  if (bit(lane.declined, i)) return Mark::declined;
+  const bool says = bit(lane.intersects, i);
+  return says == truth ? Mark::right : says ? Mark::false_positive : Mark::false_negative;
+}
+
+constexpr Verdict verdict_of(Mark mark, Verdict truth) {
+  return mark == Mark::declined         ? Verdict::declined
+         : mark == Mark::right          ? truth
+         : mark == Mark::false_positive ? Verdict::intersects
+                                        : Verdict::disjoint;
+}
+
+// Words of marks that a group needs.
+constexpr std::uint32_t mark_words(std::uint32_t lanes) { return (lanes + kMarksOfWord - 1) / kMarksOfWord; }
+
+// What a signature says besides its marks, in the first word of its key.
+struct SignatureShape {
+  std::uint32_t group;  // place of its lanes among the groups
+  int contact;          // as Relation has it: -1 for none
+  int dimension_a, dimension_b;
+  bool coplanar;
+  Bucket bucket;
+};
+
+GRAZE_HD constexpr std::uint64_t packed(const SignatureShape& s) {
+  return static_cast<std::uint64_t>(s.bucket + kBucketMost) | static_cast<std::uint64_t>(s.dimension_a) << 8 |
+         static_cast<std::uint64_t>(s.dimension_b) << 10 | std::uint64_t{s.coplanar} << 12 |
+         static_cast<std::uint64_t>(s.contact + 1) << 13 | std::uint64_t{s.group} << 32;
+}
+
+constexpr SignatureShape unpacked(std::uint64_t word) {
+  const auto field = [word](int at, int bits) { return static_cast<int>(word >> at & ((1u << bits) - 1)); };
+  return {static_cast<std::uint32_t>(word >> 32),        field(13, 2) - 1, field(8, 2), field(10, 2), field(12, 1) != 0,
+          static_cast<Bucket>(field(0, 8) - kBucketMost)};
+}
+
+// The marks of pair i by 32 lanes of the group, from lane 32 * word on.
+GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& group, std::uint32_t word,
+                                    std::uint32_t i, bool truth) {
+  const std::uint32_t from = word * kMarksOfWord;
+  std::uint64_t result = 0;
+  for (std::uint32_t k = 0; k < kMarksOfWord && from + k < group.count; ++k)
+    result |= static_cast<std::uint64_t>(mark_of(block.lanes.lanes[group.first + from + k], i, truth)) << 2 * k;
+  return result;
+}
+
+// The key of pair i's signature for one group. Marks beyond the first word are read whenever they are asked for: no
+// number of lanes needs more registers.
+struct SignatureKey {
+  const EngineBlock& block;
+  LaneGroup group;
+  std::uint32_t i;
+  bool truth;
+  std::uint64_t shape, first_marks;
+
+  GRAZE_HD std::uint64_t word(std::uint32_t k) const {
+    return k == 0 ? shape : k == 1 ? first_marks : marks(block, group, k - 1, i, truth);
+  }
+};
+
+}  // namespace graze::cuda

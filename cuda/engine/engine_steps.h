@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the engine does with a block of pairs, step by step: the same code on a device, where each step is a kernel, and
+// on the host. Every pair gets its margin's bucket, from the cheapest bounds that decide it: each step lists what it
+// leaves for the next, so that a warp does not wait for one hard pair in 32. Those on which a lane is wrong, and those
+// whose margin may be zero, get their relation. Then everything is counted.
+#pragma once
+
+#include "core/exact/exact.h"
+#include "core/margin/axis.h"
+#include "core/margin/margin.h"
+#include "core/margin/single_precision.h"
+#include "core/margin/tie_proof.h"
+#include "cuda/engine/engine_block.h"
+
+namespace graze::cuda {
+inline namespace GRAZE_FP {
+
+// kThreadBlocks: how many blocks of threads a multiprocessor should hold at once, which limits the step's registers.
+
+struct MarkWrong {
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t word) const {
+    std::uint32_t wrong = 0;
+    for (std::uint32_t l = 0; l < block.lanes.count; ++l) {
+      const LaneWords& lane = block.lanes.lanes[l];
+      wrong |= (lane.intersects[word] ^ block.truth[word]) | lane.declined[word];
+    }
+    block.wrong[word] = wrong;
+  }
+};
+
+GRAZE_HD inline Pair pair_of(const float* c) {
+  return {{{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {c[6], c[7], c[8]}},
+          {{c[9], c[10], c[11]}, {c[12], c[13], c[14]}, {c[15], c[16], c[17]}}};
+}
+
+struct MeasureBySingle {
+  static constexpr int kThreadBlocks = 2;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    Bucket bucket;
+    const Verdict verdict = bit(block.truth, i) ? Verdict::intersects : Verdict::disjoint;
+    if (!bucket_by_single(pair_of(c), verdict, bucket)) {
+      bucket = kUndecided;
+      block.lists[verdict == Verdict::intersects ? kOpenDepths : kOpenGaps].add(i);
+    }
+    block.buckets[i] = bucket;
+    if (bit(block.wrong, i)) block.lists[kRelated].add(i);
+  }
+};
+
+template <Verdict verdict>
+struct MeasureByDouble {
+  static constexpr int kThreadBlocks = 2;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    Bucket bucket;
+    if (bucket_by_double(pair_of(c), verdict, bucket)) {
+      block.buckets[i] = bucket;
+    } else if (verdict == Verdict::disjoint) {
+      block.lists[kTies].add(i);
+    } else if (!bit(block.wrong, i)) {
+      block.lists[kRelated].add(i);
+    }
+  }
+};
+
+GRAZE_HD inline void leave_to_host(const EngineBlock& block, std::uint32_t i) {
+  const std::uint32_t n = add_one(block.undecided.count);
+  if (n < block.undecided.size) block.undecided.indices[n] = block.first + i;
+}
+
+// The bucket by all means that there are without arithmetic of any length, or kUndecided.
+GRAZE_HD inline Bucket bucket_by_all_means(const float* c, Verdict verdict) {
+  const Pair pair = pair_of(c);
+  const MarginBounds bounds = margin_bounds(pair, verdict);
+  const int ulp = log2_ulp(pair);
+  Bucket bucket;
+  if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
+  const int upper = floor_log2(bounds.hi);
+  const bool proven = verdict == Verdict::disjoint && are_apart_by(c, c + 9, bounds.direction, upper);
+  return proven ? make_bucket(1, upper - ulp) : kUndecided;
+}
+
+struct BreakTie {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    block.buckets[i] = bucket_by_all_means(c, Verdict::disjoint);
+    if (block.buckets[i] == kUndecided) leave_to_host(block, i);
+  }
+};
+
+GRAZE_HD inline void add_signatures(const EngineBlock& block, std::uint32_t i, const exact::Relation& r,
+                                    Bucket bucket) {
+  for (std::uint32_t g = 0; g < block.lanes.group_count; ++g) {
+    const LaneGroup group = block.lanes.groups[g];
+    const std::uint64_t first = marks(block, group, 0, i, r.intersects);
+    bool wrong = first != 0;
+    for (std::uint32_t word = 1; !wrong && word * kMarksOfWord < group.count; ++word)
+      wrong = marks(block, group, word, i, r.intersects) != 0;
+    if (!wrong) continue;
+    const std::uint64_t shape = packed({g, r.contact, r.dimension_a, r.dimension_b, r.coplanar, bucket});
+    add_pair(block.signatures, SignatureKey{block, group, i, r.intersects, shape, first}, block.first + i);
+  }
+}
+
+// The relation is known: completes the bucket, or leaves that to the next step, and adds the signatures.
+GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const exact::Relation& r) {
+  Bucket bucket = block.buckets[i];
+  if (bucket == kUndecided) {
+    if (!r.intersects) return;  // the host has it
+    if (r.margin_sign != 0) return block.lists[kDepths].add(i);
+    block.buckets[i] = bucket = 0;
+  }
+  if (bit(block.wrong, i)) add_signatures(block, i, r, bucket);
+}
+
+struct Relate {
+  static constexpr int kThreadBlocks = 2;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    namespace numbers = exact::detail;
+    exact::Relation r;
+    if (numbers::relate_quickly(c, c + 9, r)) return settle(block, i, r);
+    block.lists[kByDoubles + numbers::AllNumbers::place(numbers::grid_of(c, c + 9))].add(i);
+  }
+};
+
+template <class Numbers>
+struct RelateByAxes {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    const int exponent = exact::detail::grid_of(c, c + 9).exponent;
+    settle(block, i, by_axes(exact::detail::triangles<Numbers>(c, c + 9, exponent)));
+  }
+};
+
+struct SettleDepth {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    const Bucket bucket = bucket_by_all_means(c, Verdict::intersects);
+    block.buckets[i] = bucket;
+    if (bucket == kUndecided) return leave_to_host(block, i);
+    if (bit(block.wrong, i)) add_signatures(block, i, exact::relation(c, c + 9), bucket);
+  }
+};
+
+// The extreme of a pair whose bucket is known.
+struct PlaceExtreme {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    block.extremes[i] = block.buckets[i] == kUndecided ? kUndecided : place_on_axis(pair_of(c), block.axis);
+  }
+};
+
+// Calls add(counter, pairs) for what the pairs `same` of a word, all of one bucket, count by lanes [from, to); counters
+// as EngineResult lays them out, those of lane `from` first.
+template <class Add>
+GRAZE_HD void count_word(const EngineBlock& block, std::uint32_t word, std::uint32_t same, std::uint32_t from,
+                         std::uint32_t to, const Add& add) {
+  const std::uint32_t truth = block.truth[word];
+  add(0, same);
+  add(1, same & truth);
+  for (std::uint32_t l = from; l < to; ++l) {
+    const std::uint32_t yes = block.lanes.lanes[l].intersects[word], none = block.lanes.lanes[l].declined[word];
+    const std::uint32_t counter = kCountersOfPairs + kCountersOfLane * (l - from);
+    add(counter, same & yes & ~truth & ~none);
+    add(counter + 1, same & ~yes & truth & ~none);
+    add(counter + 2, same & none);
+  }
+}
+
+// All steps in their order. Run: words(step) takes the block's words; pairs(step) its pairs, pairs_by_verdict(step) the
+// same, best with like verdicts side by side; listed(step, list) the pairs that earlier steps listed; tally(by_extreme)
+// counts all pairs by bucket, or by extreme.
+template <class Run>
+void run_steps(const EngineBlock& block, const Run& run) {
+  using namespace exact::detail;
+  run.words(MarkWrong{});
+  run.pairs_by_verdict(MeasureBySingle{});
+  run.listed(MeasureByDouble<Verdict::disjoint>{}, kOpenGaps);
+  run.listed(MeasureByDouble<Verdict::intersects>{}, kOpenDepths);
+  run.listed(BreakTie{}, kTies);
+  run.listed(Relate{}, kRelated);
+  run.listed(RelateByAxes<DoubleNumbers>{}, kByDoubles);
+  run.listed(RelateByAxes<NarrowNumbers>{}, kByNarrow);
+  run.listed(RelateByAxes<IntNumbers>{}, kByInts);
+  run.listed(RelateByAxes<LongNumbers>{}, kByLong);
+  run.listed(RelateByAxes<WideNumbers>{}, kByWide);
+  run.listed(SettleDepth{}, kDepths);
+  run.tally(false);
+  if (block.axis == Axis::none) return;
+  run.pairs(PlaceExtreme{});
+  run.tally(true);
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze::cuda

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/engine/signature_table.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <barrier>
+#include <thread>
+#include <vector>
+
+#include "cuda/engine/engine_block.h"
+
+namespace graze::cuda {
+namespace {
+
+constexpr std::uint32_t kWords = 5;
+
+// A key of some words that all follow from its number, so that half a key shows. Other threads get a chance between any
+// two words.
+struct TestKey {
+  std::uint64_t number;
+  std::uint64_t word(std::uint32_t k) const {
+    std::this_thread::yield();
+    return number * (2 * k + 1) + k;
+  }
+};
+
+class SignatureTableTest : public testing::Test {
+ protected:
+  SignatureTable table(std::uint32_t size) {
+    SignatureTable t{nullptr, size, kWords, &full_};
+    rows_.assign(std::size_t{size} * t.row_words(), 0);
+    t.rows = rows_.data();
+    for (std::uint32_t at = 0; at < size; ++at) std::fill_n(t.cases(t.row(at)), kEngineCases, kNoCase);
+    return t;
+  }
+
+  std::vector<std::uint64_t> rows_;
+  std::uint32_t full_ = 0;
+};
+
+// All threads add the same key at once, so that they meet in rows that are being written.
+TEST_F(SignatureTableTest, ManyThreadsNeverStoreHalfAKeyNorOneTwice) {
+  constexpr std::uint64_t kThreadCount = 4, kKeys = 900, kPairs = 1200;
+  const SignatureTable t = table(1024);
+  std::barrier together(kThreadCount);
+  std::vector<std::thread> threads;
+  for (std::uint64_t thread = 0; thread < kThreadCount; ++thread) {
+    threads.emplace_back([&, thread] {
+      for (std::uint64_t n = 0; n < kPairs; ++n) {
+        together.arrive_and_wait();
+        add_pair(t, TestKey{n % kKeys}, n * kThreadCount + thread);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(full_, 0u);
+  std::vector<std::uint64_t> seen;
+  for (std::uint32_t at = 0; at < t.size; ++at) {
+    std::uint64_t* row = t.row(at);
+    if (*row == kFree) continue;
+    const std::uint64_t number = t.key(row)[0];
+    ASSERT_LT(number, kKeys);
+    EXPECT_EQ(*row, hash_of(TestKey{number}, kWords) | kPublished);
+    for (std::uint32_t k = 0; k < kWords; ++k) EXPECT_EQ(t.key(row)[k], TestKey{number}.word(k));
+    EXPECT_EQ(*t.count(row), kThreadCount * ((kPairs - number - 1) / kKeys + 1));
+    for (std::uint64_t k = 0; k < kEngineCases; ++k) EXPECT_EQ(t.cases(row)[k], number * kThreadCount + k);
+    seen.push_back(number);
+  }
+  std::sort(seen.begin(), seen.end());
+  ASSERT_EQ(seen.size(), kKeys);
+  EXPECT_EQ(std::adjacent_find(seen.begin(), seen.end()), seen.end());
+}
+
+TEST_F(SignatureTableTest, AFullTableSaysSoAndKeepsWhatItHolds) {
+  const SignatureTable t = table(8);
+  for (std::uint64_t number = 0; number < 8; ++number) add_pair(t, TestKey{number}, number);
+  EXPECT_EQ(full_, 0u);
+  const std::vector<std::uint64_t> before = rows_;
+  add_pair(t, TestKey{8}, 8);
+  EXPECT_EQ(full_, 1u);
+  EXPECT_EQ(rows_, before);
+  add_pair(t, TestKey{3}, 11);
+  std::uint64_t* row = find_row(t, TestKey{3});
+  EXPECT_EQ(*t.count(row), 2u);
+  EXPECT_EQ(t.cases(row)[1], 11u);
+}
+
+TEST_F(SignatureTableTest, KeysThatDifferInTheirLastWordOnlyAreApart) {
+  struct LastWord {
+    std::uint64_t last;
+    std::uint64_t word(std::uint32_t k) const { return k + 1 == kWords ? last : 42; }
+  };
+  const SignatureTable t = table(64);
+  for (std::uint64_t last = 0; last < 40; ++last) add_pair(t, LastWord{last}, last);
+  for (std::uint64_t last = 0; last < 40; ++last) {
+    std::uint64_t* row = find_row(t, LastWord{last});
+    EXPECT_EQ(*t.count(row), 1u);
+    EXPECT_EQ(t.cases(row)[0], last);
+  }
+}
+
+TEST(SignatureShape, EveryShapeComesBackFromItsWord) {
+  for (int bucket = -kBucketMost; bucket <= kBucketMost; ++bucket) {
+    for (int rest = 0; rest < 4 * 3 * 3 * 2; ++rest) {
+      const SignatureShape shape{static_cast<std::uint32_t>(rest) * 0x1234567u,
+                                 rest % 4 - 1,
+                                 rest / 4 % 3,
+                                 rest / 12 % 3,
+                                 rest / 36 != 0,
+                                 static_cast<Bucket>(bucket)};
+      const SignatureShape back = unpacked(packed(shape));
+      EXPECT_EQ(back.group, shape.group);
+      EXPECT_EQ(back.contact, shape.contact);
+      EXPECT_EQ(back.dimension_a, shape.dimension_a);
+      EXPECT_EQ(back.dimension_b, shape.dimension_b);
+      EXPECT_EQ(back.coplanar, shape.coplanar);
+      EXPECT_EQ(back.bucket, shape.bucket);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace graze::cuda

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// report.json is what src/report.ts says: TypeScript's own compiler checks real reports, as literals of type Report.
+import { execFileSync } from 'node:child_process';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { expect, test, type TestInfo } from '@playwright/test';
+import type { Report } from '../src/report';
+
+const here = dirname(fileURLToPath(import.meta.url));
+
+const read = (page: string) => JSON.parse(readFileSync(page.replace(/html$/, 'json'), 'utf8')) as Report;
+
+// The compiler's complaints about values of type Report.
+function complaints(reports: Record<string, unknown>, info: TestInfo): string {
+  const values = Object.entries(reports).map(([name, value]) => `export const ${name}: Report = ${JSON.stringify(value)};\n`);
+  const file = info.outputPath('reports.ts');
+  writeFileSync(file, `import type { Report } from ${JSON.stringify(resolve(here, '../src/report'))};\n${values.join('')}`);
+  try {
+    execFileSync(process.execPath, [join(here, '../node_modules/typescript/bin/tsc'), '--noEmit', '--strict', '--pretty', 'false', '--skipLibCheck',
+      '--moduleResolution', 'bundler', '--module', 'ESNext', file], { encoding: 'utf8', cwd: info.outputDir });
+    return '';
+  } catch (error) {
+    return (error as { stdout: string }).stdout;
+  }
+}
+
+test('real reports are what report.ts says', ({}, info) => {
+  const { GRAZE_REPORT, GRAZE_COMPARE } = process.env;
+  const campaign = read(GRAZE_REPORT!), compared = GRAZE_COMPARE ? read(GRAZE_COMPARE) : null;
+  expect(campaign.cards.some((card) => card.maps && card.snippets.length && card.sentences.length)).toBe(true);
+  if (compared) expect(compared.compare).not.toBeNull();
+  expect(complaints(compared ? { campaign, compared } : { campaign }, info)).toBe('');
+});
+
+test('and others are told apart', ({}, info) => {
+  const whole = read(process.env.GRAZE_REPORT!);
+  const right: Report = { ...whole, rates: [], margins: [], signatures: [], cards: whole.cards.slice(0, 1) };
+  const { strata: _, ...missing } = right;
+  const said = complaints({
+    missing,
+    more: { ...right, lane: 1 },
+    deeper: { ...right, cards: [{ ...right.cards[0], truth: { ...right.cards[0].truth, ulps: 0 } }] },
+    other_type: { ...right, run: { ...right.run, seed: '1' } },
+    other_word: { ...right, lanes: [{ ...right.lanes[0], scalar: 'f16' }] },
+  }, info);
+  for (const part of ["Property 'strata' is missing", `'"lane"' does not exist`, `'"ulps"' does not exist`, "'string' is not assignable to type 'number'",
+    `'"f16"' is not assignable`]) expect(said).toContain(part);
+});

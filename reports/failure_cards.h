@@ -11,7 +11,7 @@
 namespace graze::reports {
 
 // What keeps the page's size: rows in its table (besides those of cards), and bytes of all its maps.
-inline constexpr std::size_t kMostSignatures = 10'000;
+inline constexpr std::size_t kMostSignatures = 5'000;
 inline constexpr std::size_t kMostMapBytes = 7 << 18;
 
 // One row for each signature, the commonest first.

@@ -417,7 +417,9 @@ TEST(Page, OfManySignaturesIsUnderEightMebibytes) {
                   {{0.11f, 1e30f, 3.7e-9f}, {1.3f, 0.19f, 0.123456f}, {0.7f, 1.1f, 2.3f}}};
   for (int i = 0; i < 12'000; ++i) {
     const std::string key =
-        "segment/22/skew/+2^-1/guigue_devillers_2003:+f32/cpu;-f32/cuda-nofma;+f64/cpu/abs:" + std::to_string(i);
+        "segment/22/skew/+2^-1/guigue_devillers_2003:+f32/cpu;+f32/cpu-fma;+f32/cpu-fast;-f32/cuda-nofma;"
+        "-f32/cuda-fma;-f32/cuda-fast;+f64/cpu;+f64/cpu-fma;+f64/cpu-fast;+f64/cuda-nofma;+f64/cuda-fma/abs:" +
+        std::to_string(i);
     summary["signatures"].push_back({{"key", key}, {"count", 99'999'999'999}, {"case", "cases/1.pairs"}});
   }
   fuzz::write_whole(directory / "cases/1.pairs", "graze-pairs 1\n" + fuzz::pair_text(pair) +

@@ -99,18 +99,29 @@ analysis::Signature signature_of(const Failure& failure, const Pair& pair) {
 }
 
 std::vector<Pair> simpler_moves(const Pair& pair, int kind) {
-  std::vector<Pair> moved;
+  thread_local std::vector<Pair> moved;
+  moved.clear();
   append_moves(pair, kind, moved);
-  const Simplicity now = simplicity(pair);
-  std::vector<std::pair<Simplicity, std::size_t>> order;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    const Simplicity after = simplicity(moved[i]);
-    if (after < now) order.push_back({after, i});
+  const std::uint64_t now = simplicity_counts(pair);
+  struct Simpler {
+    std::uint64_t counts;
+    const Pair* pair;
+  };
+  thread_local std::vector<Simpler> order;
+  order.clear();
+  for (const Pair& m : moved) {
+    const std::uint64_t counts = simplicity_counts(m, now);
+    if (counts < now || (counts == now && simpler_coordinates(m, pair))) order.push_back({counts, &m});
   }
-  std::sort(order.begin(), order.end());
+  std::sort(order.begin(), order.end(), [](const Simpler& l, const Simpler& r) {
+    return l.counts != r.counts ? l.counts < r.counts : simpler_coordinates(*l.pair, *r.pair);
+  });
   std::vector<Pair> simpler;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || order[i].first != order[i - 1].first) simpler.push_back(moved[order[i].second]);
+  simpler.reserve(order.size());
+  for (const Simpler& next : order) {
+    if (simpler.empty() || simpler_coordinates(simpler.back(), *next.pair) ||
+        simpler_coordinates(*next.pair, simpler.back()))
+      simpler.push_back(*next.pair);
   }
   return simpler;
 }

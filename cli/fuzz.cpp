@@ -9,6 +9,7 @@
 #include <map>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "core/error.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/result_files.h"
@@ -32,9 +33,6 @@ struct FuzzOptions {
   bool json = false;
   bool require_device = false;
 };
-
-std::atomic<bool> stop_requested{false};
-extern "C" void request_stop(int) { stop_requested = true; }
 
 // One line on a terminal, rewritten after each batch.
 void show(const fuzz::Progress& progress, const std::vector<strata::PairSource>& sources) {
@@ -74,18 +72,17 @@ int fuzz(const FuzzOptions& options) {
   campaign.build = fuzz::build_info(under_test);
 
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
+  const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);
   campaign.engines = fuzz::choose_engines(campaign, options.engine);
-  const auto [summary, oracle] = fuzz::run_campaign(campaign, stop_requested, [&](const fuzz::Progress& progress) {
+  const auto [summary, oracle] = fuzz::run_campaign(campaign, interrupted, [&](const fuzz::Progress& progress) {
     if (on_terminal) show(progress, campaign.sources);
   });
   if (on_terminal) fmt::print(stderr, "\r\033[K");
   fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(summary));
   if (!summary["complete"]) {
     fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
-    return 130;
+    return kInterrupted;
   }
   if (options.json) {
     std::cout << summary.dump(1) << '\n';

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cli/run_graze.h"
 
@@ -61,6 +62,42 @@ TEST_F(Minimize, KilledItGoesOn) {
   expect_done(std::string(kFuzz) + "--out whole > /dev/null && cp -r whole parts && graze minimize whole");
   for (int i = 0; i < 3; ++i) shell("timeout -s KILL 0.3 graze minimize parts");
   expect_done("graze minimize parts && rm -f parts/cases/*.part && diff -r whole/cases parts/cases");
+}
+
+TEST_F(Minimize, CtrlCSaysWhatWasDoneAndTheSameCommandGoesOn) {
+  expect_done(std::string(kFuzz) + "--out whole > /dev/null && cp -r whole parts && graze minimize whole");
+  for (const char* signal : {"INT", "TERM"}) {
+    const Ran ran = shell("timeout --preserve-status -s " + std::string(signal) + " 0.3 graze minimize parts");
+    ASSERT_EQ(ran.status, 130) << ran.out << ran.err;
+    EXPECT_TRUE(std::regex_search(ran.err, std::regex("graze: interrupted; minimised [0-9]+ of [0-9]+ signatures; "
+                                                      "run the same command to go on\n$")))
+        << ran.err;
+    EXPECT_EQ(ran.out, "");
+    expect_done("test -z \"$(ls parts/cases | grep part)\"");
+  }
+  expect_done("graze minimize parts && diff -r whole/cases parts/cases");
+}
+
+TEST_F(Minimize, ACaseThatIsInterruptedIsNotWritten) {
+  expect_done("graze fuzz --seed 2 --pairs 1000 --strata near_edge_edge --lanes '*/cpu' --out one > /dev/null && "
+              "cat one/cases/*.pairs | grep -v '^#' > all && (head -n 1 $(ls one/cases/*.pairs | head -n 1); cat all) > "
+              "many.pairs");
+  const Ran ran = shell("timeout --preserve-status -s INT 0.1 graze minimize many.pairs --out small.pairs");
+  EXPECT_EQ(ran.status, 130) << ran.out << ran.err;
+  EXPECT_TRUE(std::regex_search(
+      ran.err, std::regex("graze: interrupted; minimised [0-9]+ of [0-9]+ cases and wrote nothing\n$")))
+      << ran.err;
+  expect_done("test ! -e small.pairs");
+}
+
+TEST_F(Minimize, SaysTheCauseAndWhetherItEnded) {
+  const Ran ran = shell("graze minimize extreme_scale:1:3 --lanes 'projected_sat/f32/cpu' --out small.pairs");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(std::regex_search(ran.out, std::regex("\n  cause: [a-z ]+, as before\n"))) << ran.out;
+  const std::string file = contents(shell.folder / "small.pairs");
+  EXPECT_TRUE(std::regex_search(
+      file, std::regex("kind=minimised .* cause=[a-z_]+ one_minimal=yes moves_in_vain=[0-9]+\n")))
+      << file;
 }
 
 TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {

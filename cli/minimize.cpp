@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <iostream>
 #include <mutex>
 #include <optional>
@@ -176,10 +175,12 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
 int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
+  const fuzz::FolderLock alone(directory, fuzz::FolderLock::WhenTaken::refuse);
   const Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
   const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
                           summary.value("spec", Json()).contains("lanes");
-  if (!is_summary) throw UsageError(options.name + ": expected a campaign's directory with summary.json, found none");
+  if (!is_summary)
+    throw std::runtime_error(options.name + ": expected a campaign's directory with summary.json, found none");
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<fs::path> files;
@@ -195,7 +196,6 @@ int minimize_directory(MinimizeOptions options) {
     maps_to_make += !to_map.back().empty();
   }
 
-  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -256,14 +256,23 @@ void add_minimize(CLI::App& app, int& status) {
                    "A campaign's directory, a file of its cases/, or STRATUM:SEED:INDEX; a directory's results go into "
                    "its cases/")
       ->required();
-  command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file");
+  command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file")
+      ->check(not_empty());
   command->add_flag("--again", options->again, "Of a directory, also what is minimised already");
   command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
       ->check(whole_number(0, 4096))
       ->capture_default_str();
   add_lane_options(*command, options->lanes);
   command->callback([options, &status] {
-    status = fs::is_directory(options->name) ? minimize_directory(*options) : minimize_case(*options);
+    if (!fs::is_directory(options->name)) {
+      status = minimize_case(*options);
+      return;
+    }
+    try {
+      status = minimize_directory(*options);
+    } catch (const Json::exception&) {
+      throw std::runtime_error(options->name + "/summary.json: expected a campaign's summary, found something else");
+    }
   });
 }
 

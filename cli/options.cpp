@@ -22,6 +22,11 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   return CLI::Validator(check, "");
 }
 
+CLI::Validator not_empty() {
+  return CLI::Validator([](std::string& text) { return text.empty() ? "expected a name, found ''" : std::string(); },
+                        "");
+}
+
 void add_lane_options(CLI::App& command, LaneOptions& options) {
   static const std::map<std::string, fuzz::Executor> names{{"auto", fuzz::Executor::automatic},
                                                            {"device", fuzz::Executor::device},

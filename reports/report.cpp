@@ -123,7 +123,7 @@ Json only_in(const Json& signatures, const Json& others) {
 Json read_summary(const std::filesystem::path& directory) {
   Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
   if (!summary.is_object() || !summary.contains("spec") || !summary.contains("strata"))
-    throw UsageError(directory.string() + ": expected a campaign's directory with summary.json, found none");
+    throw std::runtime_error(directory.string() + ": expected a campaign's directory with summary.json, found none");
   return summary;
 }
 

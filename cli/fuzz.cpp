@@ -70,6 +70,7 @@ int fuzz(const FuzzOptions& options) {
     const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
         options.mesh[0],
         options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));
+    for (const std::string& note : mesh->notes) fmt::print(stderr, "graze: {}\n", note);
     campaign.sources.push_back({"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }});
     mesh_spec = {{"files", options.mesh}, {"content", fmt::format("{:016x}", mesh->content_hash)}};
   }

@@ -6,9 +6,10 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
 #include <system_error>
+
+#include "core/text.h"
 
 namespace graze::corpus {
 namespace {
@@ -16,35 +17,12 @@ namespace {
 constexpr std::string_view kFormat = "graze-pairs";
 constexpr std::string_view kVersion = "1";
 constexpr std::size_t kLongestLine = 65536;  // so that an endless line is an error, not all of the memory
-constexpr std::size_t kLongestQuote = 40;    // of foreign text in a message
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool is_printable(char c) { return c >= ' ' && c <= '~'; }
 bool is_hex_digit(char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_key_char(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
-}
-
-// text between quotes; quotes and backslashes behind a backslash, bytes that are not printable ASCII as \xHH.
-std::string in_quotes(std::string_view text) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      result += {'\\', c};
-    } else if (is_printable(c)) {
-      result += c;
-    } else {
-      const auto byte = static_cast<unsigned char>(c);
-      result += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
-    }
-  }
-  return result + '"';
-}
-
-// in_quotes, cut short for a message.
-std::string shown(std::string_view text) {
-  return text.size() <= kLongestQuote ? in_quotes(text) : in_quotes(text.substr(0, kLongestQuote)) + "...";
 }
 
 // The name of coordinate i of a pair: a[0].x ... b[2].z.
@@ -242,33 +220,6 @@ std::string hex_float(float value) {
   const double magnitude = std::fabs(value);  // a double, in which a subnormal float is normal: 0x1p-149
   const auto end = std::to_chars(std::begin(digits), std::end(digits), magnitude, std::chars_format::hex).ptr;
   return text.append("0x").append(digits, end);
-}
-
-std::optional<float> parse_float32(std::string_view text) {
-  const bool negative = text.starts_with('-');
-  if (negative || text.starts_with('+')) text.remove_prefix(1);
-  const bool hex = text.starts_with("0x") || text.starts_with("0X");
-  const std::string magnitude_text(text);
-  if (hex) text.remove_prefix(2);
-  if (text.empty() || text[0] == '-' || (hex && text[0] != '.' && !is_hex_digit(text[0]))) return std::nullopt;
-
-  float magnitude = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), magnitude,
-                                            hex ? std::chars_format::hex : std::chars_format::general);
-  if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
-  if (error == std::errc::result_out_of_range) {
-    // from_chars does not say which way; strtof rounds what underflows and returns infinity otherwise.
-    magnitude = std::strtof(magnitude_text.c_str(), nullptr);
-    if (std::isinf(magnitude)) return std::nullopt;
-  }
-  return negative ? -magnitude : magnitude;
-}
-
-std::optional<std::uint64_t> parse_whole(std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 const std::string* field(const Entry& entry, std::string_view key) {

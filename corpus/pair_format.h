@@ -64,13 +64,6 @@ void write_entry(std::ostream& out, const Entry& entry);
 // Returns: the shortest hex float, such as "0x1.8p+1", "-0x0p+0", "0x1p-149"; or "inf", "-inf", "nan".
 std::string hex_float(float value);
 
-// Returns: the float32 nearest to the number that text spells, ties to even, rounded once; nothing when text is
-// not a number in full, or when its nearest is beyond the largest float32. "inf" and "nan" are numbers.
-std::optional<float> parse_float32(std::string_view text);
-
-// Returns: the whole number that text spells, without a sign; nothing when it spells none or one too large.
-std::optional<std::uint64_t> parse_whole(std::string_view text);
-
 // Returns: the value of the field, or null when the entry has none of that key.
 const std::string* field(const Entry& entry, std::string_view key);
 

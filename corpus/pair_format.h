@@ -22,7 +22,9 @@ namespace graze::corpus {
 struct Entry {
   Pair pair{};
   std::vector<std::pair<std::string, std::string>> fields = {};  // key and value, in the order of the line
-  std::size_t line = 0;                                          // where it was read; 0 when it was not
+  std::size_t line = 0;                                          // where it begins; 0 when it was not read
+  std::size_t lines = 1;                                         // that it takes
+  std::vector<std::string> written = {};  // the 18 numbers as they were typed; empty when it was not read
 };
 
 // Input that is not in the format; what() is one line: "FILE:LINE: expected 18 numbers, found 17".
@@ -30,7 +32,9 @@ struct FormatError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Reads the entries of a stream one at a time, so that a pipe can be followed as it is written.
+// Reads the entries of a stream one at a time, so that a pipe can be followed as it is written. Without a version line
+// it also takes what people paste: commas, brackets, f suffixes, a vertex a line, arrays of C or Python, and an OBJ
+// fragment of two faces, or of six vertices without faces.
 class PairReader {
  public:
   // Requires: in outlives the reader.   name stands for the stream in messages.
@@ -42,10 +46,13 @@ class PairReader {
 
  private:
   bool read_line(std::string& text);
+  std::string where() const;
+  Entry read_obj_fragment(std::string text);
 
   std::istream& in_;
   std::string name_;
   std::size_t line_ = 0;
+  bool versioned_ = false;
 };
 
 // Opens a file of pairs.   Throws: FormatError for one that is missing, a folder, or cannot be read.

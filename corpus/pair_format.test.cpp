@@ -166,7 +166,7 @@ TEST(PairFormat, AWrongCountIsNamed) {
 TEST(PairFormat, AWordThatIsNoFloat32IsNamed) {
   EXPECT_EQ(error_of("0 0 0 0 one 0"), R"(in.pairs:1: expected a float32 as number 5 (a[1].y), found "one")");
   EXPECT_EQ(error_of(kSeventeen + " 1e39"), R"(in.pairs:1: expected a float32 as number 18 (b[2].z), found "1e39")");
-  EXPECT_EQ(error_of("0,0,0"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "0,0,0")");
+  EXPECT_EQ(error_of("0,one,0"), R"(in.pairs:1: expected a float32 as number 2 (a[0].y), found "one")");
 }
 
 TEST(PairFormat, ABrokenFieldIsNamed) {
@@ -187,11 +187,61 @@ TEST(PairFormat, GarbageIsEscapedAndCutShort) {
   EXPECT_EQ(error_of(std::string("\x7f"
                                  "ELF\x02\x01\0\x1b[31m",
                                  12)),
-            R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "\x7fELF\x02\x01\x00\x1b[31m")");
+            R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "\x7fELF\x02\x01\x00\x1b")");
   EXPECT_EQ(error_of(std::string(1000, 'x')),
             "in.pairs:1: expected a float32 as number 1 (a[0].x), found \"" + std::string(40, 'x') + "\"...");
   EXPECT_EQ(error_of("\n" + std::string(1 << 20, '0')),
             "in.pairs:2: expected a line of at most 65536 bytes, found a longer one");
+}
+
+// Without a version line the reader takes what people paste.
+TEST(PairFormat, TakesWhatPeoplePaste) {
+  const Entry expected = read("0 0 0 4 0 0 0 4.5 0 1 1 0 1 2 4 2 1 4\n").at(0);
+  const char* const kPasted[] = {
+      "0, 0, 0, 4, 0, 0, 0, 4.5, 0, 1, 1, 0, 1, 2, 4, 2, 1, 4\n",
+      "(0,0,0) (4,0,0) (0,4.5,0); (1,1,0) (1,2,4) (2,1,4)",
+      "0 0 0\n4 0 0\n0 4.5 0\n\n1 1 0\n1 2 4\n2 1 4\n",
+      "[[0, 0, 0], [4, 0, 0], [0, 4.5, 0]],\n[[1, 1, 0], [1, 2, 4], [2, 1, 4]]\n",
+      "const float t[2][3][3] = {{{0.f, 0.0f, 0}, {4.0F, 0, 0}, {0, 4.5f, 0}},  // the first\n"
+      "                          {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};\n",
+      "float t[18] =\n{\n0, 0, 0, 4,\n0, 0, 0, 4.5,\n0, 1, 1, 0, 1, 2, 4, 2, 1, 4\n};\n",
+      "a = np.array([[0, 0, 0], [4, 0, 0], [0, 4.5, 0]])\nb = np.array([[1, 1, 0], [1, 2, 4], [2, 1, 4]])\n",
+      "Vec3f a0(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4.5, 0)\nPoint_3(1, 1, 0) Point_3(1, 2, 4) K::Point_3{2, 1, 4}\n",
+      "# fragment\no t\nv 0 0 0\nv 4 0 0\nv 0 4.5 0\nv 1 1 0\nv 1 2 4\nv 2 1 4\n",
+      "v 2 1 4\nv 1 2 4\nv 1 1 0\nvn 0 0 1\nv 0 4.5 0\nv 4 0 0\nv 0 0 0\nf 6//1 5//1 4//1\nf 3 2 1\n"};
+  for (const char* pasted : kPasted) {
+    SCOPED_TRACE(pasted);
+    ASSERT_EQ(error_of(pasted), "read 1 entries");
+    const Entry found = read(pasted).at(0);
+    for (int i = 0; i < kCoordinates; ++i) EXPECT_EQ(coordinates(found.pair)[i], coordinates(expected.pair)[i]) << i;
+    ASSERT_EQ(found.written.size(), 18u);
+    EXPECT_TRUE(found.written[7] == "4.5") << found.written[7];
+  }
+  EXPECT_EQ(read("{0,0,0}\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0 | name=x\n" + kZeros).size(), 2u);
+}
+
+TEST(PairFormat, PastedTextThatIsNoPairIsNamed) {
+  EXPECT_EQ(error_of("0 0 0\n" + kZeros), "in.pairs:1: expected 18 numbers, found 21");
+  EXPECT_EQ(error_of("\n0 0 0\n0 0 0\n"), "in.pairs:2: expected 18 numbers, found 6");
+  EXPECT_EQ(error_of("0 0\n0 0 0 0\n"), "in.pairs:1: expected 18 numbers, found 2");
+  EXPECT_EQ(error_of("graze-pairs 1\n0 0 0\n" + kZeros), "in.pairs:2: expected 18 numbers, found 3");
+  EXPECT_EQ(error_of("0 0 0\ngraze-pairs 1\n"), "in.pairs:1: expected 18 numbers, found 3");
+  EXPECT_EQ(error_of("1.5g 0 0"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "1.5g")");
+  EXPECT_EQ(error_of("point 7 (0 0 0)"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "point")");
+  EXPECT_EQ(error_of("0x1ff 0 0"), "in.pairs:1: expected 18 numbers, found 3");  // a number in hex, not a suffix
+  EXPECT_EQ(error_of("\nv 0 0 0\nv 1 0\n"),
+            "in.pairs:3: expected a coordinate that is finite in float32, found the end of the line");
+  EXPECT_EQ(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+            "in.pairs:1: expected two triangles, or six vertices without a face; found 1 triangles and 3 vertices");
+}
+
+TEST(PairFormat, KeepsWhatWasTyped) {
+  const Entry entry = read("0.1 1.00000000001 -0x1.8p1 +1e0 0 0 0 0 0 0 0 0 0 0 0 0 0 1f\n").at(0);
+  EXPECT_EQ(entry.written[0], "0.1");
+  EXPECT_EQ(entry.written[1], "1.00000000001");
+  EXPECT_EQ(entry.written[2], "-0x1.8p1");
+  EXPECT_EQ(entry.written[3], "+1e0");
+  EXPECT_EQ(entry.written[17], "1");
 }
 
 TEST(PairReader, GoesOnAfterABadLine) {

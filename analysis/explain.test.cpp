@@ -297,7 +297,7 @@ TEST(CauseOf, IsWhatExplainSays) {
       }
     }
   }
-  EXPECT_EQ(seen.size(), 5u);
+  EXPECT_EQ(seen.size(), 6u);
   EXPECT_GT(in_range, wrong / 3);
   EXPECT_LT(in_range, wrong);
 }

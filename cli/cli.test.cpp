@@ -80,10 +80,10 @@ TEST_F(Cli, WrongUseExitsWithTwo) {
 }
 
 TEST_F(Cli, MeshesThatDoNotParseAreNamed) {
-  expect_error("echo 'not a mesh' > bad.off; graze fuzz --mesh bad.off", 1, "bad.off: expected");
+  expect_error("echo 'not a mesh' > bad.off; graze fuzz --mesh bad.off", 1, "bad.off:1: expected OFF");
   expect_error("graze fuzz --mesh missing.off", 1, "missing.off: expected");
   expect_error("printf 'OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 nan\\n3 0 1 2\\n' > nan.off; graze fuzz --mesh nan.off", 1,
-               "nan.off: expected");
+               "nan.off:5: expected a coordinate that is finite");
 }
 
 TEST_F(Cli, AMeshIsACampaign) {

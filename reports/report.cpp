@@ -192,7 +192,9 @@ std::string report_text(const Json& report) {
 
 Json read_report(const std::filesystem::path& file) {
   Json report = Json::parse(fuzz::read_whole(file), nullptr, false);
-  if (!report.is_object() || report.value("format", Json()) != 1 || !report.contains("rates"))
+  const auto is_list = [&](const char* part) { return report.value(part, Json()).is_array(); };
+  if (!report.is_object() || report.value("format", Json()) != 1 || !is_list("rates") || !is_list("lanes") ||
+      !is_list("strata"))
     throw corpus::FormatError(file.string() + ": expected a report of `graze report`, found something else");
   return report;
 }

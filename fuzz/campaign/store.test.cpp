@@ -238,7 +238,7 @@ TEST_P(EveryBit, ChangesNothingInSilence) {
   const std::string whole = run(c);
   // Small pages: less room that nothing uses.
   SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE)
-      .exec("PRAGMA journal_mode = DELETE; PRAGMA page_size = 512; VACUUM");
+      .exec("PRAGMA journal_mode = DELETE; PRAGMA page_size = 2048; VACUUM");
   const auto results = [&] {
     Store store(store_spec(c));
     for (int s = 0; s < 3; ++s) {

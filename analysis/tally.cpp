@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/tally.h"
 
+#include <algorithm>
+
 #include <bit>
 
 namespace graze::analysis {
@@ -71,9 +73,8 @@ Bits disagreements(const JudgedBlock& block) {
 std::vector<int> cpu_twins(std::span<const Lane* const> lanes) {
   std::vector<int> twins(lanes.size(), -1);
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    for (std::size_t c = 0; c < lanes.size(); ++c) {
-      if (lanes[c] == counterpart(*lanes[l], Variant::cpu)) twins[l] = static_cast<int>(c);
-    }
+    const auto cpu = std::find(lanes.begin(), lanes.end(), counterpart(*lanes[l], Variant::cpu));
+    if (cpu != lanes.end()) twins[l] = static_cast<int>(cpu - lanes.begin());
   }
   return twins;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -77,7 +78,7 @@ WrongOf wrong_of(const Lane& lane, const std::vector<Pair>& pairs, Verdict truth
 // The same source on the same kind of processor, with every operation rounded as written.
 const Lane& rounded_counterpart(const Lane& lane) { return *counterpart(lane, rounded_variant(lane.variant)); }
 
-Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth, const oracle::Exactly& exactly) {
+Cause first_cause(const Lane& lane, const Pair& pair, Verdict truth, const oracle::Exactly& exactly) {
   if (exactly.verdict != truth) return Cause::logic;
   if (decide_lane(rounded_counterpart(lane), pair) == truth)
     return info_of(lane.variant).arithmetic == Arithmetic::fast ? Cause::fast_math : Cause::contraction;
@@ -142,7 +143,7 @@ LaneExplanation explain_lane(const Lane& lane, Verdict verdict, const Pair& pair
   LaneExplanation result{
       .lane = &lane,
       .verdict = verdict,
-      .cause = cause_of(lane, pair, truth, algorithm.exactly),
+      .cause = first_cause(lane, pair, truth, algorithm.exactly),
       .exactly = algorithm.exactly,
       .evidence = Evidence::none,
       .steps = {},
@@ -164,6 +165,25 @@ LaneExplanation explain_lane(const Lane& lane, Verdict verdict, const Pair& pair
 }
 
 }  // namespace
+
+Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
+  LaneExplanation result{};
+  result.lane = &lane;
+  result.exactly = oracle::decide_exactly(lane.algorithm, pair);
+  result.cause = first_cause(lane, pair, truth, result.exactly);
+  // The steps can only tell of a rounding that the range had a part in it.
+  if (result.cause != Cause::rounding || !leaves_exponents(lane, pair)) return result.cause;
+  add_steps(result, pair, truth, result.exactly);
+  return refined(result, pair);
+}
+
+bool leaves_exponents(const Lane& lane, const Pair& pair) {
+  const DecideBlock block = block_of(rounded_counterpart(lane));
+  std::uint64_t intersects, declined;
+  std::feclearexcept(FE_OVERFLOW | FE_UNDERFLOW);
+  block(&pair, 1, &intersects, &declined);
+  return std::fetestexcept(FE_OVERFLOW | FE_UNDERFLOW) != 0;
+}
 
 std::string_view name(Cause cause) {
   constexpr std::string_view kNames[] = {"rounding", "contraction", "fast math", "overflow", "underflow", "logic"};

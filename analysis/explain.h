@@ -79,6 +79,14 @@ struct Explanation {
 // Requires: lanes that run here, or have a twin. A pair with a coordinate that is not finite has no wrong lanes.
 Explanation explain(const Pair& pair, std::span<const Lane* const> lanes);
 
+// The cause that explain gives, without the rest of it: a twentieth of the time, or a third where it says rounding.
+// Requires: the lane runs here or has a twin, and is wrong on the pair; truth is the pair's.
+Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth);
+
+// Whether a result leaves the scalar's exponents when the lane's source runs without contraction; where none does, the
+// cause is neither overflow nor underflow. By the processor's flags, and so quick; may say yes where none does.
+bool leaves_exponents(const Lane& lane, const Pair& pair);
+
 // One English sentence on a wrong algorithm, for a bug report; empty when no lane of it is wrong. It names the lanes
 // that are wrong alike, with the numbers of one of them.
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject);

@@ -277,5 +277,30 @@ TEST(Neighbours, NudgesMoveOneCoordinateBothWays) {
   }
 }
 
+// The minimiser asks for the cause alone. Where no flag was raised, MPFR knows of no overflow or underflow either.
+TEST(CauseOf, IsWhatExplainSays) {
+  int wrong = 0, in_range = 0;
+  std::set<Cause> seen;
+  for (const strata::StratumInfo& stratum : strata::kStrata) {
+    for (std::uint64_t i = 0; i < 12; ++i) {
+      const Pair pair = strata::generate(11, stratum.stratum, i);
+      const Explanation explanation = explain(pair, lanes_here());
+      for (const LaneExplanation& lane : explanation.lanes) {
+        ++wrong;
+        seen.insert(lane.cause);
+        EXPECT_EQ(cause_of(*lane.lane, pair, explanation.truth.verdict), lane.cause) << stratum.id << i;
+        if (leaves_exponents(*lane.lane, pair)) continue;
+        ++in_range;
+        EXPECT_TRUE(lane.cause != Cause::overflow && lane.cause != Cause::underflow) << stratum.id << i;
+        EXPECT_EQ(oracle::decide_limited(lane.lane->algorithm, lane.lane->scalar, pair, {true, true}).first,
+                  oracle::RangeEvent::none);
+      }
+    }
+  }
+  EXPECT_EQ(seen.size(), 6u);
+  EXPECT_GT(in_range, wrong / 3);
+  EXPECT_LT(in_range, wrong);
+}
+
 }  // namespace
 }  // namespace graze::analysis

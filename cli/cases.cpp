@@ -2,13 +2,14 @@
 #include "cli/cases.h"
 
 #include "core/error.h"
+#include "core/text.h"
 #include "strata/pair_source.h"
 
 namespace graze::cli {
 namespace {
 
 std::uint64_t number(const std::string& text, const std::string& name) {
-  const std::optional<std::uint64_t> value = corpus::parse_whole(text);
+  const std::optional<std::uint64_t> value = parse_whole(text);
   if (!value) throw UsageError(name + ": expected a whole number, found '" + text + "'");
   return *value;
 }

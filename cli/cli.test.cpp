@@ -80,10 +80,10 @@ TEST_F(Cli, WrongUseExitsWithTwo) {
 }
 
 TEST_F(Cli, MeshesThatDoNotParseAreNamed) {
-  expect_error("echo 'not a mesh' > bad.off; graze fuzz --mesh bad.off", 1, "bad.off: expected");
+  expect_error("echo 'not a mesh' > bad.off; graze fuzz --mesh bad.off", 1, "bad.off:1: expected OFF");
   expect_error("graze fuzz --mesh missing.off", 1, "missing.off: expected");
   expect_error("printf 'OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 nan\\n3 0 1 2\\n' > nan.off; graze fuzz --mesh nan.off", 1,
-               "nan.off: expected");
+               "nan.off:5: expected a coordinate that is finite");
 }
 
 TEST_F(Cli, AMeshIsACampaign) {
@@ -104,8 +104,79 @@ TEST_F(Cli, DatabasesOfOthersAreRefused) {
       "graze fuzz --pairs 20000 --out b > /dev/null; truncate -s 40000 b/campaign.sqlite; graze fuzz --pairs 20000 "
       "--out b",
       1, "b/campaign.sqlite: expected");
-  expect_error("touch file; graze fuzz --pairs 1000 --out file", 2, "file: expected a directory");
+  expect_error("touch file; graze fuzz --pairs 1000 --out file", 1, "file: expected a directory");
   expect_error("rm b/campaign.sqlite; touch b/summary.json; graze fuzz --pairs 1000 --out b", 2, "not their database");
+}
+
+// One byte of a batch, and the end of the file: one line, and the way on keeps the rest.
+TEST_F(Cli, DamageIsOneLineAndWhatChecksIsKept) {
+  const std::string fuzz = "graze fuzz --pairs 20000 --strata 'near_*,degenerate' --lanes '*/f32/cpu' ";
+  ASSERT_EQ(shell(fuzz + "--out whole && cp -r whole c").status, 0);
+  const std::string database = contents(shell.folder / "c/campaign.sqlite");
+  const std::size_t place = database.find("separating_axes:");  // in some signature of some batch
+  ASSERT_NE(place, std::string::npos);
+  std::string changed = database;
+  changed[place] = 'S';
+  std::ofstream(shell.folder / "c/campaign.sqlite", std::ios::binary) << changed;
+  expect_error(fuzz + "--out c", 1, "and its checksum do not agree; --discard-damaged keeps the batches that check");
+  const Ran kept = shell(fuzz + "--discard-damaged --out c");
+  EXPECT_EQ(kept.status, 0) << kept.err;
+  EXPECT_EQ(
+      kept.err,
+      "graze: kept 16,000 pairs in 4 batches that check; the damaged database is now c/campaign.sqlite.damaged\n");
+  expect_done("diff c/summary.json whole/summary.json && diff -r c/cases whole/cases");
+  EXPECT_EQ(contents(shell.folder / "c/campaign.sqlite.damaged"), changed);
+  const Ran again = shell(fuzz + "--discard-damaged --out c");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_EQ(again.err, "");
+}
+
+// The folder's lock, held here by flock(1).
+TEST_F(Cli, TwoAtOnceInOneFolderAreRefused) {
+  const std::string fuzz = "graze fuzz --pairs 2000 --strata degenerate --lanes '*/f32/cpu' --out c";
+  ASSERT_EQ(shell(fuzz).status, 0);
+  const std::string line = "c: expected to be alone, found: another process at work in it";
+  expect_error("flock c " + fuzz, 1, line);
+  expect_error("flock c graze minimize c", 1, line);
+  expect_done("graze minimize c > /dev/null && " + fuzz);
+}
+
+// Device nodes and pipes of our own, never those of the machine.
+TEST_F(Cli, OutGoesIntoWhatStandsThere) {
+  const std::string minimize = "graze minimize exact_contact:1:1 --lanes 'guigue_*/f32/cpu' --out ";
+  ASSERT_EQ(shell(minimize + "plain").status, 0);
+  expect_done("mkdir far && ln -s far/file link && " + minimize + "link && test -L link && cmp far/file plain");
+  expect_done("mkfifo pipe; cat pipe > read & " + minimize + "pipe && wait && test -p pipe && cmp read plain");
+  const Ran piped = shell(minimize + "/dev/stdout | cat");
+  EXPECT_TRUE(piped.out.ends_with(contents(shell.folder / "plain"))) << piped.out;
+  if (shell("mknod null c 1 3 && : > null").status == 0) expect_done(minimize + "null && test -c null");
+  expect_error(minimize + "far", 1, "far: expected a file, found: a folder");
+  expect_error("ulimit -f 4; graze map lattice:1:1 --lanes 'moller_*' --out full.png > /dev/null", 1,
+               "full.png: expected to write it, found: File too large");
+  expect_done("test ! -e full.png && test ! -e full.png.part");
+  for (const char* verb : {"fuzz --out ''", "minimize exact_contact:1:1 --out ''", "map lattice:1:1 --out ''",
+                           "report --from r.json --out ''", "prove-twin --out ''", "corpus list --corpus ''"})
+    expect_error("graze " + std::string(verb), 2, "expected a name, found ''");
+}
+
+// Never a library's message.
+TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
+  expect_error("mkdir a; echo '{\"signatures\":[{}],\"spec\":{\"lanes\":5}}' > a/summary.json; graze minimize a", 1,
+               "a/summary.json: expected a campaign's summary, found something else");
+  expect_error("mkdir -p b/summary.json; graze report b", 1,
+               "b/summary.json: expected to read it, found: Is a directory");
+  expect_error("echo '{\"format\":1,\"rates\":5}' > r.json; graze report --from r.json --out r.html", 1,
+               "r.json: expected a report of `graze report`, found something else");
+  expect_error("graze minimize none", 1, "none: expected");
+  expect_error("graze report none", 1, "none: expected");
+  expect_error(
+      "printf 'OFF\\n6 2 0\\n0 0 0\\n4 0 0\\n0 4 0\\n1 1 -1\\n1 1 1\\n2 1 1\\n3 0 1 2\\n3 3 4 5\\n' > $'\\xff.off'; "
+      "graze fuzz --mesh $'\\xff.off'",
+      2, "--mesh: expected a file name in UTF-8");
+  expect_done(
+      "echo '0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1' > "
+      "$'\\xff.pairs' && graze "
+      "explain $'\\xff.pairs' --json");
 }
 
 // A full disk, played by a limit on the size of files: one line, and the same command goes on once there is room.

@@ -39,6 +39,9 @@ inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 // Accepts whole numbers in [least, most] and nothing else: CLI11 alone would wrap negative ones.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
+// Accepts any text but an empty one, which names no file.
+CLI::Validator not_empty();
+
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair);
 

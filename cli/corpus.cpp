@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // `graze corpus`: the regression corpus. add takes failures in, list shows them, verify replays them.
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <array>
-#include <cerrno>
-#include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
+#include "fuzz/files.h"
 #include "fuzz/regression/found_failure.h"
 #include "reports/terminal.h"
 
@@ -35,24 +31,9 @@ struct CorpusOptions {
   std::filesystem::path file() const { return std::filesystem::path(folder) / "cases.pairs"; }
 };
 
-// Held from reading the corpus to writing it, so that two commands at once lose nothing.
-class FolderLock {
- public:
-  explicit FolderLock(const std::string& folder) : handle_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (handle_ < 0 || flock(handle_, LOCK_EX) != 0)
-      throw std::runtime_error(fmt::format("{}: expected a folder, found: {}", folder, std::strerror(errno)));
-  }
-  ~FolderLock() { close(handle_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int handle_;
-};
-
 fuzz::RegressionCorpus read_corpus(const CorpusOptions& options) {
   if (!std::filesystem::exists(options.file())) {
-    throw UsageError(
+    throw std::runtime_error(
         fmt::format("{}: expected a regression corpus (see `graze corpus add`), found none", options.file().string()));
   }
   fuzz::RegressionCorpus corpus = fuzz::read_regressions(options.file());
@@ -61,7 +42,6 @@ fuzz::RegressionCorpus read_corpus(const CorpusOptions& options) {
 }
 
 void write_corpus(const CorpusOptions& options, const fuzz::RegressionCorpus& corpus) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   fuzz::write_regressions(options.file(), corpus);
 }
 
@@ -84,7 +64,8 @@ void add(const CorpusOptions& options) {
 
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
-  const FolderLock lock(options.folder);
+  // Held from reading the corpus to writing it, so that two commands at once lose nothing.
+  const fuzz::FolderLock lock(options.folder, fuzz::FolderLock::WhenTaken::wait);
   fuzz::RegressionCorpus corpus;
   if (std::filesystem::exists(options.file())) corpus = fuzz::read_regressions(options.file());
   std::array<std::size_t, 3> count{};
@@ -112,8 +93,9 @@ void list(const CorpusOptions& options) {
 
 int verify(const CorpusOptions& options) {
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
-  std::unique_ptr<FolderLock> lock;
-  if (options.update && std::filesystem::exists(options.folder)) lock = std::make_unique<FolderLock>(options.folder);
+  std::optional<fuzz::FolderLock> lock;
+  if (options.update && std::filesystem::exists(options.folder))
+    lock.emplace(options.folder, fuzz::FolderLock::WhenTaken::wait);
   fuzz::RegressionCorpus corpus = read_corpus(options);
   const fuzz::Verified result = graze::fuzz::verify(corpus, under_test.lanes, decide_by(under_test));
   std::array<std::size_t, 3> states{};
@@ -137,7 +119,7 @@ CLI::App* add_verb(CLI::App& corpus, const char* name, const char* what, const c
                    const std::shared_ptr<CorpusOptions>& options) {
   CLI::App* command = corpus.add_subcommand(name, what);
   command->footer(example);
-  command->add_option("--corpus", options->folder, "Folder of the corpus")->capture_default_str();
+  command->add_option("--corpus", options->folder, "Folder of the corpus")->check(not_empty())->capture_default_str();
   return command;
 }
 

@@ -86,11 +86,11 @@ TEST_F(CorpusVerb, AChangedVerdictFailsUntilItIsRecorded) {
 
 TEST_F(CorpusVerb, BadInputGetsOneLine) {
   expect_error("graze corpus", 2, "subcommand");
-  expect_error("graze corpus verify", 2, "corpus/regression/cases.pairs: expected a regression corpus");
-  expect_error("graze corpus list --corpus none", 2, "none/cases.pairs: expected a regression corpus");
+  expect_error("graze corpus verify", 1, "corpus/regression/cases.pairs: expected a regression corpus");
+  expect_error("graze corpus list --corpus none", 1, "none/cases.pairs: expected a regression corpus");
   expect_error("mkdir e; echo 'graze-pairs 1' > e/cases.pairs; graze corpus verify --corpus e", 1,
                "e/cases.pairs: expected at least one case, found none");
-  expect_error("mkdir d; graze corpus add d", 2, "d: expected a campaign's directory, found no summary.json in it");
+  expect_error("mkdir d; graze corpus add d", 1, "d: expected a campaign's directory, found no summary.json in it");
   expect_error("echo '{\"complete\":true}' > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
   expect_error("echo '{\"complete\":false}' > d/summary.json; graze corpus add d", 2,
                "d: expected a finished campaign");

@@ -101,7 +101,8 @@ void explain_cases(const ExplainOptions& options) {
       nlohmann::ordered_json line{{"case", options.name}, {"line", entry.line}};
       line.update(to_json(explanation));
       line["cuda"] = cuda_evidence(under_test);
-      fmt::print("{}\n", line.dump());
+      // A file's name need not be UTF-8, as JSON must.
+      fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
       continue;
     }
     fmt::print("{}{}\n", options.name, entry.line > 0 ? fmt::format(":{}", entry.line) : "");

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "core/error.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/result_files.h"
@@ -31,10 +32,8 @@ struct FuzzOptions {
   fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
   bool json = false;
   bool require_device = false;
+  bool discard_damaged = false;
 };
-
-std::atomic<bool> stop_requested{false};
-extern "C" void request_stop(int) { stop_requested = true; }
 
 // One line on a terminal, rewritten after each batch.
 void show(const fuzz::Progress& progress, const std::vector<strata::PairSource>& sources) {
@@ -63,9 +62,15 @@ int fuzz(const FuzzOptions& options) {
     campaign.sources = strata::stratum_sources(options.seed, options.pairs, options.strata);
   Json mesh_spec;
   if (!options.mesh.empty()) {
+    for (const std::string& file : options.mesh) {
+      const std::string shown = Json(file).dump(-1, ' ', false, Json::error_handler_t::replace);
+      if (Json::parse(shown) != file)
+        throw UsageError("--mesh: expected a file name in UTF-8, which the results record, found " + shown);
+    }
     const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
         options.mesh[0],
         options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));
+    for (const std::string& note : mesh->notes) fmt::print(stderr, "graze: {}\n", note);
     campaign.sources.push_back({"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }});
     mesh_spec = {{"files", options.mesh}, {"content", fmt::format("{:016x}", mesh->content_hash)}};
   }
@@ -73,19 +78,22 @@ int fuzz(const FuzzOptions& options) {
   if (!mesh_spec.is_null()) campaign.spec["mesh"] = mesh_spec;
   campaign.build = fuzz::build_info(under_test);
 
-  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
+  const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);
   campaign.engines = fuzz::choose_engines(campaign, options.engine);
-  const auto [summary, oracle] = fuzz::run_campaign(campaign, stop_requested, [&](const fuzz::Progress& progress) {
+  if (options.discard_damaged) {
+    if (const auto kept = fuzz::discard_damaged(fuzz::store_spec(campaign)))
+      fmt::print(stderr, "graze: kept {} pairs in {} batches that check; the damaged database is now {}\n",
+                 reports::grouped(kept->pairs), reports::grouped(kept->batches), kept->damaged.string());
+  }
+  const auto [summary, oracle] = fuzz::run_campaign(campaign, interrupted, [&](const fuzz::Progress& progress) {
     if (on_terminal) show(progress, campaign.sources);
   });
   if (on_terminal) fmt::print(stderr, "\r\033[K");
   fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(summary));
   if (!summary["complete"]) {
     fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
-    return 130;
+    return kInterrupted;
   }
   if (options.json) {
     std::cout << summary.dump(1) << '\n';
@@ -120,6 +128,7 @@ void add_fuzz(CLI::App& app, int& status) {
       ->capture_default_str();
   command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")
       ->take_last()
+      ->check(not_empty())
       ->capture_default_str();
   add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
   add_lane_options(*command, options->lanes);
@@ -137,6 +146,8 @@ void add_fuzz(CLI::App& app, int& status) {
           "or auto; results do not depend on it")
       ->transform(CLI::CheckedTransformer(engines))
       ->option_text("auto|cpu|gpu");
+  command->add_flag("--discard-damaged", options->discard_damaged,
+                    "Go on with a damaged campaign from the batches that check");
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("--require-device", options->require_device, "Fail when there is no CUDA device");
   command->callback([options, &status] { status = fuzz(*options); });

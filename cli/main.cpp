@@ -2,15 +2,28 @@
 // The `graze` command. Exit status: 0 done, 1 a failed run or a failed check, 2 wrong use, 130 interrupted.
 #include <fmt/format.h>
 
+#include <csignal>
 #include <iostream>
 
 #include "cli/commands.h"
 #include "core/error.h"
 
+namespace {
+
+// One line, whatever is in the names and texts that it quotes.
+int fail(std::string what, int status) {
+  for (char& c : what) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
+  fmt::print(stderr, "graze: {}\n", what);
+  return status;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   CLI::App app{"Graze finds where a triangle-triangle intersection test stops being right, and proves it.", "graze"};
   app.set_version_flag("--version", GRAZE_VERSION);
   app.require_subcommand(1);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   int status = 0;
   graze::cli::add_fuzz(app, status);
   graze::cli::add_check(app, status);
@@ -36,13 +49,10 @@ int main(int argc, char** argv) {
     app.exit(help);
     return std::cout.flush() ? 0 : 1;
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "graze: {} (see `graze --help`)\n", error.what());
-    return 2;
+    return fail(fmt::format("{} (see `graze --help`)", error.what()), 2);
   } catch (const graze::UsageError& error) {
-    fmt::print(stderr, "graze: {}\n", error.what());
-    return 2;
+    return fail(error.what(), 2);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "graze: {}\n", error.what());
-    return 1;
+    return fail(error.what(), 1);
   }
 }

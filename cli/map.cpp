@@ -70,7 +70,8 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
   } else {
     std::error_code error;
     fs::create_directories(out, error);
-    if (error) throw UsageError(out.string() + ": expected a file.png or a directory, found: " + error.message());
+    if (error)
+      throw std::runtime_error(out.string() + ": expected a file.png or a directory, found: " + error.message());
     for (const analysis::UlpPanel& panel : map.panels) {
       std::string name = panel.name();
       std::replace(name.begin(), name.end(), '/', '-');
@@ -111,6 +112,7 @@ void add_map(CLI::App& app, int&) {
       ->required();
   add_globs(*command, "--lanes", options->globs, "Only lanes that match a pattern");
   command->add_option("--out", options->out, "The picture, or a directory for one picture a panel")
+      ->check(not_empty())
       ->option_text("FILE.png|DIR")
       ->capture_default_str();
   command

@@ -9,14 +9,16 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <sstream>
 
 #include "cli/case_maps.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
 #include "core/error.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/carded_signatures.h"
@@ -49,15 +51,21 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
   reports::print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts);
   std::cout << fmt::format(
       "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
-      "  1-minimal: none of the {} single moves to a simpler pair keeps the failure\n"
+      "  cause: {}, as before\n"
+      "  {}\n"
       "  worst on the way: {} ulps\n",
       analysis::key(fuzz::signature_of(found.failure, found.result.pair)),
       fuzz::nontrivial_magnitudes(found.result.pair), fuzz::nontrivial_magnitudes(found.original),
-      reports::grouped(found.result.single_moves), found.result.worst_ulps);
+      analysis::name(found.result.reason.cause),
+      found.result.one_minimal
+          ? fmt::format("1-minimal: none of the {} single moves to a simpler pair keeps the failure and its cause",
+                        reports::grouped(found.result.single_moves))
+          : fmt::format("perhaps not 1-minimal: stopped after {} moves", reports::grouped(fuzz::kMostMoved)),
+      found.result.worst_ulps);
   std::cout.flush();
 }
 
-void minimize_case(const MinimizeOptions& options) {
+int minimize_case(const MinimizeOptions& options) {
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<corpus::Entry> entries = read_cases(options.name);
   std::string text;
@@ -70,18 +78,27 @@ void minimize_case(const MinimizeOptions& options) {
     text = out.str();
     entries.front().line = 2;
   }
-  const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries);
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  std::size_t looked_at = 0;
+  const std::vector<fuzz::MinimisedCase> results =
+      fuzz::minimise_cases(under_test, entries, [&] { return interrupted ? true : (++looked_at, false); });
+  if (interrupted) {
+    fmt::print(stderr, "graze: interrupted; minimised {} of {} cases and wrote nothing\n", looked_at, entries.size());
+    return kInterrupted;
+  }
   if (results.empty())
     throw std::runtime_error(options.name + ": expected a case on which a lane is wrong, found none");
   for (const fuzz::MinimisedCase& found : results) print(found, options.name);
   if (!options.out.empty()) fuzz::write_whole(options.out, fuzz::with_results(text, entries, results));
+  return 0;
 }
 
 // What became of a signature of a campaign.
 struct Done {
   bool minimised = false;   // now or before; otherwise no selected lane is wrong on it
   int magnitudes = 0;       // of the first result
-  double milliseconds = 0;  // a case; 0 where it was done before
+  double milliseconds = 0;  // of each case; 0 where it was done before
+  double seconds = 0;       // of the file; 0 where it was done before
   double map_seconds = 0;   // 0 without a map, and where it was done before
 };
 
@@ -96,9 +113,43 @@ Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file,
   if (after != text) fuzz::write_whole(file, after);
   const auto cases =
       std::count_if(entries.begin(), entries.end(), [](const corpus::Entry& e) { return !corpus::field(e, "kind"); });
+  const double seconds = seconds_since(start);
   return {true, fuzz::nontrivial_magnitudes(results.front().result.pair),
-          1e3 * seconds_since(start) / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1))};
+          1e3 * seconds / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1)), seconds};
 }
+
+// An estimate by what the files and maps made so far took.
+class TimeLeft {
+ public:
+  TimeLeft(std::size_t files, std::size_t maps, int threads) : files_{files}, maps_{maps}, threads_(threads) {}
+
+  void add(const Done& done, bool has_map) {
+    files_.add(done.seconds);
+    if (has_map) maps_.add(done.map_seconds);
+  }
+
+  std::optional<double> seconds() const {
+    if (files_.made == 0) return {};
+    return (files_.seconds_left() + maps_.seconds_left()) / static_cast<double>(threads_);
+  }
+
+ private:
+  struct Work {
+    std::size_t left, made = 0;
+    double seconds = 0;
+
+    void add(double took) {
+      --left;
+      made += took > 0;  // not what was there before
+      seconds += took;
+    }
+    double seconds_left() const {
+      return made == 0 ? 0 : seconds / static_cast<double>(made) * static_cast<double>(left);
+    }
+  };
+  Work files_, maps_;
+  int threads_;
+};
 
 void print_directory(const std::string& directory, const std::vector<Done>& all) {
   std::vector<int> magnitudes;
@@ -121,16 +172,19 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
       directory);
 }
 
-void minimize_directory(MinimizeOptions options) {
+int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
+  const fuzz::FolderLock alone(directory, fuzz::FolderLock::WhenTaken::refuse);
   const Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
   const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
                           summary.value("spec", Json()).contains("lanes");
-  if (!is_summary) throw UsageError(options.name + ": expected a campaign's directory with summary.json, found none");
+  if (!is_summary)
+    throw std::runtime_error(options.name + ": expected a campaign's directory with summary.json, found none");
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<fs::path> files;
+  std::size_t maps_to_make = 0;
   std::vector<std::string> to_map;  // of each, the signature whose card shows a map; empty for others
   const std::vector<std::size_t> cards = fuzz::carded_signatures(summary);
   for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
@@ -139,29 +193,37 @@ void minimize_directory(MinimizeOptions options) {
     const std::string key = row["key"];
     files.push_back(directory / row["case"].get<std::string>());
     to_map.push_back(std::binary_search(cards.begin(), cards.end(), place) ? key : "");
+    maps_to_make += !to_map.back().empty();
   }
 
-  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  const bool on_terminal = isatty(STDERR_FILENO);
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  Progress progress("signatures", files.size(), isatty(STDERR_FILENO));
+  TimeLeft time_left(files.size(), maps_to_make, threads);
   const auto start = Clock::now();
   std::vector<Done> all(files.size());
   std::size_t count = 0;
   std::mutex mutex;
   tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+    if (interrupted) return;
     all[i] = minimize_file(under_test, files[i], options.again);
-    if (!to_map[i].empty()) fuzz::store_facts(under_test, files[i]);
     const auto mapping = Clock::now();
+    if (!to_map[i].empty()) fuzz::store_facts(under_test, files[i]);
     if (all[i].minimised && !to_map[i].empty() && map_case(under_test, files[i], to_map[i], options.again))
       all[i].map_seconds = seconds_since(mapping);
     const std::lock_guard lock(mutex);
-    if (++count % 16 != 0 || !on_terminal) return;
-    const double left = seconds_since(start) / static_cast<double>(count) * static_cast<double>(files.size() - count);
-    fmt::print(stderr, "\r{:3}%  {} of {} signatures  {:.0f} s left\033[K", 100 * count / files.size(),
-               reports::grouped(count), reports::grouped(files.size()), left);
+    ++count;
+    time_left.add(all[i], !to_map[i].empty());
+    if (const auto line = progress.line(count, seconds_since(start), time_left.seconds()))
+      fmt::print(stderr, "{}", *line);
   });
-  if (on_terminal) fmt::print(stderr, "\r\033[K");
+  fmt::print(stderr, "{}", progress.end());
+  if (interrupted) {
+    fmt::print(stderr, "graze: interrupted; minimised {} of {} signatures; run the same command to go on\n",
+               reports::grouped(count), reports::grouped(files.size()));
+    return kInterrupted;
+  }
   print_directory(options.name, all);
 
   std::vector<double> times;
@@ -179,11 +241,12 @@ void minimize_directory(MinimizeOptions options) {
                                   {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / maps},
                                   {"seconds", seconds_since(start)},
                                   {"threads", threads}});
+  return 0;
 }
 
 }  // namespace
 
-void add_minimize(CLI::App& app, int&) {
+void add_minimize(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "minimize", "Shrink a case, or all of a campaign, to the simplest pair that fails in the same way");
   command->footer("Example: graze minimize campaign");
@@ -193,14 +256,24 @@ void add_minimize(CLI::App& app, int&) {
                    "A campaign's directory, a file of its cases/, or STRATUM:SEED:INDEX; a directory's results go into "
                    "its cases/")
       ->required();
-  command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file");
+  command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file")
+      ->check(not_empty());
   command->add_flag("--again", options->again, "Of a directory, also what is minimised already");
   command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
       ->check(whole_number(0, 4096))
       ->capture_default_str();
   add_lane_options(*command, options->lanes);
-  command->callback(
-      [options] { fs::is_directory(options->name) ? minimize_directory(*options) : minimize_case(*options); });
+  command->callback([options, &status] {
+    if (!fs::is_directory(options->name)) {
+      status = minimize_case(*options);
+      return;
+    }
+    try {
+      status = minimize_directory(*options);
+    } catch (const Json::exception&) {
+      throw std::runtime_error(options->name + "/summary.json: expected a campaign's summary, found something else");
+    }
+  });
 }
 
 }  // namespace graze::cli

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cli/run_graze.h"
 
@@ -63,6 +64,42 @@ TEST_F(Minimize, KilledItGoesOn) {
   expect_done("graze minimize parts && rm -f parts/cases/*.part && diff -r whole/cases parts/cases");
 }
 
+TEST_F(Minimize, CtrlCSaysWhatWasDoneAndTheSameCommandGoesOn) {
+  expect_done(std::string(kFuzz) + "--out whole > /dev/null && cp -r whole parts && graze minimize whole");
+  for (const char* signal : {"INT", "TERM"}) {
+    const Ran ran = shell("timeout --preserve-status -s " + std::string(signal) + " 0.3 graze minimize parts");
+    ASSERT_EQ(ran.status, 130) << ran.out << ran.err;
+    EXPECT_TRUE(std::regex_search(ran.err, std::regex("graze: interrupted; minimised [0-9]+ of [0-9]+ signatures; "
+                                                      "run the same command to go on\n$")))
+        << ran.err;
+    EXPECT_EQ(ran.out, "");
+    expect_done("test -z \"$(ls parts/cases | grep part)\"");
+  }
+  expect_done("graze minimize parts && diff -r whole/cases parts/cases");
+}
+
+TEST_F(Minimize, ACaseThatIsInterruptedIsNotWritten) {
+  expect_done("graze fuzz --seed 2 --pairs 1000 --strata near_edge_edge --lanes '*/cpu' --out one > /dev/null && "
+              "cat one/cases/*.pairs | grep -v '^#' > all && (head -n 1 $(ls one/cases/*.pairs | head -n 1); cat all) > "
+              "many.pairs");
+  const Ran ran = shell("timeout --preserve-status -s INT 0.1 graze minimize many.pairs --out small.pairs");
+  EXPECT_EQ(ran.status, 130) << ran.out << ran.err;
+  EXPECT_TRUE(std::regex_search(
+      ran.err, std::regex("graze: interrupted; minimised [0-9]+ of [0-9]+ cases and wrote nothing\n$")))
+      << ran.err;
+  expect_done("test ! -e small.pairs");
+}
+
+TEST_F(Minimize, SaysTheCauseAndWhetherItEnded) {
+  const Ran ran = shell("graze minimize extreme_scale:1:3 --lanes 'projected_sat/f32/cpu' --out small.pairs");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(std::regex_search(ran.out, std::regex("\n  cause: [a-z ]+, as before\n"))) << ran.out;
+  const std::string file = contents(shell.folder / "small.pairs");
+  EXPECT_TRUE(std::regex_search(
+      file, std::regex("kind=minimised .* cause=[a-z_]+ one_minimal=yes moves_in_vain=[0-9]+\n")))
+      << file;
+}
+
 TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   expect_done("graze fuzz --seed 2 --pairs 100 --strata near_edge_edge --lanes '*/cpu' --out host > /dev/null");
   const Ran ran = shell("graze minimize host && grep -h kind=minimised host/cases/*.pairs");
@@ -77,8 +114,8 @@ TEST_F(Minimize, BadInputGetsOneLine) {
   expect_error("graze minimize", 2, "case");
   expect_error("graze minimize missing.pairs", 1, "missing.pairs: expected");
   expect_error("graze minimize nowhere:1:2", 2, "found 'nowhere'");
-  expect_error("mkdir empty; graze minimize empty", 2, "empty: expected a campaign's directory");
-  expect_error("mkdir odd; echo '{\"spec\": 1, \"signatures\": 2}' > odd/summary.json; graze minimize odd", 2,
+  expect_error("mkdir empty; graze minimize empty", 1, "empty: expected a campaign's directory");
+  expect_error("mkdir odd; echo '{\"spec\": 1, \"signatures\": 2}' > odd/summary.json; graze minimize odd", 1,
                "odd: expected a campaign's directory");
   expect_error("echo '0 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5' > right.pairs; graze minimize right.pairs", 1,
                "right.pairs: expected a case on which a lane is wrong");

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "cli/commands.h"
-#include "corpus/pair_format.h"
+#include "core/text.h"
 
 namespace graze::cli {
 
@@ -15,11 +15,16 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   const auto check = [least, most](std::string& text) -> std::string {
-    const std::optional<std::uint64_t> value = corpus::parse_whole(text);
+    const std::optional<std::uint64_t> value = parse_whole(text);
     if (value && *value >= least && *value <= most) return {};
     return fmt::format("expected a whole number from {} to {}, found '{}'", least, most, text);
   };
   return CLI::Validator(check, "");
+}
+
+CLI::Validator not_empty() {
+  return CLI::Validator([](std::string& text) { return text.empty() ? "expected a name, found ''" : std::string(); },
+                        "");
 }
 
 void add_lane_options(CLI::App& command, LaneOptions& options) {

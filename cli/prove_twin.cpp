@@ -47,7 +47,7 @@ void add_prove_twin(CLI::App& app, int& status) {
       ->capture_default_str();
   add_globs(*command, "--lanes", options->lanes, "Only lanes that match a pattern");
   command->add_flag("--wrong-rule", options->wrong_rule, "Contract the wrong product first: the proof must then fail");
-  command->add_option("--out", *out, "File of the record")->capture_default_str();
+  command->add_option("--out", *out, "File of the record")->check(not_empty())->capture_default_str();
   command->callback([options, out, &status] {
     options->progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
     status = prove(*options, *out);

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <memory>
 
 #include "cli/commands.h"
@@ -32,7 +31,6 @@ void say_what_the_page_is() {
 
 // NAME.html, NAME.json and tables in the directory.
 void write_report(const fs::path& directory, const Json& report, const char* name) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   fuzz::write_whole(directory / fmt::format("{}.json", name), reports::report_text(report));
   fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report));
   std::string tables;
@@ -45,13 +43,21 @@ void write_report(const fs::path& directory, const Json& report, const char* nam
   say_what_the_page_is();
 }
 
+std::string page_of(const std::string& file) {
+  try {
+    return reports::page(reports::read_report(file));
+  } catch (const Json::exception&) {
+    throw std::runtime_error(file + ": expected a report of `graze report`, found something else");
+  }
+}
+
 void report(const ReportOptions& options) {
   const int named = !options.directory.empty() + !options.from.empty() + !options.compare.empty();
   if (named != 1) throw UsageError(fmt::format("expected one of DIR, --compare and --from, found {}", named));
   if (options.from.empty() != options.out.empty())
     throw UsageError("expected --from and --out together, found one of them");
   if (!options.from.empty()) {
-    fuzz::write_whole(options.out, reports::page(reports::read_report(options.from)));
+    fuzz::write_whole(options.out, page_of(options.from));
     fmt::print("Wrote {}\n", options.out);
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
@@ -82,7 +88,7 @@ void add_report(CLI::App& app, int&) {
       ->expected(2)
       ->option_text("DIR1 DIR2");
   command->add_option("--from", options->from, "A report.json, of which only the page is made, as --out");
-  command->add_option("--out", options->out, "Where that page goes");
+  command->add_option("--out", options->out, "Where that page goes")->check(not_empty());
   command->callback([options] { report(*options); });
 }
 

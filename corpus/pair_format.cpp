@@ -6,9 +6,12 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <fstream>
+#include <sstream>
 #include <system_error>
+
+#include "core/text.h"
+#include "strata/mesh_readers/soup.h"
 
 namespace graze::corpus {
 namespace {
@@ -16,7 +19,6 @@ namespace {
 constexpr std::string_view kFormat = "graze-pairs";
 constexpr std::string_view kVersion = "1";
 constexpr std::size_t kLongestLine = 65536;  // so that an endless line is an error, not all of the memory
-constexpr std::size_t kLongestQuote = 40;    // of foreign text in a message
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool is_printable(char c) { return c >= ' ' && c <= '~'; }
@@ -25,27 +27,8 @@ bool is_key_char(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
 }
 
-// text between quotes; quotes and backslashes behind a backslash, bytes that are not printable ASCII as \xHH.
-std::string in_quotes(std::string_view text) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      result += {'\\', c};
-    } else if (is_printable(c)) {
-      result += c;
-    } else {
-      const auto byte = static_cast<unsigned char>(c);
-      result += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
-    }
-  }
-  return result + '"';
-}
-
-// in_quotes, cut short for a message.
-std::string shown(std::string_view text) {
-  return text.size() <= kLongestQuote ? in_quotes(text) : in_quotes(text.substr(0, kLongestQuote)) + "...";
-}
+bool is_punctuation(char c) { return std::string_view(",;{}[]()").find(c) != std::string_view::npos; }
+bool is_opening(char c) { return std::string_view(",{[(").find(c) != std::string_view::npos; }
 
 // The name of coordinate i of a pair: a[0].x ... b[2].z.
 std::string coordinate_name(std::size_t i) {
@@ -73,32 +56,81 @@ struct Line {
     return taken;
   }
 
-  // Takes what stands before white space, or before stop.
-  std::string_view take_word(char stop = ' ') {
-    const auto end = std::find_if(rest.begin(), rest.end(), [stop](char c) { return is_space(c) || c == stop; });
-    return take(static_cast<std::size_t>(end - rest.begin()));
+  // Takes what stands before white space.
+  std::string_view take_word() {
+    return take(static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), is_space) - rest.begin()));
+  }
+
+  // The same, or before punctuation or a '|'.
+  std::string_view take_number() {
+    const auto ends = [](char c) { return is_space(c) || is_punctuation(c) || c == '|'; };
+    return take(static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), ends) - rest.begin()));
   }
 };
 
-Pair take_pair(Line& line) {
-  Pair pair{};
+// Skips "float t[2][3][3] =", "Vec3 a" before a bracket and the like.   Returns: whether there was one.
+bool skip_name(Line& line) {
+  const char first = line.rest[0];
+  if (std::isalpha(static_cast<unsigned char>(first)) == 0 && first != '_') return false;
+  if (const std::size_t assigned = line.rest.find('='); assigned < line.rest.find('|')) {
+    line.take(assigned + 1);
+    return true;
+  }
+  // One name or more, then a bracket.
+  Line ahead(line);
+  while (!ahead.at_end() && (std::isalpha(static_cast<unsigned char>(ahead.rest[0])) != 0 || ahead.rest[0] == '_')) {
+    const auto is_name = [](char c) { return is_key_char(c) || c == ':' || c == '<' || c == '>'; };
+    ahead.take(
+        static_cast<std::size_t>(std::find_if_not(ahead.rest.begin(), ahead.rest.end(), is_name) - ahead.rest.begin()));
+  }
+  if (ahead.at_end() || std::string_view("([{").find(ahead.rest[0]) == std::string_view::npos) return false;
+  line = ahead;
+  return true;
+}
+
+// "1.5", or "1.5f" as in C.   Returns: the number without the suffix; empty when it is none.
+std::string_view number_in(std::string_view word) {
+  if (parse_float32(word)) return word;
+  const bool suffix = word.size() > 1 && (word.back() == 'f' || word.back() == 'F');
+  const char before = suffix ? word[word.size() - 2] : ' ';
+  if (!(before == '.' || (before >= '0' && before <= '9'))) return {};
+  word.remove_suffix(1);
+  return parse_float32(word) ? word : std::string_view();
+}
+
+// The numbers of an entry so far, which may take several lines.
+struct Draft {
+  Entry entry;
   std::size_t count = 0;
-  while (!line.at_end() && line.rest[0] != '|') {
-    const std::string_view word = line.take_word('|');
-    const std::optional<float> number = parse_float32(word);
-    if (count < kCoordinates) {
-      if (!number) {
-        line.fail("a float32 as number " + std::to_string(count + 1) + " (" + coordinate_name(count) + ")",
+  bool open = false;  // the last line ended in a comma or an opening bracket
+  std::string where;  // of the first line with a number
+};
+
+// Takes the line's numbers, to its end or a '|'.
+void take_numbers(Line& line, Draft& draft) {
+  for (;;) {
+    while (!line.at_end() && is_punctuation(line.rest[0])) draft.open = is_opening(line.take(1)[0]);
+    if (line.at_end() || line.rest[0] == '|' || line.rest.starts_with("//")) return;
+    if (draft.count % 3 == 0 && draft.count < kCoordinates && !parse_float32(Line(line).take_number()) &&
+        skip_name(line)) {
+      draft.open = true;
+      continue;
+    }
+    const std::string_view word = line.take_number(), number = number_in(word);
+    draft.open = false;
+    if (draft.count < kCoordinates) {
+      if (number.empty()) {
+        line.fail("a float32 as number " + std::to_string(draft.count + 1) + " (" + coordinate_name(draft.count) + ")",
                   shown(word));
       }
-      coordinates(pair)[count] = *number;
-    } else if (!number) {
+      if (draft.count == 0) draft.where = line.where;
+      coordinates(draft.entry.pair)[draft.count] = *parse_float32(number);
+      draft.entry.written.emplace_back(number);
+    } else if (number.empty()) {
       line.fail("'|' or the end of the line after 18 numbers", shown(word));
     }
-    ++count;
+    ++draft.count;
   }
-  if (count != kCoordinates) line.fail("18 numbers", std::to_string(count));
-  return pair;
 }
 
 // Takes a value in quotes, the first of which is taken already.
@@ -140,17 +172,21 @@ std::pair<std::string, std::string> take_field(Line& line) {
   return {key, take_quoted(line, key)};
 }
 
-Entry take_entry(Line& line) {
-  Entry entry;
-  entry.pair = take_pair(line);
-  if (line.at_end()) return entry;
-  line.take(1);  // the '|' that take_pair stopped at
+void take_fields(Line& line, Entry& entry) {
+  if (line.at_end() || line.rest[0] != '|') return;
+  line.take(1);
   while (!line.at_end()) {
     auto next = take_field(line);
     if (field(entry, next.first)) line.fail("every field once", "a second " + next.first);
     entry.fields.push_back(std::move(next));
   }
-  return entry;
+}
+
+// Whether the line is one of an OBJ file.
+bool is_obj(Line line) {
+  const std::string_view word = line.take_word();
+  constexpr std::string_view kKeywords[] = {"v", "vt", "vn", "o", "g", "s", "mtllib", "usemtl"};
+  return std::find(std::begin(kKeywords), std::end(kKeywords), word) != std::end(kKeywords);
 }
 
 void take_version(Line& line) {
@@ -178,28 +214,84 @@ bool PairReader::read_line(std::string& text) {
     if (++length <= kLongestLine) text += c;
     if (length == kLongestLine + 1) break;
   }
-  const std::string where = name_ + ':' + std::to_string(line_);
-  if (in_.bad()) throw FormatError(where + ": expected text, found an error of reading");
+  if (in_.bad()) throw FormatError(where() + ": expected text, found an error of reading");
   if (length > kLongestLine) {
-    throw FormatError(where + ": expected a line of at most " + std::to_string(kLongestLine) +
+    throw FormatError(where() + ": expected a line of at most " + std::to_string(kLongestLine) +
                       " bytes, found a longer one");
   }
   return length > 0 || !in_.eof();
 }
 
+std::string PairReader::where() const { return name_ + ':' + std::to_string(line_); }
+
+// The rest of the stream is the fragment, of which `text` is the first line.
+Entry PairReader::read_obj_fragment(std::string text) {
+  constexpr std::size_t kLongestFragment = 1 << 20;
+  Entry entry;
+  entry.line = line_;
+  std::string bytes(line_ - 1, '\n');  // so that line numbers in messages are those of the stream
+  const std::string begins = where();
+  do {
+    bytes += text + '\n';
+    if (bytes.size() > kLongestFragment) throw FormatError(begins + ": expected an OBJ fragment of 1 MiB, found more");
+  } while (read_line(text));
+  entry.lines = line_ - entry.line;
+  strata::Soup soup;
+  try {
+    soup = strata::read_obj({name_, bytes});
+  } catch (const std::runtime_error& error) {
+    throw FormatError(error.what());
+  }
+  if (soup.triangles.empty() && soup.vertices.size() == 6) soup.triangles = {{0, 1, 2}, {3, 4, 5}};
+  if (soup.triangles.size() != 2)
+    throw FormatError(begins + ": expected two triangles, or six vertices without a face; found " +
+                      std::to_string(soup.triangles.size()) + " triangles and " + std::to_string(soup.vertices.size()) +
+                      " vertices");
+  std::vector<std::array<std::string, 3>> written;  // coordinates, in the order of the vertices
+  std::istringstream lines(bytes);
+  for (std::string line, keyword; std::getline(lines, line);) {
+    std::istringstream words(line);
+    if (!(words >> keyword) || keyword != "v") continue;
+    auto& [x, y, z] = written.emplace_back();
+    words >> x >> y >> z;
+  }
+  for (std::size_t i = 0; i < kCoordinates; ++i) {
+    const std::uint32_t vertex = soup.triangles[i / 9][i / 3 % 3];
+    coordinates(entry.pair)[i] = component(soup.vertices[vertex], static_cast<int>(i % 3));
+    entry.written.push_back(written.at(vertex)[i % 3]);
+  }
+  return entry;
+}
+
 std::optional<Entry> PairReader::next() {
   std::string text;
+  Draft draft;
+  const auto expect_18 = [&draft](const std::string& place) {
+    throw FormatError(place + ": expected 18 numbers, found " + std::to_string(draft.count));
+  };
   while (read_line(text)) {
-    Line line{text, name_ + ':' + std::to_string(line_)};
+    if (line_ == 1 && text.starts_with("\xef\xbb\xbf")) text.erase(0, 3);  // a byte order mark
+    Line line{text, where()};
     if (line.at_end()) continue;
     if (line.rest.starts_with(kFormat)) {
+      if (draft.count > 0) expect_18(draft.where);
       take_version(line);
+      versioned_ = true;
       continue;
     }
-    Entry entry = take_entry(line);
-    entry.line = line_;
-    return entry;
+    if (draft.count == 0 && !versioned_ && is_obj(line)) return read_obj_fragment(text);
+    const bool first = draft.count == 0;
+    take_numbers(line, draft);
+    if (first) draft.entry.line = line_;
+    const bool fields = !line.at_end() && line.rest[0] == '|';
+    if (draft.count == 0 && !fields) continue;  // brackets, or the name of an array
+    if (draft.count < kCoordinates && !fields && !versioned_ && (draft.open || draft.count % 3 == 0)) continue;
+    if (draft.count != kCoordinates) expect_18(draft.count == 0 ? line.where : draft.where);
+    draft.entry.lines = line_ - draft.entry.line + 1;
+    take_fields(line, draft.entry);
+    return draft.entry;
   }
+  if (draft.count > 0) expect_18(draft.where);
   return std::nullopt;
 }
 
@@ -242,33 +334,6 @@ std::string hex_float(float value) {
   const double magnitude = std::fabs(value);  // a double, in which a subnormal float is normal: 0x1p-149
   const auto end = std::to_chars(std::begin(digits), std::end(digits), magnitude, std::chars_format::hex).ptr;
   return text.append("0x").append(digits, end);
-}
-
-std::optional<float> parse_float32(std::string_view text) {
-  const bool negative = text.starts_with('-');
-  if (negative || text.starts_with('+')) text.remove_prefix(1);
-  const bool hex = text.starts_with("0x") || text.starts_with("0X");
-  const std::string magnitude_text(text);
-  if (hex) text.remove_prefix(2);
-  if (text.empty() || text[0] == '-' || (hex && text[0] != '.' && !is_hex_digit(text[0]))) return std::nullopt;
-
-  float magnitude = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), magnitude,
-                                            hex ? std::chars_format::hex : std::chars_format::general);
-  if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
-  if (error == std::errc::result_out_of_range) {
-    // from_chars does not say which way; strtof rounds what underflows and returns infinity otherwise.
-    magnitude = std::strtof(magnitude_text.c_str(), nullptr);
-    if (std::isinf(magnitude)) return std::nullopt;
-  }
-  return negative ? -magnitude : magnitude;
-}
-
-std::optional<std::uint64_t> parse_whole(std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 const std::string* field(const Entry& entry, std::string_view key) {

@@ -22,7 +22,9 @@ namespace graze::corpus {
 struct Entry {
   Pair pair{};
   std::vector<std::pair<std::string, std::string>> fields = {};  // key and value, in the order of the line
-  std::size_t line = 0;                                          // where it was read; 0 when it was not
+  std::size_t line = 0;                                          // where it begins; 0 when it was not read
+  std::size_t lines = 1;                                         // that it takes
+  std::vector<std::string> written = {};  // the 18 numbers as they were typed; empty when it was not read
 };
 
 // Input that is not in the format; what() is one line: "FILE:LINE: expected 18 numbers, found 17".
@@ -30,7 +32,9 @@ struct FormatError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Reads the entries of a stream one at a time, so that a pipe can be followed as it is written.
+// Reads the entries of a stream one at a time, so that a pipe can be followed as it is written. Without a version line
+// it also takes what people paste: commas, brackets, f suffixes, a vertex a line, arrays of C or Python, and an OBJ
+// fragment of two faces, or of six vertices without faces.
 class PairReader {
  public:
   // Requires: in outlives the reader.   name stands for the stream in messages.
@@ -42,10 +46,13 @@ class PairReader {
 
  private:
   bool read_line(std::string& text);
+  std::string where() const;
+  Entry read_obj_fragment(std::string text);
 
   std::istream& in_;
   std::string name_;
   std::size_t line_ = 0;
+  bool versioned_ = false;
 };
 
 // Opens a file of pairs.   Throws: FormatError for one that is missing, a folder, or cannot be read.
@@ -63,13 +70,6 @@ void write_entry(std::ostream& out, const Entry& entry);
 
 // Returns: the shortest hex float, such as "0x1.8p+1", "-0x0p+0", "0x1p-149"; or "inf", "-inf", "nan".
 std::string hex_float(float value);
-
-// Returns: the float32 nearest to the number that text spells, ties to even, rounded once; nothing when text is
-// not a number in full, or when its nearest is beyond the largest float32. "inf" and "nan" are numbers.
-std::optional<float> parse_float32(std::string_view text);
-
-// Returns: the whole number that text spells, without a sign; nothing when it spells none or one too large.
-std::optional<std::uint64_t> parse_whole(std::string_view text);
 
 // Returns: the value of the field, or null when the entry has none of that key.
 const std::string* field(const Entry& entry, std::string_view key);

@@ -14,6 +14,8 @@
 #include <random>
 #include <sstream>
 
+#include "core/text.h"
+
 namespace graze::corpus {
 namespace {
 
@@ -81,59 +83,6 @@ TEST(HexFloat, EveryKindOfFloatReadsBack) {
       ASSERT_EQ(bits(*back), pattern) << hex_float(value);
     }
   }
-}
-
-TEST(ParseFloat32, RoundsDecimalsOnce) {
-  EXPECT_EQ(parse_float32("0.1"), 0x1.99999ap-4f);
-  EXPECT_EQ(parse_float32("+1"), 1.0f);
-  EXPECT_EQ(parse_float32(".5e1"), 5.0f);
-  // Ties: 2^24 + 1 and 2^24 + 3 lie halfway, and go to the even neighbour.
-  EXPECT_EQ(parse_float32("16777217"), 16777216.0f);
-  EXPECT_EQ(parse_float32("16777219"), 16777220.0f);
-  // Just beyond a tie, by less than a double can tell: two roundings would end at 2^24.
-  EXPECT_EQ(parse_float32("16777217.0000000001"), 16777218.0f);
-  EXPECT_EQ(parse_float32("0x1000001.00000000001p0"), 16777218.0f);
-  EXPECT_EQ(parse_float32("0x1000001p0"), 16777216.0f);
-}
-
-TEST(ParseFloat32, RoundsUnderflow) {
-  EXPECT_EQ(parse_float32("1e-46"), 0.0f);
-  EXPECT_EQ(bits(*parse_float32("-1e-46")), bits(-0.0f));
-  EXPECT_EQ(parse_float32("1e-999"), 0.0f);
-  EXPECT_EQ(parse_float32("7.1e-46"), kSmallest);
-  EXPECT_EQ(parse_float32("1.4e-45"), kSmallest);
-  EXPECT_EQ(parse_float32("0x1p-150"), 0.0f);  // a tie, to even
-  EXPECT_EQ(parse_float32("0x1.8p-150"), kSmallest);
-  EXPECT_EQ(parse_float32("0x1p-99999"), 0.0f);
-}
-
-TEST(ParseFloat32, RefusesOverflow) {
-  EXPECT_EQ(parse_float32("3.4028235e38"), kMax);
-  EXPECT_EQ(parse_float32("3.4028235677973366e38"), kMax);  // just short of halfway to 2^128
-  EXPECT_EQ(parse_float32("3.4028236e38"), std::nullopt);   // beyond it
-  EXPECT_EQ(parse_float32("-1e39"), std::nullopt);
-  EXPECT_EQ(parse_float32("1e999"), std::nullopt);
-  EXPECT_EQ(parse_float32("0x1.fffffefp127"), kMax);
-  EXPECT_EQ(parse_float32("0x1.ffffffp127"), std::nullopt);
-  EXPECT_EQ(parse_float32("0x1p128"), std::nullopt);
-}
-
-TEST(ParseFloat32, TakesInfAndNan) {
-  EXPECT_EQ(parse_float32("inf"), kInfinity);
-  EXPECT_EQ(parse_float32("-inf"), -kInfinity);
-  EXPECT_TRUE(std::isnan(parse_float32("nan").value()));
-}
-
-TEST(ParseFloat32, RefusesWhatIsNoNumber) {
-  for (const char* text : {"", "-", "--1", "+-1", "1e", "1x", "0x", "0xinf", "0x-1", "1,5", ".", "one", "1 "}) {
-    EXPECT_EQ(parse_float32(text), std::nullopt) << '"' << text << '"';
-  }
-}
-
-TEST(ParseWhole, TakesDigitsThatFitAndNothingElse) {
-  EXPECT_EQ(parse_whole("18446744073709551615"), ~std::uint64_t{0});
-  for (const char* text : {"", "-1", "+1", " 1", "1 ", "0x1", "1.0", "18446744073709551616"})
-    EXPECT_EQ(parse_whole(text), std::nullopt) << text;
 }
 
 TEST(NumbersOf, NeedsAllThree) {
@@ -217,7 +166,7 @@ TEST(PairFormat, AWrongCountIsNamed) {
 TEST(PairFormat, AWordThatIsNoFloat32IsNamed) {
   EXPECT_EQ(error_of("0 0 0 0 one 0"), R"(in.pairs:1: expected a float32 as number 5 (a[1].y), found "one")");
   EXPECT_EQ(error_of(kSeventeen + " 1e39"), R"(in.pairs:1: expected a float32 as number 18 (b[2].z), found "1e39")");
-  EXPECT_EQ(error_of("0,0,0"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "0,0,0")");
+  EXPECT_EQ(error_of("0,one,0"), R"(in.pairs:1: expected a float32 as number 2 (a[0].y), found "one")");
 }
 
 TEST(PairFormat, ABrokenFieldIsNamed) {
@@ -238,11 +187,61 @@ TEST(PairFormat, GarbageIsEscapedAndCutShort) {
   EXPECT_EQ(error_of(std::string("\x7f"
                                  "ELF\x02\x01\0\x1b[31m",
                                  12)),
-            R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "\x7fELF\x02\x01\x00\x1b[31m")");
+            R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "\x7fELF\x02\x01\x00\x1b")");
   EXPECT_EQ(error_of(std::string(1000, 'x')),
             "in.pairs:1: expected a float32 as number 1 (a[0].x), found \"" + std::string(40, 'x') + "\"...");
   EXPECT_EQ(error_of("\n" + std::string(1 << 20, '0')),
             "in.pairs:2: expected a line of at most 65536 bytes, found a longer one");
+}
+
+// Without a version line the reader takes what people paste.
+TEST(PairFormat, TakesWhatPeoplePaste) {
+  const Entry expected = read("0 0 0 4 0 0 0 4.5 0 1 1 0 1 2 4 2 1 4\n").at(0);
+  const char* const kPasted[] = {
+      "0, 0, 0, 4, 0, 0, 0, 4.5, 0, 1, 1, 0, 1, 2, 4, 2, 1, 4\n",
+      "(0,0,0) (4,0,0) (0,4.5,0); (1,1,0) (1,2,4) (2,1,4)",
+      "0 0 0\n4 0 0\n0 4.5 0\n\n1 1 0\n1 2 4\n2 1 4\n",
+      "[[0, 0, 0], [4, 0, 0], [0, 4.5, 0]],\n[[1, 1, 0], [1, 2, 4], [2, 1, 4]]\n",
+      "const float t[2][3][3] = {{{0.f, 0.0f, 0}, {4.0F, 0, 0}, {0, 4.5f, 0}},  // the first\n"
+      "                          {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};\n",
+      "float t[18] =\n{\n0, 0, 0, 4,\n0, 0, 0, 4.5,\n0, 1, 1, 0, 1, 2, 4, 2, 1, 4\n};\n",
+      "a = np.array([[0, 0, 0], [4, 0, 0], [0, 4.5, 0]])\nb = np.array([[1, 1, 0], [1, 2, 4], [2, 1, 4]])\n",
+      "Vec3f a0(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4.5, 0)\nPoint_3(1, 1, 0) Point_3(1, 2, 4) K::Point_3{2, 1, 4}\n",
+      "# fragment\no t\nv 0 0 0\nv 4 0 0\nv 0 4.5 0\nv 1 1 0\nv 1 2 4\nv 2 1 4\n",
+      "v 2 1 4\nv 1 2 4\nv 1 1 0\nvn 0 0 1\nv 0 4.5 0\nv 4 0 0\nv 0 0 0\nf 6//1 5//1 4//1\nf 3 2 1\n"};
+  for (const char* pasted : kPasted) {
+    SCOPED_TRACE(pasted);
+    ASSERT_EQ(error_of(pasted), "read 1 entries");
+    const Entry found = read(pasted).at(0);
+    for (int i = 0; i < kCoordinates; ++i) EXPECT_EQ(coordinates(found.pair)[i], coordinates(expected.pair)[i]) << i;
+    ASSERT_EQ(found.written.size(), 18u);
+    EXPECT_TRUE(found.written[7] == "4.5") << found.written[7];
+  }
+  EXPECT_EQ(read("{0,0,0}\n0 0 0\n0 0 0\n0 0 0\n0 0 0\n0 0 0 | name=x\n" + kZeros).size(), 2u);
+}
+
+TEST(PairFormat, PastedTextThatIsNoPairIsNamed) {
+  EXPECT_EQ(error_of("0 0 0\n" + kZeros), "in.pairs:1: expected 18 numbers, found 21");
+  EXPECT_EQ(error_of("\n0 0 0\n0 0 0\n"), "in.pairs:2: expected 18 numbers, found 6");
+  EXPECT_EQ(error_of("0 0\n0 0 0 0\n"), "in.pairs:1: expected 18 numbers, found 2");
+  EXPECT_EQ(error_of("graze-pairs 1\n0 0 0\n" + kZeros), "in.pairs:2: expected 18 numbers, found 3");
+  EXPECT_EQ(error_of("0 0 0\ngraze-pairs 1\n"), "in.pairs:1: expected 18 numbers, found 3");
+  EXPECT_EQ(error_of("1.5g 0 0"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "1.5g")");
+  EXPECT_EQ(error_of("point 7 (0 0 0)"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "point")");
+  EXPECT_EQ(error_of("0x1ff 0 0"), "in.pairs:1: expected 18 numbers, found 3");  // a number in hex, not a suffix
+  EXPECT_EQ(error_of("\nv 0 0 0\nv 1 0\n"),
+            "in.pairs:3: expected a coordinate that is finite in float32, found the end of the line");
+  EXPECT_EQ(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+            "in.pairs:1: expected two triangles, or six vertices without a face; found 1 triangles and 3 vertices");
+}
+
+TEST(PairFormat, KeepsWhatWasTyped) {
+  const Entry entry = read("0.1 1.00000000001 -0x1.8p1 +1e0 0 0 0 0 0 0 0 0 0 0 0 0 0 1f\n").at(0);
+  EXPECT_EQ(entry.written[0], "0.1");
+  EXPECT_EQ(entry.written[1], "1.00000000001");
+  EXPECT_EQ(entry.written[2], "-0x1.8p1");
+  EXPECT_EQ(entry.written[3], "+1e0");
+  EXPECT_EQ(entry.written[17], "1");
 }
 
 TEST(PairReader, GoesOnAfterABadLine) {

@@ -5,6 +5,7 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Simple_cartesian.h>
+#include <CGAL/gmpxx.h>
 #include <CGAL/intersections.h>
 #include <CGAL/long_long.h>
 
@@ -22,6 +23,9 @@ using SmallKernel = CGAL::Simple_cartesian<boost::int128_type>;
 // Filtered double arithmetic for the rest. Any float32 is a double, and a product of three differences of
 // float32 lies between 2^-447 and 2^390: nothing over- or underflows, so the filters' error bounds hold.
 using WideKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+// Rationals, for pairs that are no float32 pairs.
+using LargeKernel = CGAL::Simple_cartesian<mpq_class>;
 
 // The closed convex hull of three points as what it is: dimension 0, 1 or 2, with its dimension + 1 vertices.
 template <class Kernel>
@@ -80,6 +84,11 @@ Verdict cgal_verdict(const Pair& pair) {
     intersects = hulls_intersect(hull<WideKernel>(pair.a), hull<WideKernel>(pair.b));
   }
   return intersects ? Verdict::intersects : Verdict::disjoint;
+}
+
+Verdict cgal_verdict(const LargePair& pair) {
+  return hulls_intersect(hull<LargeKernel>(pair.a), hull<LargeKernel>(pair.b)) ? Verdict::intersects
+                                                                               : Verdict::disjoint;
 }
 
 }  // namespace graze::oracle

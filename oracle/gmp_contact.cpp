@@ -219,15 +219,8 @@ Contact flat_with_flat(Workspace& work, const Simplex& a, const Simplex& b) {
   return Planar(work, droppable_of_line(direction)).contact(a, b);
 }
 
-}  // namespace
-
-Contact gmp_contact(const Pair& pair) {
-  thread_local Workspace work;
-  const Grid grid = grid_of(pair);
-  for (int i = 0; i < 9; ++i) {
-    set_integer(work.p[i / 3].c[i % 3], coordinates(pair)[i], grid);
-    set_integer(work.q[i / 3].c[i % 3], coordinates(pair)[9 + i], grid);
-  }
+// Requires: p and q are the pair.
+Contact contact_of_pair(Workspace& work) {
   const Simplex b = simplex_of(work, work.q, work.nb);
   if (b.count == 3) {
     int sa[3];
@@ -252,6 +245,27 @@ Contact gmp_contact(const Pair& pair) {
   if (a.count < 3) return flat_with_flat(work, a, b);
   for (int i = 0; i < 3; ++i) mpz_swap(work.nb.c[i], work.na.c[i]);
   return flat_with_triangle(work, b, a);
+}
+
+}  // namespace
+
+Contact gmp_contact(const Pair& pair) {
+  thread_local Workspace work;
+  const Grid grid = grid_of(pair);
+  for (int i = 0; i < 9; ++i) {
+    set_integer(work.p[i / 3].c[i % 3], coordinates(pair)[i], grid);
+    set_integer(work.q[i / 3].c[i % 3], coordinates(pair)[9 + i], grid);
+  }
+  return contact_of_pair(work);
+}
+
+Contact gmp_contact(const LargePair& pair) {
+  Workspace work;
+  for (int i = 0; i < 9; ++i) {
+    mpz_set(work.p[i / 3].c[i % 3], component(pair.a[i / 3], i % 3).get_mpz_t());
+    mpz_set(work.q[i / 3].c[i % 3], component(pair.b[i / 3], i % 3).get_mpz_t());
+  }
+  return contact_of_pair(work);
 }
 
 }  // namespace graze::oracle

@@ -8,6 +8,7 @@
 #include <gmpxx.h>
 
 #include "core/pair.h"
+#include "core/verdict.h"
 
 namespace graze::oracle {
 
@@ -48,5 +49,9 @@ struct LargePair {
 
 // The pair's coordinates divided by 2^grid.exponent.
 LargePair large_integers(const Pair& pair, const Grid& grid);
+
+// The two decisions of truth.h on a pair of integers of any size.   Exact: always.
+Verdict cgal_verdict(const LargePair& pair);
+Contact gmp_contact(const LargePair& pair);
 
 }  // namespace graze::oracle

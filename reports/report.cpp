@@ -123,7 +123,7 @@ Json only_in(const Json& signatures, const Json& others) {
 Json read_summary(const std::filesystem::path& directory) {
   Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
   if (!summary.is_object() || !summary.contains("spec") || !summary.contains("strata"))
-    throw UsageError(directory.string() + ": expected a campaign's directory with summary.json, found none");
+    throw std::runtime_error(directory.string() + ": expected a campaign's directory with summary.json, found none");
   return summary;
 }
 
@@ -192,7 +192,9 @@ std::string report_text(const Json& report) {
 
 Json read_report(const std::filesystem::path& file) {
   Json report = Json::parse(fuzz::read_whole(file), nullptr, false);
-  if (!report.is_object() || report.value("format", Json()) != 1 || !report.contains("rates"))
+  const auto is_list = [&](const char* part) { return report.value(part, Json()).is_array(); };
+  if (!report.is_object() || report.value("format", Json()) != 1 || !is_list("rates") || !is_list("lanes") ||
+      !is_list("strata"))
     throw corpus::FormatError(file.string() + ": expected a report of `graze report`, found something else");
   return report;
 }

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/margin/bucket.h"
+#include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/result_files.h"
@@ -261,7 +262,7 @@ TEST_F(ReportTest, CardsWithoutTheMinimiserSayWhatTheSignatureDoes) {
     Pair pair;
     for (int i = 0; i < kCoordinates; ++i)
       coordinates(pair)[i] =
-          corpus::parse_float32(card["pair"]["hex"][static_cast<std::size_t>(i)].get<std::string>()).value();
+          parse_float32(card["pair"]["hex"][static_cast<std::size_t>(i)].get<std::string>()).value();
     std::vector<const Lane*> apart;
     const std::vector<Verdict> verdicts = decide(under_test, pair, apart);
     std::size_t compared = 0;

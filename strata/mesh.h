@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct MeshPairs {
   std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the other, in file order
   std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // indices into triangles, sorted, first < second
   std::uint64_t content_hash = 0;  // FNV-1a of the bytes of the file, then of the other
+  std::vector<std::string> notes;  // one line a file of which something was not used, such as its normals
 
   std::size_t size() const { return candidates.size(); }
 
@@ -27,11 +29,10 @@ struct MeshPairs {
 };
 
 // The candidate pairs of a mesh against itself, or against the other. Faces of more than three vertices are cut
-// into a fan from their first vertex. Coordinates, doubles as CGAL reads them, are rounded once to float32, and
+// into a fan from their first vertex. Coordinates are rounded once to float32, and
 // triangles that are degenerate then stay in; the boxes are those of the rounded triangles, so no pair that
 // touches is missed. Files: OFF, OBJ, STL and PLY, told apart by their extension.
-// Requires: no other thread writes to std::cout or std::cerr meanwhile; CGAL's readers print, so both are silenced.
-// Throws: std::runtime_error of one line that names the file, what was expected and what was found.
+// Throws: std::runtime_error of one line that names file, line or byte, what was expected and what was found.
 MeshPairs read_mesh_pairs(const std::filesystem::path& file,
                           const std::optional<std::filesystem::path>& other = std::nullopt);
 

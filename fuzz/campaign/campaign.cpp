@@ -36,20 +36,15 @@ std::string machine_name() {
 }
 
 // The next batch: of the source of which the least is done, so that a campaign that is cut short has seen all of them.
-struct Batch {
-  int source;
-  std::uint64_t first, count;
-};
-
-std::optional<Batch> next_batch(const Campaign& campaign, const std::vector<std::uint64_t>& done) {
-  std::optional<Batch> next;
+std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store,
+                                    const std::vector<std::uint64_t>& done) {
+  std::optional<std::size_t> next;
   for (std::size_t s = 0; s < done.size(); ++s) {
-    const std::uint64_t left = campaign.sources[s].pairs - done[s];
-    if (left == 0 || (next && next->first <= done[s])) continue;
-    const std::uint64_t most = campaign.engines.empty() ? kBatchPairs : campaign.engine_batch * campaign.engines.size();
-    next = Batch{static_cast<int>(s), done[s], std::min(left, most)};
+    if (done[s] < campaign.sources[s].pairs && (!next || done[s] < done[*next])) next = s;
   }
-  return next;
+  if (!next) return {};
+  const std::uint64_t most = campaign.engines.empty() ? kBatchPairs : campaign.engine_batch * campaign.engines.size();
+  return store.missing(static_cast<int>(*next), most);
 }
 
 }  // namespace
@@ -66,10 +61,8 @@ Json campaign_spec(const Campaign& campaign) {
 }
 
 Json build_info(const LanesUnderTest& under_test) {
-  Json info = {{"version", GRAZE_VERSION},
-               {"commit", GRAZE_COMMIT},
-               {"compiler", GRAZE_COMPILER},
-               {"cuda", nullptr},
+  Json info = {{"version", GRAZE_VERSION}, {"commit", GRAZE_COMMIT}, {"compiler", GRAZE_COMPILER},
+               {"type", GRAZE_BUILD_TYPE}, {"flags", GRAZE_FLAGS},   {"cuda", nullptr},
                {"device", nullptr}};
   if (*GRAZE_NVCC) info["cuda"] = std::string("nvcc ") + GRAZE_NVCC;
   if (under_test.device) info["device"] = under_test.device->name + ", driver " + under_test.device->driver;
@@ -78,6 +71,12 @@ Json build_info(const LanesUnderTest& under_test) {
     if (under_test.lanes[l]->is_cuda()) info["executors"][under_test.lanes[l]->id] = under_test.evidence(l);
   }
   return info;
+}
+
+StoreSpec store_spec(const Campaign& campaign) {
+  StoreSpec spec{campaign.directory, campaign.spec, campaign.build, campaign.sources, {}};
+  for (const Lane* lane : campaign.under_test->lanes) spec.lanes.push_back(lane->id);
+  return spec;
 }
 
 std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& campaign, EngineChoice choice) {
@@ -102,7 +101,7 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
   const int threads = campaign.threads > 0 ? campaign.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
-  Store store(campaign.directory, campaign.spec, campaign.build);
+  Store store(store_spec(campaign));
   GpuEngine device(campaign);
   Progress progress;
   progress.disagreements_of_source.resize(campaign.sources.size());
@@ -114,17 +113,17 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
   }
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   while (!stop) {
-    const std::optional<Batch> batch = next_batch(campaign, done);
+    const std::optional<PairRange> batch = next_batch(campaign, store, done);
     if (!batch) break;
-    const BatchResult result = campaign.engines.empty() ? judge(campaign, batch->source, batch->count,
+    const BatchResult result = campaign.engines.empty() ? judge(campaign, batch->source, batch->pairs,
                                                                 [&](std::size_t i) { return batch->first + i; })
-                                                        : device.judge(batch->source, batch->first, batch->count);
-    store.commit(batch->source, batch->count, result);
-    done[static_cast<std::size_t>(batch->source)] += batch->count;
-    progress.done += batch->count;
-    progress.done_here += batch->count;
+                                                        : device.judge(batch->source, batch->first, batch->pairs);
+    store.commit(*batch, result);
+    done[static_cast<std::size_t>(batch->source)] += batch->pairs;
+    progress.done += batch->pairs;
+    progress.done_here += batch->pairs;
     progress.seconds = seconds();
-    progress.signatures = store.signature_count();
+    progress.signatures = store.signatures().size();
     progress.disagreements += result.disagreements;
     progress.disagreements_of_source[static_cast<std::size_t>(batch->source)] += result.disagreements;
     report(progress);

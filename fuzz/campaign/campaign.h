@@ -43,7 +43,7 @@ struct Progress {
 // {"seed", "pairs", "strata", "lanes"}: recorded with the results and compared when a campaign goes on.
 Json campaign_spec(const Campaign& campaign);
 
-// Version, commit, compiler, toolkit, device, and for each CUDA lane what ran it.
+// Version, commit, compiler, type and flags of the build, toolkit, device, and for each CUDA lane what ran it.
 Json build_info(const LanesUnderTest& under_test);
 
 // What judges the pairs. automatic: the devices where they can, which is where all lanes are theirs and all sources
@@ -53,6 +53,9 @@ enum class EngineChoice { automatic, cpu, gpu };
 // The engines that take the campaign; none for the CPU engine.
 // Throws: UsageError when the GPU engine is asked for and cannot take it; std::runtime_error without a device.
 std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& campaign, EngineChoice choice);
+
+// What the campaign's store is of.
+StoreSpec store_spec(const Campaign& campaign);
 
 struct Outcome {
   Json summary;

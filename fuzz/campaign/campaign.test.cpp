@@ -118,6 +118,13 @@ TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
   const std::string before = read_whole(root_ / "taken" / "summary.json");
   EXPECT_THROW(run(campaign("taken", 1, 5000)), UsageError);
   EXPECT_EQ(read_whole(root_ / "taken" / "summary.json"), before);
+  // Nor does another build go on with it: its type and flags count as its commit does.
+  for (const char* key : {"commit", "type", "flags"}) {
+    Campaign other = campaign("taken", 1, 4000);
+    EXPECT_FALSE(other.build[key].get<std::string>().empty()) << key;
+    other.build[key] = "another";
+    EXPECT_THROW(run(other), UsageError) << key;
+  }
 }
 
 TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
@@ -127,8 +134,10 @@ TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
   EXPECT_THROW(run(campaign("foreign", 1, 4000)), std::runtime_error);
 
   {
-    Database other((fs::create_directories(root_ / "other"), root_ / "other" / "campaign.sqlite"));
-    other.execute("CREATE TABLE t(x)");
+    fs::create_directories(root_ / "other");
+    SQLite::Database other((root_ / "other" / "campaign.sqlite").string(),
+                           SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    other.exec("CREATE TABLE t(x)");
   }
   EXPECT_THROW(run(campaign("other", 1, 4000)), std::runtime_error);
 

@@ -4,9 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <sstream>
 
 #include "analysis/signature.h"
@@ -45,33 +42,15 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Trut
           {"margin_ulps", fmt::format("{}", t.margin_ulps)}};
 }
 
-std::string read_whole(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void write_whole(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path beside = file.string() + ".part";
-  std::ofstream out(beside, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error(beside.string() + ": expected to write it, found: " + std::strerror(errno));
-  std::filesystem::rename(beside, file);
-}
-
 Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
-  std::vector<std::string> lane_ids;
-  for (const Lane* lane : campaign.under_test->lanes) lane_ids.push_back(lane->id);
-  Json results = store.results(campaign.sources, lane_ids);
-
-  const auto by_key = store.signatures();
+  const Json results = store.results();
   const auto row_of = [&](const std::string& key, const SignatureCount& found) {
     const std::string file = case_name(key), text = case_text(campaign, key, found);
     if (!is_minimised_from(read_whole(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
     return file;
   };
   std::vector<const std::pair<const std::string, SignatureCount>*> by_count;
-  for (const auto& row : by_key) by_count.push_back(&row);
+  for (const auto& row : store.signatures()) by_count.push_back(&row);
   std::stable_sort(by_count.begin(), by_count.end(),
                    [](auto* l, auto* r) { return l->second.count > r->second.count; });
   Json signatures = Json::array();
@@ -94,8 +73,7 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
 
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle) {
   const std::filesystem::path file = directory / "timings.json";
-  std::ifstream in(file);
-  Json timings = in ? Json::parse(in, nullptr, false) : Json();
+  Json timings = Json::parse(read_whole(file), nullptr, false);
   if (!timings.is_object() || !timings.contains("runs")) timings = {{"runs", Json::array()}};
   timings["runs"].push_back(run);
   if (!oracle.is_null()) timings["oracle"] = oracle;

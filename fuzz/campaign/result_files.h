@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that a campaign leaves beside its database: summary.json, cases/, and timings.json. A file is written
-// whole beside its place and then moved there, so a reader never sees half of one.
+// The files that a campaign leaves beside its database: summary.json, cases/, and timings.json.
 #pragma once
 
 #include <utility>
 
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/files.h"
 #include "oracle/truth.h"
 
 namespace graze::fuzz {
@@ -16,12 +16,6 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Trut
 // Writes summary.json and cases/ from what the store holds; a case file that has not changed keeps what the minimiser
 // put into it.   Returns: the summary.
 Json write_summary(const Campaign& campaign, const Store& store, bool complete);
-
-// The file's bytes; empty where there is none.
-std::string read_whole(const std::filesystem::path& file);
-
-// Writes the file beside its place and moves it there.   Throws: std::runtime_error when there is no room.
-void write_whole(const std::filesystem::path& file, const std::string& text);
 
 // Adds a run to timings.json, the only file that depends on when, where and by which engine the campaign ran.
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle = {});

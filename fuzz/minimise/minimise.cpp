@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 
 #include "core/exact/exact.h"
 #include "core/margin/margin.h"
@@ -53,7 +54,192 @@ void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
   result.worst_ulps = ulps;
 }
 
+// All but the cause itself: what can be known quickly.
+bool may_have_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
+  const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
+  if (!reason.in_range && !by_range) return true;
+  return analysis::leaves_exponents(failure.first_wrong(), pair) != reason.in_range;
+}
+
+// What the moves of a kind make of the pair that is simpler than it, each pair once, the simplest first.
+// Adds to `made` how many pairs they make.
+std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
+  thread_local std::vector<Pair> moved;
+  moved.clear();
+  append_moves(pair, kind, moved);
+  made += moved.size();
+  const std::uint64_t now = simplicity_counts(pair);
+  struct Simpler {
+    std::uint64_t counts;
+    const Pair* pair;
+  };
+  thread_local std::vector<Simpler> order;
+  order.clear();
+  for (const Pair& m : moved) {
+    const std::uint64_t counts = simplicity_counts(m, now);
+    if (counts < now || (counts == now && simpler_coordinates(m, pair))) order.push_back({counts, &m});
+  }
+  std::sort(order.begin(), order.end(), [](const Simpler& l, const Simpler& r) {
+    return l.counts != r.counts ? l.counts < r.counts : simpler_coordinates(*l.pair, *r.pair);
+  });
+  std::vector<Pair> simpler;
+  simpler.reserve(order.size());
+  for (const Simpler& next : order) {
+    if (simpler.empty() || simpler_coordinates(simpler.back(), *next.pair) ||
+        simpler_coordinates(*next.pair, simpler.back()))
+      simpler.push_back(*next.pair);
+  }
+  return simpler;
+}
+
+bool same_bits(const Pair& l, const Pair& r) { return !simpler_coordinates(l, r) && !simpler_coordinates(r, l); }
+
+// The pair after a move that made `after` of `before` is done `times` times: what was scaled by a power of two is
+// scaled by its power, all else goes as many times as far.   Returns: nothing where that is not finite.
+std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t times) {
+  const float *from = coordinates(before), *to = coordinates(after);
+  std::optional<int> exponent;  // of the power of two; 0 when it is none
+  for (int i = 0; i < kCoordinates; ++i) {
+    if (to[i] == from[i]) continue;
+    const int apart = from[i] == 0 || to[i] == 0 ? 0 : std::ilogb(to[i]) - std::ilogb(from[i]);
+    if (std::ldexp(from[i], apart) != to[i] || (exponent && *exponent != apart)) exponent = 0;
+    if (!exponent) exponent = apart;
+  }
+  const bool scaled = exponent && *exponent != 0;
+  if (scaled && times > 300) return {};  // float32 has no more exponents
+  Pair result = before;
+  for (int i = 0; i < kCoordinates; ++i) {
+    if (to[i] == from[i]) continue;
+    const double there = scaled ? std::ldexp(double{from[i]}, *exponent * static_cast<int>(times))
+                                : from[i] + static_cast<double>(times) * (double{to[i]} - from[i]);
+    coordinates(result)[i] = static_cast<float>(there);
+  }
+  if (!is_finite(result)) return {};
+  return result;
+}
+
+struct Walk {
+  const Failure& failure;
+  std::span<const Minimised> known;
+  std::size_t most;
+  Minimised result;
+  std::vector<Pair> way;  // from the first pair to the current one
+  bool ask_all = false;   // every pair's cause, before it is taken
+
+  Walk(const Failure& of, const Pair& pair, std::span<const Minimised> results, std::size_t limit)
+      : failure(of), known(results), most(limit), result{.pair = pair, .reason = reason_of(of, pair), .worst = pair},
+        way{pair} {
+    result.worst_ulps = std::fabs(oracle::truth(pair).margin_ulps);
+  }
+
+  bool spent() const { return result.moved + kLeastMoved >= most; }
+
+  bool has_cause(const Pair& pair) {
+    result.moved += kMovedPerCause;
+    return analysis::cause_of(failure.first_wrong(), pair, failure.truth.verdict) == result.reason.cause;
+  }
+
+  // Of a pair that gets the failure's verdicts.
+  bool take(const Pair& candidate) {
+    if (judged(candidate) != failure.truth || !may_have_reason(failure, result.reason, candidate)) return false;
+    if (ask_all && !has_cause(candidate)) return false;
+    way.push_back(candidate);
+    result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(), candidate);
+    keep_worst(result, candidate, failure.truth.verdict);
+    return true;
+  }
+
+  bool is_simpler(const Pair& candidate) const {
+    const std::uint64_t now = simplicity_counts(way.back()), counts = simplicity_counts(candidate, now);
+    return counts < now || (counts == now && simpler_coordinates(candidate, way.back()));
+  }
+
+  // Does the last move again, for as long as that makes the pair simpler: 2, 4, 8, … times as far, then bisects.
+  void repeat() {
+    const Pair before = way[way.size() - 2], once = way.back();
+    const auto works = [&](std::int64_t times) {
+      ++result.moved;
+      const std::optional<Pair> candidate = repeated(before, once, times);
+      return candidate && is_simpler(*candidate) && !decided_alike(failure, {*candidate}).empty() && take(*candidate);
+    };
+    constexpr std::int64_t kMostTimes = std::int64_t{1} << 52;
+    std::int64_t times = 1;
+    while (times < kMostTimes && works(2 * times)) times *= 2;
+    for (std::int64_t more = times / 2; more > 0; more /= 2) {
+      if (works(times + more)) times += more;
+    }
+  }
+
+  // Takes the simplest pair that a kind of move makes of the current one and that fails alike, if any.
+  bool improve(int kind) {
+    const std::vector<Pair> simpler = simpler_moves(way.back(), kind, result.moved);
+    for (auto first = simpler.begin(); first != simpler.end();) {
+      const auto last = first + std::min<std::ptrdiff_t>(kBlockPairs, simpler.end() - first);
+      for (const Pair& candidate : decided_alike(failure, {first, last})) {
+        if (spent()) return false;
+        if (!take(candidate)) continue;
+        repeat();
+        return true;
+      }
+      first = last;
+    }
+    result.single_moves += simpler.size();
+    return false;
+  }
+
+  bool ends_in_known() {
+    const auto met = std::find_if(known.begin(), known.end(), [&](const Minimised& other) {
+      return other.one_minimal && same_bits(other.pair, way.back());
+    });
+    if (met == known.end()) return false;
+    result.single_moves = met->single_moves;
+    return result.one_minimal = true;
+  }
+
+  void go_down() {
+    result.one_minimal = false;
+    result.single_moves = 0;
+    if (ends_in_known()) return;
+    int in_vain = 0;
+    for (int kind = 0; in_vain < kMoveKinds; kind = (kind + 1) % kMoveKinds) {
+      if (spent()) return;
+      in_vain = improve(kind) ? 0 : in_vain + 1;
+      if (in_vain > 0) continue;
+      result.single_moves = 0;
+      if (ends_in_known()) return;
+    }
+    result.one_minimal = !spent();
+  }
+
+  // To a pair that has the cause, followed by one that does not.   Requires: the last pair lacks it.
+  void go_back() {
+    std::size_t has = 0, lacks = way.size() - 1;
+    while (lacks - has > 1) {
+      const std::size_t middle = has + (lacks - has) / 2;
+      (has_cause(way[middle]) ? has : lacks) = middle;
+    }
+    way.resize(has + 1);
+    result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(), way.back());
+    ask_all = true;
+  }
+};
+
 }  // namespace
+
+const Lane& Failure::first_wrong() const {
+  const auto wrong = std::find_if(verdicts.begin(), verdicts.end(), [&](Verdict v) { return v != truth.verdict; });
+  return *lanes.at(static_cast<std::size_t>(wrong - verdicts.begin()));
+}
+
+Reason reason_of(const Failure& failure, const Pair& pair) {
+  const Lane& lane = failure.first_wrong();
+  return {analysis::cause_of(lane, pair, failure.truth.verdict), !analysis::leaves_exponents(lane, pair)};
+}
+
+bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
+  return fails_alike(failure, pair) && may_have_reason(failure, reason, pair) &&
+         analysis::cause_of(failure.first_wrong(), pair, failure.truth.verdict) == reason.cause;
+}
 
 Judged judged(const Pair& pair) {
   const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
@@ -98,47 +284,15 @@ analysis::Signature signature_of(const Failure& failure, const Pair& pair) {
                              failure.verdicts);
 }
 
-std::vector<Pair> simpler_moves(const Pair& pair, int kind) {
-  std::vector<Pair> moved;
-  append_moves(pair, kind, moved);
-  const Simplicity now = simplicity(pair);
-  std::vector<std::pair<Simplicity, std::size_t>> order;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    const Simplicity after = simplicity(moved[i]);
-    if (after < now) order.push_back({after, i});
+Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known, std::size_t most) {
+  Walk walk(failure, pair, known, most);
+  walk.go_down();
+  if (!walk.has_cause(walk.way.back())) {
+    walk.go_back();
+    walk.go_down();
   }
-  std::sort(order.begin(), order.end());
-  std::vector<Pair> simpler;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || order[i].first != order[i - 1].first) simpler.push_back(moved[order[i].second]);
-  }
-  return simpler;
-}
-
-Minimised minimise(const Failure& failure, const Pair& pair) {
-  Minimised result{pair, 0, pair, std::fabs(oracle::truth(pair).margin_ulps)};
-  // The simplest pair that a kind of move makes of the current one and that fails alike, if any.
-  const auto improve = [&](int kind) {
-    const std::vector<Pair> simpler = simpler_moves(result.pair, kind);
-    for (auto first = simpler.begin(); first != simpler.end();) {
-      const auto last = first + std::min<std::ptrdiff_t>(kBlockPairs, simpler.end() - first);
-      for (const Pair& candidate : decided_alike(failure, {first, last})) {
-        if (judged(candidate) != failure.truth) continue;
-        result.pair = candidate;
-        keep_worst(result, candidate, failure.truth.verdict);
-        return true;
-      }
-      first = last;
-    }
-    result.single_moves += simpler.size();
-    return false;
-  };
-  int in_vain = 0;
-  for (int kind = 0; in_vain < kMoveKinds; kind = (kind + 1) % kMoveKinds) {
-    in_vain = improve(kind) ? 0 : in_vain + 1;
-    if (in_vain == 0) result.single_moves = 0;
-  }
-  return result;
+  walk.result.pair = walk.way.back();
+  return walk.result;
 }
 
 void confirm(const LanesUnderTest& under_test, const Failure& failure, const Pair& pair) {

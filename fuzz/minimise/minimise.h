@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser: shrinks a pair while one algorithm's failure on it stays the same, down to a pair that no single move
-// makes simpler. simplicity.h states what is simpler, moves.h what a single move is.
+// The minimiser: shrinks a pair while one algorithm's failure on it stays the same, and its cause, down to a pair that
+// no single move makes simpler. simplicity.h states what is simpler, moves.h what a single move is.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "analysis/explain.h"
 #include "analysis/signature.h"
 #include "fuzz/lanes_under_test.h"
 #include "fuzz/minimise/simplicity.h"
@@ -33,6 +35,8 @@ struct Failure {
   std::vector<DecideBlock> on_host;  // of each: the host lane or the twin
   std::vector<Verdict> verdicts;     // of each
   bool operator==(const Failure&) const = default;
+
+  const Lane& first_wrong() const;
 };
 
 // The failures of a pair, one for each algorithm of the under_test that is wrong on it; none for coordinates that are
@@ -44,20 +48,45 @@ bool fails_alike(const Failure& failure, const Pair& pair);
 // The signature of a pair that fails alike, its own margin's bucket included.
 analysis::Signature signature_of(const Failure& failure, const Pair& pair);
 
+// Why a failure happens. Its lanes may be wrong for different reasons; the one that counts is that of the first wrong
+// lane in the table's order. A pair fails for the same reason when the cause is the same and, where the lane's run left
+// the scalar's exponents nowhere, it still does so nowhere: what rounding did must not end as numbers of 1e-30. Once
+// nothing leaves the exponents on the way down, nothing does any more.
+struct Reason {
+  analysis::Cause cause;
+  bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents
+  bool operator==(const Reason&) const = default;
+};
+
+// Requires: fails_alike(failure, pair).
+Reason reason_of(const Failure& failure, const Pair& pair);
+bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& pair);
+
+// A case ends after so many pairs that moves made of it, minimal or not. Each is asked for at most one verdict of every
+// lane and one of the exact decision, so that eight lanes give at most nine times as many verdicts. Finding out the
+// cause of a pair counts as kMovedPerCause.
+inline constexpr std::size_t kMostMoved = 1'500'000;
+inline constexpr std::size_t kMovedPerCause = 500;
+inline constexpr std::size_t kLeastMoved = 40 * kMovedPerCause;  // kept back to find the cause again, see minimise
+
 struct Minimised {
-  Pair pair;                     // not one of its single moves is simpler and fails alike
-  std::size_t single_moves = 0;  // how many were tried on it
+  Pair pair;                     // fails alike and for the same reason
+  bool one_minimal = false;      // no single move makes it simpler and keeps that; otherwise the limit ended it
+  std::size_t single_moves = 0;  // how many to a simpler pair were tried on it in vain, where it is minimal
+  std::size_t moved = 0;         // pairs that moves made on the way, causes included
+  Reason reason;                 // the pair's; the cause is that of the first pair
   Pair worst;                    // of all pairs on the way, the first one included, that of the largest margin in ulps
-  double worst_ulps = 0;         // of either sign
+  double worst_ulps = 0;         // of either sign; the worst pair's cause may be another
 };
 
 // Goes through the kinds of moves in their order, over and over, and takes of each the simplest pair that fails alike,
-// until a whole round finds none.
-// Requires: fails_alike(failure, pair).   Throws: OracleApart.
-Minimised minimise(const Failure& failure, const Pair& pair);
-
-// What the moves of a kind make of the pair that is simpler than it, each pair once, the simplest first.
-std::vector<Pair> simpler_moves(const Pair& pair, int kind);
+// until a whole round finds none. What a move did is done again 2, 4, 8, … times as far, while that makes the pair
+// simpler still, and then bisected. The cause, which is dear, is asked for at the end. Where it was lost, a bisection
+// of the way finds a pair that has it, followed by one that does not, and from there on every pair is asked.
+// `known`: results of the same failure; one that is met is the result. `most`: in place of kMostMoved.
+// Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleApart.
+Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known = {},
+                   std::size_t most = kMostMoved);
 
 // Throws: OracleApart unless CGAL and GMP say of the pair what the failure does; std::runtime_error unless all lanes of
 // the under_test do, on the device where it has one.

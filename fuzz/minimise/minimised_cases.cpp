@@ -50,31 +50,42 @@ corpus::Entry result_entry(const MinimisedCase& result, const Pair& pair, const 
 
 bool is_minimised(const corpus::Entry& entry) { return has_kind(entry, "minimised"); }
 
-std::vector<MinimisedCase> minimise_cases(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries) {
+std::vector<MinimisedCase> minimise_cases(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries,
+                                          const std::function<bool()>& stop) {
   std::vector<MinimisedCase> results;
+  std::vector<std::vector<Minimised>> ended;  // of each result, what its originals came to
   for (const corpus::Entry* entry : originals(entries)) {
+    if (stop()) return {};
     const std::string* recorded = corpus::field(*entry, "signature");
     for (const Failure& failure : failures_of(under_test, entry->pair)) {
       if (recorded && !is_of_algorithm(*recorded, failure)) continue;
       const std::string from = name_of(*entry);
-      MinimisedCase found{failure, minimise(failure, entry->pair), recorded ? *recorded : "", from, from, entry->pair};
       const auto together = std::find_if(results.begin(), results.end(), [&](const MinimisedCase& other) {
         return recorded && other.recorded == *recorded && other.failure == failure;
       });
       if (together == results.end()) {
-        results.push_back(std::move(found));
+        const Minimised result = minimise(failure, entry->pair);
+        ended.push_back({result});
+        results.push_back({failure, result, recorded ? *recorded : "", from, from, entry->pair});
         continue;
       }
-      if (found.result.worst_ulps > together->result.worst_ulps) {
-        together->result.worst = found.result.worst;
-        together->result.worst_ulps = found.result.worst_ulps;
+      if (reason_of(failure, entry->pair).cause != together->result.reason.cause) continue;
+      std::vector<Minimised>& known = ended[static_cast<std::size_t>(together - results.begin())];
+      Minimised result = minimise(failure, entry->pair, known);
+      known.push_back(result);
+      if (result.worst_ulps > together->result.worst_ulps) {
         together->worst_from = from;
+      } else {
+        result.worst = together->result.worst;
+        result.worst_ulps = together->result.worst_ulps;
       }
-      if (simplicity(found.result.pair) < simplicity(together->result.pair)) {
-        together->result.pair = found.result.pair;
-        together->result.single_moves = found.result.single_moves;
+      if (simplicity(result.pair) < simplicity(together->result.pair)) {
+        together->result = result;
         together->from = from;
         together->original = entry->pair;
+      } else {
+        together->result.worst = result.worst;
+        together->result.worst_ulps = result.worst_ulps;
       }
     }
   }
@@ -99,7 +110,16 @@ std::string with_results(const std::string& text, const std::vector<corpus::Entr
     if (is_case && &*entry == cases.front()) {
       for (const MinimisedCase& r : results) {
         corpus::Entry minimised = result_entry(r, r.result.pair, "minimised", r.from);
-        minimised.fields.push_back({"single_moves", std::to_string(r.result.single_moves)});
+        std::string cause(analysis::name(r.result.reason.cause));
+        std::replace(cause.begin(), cause.end(), ' ', '_');  // a field has no spaces
+        minimised.fields.push_back({"cause", cause});
+        if (r.result.one_minimal) {
+          minimised.fields.push_back({"one_minimal", "yes"});
+          minimised.fields.push_back({"moves_in_vain", std::to_string(r.result.single_moves)});
+        } else {
+          minimised.fields.push_back({"one_minimal", "unknown"});
+          minimised.fields.push_back({"stopped_after_moves", std::to_string(kMostMoved)});
+        }
         corpus::write_entry(out, minimised);
         corpus::write_entry(out, result_entry(r, r.result.worst, "worst", r.worst_from));
       }

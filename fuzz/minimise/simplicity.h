@@ -21,7 +21,7 @@ namespace graze::fuzz {
 //   8. minus signs, that of -0 included
 //   9. the coordinates in their order, by magnitude and then sign: two pairs are equal only when all their bits are.
 struct Simplicity {
-  std::array<int, 8> counts{};
+  std::uint64_t counts = 0;  // the eight of them, the first in the highest bits
   std::array<std::uint32_t, kCoordinates> ranks{};
   auto operator<=>(const Simplicity&) const = default;
 };
@@ -29,7 +29,17 @@ struct Simplicity {
 // Requires: finite coordinates.
 Simplicity simplicity(const Pair& pair);
 
+// simplicity(pair).counts, where that is at most `most`; else some number above `most`, which is found sooner.
+// Requires: finite coordinates.
+std::uint64_t simplicity_counts(const Pair& pair, std::uint64_t most = ~std::uint64_t{0});
+
+// The count of a criterion, 1 to 8.
+int count_of(const Simplicity& simplicity, int criterion);
+
+// Whether l comes before r in the order of their coordinates alone, criterion 9.
+bool simpler_coordinates(const Pair& l, const Pair& r);
+
 // How many different magnitudes other than 0 and 1 the pair has.
-inline int nontrivial_magnitudes(const Pair& pair) { return simplicity(pair).counts[0]; }
+inline int nontrivial_magnitudes(const Pair& pair) { return count_of(simplicity(pair), 1); }
 
 }  // namespace graze::fuzz

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
@@ -13,6 +12,7 @@
 #include "analysis/signature.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "fuzz/files.h"
 #include "fuzz/minimise/minimised_cases.h"
 
 namespace graze::fuzz {
@@ -85,10 +85,11 @@ std::vector<FoundFailure> found_in_summary(const std::filesystem::path& director
 std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most) {
   const std::filesystem::path file = directory / "summary.json";
-  std::ifstream in(file);
-  if (!in) throw UsageError(directory.string() + ": expected a campaign's directory, found no summary.json in it");
+  const std::string text = read_whole(file);
+  if (text.empty())
+    throw std::runtime_error(directory.string() + ": expected a campaign's directory, found no summary.json in it");
   try {
-    const Json summary = Json::parse(in);
+    const Json summary = Json::parse(text);
     if (!summary.at("complete").get<bool>())
       throw UsageError(directory.string() + ": expected a finished campaign, found one that was interrupted");
     return found_in_summary(directory, summary, globs, most);

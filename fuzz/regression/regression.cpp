@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "analysis/signature.h"
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 
 namespace graze::fuzz {
@@ -55,7 +56,7 @@ struct Line {
 
   std::uint64_t count() const {
     const std::string& word = text("count");
-    const std::optional<std::uint64_t> value = corpus::parse_whole(word);
+    const std::optional<std::uint64_t> value = parse_whole(word);
     if (!value) fail("a whole number as count", '\'' + word + '\'');
     return *value;
   }

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/interrupt.h"
+
+#include <csignal>
+
+namespace graze::cli {
+namespace {
+
+std::atomic<bool> requested{false};
+extern "C" void request_stop(int) { requested = true; }
+
+}  // namespace
+
+const std::atomic<bool>& catch_interrupts() {
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+  return requested;
+}
+
+}  // namespace graze::cli

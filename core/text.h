@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every reader needs: numbers from text, in full or not at all, rounded once; and foreign text made fit to print.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace graze {
+
+// Returns: the float32 nearest to the number that text spells, ties to even, rounded once; nothing when text is
+// not a number in full, or when its nearest is beyond the largest float32. "inf" and "nan" are numbers.
+std::optional<float> parse_float32(std::string_view text);
+
+// Returns: the whole number that text spells, without a sign; nothing when it spells none or one too large.
+std::optional<std::uint64_t> parse_whole(std::string_view text);
+
+// Returns: the text with each byte that is not printable ASCII as \xHH, so that it can be printed anywhere.
+std::string printable(std::string_view text);
+
+// Returns: the text in quotes, quotes and backslashes behind a backslash, other bytes as printable() shows them.
+std::string in_quotes(std::string_view text);
+
+// in_quotes, cut short for a message.
+std::string shown(std::string_view text);
+
+}  // namespace graze

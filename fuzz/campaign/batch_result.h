@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an engine makes of a batch of pairs; all of it adds, in any order.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "analysis/signature.h"
+#include "analysis/tally.h"
+
+namespace graze::fuzz {
+
+// Cases kept of each signature: those with the smallest keys, whoever finds them first.
+inline constexpr std::size_t kKeptCases = 4;
+
+// A pair by its numbers: which source of the campaign, and its index there.
+struct CaseKey {
+  std::uint64_t index = 0;
+  int source = 0;
+  auto operator<=>(const CaseKey&) const = default;
+};
+
+struct SignatureCount {
+  std::uint64_t count = 0;
+  std::vector<CaseKey> cases;  // the smallest, sorted, at most kKeptCases
+
+  void add(const CaseKey& found);
+  void add(const SignatureCount& other);
+
+ private:
+  void keep(const CaseKey& found);
+};
+
+struct BatchResult {
+  explicit BatchResult(const analysis::Tally& empty) : tally(empty), extremes(empty) {}
+
+  analysis::Tally tally;
+  analysis::Tally extremes;  // by place_on_axis; empty without an axis
+  std::map<analysis::Signature, SignatureCount> signatures;
+  std::map<std::string, SignatureCount> executors_apart;  // by lane: device and twin differ
+  std::uint64_t disagreements = 0;                        // pairs on which some lane is wrong
+  std::uint64_t cgal = 0;                                 // pairs decided by CGAL
+  std::uint64_t gmp = 0;                                  // pairs confirmed by GMP
+  std::uint64_t device = 0;                               // pairs decided by the exact lane on a device
+
+  void add(const BatchResult& other);
+};
+
+}  // namespace graze::fuzz

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// A damaged store is never believed: what changes in it is found out, and the batches that check can be kept.
+#include "fuzz/campaign/store.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "fuzz/campaign/campaign.h"
+#include "fuzz/campaign/cpu_engine.h"
+#include "fuzz/campaign/result_files.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StoreTest : public testing::Test {
+ protected:
+  StoreTest() {
+    std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::replace(name.begin(), name.end(), '/', '-');
+    // In memory where that is possible: a file system on a disk takes milliseconds for each of 100,000 databases.
+    const fs::path folder = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : fs::temp_directory_path();
+    root_ = folder / ("graze-store-" + name + std::to_string(getpid()));
+    fs::remove_all(root_);
+  }
+  ~StoreTest() override { fs::remove_all(root_); }
+
+  Campaign campaign(const std::string& name, std::uint64_t pairs = 1200) const {
+    Campaign c;
+    c.seed = 3;
+    c.sources = strata::stratum_sources(c.seed, pairs, {"near_edge_edge", "degenerate", "extreme_scale"});
+    c.under_test = &under_test_;
+    c.threads = 1;
+    c.directory = root_ / name;
+    c.spec = campaign_spec(c);
+    c.build = {{"commit", "c"}, {"flags", "-O3"}};
+    return c;
+  }
+
+  static std::string run(const Campaign& c) {
+    const std::atomic<bool> go_on{false};
+    return run_campaign(c, go_on, [](const Progress&) {}).summary.dump();
+  }
+
+  static void commit(Store& store, const Campaign& c, const PairRange& range) {
+    store.commit(range, judge(c, range.source, range.pairs, [&](std::size_t i) { return range.first + i; }));
+  }
+
+  // A campaign of 400 pairs a source, in the seven rows (0, 300), (300, 80), (380, 20) of two sources and (0, 400).
+  Campaign in_seven_rows(const std::string& name) const {
+    Campaign c = campaign(name);
+    Store store(store_spec(c));
+    for (int source : {0, 1}) {
+      for (const auto& [first, pairs] : {std::pair{0, 300}, {300, 80}, {380, 20}})
+        commit(store, c, {source, static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(pairs)});
+    }
+    commit(store, c, {2, 0, 400});
+    return c;
+  }
+
+  static fs::path file(const Campaign& c) { return c.directory / "campaign.sqlite"; }
+  static std::int64_t rows(const Campaign& c) {
+    return SQLite::Database(file(c).string()).execAndGet("SELECT count(*) FROM batch").getInt64();
+  }
+
+  // What opening says; empty when all is well.
+  static std::string refusal(const Campaign& c) {
+    try {
+      Store store(store_spec(c));
+    } catch (const UsageError& error) {
+      return std::string("wrong use: ") + error.what();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  static void expect_one_line_of_damage(const Campaign& c, const std::string& what) {
+    const std::string said = refusal(c);
+    EXPECT_TRUE(said.starts_with(file(c).string() + ": expected ")) << what << ": " << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << what << ": " << said;
+    EXPECT_NE(said.find("; --discard-damaged keeps the batches that check"), std::string::npos) << what << ": " << said;
+  }
+
+  fs::path root_;
+  LanesUnderTest under_test_ = select_lanes({"moller_1997/f32/cpu", "projected_sat/f32/cpu"}, Executor::twin);
+};
+
+TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {
+  const std::string whole = run(campaign("whole"));
+  const Campaign c = in_seven_rows("edited");
+  const std::string bytes = read_whole(file(c));
+  struct Edit {
+    const char* sql;
+    std::size_t kept;
+  };
+  for (const auto& [sql, kept] :
+       {Edit{"UPDATE batch SET source = 2000000 WHERE id = 2", 6}, Edit{"UPDATE batch SET source = -1 WHERE id = 2", 6},
+        Edit{"UPDATE batch SET source = 1 WHERE id = 2", 6}, Edit{"UPDATE batch SET pairs = pairs + 1 WHERE id = 2", 6},
+        Edit{"UPDATE batch SET pairs = -1 WHERE id = 2", 6}, Edit{"UPDATE batch SET first = 299 WHERE id = 2", 6},
+        Edit{"UPDATE batch SET first = 0", 3}, Edit{"UPDATE batch SET checksum = checksum + 1 WHERE id = 5", 6},
+        Edit{"UPDATE batch SET counts = zeroblob(9)", 0}, Edit{"UPDATE batch SET counts = 7 WHERE id = 7", 6},
+        Edit{"INSERT INTO batch SELECT 8, source, first, pairs, counts, checksum FROM batch WHERE id = 3", 7},
+        Edit{"UPDATE campaign SET text = replace(text, 'seed', 'sead')", 7}, Edit{"DELETE FROM campaign", 7},
+        Edit{"UPDATE campaign SET checksum = 1", 7}, Edit{"DROP TABLE campaign", 7}, Edit{"DROP TABLE batch", 0}}) {
+    write_whole(file(c), bytes);
+    SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE).exec(sql);
+    expect_one_line_of_damage(c, sql);
+    const auto salvage = discard_damaged(store_spec(c));
+    ASSERT_TRUE(salvage) << sql;
+    EXPECT_EQ(salvage->batches, kept) << sql;
+    EXPECT_TRUE(fs::exists(salvage->damaged)) << sql;
+    EXPECT_EQ(refusal(c), "") << sql;
+    EXPECT_FALSE(discard_damaged(store_spec(c))) << sql;
+    EXPECT_EQ(run(c), whole) << sql;
+  }
+}
+
+// Rows that are lost leave a gap, which is judged again.
+TEST_F(StoreTest, GapsAreFilled) {
+  const std::string whole = run(campaign("whole"));
+  for (const char* sql :
+       {"DELETE FROM batch WHERE id = 1", "DELETE FROM batch WHERE id IN (2, 6, 7)", "DELETE FROM batch"}) {
+    const Campaign c = in_seven_rows("gap");
+    SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE).exec(sql);
+    EXPECT_EQ(run(c), whole) << sql;
+    fs::remove_all(c.directory);
+  }
+}
+
+TEST_F(StoreTest, DamageOfAnotherCampaignIsNoReasonToDiscardIt) {
+  in_seven_rows("taken");
+  Campaign other = campaign("taken", 1500);
+  SQLite::Database(file(other).string(), SQLite::OPEN_READWRITE).exec("UPDATE campaign SET checksum = 1");
+  const std::string bytes = read_whole(file(other));
+  EXPECT_THROW(discard_damaged(store_spec(other)), std::runtime_error);
+  EXPECT_EQ(read_whole(file(other)), bytes);
+  other = campaign("taken");
+  other.build["flags"] = "-g";
+  EXPECT_THROW(discard_damaged(store_spec(other)), std::runtime_error);
+}
+
+TEST_F(StoreTest, OtherBuildsFormatsAndProcessesAreRefused) {
+  Campaign c = in_seven_rows("mine");
+  c.build["flags"] = "-g";
+  EXPECT_EQ(refusal(c), "wrong use: " + c.directory.string() +
+                            ": was begun by another build (expected the same flags); choose another --out");
+  c = campaign("mine");
+  {
+    const Store held(store_spec(c));
+    EXPECT_EQ(refusal(c), c.directory.string() + ": expected to be alone, found: another process at work in it");
+  }
+  SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 3");
+  EXPECT_EQ(refusal(c), file(c).string() + ": expected format 5, found 3; choose another --out");
+}
+
+// Equal batches become rows of their sum, as the digits of a binary number do.
+TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
+  const Campaign parts = campaign("parts"), whole = campaign("whole");
+  Json results;
+  {
+    Store store(store_spec(parts));
+    for (std::uint64_t first = 0; first < 400; first += 25) {
+      EXPECT_EQ(store.done(0), first);
+      EXPECT_EQ(store.missing(0, 1000).first, first);
+      commit(store, parts, {0, first, 25});
+    }
+    results = store.results();
+  }
+  EXPECT_EQ(rows(parts), 1);
+  Store one(store_spec(whole)), again(store_spec(parts));
+  commit(one, whole, {0, 0, 400});
+  EXPECT_EQ(results.dump(), one.results().dump());
+  EXPECT_EQ(again.results().dump(), one.results().dump());
+  EXPECT_EQ(again.oracle().dump(), one.oracle().dump());
+  ASSERT_GT(one.signatures().size(), 5u);
+  for (const auto& [key, found] : one.signatures()) {
+    EXPECT_EQ(again.signatures().at(key).count, found.count);
+    EXPECT_EQ(again.signatures().at(key).cases, found.cases);
+  }
+}
+
+// What has its right checksum and still cannot be.
+TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
+  const Campaign c = campaign("sums");
+  const PairRange range{2, 100, 200};
+  const std::string bytes =
+      to_bytes(StoredCounts(judge(c, 2, range.pairs, [&](std::size_t i) { return range.first + i; })));
+  EXPECT_EQ(to_bytes(from_bytes(bytes, range, Axis::scale, 2)), bytes);
+  const auto refused = [&](const char* pointer, const Json& value) {
+    Json all = Json::from_cbor(bytes);
+    Json& place = all.at(Json::json_pointer(pointer));
+    EXPECT_NE(place, value) << pointer;
+    place = value;
+    std::string edited;
+    Json::to_cbor(all, edited);
+    EXPECT_THROW(from_bytes(edited, range, Axis::scale, 2), Damaged) << pointer << " " << value;
+  };
+  const Json all = Json::from_cbor(bytes);
+  for (const char* tally : {"/0", "/1"}) {
+    const std::string row = std::string(tally) + "/0";
+    const std::uint64_t pairs = all.at(Json::json_pointer(row + "/1"));
+    refused((row + "/0").c_str(), -65);
+    refused((row + "/0").c_str(), 65);
+    refused((row + "/1").c_str(), pairs + 1000);
+    refused((row + "/1").c_str(), pairs - 1);
+    refused((row + "/2").c_str(), pairs + 1);
+    refused((row + "/3").c_str(), Json::parse("[[2, 0, 0, 1, 0]]"));
+    refused((row + "/3").c_str(), Json::parse("[[-1, 0, 0, 1, 0]]"));
+    refused((row + "/3").c_str(), Json::parse("[[0, 0, 0, 201, 0]]"));
+    refused(tally, Json::array());
+  }
+  refused("/2/0/1", 0);
+  refused("/2/0/1", 201);
+  refused("/2/0/2/0", 99);
+  refused("/2/0/2/0", 300);
+  refused("/2/0/2", Json::array());
+  refused("/2/1/0", all[2][0][0]);
+  refused("/4", 201);
+  refused("/7", "device");
+  EXPECT_THROW(from_bytes(bytes.substr(1), range, Axis::scale, 2), Damaged);
+  EXPECT_THROW(from_bytes(bytes, {2, 100, 199}, Axis::scale, 2), Damaged);
+  EXPECT_THROW(from_bytes(bytes, range, Axis::none, 2), Damaged);
+}
+
+// Every bit of a small campaign's database, in parts: the same results, or one line.
+class EveryBit : public StoreTest, public testing::WithParamInterface<int> {
+ protected:
+  static constexpr int kParts = 8;
+};
+
+TEST_P(EveryBit, ChangesNothingInSilence) {
+  const Campaign c = campaign("flipped", 12);
+  const std::string whole = run(c);
+  // Small pages: less room that nothing uses.
+  SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE)
+      .exec("PRAGMA journal_mode = DELETE; PRAGMA page_size = 2048; VACUUM");
+  const auto results = [&] {
+    Store store(store_spec(c));
+    for (int s = 0; s < 3; ++s) {
+      if (store.done(s) < c.sources[static_cast<std::size_t>(s)].pairs) return Json();
+    }
+    Json signatures = Json::object();
+    for (const auto& [key, found] : store.signatures()) {
+      signatures[key] = {found.count};
+      for (const CaseKey& kept : found.cases) signatures[key].push_back({kept.source, kept.index});
+    }
+    return Json{store.results(), store.oracle(), signatures};
+  };
+  const Json expected = results();
+  const std::string bytes = read_whole(file(c));
+  ASSERT_GE(bytes.size() * 8, 32768u);
+  std::size_t refused = 0, same = 0, again = 0;
+  for (std::size_t bit = static_cast<std::size_t>(GetParam()); bit < bytes.size() * 8; bit += kParts) {
+    std::string flipped = bytes;
+    flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ 1 << bit % 8);
+    fs::remove(file(c).string() + "-wal");
+    write_whole(file(c), flipped);
+    try {
+      const Json found = results();
+      if (found.is_null()) {
+        ++again;
+        ASSERT_EQ(run(c), whole) << "bit " << bit;
+      } else {
+        ++same;
+        ASSERT_EQ(found, expected) << "bit " << bit;
+      }
+    } catch (const UsageError& error) {
+      FAIL() << "bit " << bit << ": " << error.what();
+    } catch (const std::exception& error) {
+      ++refused;
+      const std::string said = error.what();
+      ASSERT_TRUE(said.starts_with(file(c).string() + ": expected ")) << "bit " << bit << ": " << said;
+      ASSERT_EQ(said.find('\n'), std::string::npos) << "bit " << bit << ": " << said;
+    }
+  }
+  std::cout << refused << " refused, " << same << " the same, " << again << " judged again\n";
+  EXPECT_GT(refused, 100u);  // the rest is mostly room that nothing uses
+}
+
+INSTANTIATE_TEST_SUITE_P(, EveryBit, testing::Range(0, 8));
+
+}  // namespace
+}  // namespace graze::fuzz

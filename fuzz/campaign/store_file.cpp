@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/store_file.h"
+
+#include <SQLiteCpp/VariadicBind.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/error.h"
+#include "core/fnv1a.h"
+#include "fuzz/files.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kApplicationId = 0x67726173;  // "gras"
+constexpr int kFormat = 5;
+
+constexpr const char* kSchema = R"(
+CREATE TABLE campaign(text TEXT NOT NULL, checksum INTEGER NOT NULL);
+CREATE TABLE batch(id INTEGER PRIMARY KEY, source INTEGER NOT NULL, first INTEGER NOT NULL, pairs INTEGER NOT NULL,
+  counts BLOB NOT NULL, checksum INTEGER NOT NULL);
+)";
+constexpr const char* kColumns = "SELECT id, source, first, pairs, counts, checksum FROM batch ";
+
+// A database that does not check. Other errors are no reason to discard anything.
+struct DamagedStore : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// SQLite quotes what it stumbles on, line breaks and all.
+std::string one_line(std::string text) {
+  for (char& c : text) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
+  return text;
+}
+
+// Calls body(); its errors become one line that names the file.
+template <class Body>
+auto in_one_line(const fs::path& file, const Body& body) {
+  constexpr const char* kGoOn = "--discard-damaged keeps the batches that check";
+  try {
+    return body();
+  } catch (const Damaged& error) {
+    throw DamagedStore(
+        fmt::format("{}: expected a whole database, found damage: {}; {}", file.string(), error.what(), kGoOn));
+  } catch (const SQLite::Exception& error) {
+    const int code = error.getErrorCode();
+    const std::string what = fmt::format("{}: expected ", file.string());
+    if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
+      throw std::runtime_error(what + "to be alone, found another process that uses this campaign");
+    if (code == SQLITE_FULL) throw std::runtime_error(what + "room on the disk, found none");
+    if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM || code == SQLITE_IOERR)
+      throw std::runtime_error(what + "to read and write it, found: " + one_line(error.what()));
+    throw DamagedStore(fmt::format("{}a Graze campaign database, found a foreign or damaged file ({}); {}", what,
+                                   one_line(error.what()), kGoOn));
+  }
+}
+
+fs::path database_file(const StoreSpec& spec) { return spec.directory / "campaign.sqlite"; }
+
+std::string text_of(const StoreSpec& spec) { return Json{{"spec", spec.spec}, {"build", spec.build}}.dump(); }
+
+std::int64_t number(SQLite::Database& database, const char* sql) { return database.execAndGet(sql).getInt64(); }
+
+// Whether there is nothing in it yet.   Throws: std::runtime_error for another program's, or an older one.
+bool is_fresh(SQLite::Database& database, const fs::path& file) {
+  const std::int64_t application = number(database, "PRAGMA application_id");
+  if (application == 0 && number(database, "SELECT count(*) FROM sqlite_schema") == 0) return true;
+  const std::string expected = file.string() + ": expected ";
+  if (application != kApplicationId)
+    throw std::runtime_error(expected + "a Graze campaign database, found another program's; choose another --out");
+  if (const auto format = number(database, "PRAGMA user_version"); format != kFormat)
+    throw std::runtime_error(fmt::format("{}format {}, found {}; choose another --out", expected, kFormat, format));
+  return false;
+}
+
+void begin(SQLite::Database& database, const std::string& text) {
+  SQLite::Transaction transaction(database);
+  database.exec(kSchema);
+  SQLite::Statement put(database, "INSERT INTO campaign VALUES(?, ?)");
+  SQLite::bind(put, text, static_cast<std::int64_t>(fnv1a(text)));
+  put.exec();
+  database.exec(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", kApplicationId, kFormat));
+  transaction.commit();
+}
+
+// What the database says that it is of.   Throws: Damaged.
+std::string recorded_text(SQLite::Database& database) {
+  SQLite::Statement query(database, "SELECT text, checksum FROM campaign");
+  if (!query.executeStep()) throw Damaged("the record of what it is of is gone");
+  const std::string text = query.getColumn(0).getString();
+  if (query.getColumn(1).getInt64() != static_cast<std::int64_t>(fnv1a(text)))
+    throw Damaged("the record of what it is of and its checksum do not agree");
+  return text;
+}
+
+// Names the first field in which two specs differ.
+std::string first_difference(const Json& expected, const Json& found) {
+  for (const auto& [key, value] : expected.items()) {
+    if (!found.contains(key) || found[key] != value) return key;
+  }
+  return "fields";
+}
+
+// Throws: UsageError when the text, which checks, is of another campaign.
+void compare(const StoreSpec& spec, const std::string& text) {
+  if (text == text_of(spec)) return;
+  const Json found = Json::parse(text);
+  if (found["spec"] != spec.spec)
+    throw UsageError(fmt::format("{}: holds another campaign (expected the same {}); choose another --out",
+                                 spec.directory.string(), first_difference(spec.spec, found["spec"])));
+  throw UsageError(fmt::format("{}: was begun by another build (expected the same {}); choose another --out",
+                               spec.directory.string(), first_difference(spec.build, found["build"])));
+}
+
+// The ranges seen so far, of each source by their first pair.
+class Coverage {
+ public:
+  explicit Coverage(const StoreSpec& spec) : spec_(spec), pairs_(spec.sources.size()) {}
+
+  // Throws: Damaged for a range that is not within its source, or that overlaps another.
+  void take(const PairRange& range) {
+    const std::uint64_t size = spec_.sources[static_cast<std::size_t>(range.source)].pairs;
+    if (range.pairs == 0 || range.first > size || range.pairs > size - range.first)
+      throw Damaged(
+          fmt::format("{} pairs from {} on and the {} of {} do not agree", range.pairs, range.first, size, id(range)));
+    auto& pairs = pairs_[static_cast<std::size_t>(range.source)];
+    const auto next = pairs.lower_bound(range.first);
+    if ((next != pairs.end() && next->first < range.first + range.pairs) ||
+        (next != pairs.begin() && std::prev(next)->first + std::prev(next)->second > range.first))
+      throw Damaged(fmt::format("two batches hold pairs of {} from {} on", id(range), range.first));
+    pairs.emplace(range.first, range.pairs);
+  }
+
+  std::string id(const PairRange& range) const { return spec_.sources[static_cast<std::size_t>(range.source)].id; }
+
+ private:
+  const StoreSpec& spec_;
+  std::vector<std::map<std::uint64_t, std::uint64_t>> pairs_;
+};
+
+struct CheckedRow {
+  PairRange range;
+  StoredCounts counts;
+};
+
+// Requires: the query's columns are kColumns.   Throws: Damaged.
+CheckedRow checked_row(SQLite::Statement& query, const StoreSpec& spec, std::uint64_t campaign) {
+  const std::int64_t source = query.getColumn(1).getInt64(), first = query.getColumn(2).getInt64(),
+                     pairs = query.getColumn(3).getInt64();
+  const std::string where = fmt::format("batch {}", query.getColumn(0).getInt64());
+  if (source < 0 || source >= static_cast<std::int64_t>(spec.sources.size()) || first < 0 || pairs <= 0)
+    throw Damaged(fmt::format("{} is of {} pairs from {} on of source {}, of {} sources", where, pairs, first, source,
+                              spec.sources.size()));
+  const PairRange range{static_cast<int>(source), static_cast<std::uint64_t>(first), static_cast<std::uint64_t>(pairs)};
+  const std::string bytes = query.getColumn(4).getString();
+  if (query.getColumn(5).getInt64() != static_cast<std::int64_t>(checksum(campaign, range, bytes)))
+    throw Damaged(where + " and its checksum do not agree");
+  try {
+    return {range, from_bytes(bytes, range, spec.sources[static_cast<std::size_t>(source)].axis,
+                              static_cast<int>(spec.lanes.size()))};
+  } catch (const Damaged& error) {
+    throw Damaged(fmt::format("in {} {}", where, error.what()));
+  }
+}
+
+std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const PairRange& range,
+                    const std::string& bytes) {
+  SQLite::Statement put(database, "INSERT INTO batch(source, first, pairs, counts, checksum) VALUES(?, ?, ?, ?, ?)");
+  SQLite::bind(put, range.source, static_cast<std::int64_t>(range.first), static_cast<std::int64_t>(range.pairs));
+  put.bind(4, bytes.data(), static_cast<int>(bytes.size()));
+  put.bind(5, static_cast<std::int64_t>(checksum(campaign, range, bytes)));
+  put.exec();
+  return database.getLastInsertRowid();
+}
+
+SQLite::Database opened(const fs::path& file) { return {file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE}; }
+
+struct KeptRow {
+  PairRange range;
+  std::string bytes;
+};
+
+// The rows that check, from both ends: a tree that is damaged in the middle can be read up to there.
+std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec& spec, std::uint64_t campaign,
+                                     std::size_t& seen) {
+  std::vector<KeptRow> kept;
+  Coverage coverage(spec);
+  for (const char* order : {"ORDER BY id", "ORDER BY id DESC"}) {
+    try {
+      SQLite::Statement query(database, std::string(kColumns) + order);
+      for (; query.executeStep(); ++seen) {
+        try {
+          const CheckedRow row = checked_row(query, spec, campaign);
+          coverage.take(row.range);
+          kept.push_back({row.range, to_bytes(row.counts)});
+        } catch (const Damaged&) {
+        }
+      }
+      return kept;
+    } catch (const SQLite::Exception&) {
+    }
+  }
+  return kept;
+}
+
+// Rows have checksums that begin with the campaign's, so what checks is of this campaign, whatever else is damaged.
+Salvage salvage(const StoreSpec& spec) {
+  const fs::path file = database_file(spec), fresh = file.string() + ".part";
+  const std::string text = text_of(spec);
+  std::vector<KeptRow> kept;
+  std::size_t seen = 0;
+  try {
+    SQLite::Database database = opened(file);
+    bool known = false;
+    try {
+      compare(spec, recorded_text(database));
+      known = true;
+    } catch (const Damaged&) {
+    } catch (const SQLite::Exception&) {
+    }
+    kept = rows_that_check(database, spec, fnv1a(text), seen);
+    if (!known && kept.empty() && seen > 0)
+      throw std::runtime_error(
+          file.string() + ": expected a batch of this campaign, found none in what can be read; choose another --out");
+  } catch (const SQLite::Exception&) {  // nothing can be read
+  }
+  Salvage result{kept.size(), 0, file.string() + ".damaged"};
+  for (const char* left : {"", "-journal"}) fs::remove(fresh.string() + left);  // by one that was killed
+  {
+    SQLite::Database database = opened(fresh);
+    begin(database, text);
+    SQLite::Transaction transaction(database);
+    for (const KeptRow& row : kept) {
+      insert(database, fnv1a(text), row.range, row.bytes);
+      result.pairs += row.range.pairs;
+    }
+    transaction.commit();
+  }
+  fs::copy_file(file, result.damaged, fs::copy_options::overwrite_existing);
+  fs::remove(file.string() + "-wal");  // the old database's; read above
+  fs::rename(fresh, file);
+  return result;
+}
+
+}  // namespace
+
+StoreFile::StoreFile(const StoreSpec& spec) : spec_(spec), file_(database_file(spec)), campaign_(fnv1a(text_of(spec))) {
+  in_one_line(file_, [&] {
+    SQLite::Database& database = database_.emplace(opened(file_));
+    const bool fresh = is_fresh(database, file_);
+    if (fresh && fs::exists(spec.directory / "summary.json"))
+      throw UsageError(spec.directory.string() + ": holds results but not their database; choose another --out");
+    // A write-ahead log: a killed process loses only the transaction under way.
+    database.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
+    if (fresh) return begin(database, text_of(spec));
+    const std::string found = one_line(database.execAndGet("PRAGMA quick_check(1)").getString());
+    if (found != "ok") throw Damaged(found);
+    compare(spec, recorded_text(database));
+  });
+}
+
+void StoreFile::for_each(const std::function<void(std::int64_t, const PairRange&, const StoredCounts&)>& visit) {
+  in_one_line(file_, [&] {
+    Coverage coverage(spec_);
+    SQLite::Statement query(*database_, kColumns);
+    while (query.executeStep()) {
+      const CheckedRow row = checked_row(query, spec_, campaign_);
+      coverage.take(row.range);
+      visit(query.getColumn(0).getInt64(), row.range, row.counts);
+    }
+  });
+}
+
+StoredCounts StoreFile::counts(std::int64_t id) {
+  return in_one_line(file_, [&] {
+    SQLite::Statement query(*database_, std::string(kColumns) + "WHERE id = ?");
+    query.bind(1, id);
+    if (!query.executeStep()) throw Damaged(fmt::format("batch {} is gone", id));
+    return checked_row(query, spec_, campaign_).counts;
+  });
+}
+
+std::int64_t StoreFile::put(const PairRange& range, const StoredCounts& counts,
+                            const std::vector<std::int64_t>& replaced) {
+  return in_one_line(file_, [&] {
+    SQLite::Transaction transaction(*database_);
+    for (const std::int64_t id : replaced) database_->exec(fmt::format("DELETE FROM batch WHERE id = {}", id));
+    const std::int64_t id = insert(*database_, campaign_, range, to_bytes(counts));
+    transaction.commit();
+    return id;
+  });
+}
+
+std::optional<Salvage> discard_damaged(const StoreSpec& spec) {
+  if (!fs::exists(database_file(spec))) return {};
+  const FolderLock alone(spec.directory, FolderLock::WhenTaken::refuse);
+  try {
+    StoreFile(spec).for_each([](std::int64_t, const PairRange&, const StoredCounts&) {});
+    return {};
+  } catch (const DamagedStore&) {
+    return in_one_line(database_file(spec), [&] { return salvage(spec); });
+  }
+}
+
+}  // namespace graze::fuzz

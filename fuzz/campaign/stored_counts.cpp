@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/stored_counts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/fnv1a.h"
+
+namespace graze::fuzz {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]
+Json to_json(const analysis::Tally& tally) {
+  Json rows = Json::array();
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    const Bucket bucket = static_cast<Bucket>(b);
+    if (tally.pairs(bucket) == 0) continue;
+    Json lanes = Json::array();
+    for (int l = 0; l < tally.lane_count(); ++l) {
+      const analysis::LaneCounts& lane = tally.lane(l, bucket);
+      if (lane.any())
+        lanes.push_back({l, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu});
+    }
+    rows.push_back({b, tally.pairs(bucket), tally.intersects(bucket), std::move(lanes)});
+  }
+  return rows;
+}
+
+// [[key, count, [index, …]], …]
+Json to_json(const std::map<std::string, SignatureCount>& signatures) {
+  Json rows = Json::array();
+  for (const auto& [key, found] : signatures) {
+    Json cases = Json::array();
+    for (const CaseKey& kept : found.cases) cases.push_back(kept.index);
+    rows.push_back({key, found.count, std::move(cases)});
+  }
+  return rows;
+}
+
+void expect(bool holds, const char* what) {
+  if (!holds) throw Damaged(fmt::format("{} do not agree", what));
+}
+
+std::uint64_t whole(const Json& value, std::uint64_t most, const char* what) {
+  expect(value.is_number_unsigned() && value.get<std::uint64_t>() <= most, what);
+  return value.get<std::uint64_t>();
+}
+
+const Json& list(const Json& value, std::size_t least, std::size_t most, const char* what) {
+  expect(value.is_array() && value.size() >= least && value.size() <= most, what);
+  return value;
+}
+
+// Returns: the tally's pairs in all.
+std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally& tally, const char* what) {
+  std::uint64_t left = pairs;
+  int last_bucket = -kBucketMost - 1;
+  for (const Json& row : list(rows, 0, kBucketCount, what)) {
+    list(row, 4, 4, what);
+    expect(row[0].is_number_integer(), what);
+    const auto b = row[0].get<std::int64_t>();
+    expect(b > last_bucket && b <= kBucketMost, what);
+    last_bucket = static_cast<int>(b);
+    const Bucket bucket = static_cast<Bucket>(b);
+    const std::uint64_t here = whole(row[1], left, what), intersects = whole(row[2], here, what);
+    left -= here;
+    tally.add(bucket, here, intersects);
+    int last_lane = -1;
+    for (const Json& lane : list(row[3], 0, static_cast<std::size_t>(tally.lane_count()), what)) {
+      list(lane, 5, 5, what);
+      const int l = static_cast<int>(whole(lane[0], static_cast<std::uint64_t>(tally.lane_count() - 1), what));
+      expect(l > last_lane, what);
+      last_lane = l;
+      const analysis::LaneCounts counts{whole(lane[1], here - intersects, what), whole(lane[2], intersects, what),
+                                        whole(lane[3], here, what), whole(lane[4], here, what)};
+      expect(counts.false_positive + counts.false_negative + counts.declined <= here, what);
+      tally.add(bucket, l, counts);
+    }
+  }
+  return pairs - left;
+}
+
+std::map<std::string, SignatureCount> read_signatures(const Json& rows, const PairRange& range) {
+  constexpr const char* kWhat = "the signatures and the batch's pairs";
+  constexpr std::size_t kMost = ~std::size_t{0};
+  std::map<std::string, SignatureCount> signatures;
+  for (const Json& row : list(rows, 0, kMost, kWhat)) {
+    list(row, 3, 3, kWhat);
+    expect(row[0].is_string(), kWhat);
+    SignatureCount found;
+    found.count = whole(row[1], range.pairs, kWhat);
+    for (const Json& index : list(row[2], 1, kKeptCases, kWhat)) {
+      const CaseKey kept{whole(index, range.first + range.pairs - 1, kWhat), range.source};
+      expect(kept.index >= range.first && (found.cases.empty() || found.cases.back() < kept), kWhat);
+      found.cases.push_back(kept);
+    }
+    expect(found.cases.size() <= found.count, kWhat);
+    expect(signatures.emplace(row[0].get<std::string>(), std::move(found)).second, kWhat);
+  }
+  return signatures;
+}
+
+}  // namespace
+
+StoredCounts::StoredCounts(int lanes) : tally(std::vector<int>(static_cast<std::size_t>(lanes), -1)), extremes(tally) {}
+
+StoredCounts::StoredCounts(const BatchResult& result)
+    : tally(result.tally),
+      extremes(result.extremes),
+      executors_apart(result.executors_apart),
+      disagreements(result.disagreements),
+      cgal(result.cgal),
+      gmp(result.gmp),
+      device(result.device) {
+  for (const auto& [signature, found] : result.signatures) signatures[analysis::key(signature)].add(found);
+}
+
+void StoredCounts::add(const StoredCounts& other) {
+  tally.add(other.tally);
+  extremes.add(other.extremes);
+  for (const auto& [key, found] : other.signatures) signatures[key].add(found);
+  for (const auto& [lane, found] : other.executors_apart) executors_apart[lane].add(found);
+  disagreements += other.disagreements;
+  cgal += other.cgal;
+  gmp += other.gmp;
+  device += other.device;
+}
+
+std::string to_bytes(const StoredCounts& counts) {
+  std::string bytes;
+  Json::to_cbor(
+      Json::array({to_json(counts.tally), to_json(counts.extremes), to_json(counts.signatures),
+                   to_json(counts.executors_apart), counts.disagreements, counts.cgal, counts.gmp, counts.device}),
+      bytes);
+  return bytes;
+}
+
+StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes) {
+  const Json all = Json::from_cbor(bytes, true, false);
+  constexpr std::uint64_t kMost = ~std::uint64_t{0};
+  list(all, 8, 8, "a batch's parts");
+  StoredCounts counts(lanes);
+  expect(read_tally(all[0], range.pairs, counts.tally, "the margins") == range.pairs,
+         "the margins and the batch's pairs");
+  expect(read_tally(all[1], range.pairs, counts.extremes, "the extremes") == (axis == Axis::none ? 0 : range.pairs),
+         "the extremes and the batch's pairs");
+  counts.signatures = read_signatures(all[2], range);
+  counts.executors_apart = read_signatures(all[3], range);
+  counts.disagreements = whole(all[4], range.pairs, "the disagreements and the batch's pairs");
+  counts.cgal = whole(all[5], kMost, "the pairs that CGAL decided");
+  counts.gmp = whole(all[6], kMost, "the pairs that GMP confirmed");
+  counts.device = whole(all[7], range.pairs, "the device's pairs and the batch's pairs");
+  return counts;
+}
+
+std::uint64_t checksum(std::uint64_t campaign, const PairRange& range, const std::string& bytes) {
+  return fnv1a(bytes, fnv1a(fmt::format("{:016x} {} {} {} ", campaign, range.source, range.first, range.pairs)));
+}
+
+}  // namespace graze::fuzz

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the store keeps of a range of one source's pairs, as bytes (CBOR) and back. Reading checks every sum that must
+// agree and the range of every index.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+
+#include "fuzz/campaign/batch_result.h"
+#include "strata/pair_source.h"
+
+namespace graze::fuzz {
+
+// Stored bytes do not agree with each other; what() says which.
+struct Damaged : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The pairs [first, first + pairs) of a source.
+struct PairRange {
+  int source = 0;
+  std::uint64_t first = 0, pairs = 0;
+};
+
+// Counts add, in any order.
+struct StoredCounts {
+  explicit StoredCounts(int lanes);
+  explicit StoredCounts(const BatchResult& result);
+  void add(const StoredCounts& other);
+
+  analysis::Tally tally, extremes;
+  std::map<std::string, SignatureCount> signatures;                // by key
+  std::map<std::string, SignatureCount> executors_apart;           // by lane: device and twin differ
+  std::uint64_t disagreements = 0, cgal = 0, gmp = 0, device = 0;  // see BatchResult
+};
+
+std::string to_bytes(const StoredCounts& counts);
+
+// Requires: the range lies within the source.   Throws: Damaged.
+StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes);
+
+// Of the range and its bytes, for the campaign with this checksum; any single change changes it.
+std::uint64_t checksum(std::uint64_t campaign, const PairRange& range, const std::string& bytes);
+
+}  // namespace graze::fuzz

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/files.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, const char* expected, const std::string& found) {
+  throw std::runtime_error(file.string() + ": expected " + expected + ", found: " + found);
+}
+
+struct Handle {
+  int number;
+  ~Handle() {
+    if (number >= 0) close(number);
+  }
+};
+
+// Whether all of it was written; errno says why not.
+bool write_all(int handle, const std::string& text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const ssize_t written = write(handle, text.data() + at, text.size() - at);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    at += static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+// The file that the name leads to through symbolic links, also where there is none yet.
+fs::path behind_links(fs::path file) {
+  for (int links = 0; links < 40 && fs::is_symlink(fs::symlink_status(file)); ++links)
+    file = file.parent_path() / fs::read_symlink(file);
+  return file;
+}
+
+bool is_standard_output(const struct stat& file) {
+  struct stat output {};
+  return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == file.st_dev && output.st_ino == file.st_ino;
+}
+
+// Into a device or a pipe, which cannot be replaced by a file.
+void write_into(const fs::path& file, bool standard_output, const std::string& text) {
+  std::cout.flush();
+  std::fflush(stdout);
+  const Handle own{standard_output ? dup(STDOUT_FILENO) : open(file.c_str(), O_WRONLY | O_CLOEXEC)};
+  if (own.number < 0 || !write_all(own.number, text)) fail(file, "to write it", std::strerror(errno));
+}
+
+void replace(const fs::path& file, const fs::path& asked, const std::string& text, mode_t mode) {
+  const std::string beside = file.string() + ".part";
+  const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  Handle part{open(beside.c_str(), flags, 0666)};
+  struct stat state {};
+  if (part.number < 0) fail(asked, "to write it", std::strerror(errno));
+  if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode)) fail(beside, "no such file", "a device or a pipe");
+  bool done = write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
+  if (done) {
+    done = close(part.number) == 0;  // where a full disk may show as well
+    part.number = -1;
+  }
+  if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
+  const int error = errno;
+  unlink(beside.c_str());
+  fail(asked, "to write it", std::strerror(error));
+}
+
+}  // namespace
+
+std::string read_whole(const fs::path& file) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rbe"), &std::fclose);
+  if (!in && (errno == ENOENT || errno == ENOTDIR)) return {};
+  std::string text;
+  char bytes[65536];
+  for (std::size_t count = 1; in && count > 0; text.append(bytes, count))
+    count = std::fread(bytes, 1, sizeof bytes, in.get());
+  if (!in || std::ferror(in.get())) fail(file, "to read it", std::strerror(errno));
+  return text;
+}
+
+void write_whole(const fs::path& file, const std::string& text) {
+  struct stat there {};
+  const bool exists = stat(file.c_str(), &there) == 0;
+  if (!exists && errno != ENOENT) fail(file, "to write it", std::strerror(errno));
+  if (exists && S_ISDIR(there.st_mode)) fail(file, "a file", "a folder");
+  // The standard output may be a file too: replaced, it would lose what else is printed.
+  const bool standard_output = exists && is_standard_output(there);
+  if (exists && (standard_output || !S_ISREG(there.st_mode))) return write_into(file, standard_output, text);
+  replace(behind_links(file), file, text, exists ? there.st_mode & 07777 : 0);
+}
+
+FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
+    : handle_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (handle_ < 0) fail(folder, "a folder", std::strerror(errno));
+  if (flock(handle_, LOCK_EX | (when_taken == WhenTaken::refuse ? LOCK_NB : 0)) == 0) return;
+  const int error = errno;
+  close(handle_);
+  fail(folder, "to be alone", error == EWOULDBLOCK ? "another process at work in it" : std::strerror(error));
+}
+
+FolderLock::~FolderLock() { close(handle_); }
+
+}  // namespace graze::fuzz

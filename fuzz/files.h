@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole files, and a folder's lock. A file is written beside its place and then moved there, so a reader never sees
+// half of one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace graze::fuzz {
+
+// The file's bytes; empty where there is none.   Throws: std::runtime_error for one that cannot be read.
+std::string read_whole(const std::filesystem::path& file);
+
+// Writes the file, through symbolic links; a device or a pipe stays what it is. Nothing is left beside it when this
+// fails.   Throws: std::runtime_error for a folder, and when there is no room.
+void write_whole(const std::filesystem::path& file, const std::string& text);
+
+// Held as long as it lives: no other process, and no other part of this one, holds the folder's lock.
+class FolderLock {
+ public:
+  enum class WhenTaken { wait, refuse };
+
+  // Throws: std::runtime_error without such a folder, or when the lock is taken and that is refused.
+  explicit FolderLock(const std::filesystem::path& folder, WhenTaken when_taken);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int handle_;
+};
+
+}  // namespace graze::fuzz

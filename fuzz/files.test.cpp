@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stands where a file is written: links, devices, pipes and folders stay what they are.
+#include "fuzz/files.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <future>
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Files : public testing::Test {
+ protected:
+  Files() {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Files() override { fs::remove_all(folder_); }
+
+  std::size_t count() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  // What write_whole throws.
+  static std::string refusal(const fs::path& file) {
+    try {
+      write_whole(file, "text");
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "written";
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("graze-files-" + std::to_string(getpid()));
+};
+
+TEST_F(Files, AFileIsReplacedAndKeepsItsPermissions) {
+  write_whole(folder_ / "a", "old");
+  fs::permissions(folder_ / "a", fs::perms::owner_read | fs::perms::owner_write);
+  write_whole(folder_ / "a", "new");
+  EXPECT_EQ(read_whole(folder_ / "a"), "new");
+  EXPECT_EQ(fs::status(folder_ / "a").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(count(), 1u);
+}
+
+TEST_F(Files, LinksAreWrittenThrough) {
+  fs::create_directories(folder_ / "far");
+  write_whole(folder_ / "far/target", "old");
+  fs::create_symlink("far/target", folder_ / "link");
+  fs::create_symlink("link", folder_ / "second");
+  write_whole(folder_ / "second", "new");
+  EXPECT_EQ(read_whole(folder_ / "far/target"), "new");
+  fs::create_symlink("far/none_yet", folder_ / "dangling");
+  write_whole(folder_ / "dangling", "first");
+  EXPECT_EQ(read_whole(folder_ / "far/none_yet"), "first");
+  for (const char* link : {"link", "second", "dangling"}) EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
+  fs::create_symlink("circle", folder_ / "circle");
+  EXPECT_NE(refusal(folder_ / "circle").find("circle: expected to write it, found: "), std::string::npos);
+}
+
+TEST_F(Files, PipesStayPipes) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  auto reader = std::async(std::launch::async, [&] { return read_whole(pipe); });
+  write_whole(pipe, "through");
+  EXPECT_EQ(reader.get(), "through");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_EQ(count(), 1u);
+}
+
+// A node of our own for the null device, made in our folder; only root may make one.
+TEST_F(Files, DevicesStayDevices) {
+  const fs::path device = folder_ / "null";
+  if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "no right to make a device node";
+  const int opened = open(device.c_str(), O_WRONLY | O_CLOEXEC);
+  if (opened < 0) GTEST_SKIP() << "device nodes do not work in " << folder_;
+  close(opened);
+  write_whole(device, "text");
+  EXPECT_TRUE(fs::is_character_file(device));
+  fs::create_symlink("null", folder_ / "link");
+  write_whole(folder_ / "link", "text");
+  EXPECT_TRUE(fs::is_character_file(device));
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
+  EXPECT_EQ(count(), 2u);
+}
+
+TEST_F(Files, FoldersAreRefusedInBothDirections) {
+  fs::create_directories(folder_ / "sub");
+  EXPECT_EQ(refusal(folder_ / "sub"), (folder_ / "sub").string() + ": expected a file, found: a folder");
+  EXPECT_THROW(read_whole(folder_ / "sub"), std::runtime_error);
+  EXPECT_EQ(read_whole(folder_ / "none"), "");
+  EXPECT_EQ(read_whole(folder_ / "none" / "none"), "");
+  EXPECT_NE(refusal(folder_ / "none" / "file").find("No such file or directory"), std::string::npos);
+  EXPECT_EQ(count(), 1u);
+}
+
+// A full disk, played by a limit on the size of files.
+TEST_F(Files, AFailureLeavesNothingBesideAndTheOldFile) {
+  write_whole(folder_ / "a", "old");
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{1000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &small);
+  EXPECT_THROW(write_whole(folder_ / "a", std::string(5000, 'x')), std::runtime_error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(read_whole(folder_ / "a"), "old");
+  EXPECT_EQ(count(), 1u);
+}
+
+TEST_F(Files, OneHoldsAFoldersLock) {
+  {
+    const FolderLock held(folder_, FolderLock::WhenTaken::refuse);
+    EXPECT_THROW(FolderLock(folder_, FolderLock::WhenTaken::refuse), std::runtime_error);
+  }
+  const FolderLock again(folder_, FolderLock::WhenTaken::refuse);
+  EXPECT_THROW(FolderLock(folder_ / "none", FolderLock::WhenTaken::wait), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace graze::fuzz

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "strata/mesh_readers/lines.h"
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/text.h"
+
+namespace graze::strata {
+namespace {
+
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+}  // namespace
+
+void fail(const std::string& where, const std::string& expected, const std::string& found) {
+  throw std::runtime_error(where + ": expected " + expected + ", found " + found);
+}
+
+std::string at_line(const MeshBytes& file, std::size_t line) { return file.name + ':' + std::to_string(line); }
+std::string at_byte(const MeshBytes& file, std::size_t byte) { return file.name + ": byte " + std::to_string(byte); }
+
+void add_face(Soup& soup, std::span<const std::uint32_t> face) {
+  if (face.size() < 3) ++soup.skipped["faces of fewer than three vertices"];
+  for (std::size_t i = 2; i < face.size(); ++i) soup.triangles.push_back({face[0], face[i - 1], face[i]});
+}
+
+Lines::Lines(const MeshBytes& file, char comment, Continuation continuation)
+    : file_(file), comment_(comment), continuation_(continuation) {
+  if (file.bytes.starts_with("\xef\xbb\xbf")) byte_ = 3;
+}
+
+// Appends the words of the next line.   Returns: whether there is one.
+bool Lines::read_line() {
+  if (byte_ == file_.bytes.size()) return false;
+  ++line_;
+  const std::size_t end = std::min(file_.bytes.find('\n', byte_), file_.bytes.size());
+  const std::string_view text = file_.bytes.substr(byte_, end - byte_);
+  byte_ = std::min(end + 1, file_.bytes.size());
+  for (std::size_t i = 0; i < text.size();) {
+    if (is_space(text[i])) {
+      ++i;
+      continue;
+    }
+    if (comment_ != '\0' && text[i] == comment_) break;
+    const std::size_t begin = i;
+    while (i < text.size() && !is_space(text[i]) && (comment_ == '\0' || text[i] != comment_)) ++i;
+    words_.push_back(text.substr(begin, i - begin));
+  }
+  return true;
+}
+
+bool Lines::next() {
+  words_.clear();
+  while (read_line()) {
+    if (words_.empty()) continue;
+    if (continuation_ == Continuation::none || !words_.back().ends_with('\\')) return true;
+    words_.back().remove_suffix(1);
+    if (words_.back().empty()) words_.pop_back();
+  }
+  return !words_.empty();
+}
+
+void Lines::expect_next(const std::string& expected) {
+  if (!next()) fail(expected, "the end of the file");
+}
+
+void Lines::fail(const std::string& expected, const std::string& found) const {
+  strata::fail(at_line(file_, line_), expected, found);
+}
+
+void Lines::fail_at(std::size_t i, const std::string& expected) const {
+  fail(expected, i < words_.size() ? shown(words_[i]) : "the end of the line");
+}
+
+float Lines::coordinate(std::size_t i) const {
+  const std::optional<float> value = i < words_.size() ? parse_float32(words_[i]) : std::nullopt;
+  if (!value || !std::isfinite(*value)) fail_at(i, "a coordinate that is finite in float32");
+  return *value;
+}
+
+std::uint64_t Lines::whole(std::size_t i, const std::string& expected) const {
+  const std::optional<std::uint64_t> value = i < words_.size() ? parse_whole(words_[i]) : std::nullopt;
+  if (!value) fail_at(i, expected);
+  return *value;
+}
+
+std::uint32_t Lines::vertex(std::size_t i, std::size_t vertices) const {
+  const auto expected = [&] {
+    return vertices == 0 ? std::string("no face, for there is no vertex")
+                         : "a vertex from 0 to " + std::to_string(vertices - 1);
+  };
+  const std::optional<std::uint64_t> value = i < words_.size() ? parse_whole(words_[i]) : std::nullopt;
+  if (!value || *value >= vertices) fail_at(i, expected());
+  return static_cast<std::uint32_t>(*value);
+}
+
+void Lines::number(std::size_t i, const std::string& expected) const {
+  if (i >= words_.size()) fail_at(i, expected);
+  std::string_view word = words_[i];
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (end != word.data() + word.size() || error == std::errc::invalid_argument) fail_at(i, expected);
+}
+
+}  // namespace graze::strata

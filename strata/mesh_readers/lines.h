@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh file of text, line by line and each cut into words.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "strata/mesh_readers/soup.h"
+
+namespace graze::strata {
+
+// Whether a backslash at the end of a line continues it on the next one.
+enum class Continuation { none, backslash };
+
+class Lines {
+ public:
+  // comment: the character from which on a line is not read; '\0' for none. A byte order mark is skipped.
+  Lines(const MeshBytes& file, char comment, Continuation continuation = Continuation::none);
+
+  // Goes to the next line that has a word.   Returns: whether there is one.
+  bool next();
+  // The same, where the file must not end.
+  void expect_next(const std::string& expected);
+
+  const std::vector<std::string_view>& words() const { return words_; }
+  std::size_t line() const { return line_; }
+  std::size_t next_byte() const { return byte_; }  // behind the line
+  std::size_t bytes_left() const { return file_.bytes.size() - byte_; }
+
+  // Word i as what is expected there. Requires: i < words().size().
+  float coordinate(std::size_t i) const;
+  std::uint64_t whole(std::size_t i, const std::string& expected) const;
+  std::uint32_t vertex(std::size_t i, std::size_t vertices) const;
+  void number(std::size_t i, const std::string& expected) const;
+
+  // Throws: an error at this line; of word i, or of the line's end where it has no such word.
+  [[noreturn]] void fail(const std::string& expected, const std::string& found) const;
+  [[noreturn]] void fail_at(std::size_t i, const std::string& expected) const;
+
+ private:
+  bool read_line();
+
+  MeshBytes file_;
+  char comment_;
+  Continuation continuation_;
+  std::size_t byte_ = 0, line_ = 0;
+  std::vector<std::string_view> words_;
+};
+
+}  // namespace graze::strata

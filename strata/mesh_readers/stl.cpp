@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// STL, as text or binary. A file whose size is that of its count of binary facets is binary, also where its header
+// begins with "solid", as those of many programs do.
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "core/text.h"
+#include "strata/mesh_readers/lines.h"
+
+namespace graze::strata {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "binary STL is little-endian");
+
+constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes; the header's last four are the count of facets
+
+std::uint64_t count_of_binary(std::string_view bytes) {
+  std::uint32_t count = 0;
+  if (bytes.size() >= kHeader) std::memcpy(&count, bytes.data() + 80, sizeof count);
+  return count;
+}
+
+void add_triangle(Soup& soup, const Vec3<float> (&v)[3]) {
+  const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+  soup.vertices.insert(soup.vertices.end(), v, v + 3);
+  soup.triangles.push_back({first, first + 1, first + 2});
+}
+
+Soup read_binary(const MeshBytes& file) {
+  const std::uint64_t count = count_of_binary(file.bytes);
+  Soup soup;
+  soup.vertices.reserve(3 * count);
+  soup.triangles.reserve(count);
+  for (std::size_t at = kHeader; at < file.bytes.size(); at += kFacet) {
+    Vec3<float> v[3];
+    std::memcpy(v, file.bytes.data() + at + 12, sizeof v);
+    for (const Vec3<float>& vertex : v) {
+      if (!std::isfinite(vertex.x) || !std::isfinite(vertex.y) || !std::isfinite(vertex.z))
+        fail(at_byte(file, at), "a facet with finite coordinates", "one without");
+    }
+    add_triangle(soup, v);
+    if (file.bytes[at + 48] != 0 || file.bytes[at + 49] != 0) ++soup.skipped["attributes of facets"];
+  }
+  if (count > 0) soup.skipped["normals"] = count;
+  return soup;
+}
+
+// Throws unless the line is these words, and after them `more` numbers.
+void expect_words(Lines& lines, const std::vector<std::string_view>& words, std::size_t more = 0) {
+  std::string expected;
+  for (const std::string_view word : words) expected.append(expected.empty() ? "" : " ").append(word);
+  if (more > 0) expected += " and three numbers";
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i >= lines.words().size() || lines.words()[i] != words[i]) lines.fail_at(i, expected);
+  }
+  if (lines.words().size() > words.size() + more)
+    lines.fail_at(words.size() + more, "the end of the line after " + expected);
+}
+
+void take_facet(Lines& lines, Soup& soup) {
+  expect_words(lines, {"facet", "normal"}, 3);
+  for (std::size_t i = 2; i < 5; ++i) lines.number(i, "three numbers of a normal");
+  ++soup.skipped["normals"];
+  lines.expect_next("outer loop");
+  expect_words(lines, {"outer", "loop"});
+  Vec3<float> v[3];
+  for (Vec3<float>& vertex : v) {
+    lines.expect_next("a vertex");
+    expect_words(lines, {"vertex"}, 3);
+    vertex = {lines.coordinate(1), lines.coordinate(2), lines.coordinate(3)};
+  }
+  lines.expect_next("endloop");
+  expect_words(lines, {"endloop"});
+  lines.expect_next("endfacet");
+  expect_words(lines, {"endfacet"});
+  add_triangle(soup, v);
+}
+
+// Solids one after another, each "solid NAME", facets, "endsolid NAME".
+Soup read_text(const MeshBytes& file) {
+  Lines lines(file, '\0');
+  Soup soup;
+  bool inside = false;
+  while (lines.next()) {
+    const std::string_view word = lines.words()[0];
+    if (!inside) {
+      if (word != "solid")
+        lines.fail_at(0, "solid, or a binary file of 84 bytes and 50 for each facet that they count");
+      inside = true;
+    } else if (word == "endsolid") {
+      inside = false;
+    } else if (word == "facet") {
+      take_facet(lines, soup);
+    } else {
+      lines.fail_at(0, "facet or endsolid");
+    }
+  }
+  if (inside) lines.expect_next("endsolid");
+  return soup;
+}
+
+}  // namespace
+
+Soup read_stl(const MeshBytes& file) {
+  const std::size_t size = file.bytes.size();
+  const std::uint64_t count = count_of_binary(file.bytes);
+  if (size >= kHeader && size == kHeader + kFacet * count) return read_binary(file);
+  // No text has a zero byte.
+  if (size >= kHeader && file.bytes.find('\0') != file.bytes.npos)
+    fail(at_byte(file, 80),
+         std::to_string(count) + " facets, for which the file has " + std::to_string(kHeader + kFacet * count) +
+             " bytes",
+         std::to_string(size) + " bytes");
+  return read_text(file);
+}
+
+}  // namespace graze::strata

@@ -1,28 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/blame.h"
 
+#include <algorithm>
+
 namespace graze::analysis {
 namespace {
 
-// A kernel with some sites fused.
+using Set = std::vector<bool>;  // of sites, in program order
+
+std::ptrdiff_t size(const Set& set) { return std::count(set.begin(), set.end(), true); }
+
+// A kernel of which any sites can be fused.
 class Fusing {
  public:
-  Fusing(const Lane& lane, const Pair& pair)
-      : lane_(lane), pair_(pair), sites_(cuda::contraction_sites(lane)), bits_(sites_.size() / 64 + 1) {}
+  Fusing(const Lane& lane, const Pair& pair) : lane_(lane), pair_(pair), sites_(cuda::contraction_sites(lane)) {}
 
-  std::size_t size() const { return sites_.size(); }
-  void set(std::size_t site, bool fused) {
-    const std::uint64_t bit = std::uint64_t{1} << (site % 64);
-    bits_[site / 64] = fused ? bits_[site / 64] | bit : bits_[site / 64] & ~bit;
+  Set none() const { return Set(sites_.size()); }
+  Set all() const { return Set(sites_.size(), true); }
+  Verdict verdict(const Set& fused) const {
+    std::vector<std::uint64_t> bits(sites_.size() / 64 + 1);
+    for (std::size_t i = 0; i < fused.size(); ++i) bits[i / 64] |= std::uint64_t{fused[i]} << (i % 64);
+    return cuda::decide_fusing(lane_, pair_, bits);
   }
-  void set_all(bool fused) {
-    for (std::size_t i = 0; i < size(); ++i) set(i, fused);
-  }
-  Verdict verdict() const { return cuda::decide_fusing(lane_, pair_, bits_); }
-  std::vector<cuda::ContractionSite> fused() const {
+  std::vector<cuda::ContractionSite> named(const Set& set) const {
     std::vector<cuda::ContractionSite> result;
-    for (std::size_t i = 0; i < size(); ++i) {
-      if (bits_[i / 64] >> (i % 64) & 1) result.push_back(sites_[i]);
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      if (set[i]) result.push_back(sites_[i]);
     }
     return result;
   }
@@ -31,54 +34,64 @@ class Fusing {
   const Lane& lane_;
   const Pair& pair_;
   std::span<const cuda::ContractionSite> sites_;
-  std::vector<std::uint64_t> bits_;
 };
 
-// Leaves the first of the single sites that give the verdict fused, or else the first two.
-bool find_one_or_two(Fusing& kernel, Verdict verdict) {
-  kernel.set_all(false);
-  for (std::size_t i = 0; i < kernel.size(); ++i) {
-    kernel.set(i, true);
-    if (kernel.verdict() == verdict) return true;
-    kernel.set(i, false);
-  }
-  for (std::size_t i = 0; i < kernel.size(); ++i) {
-    kernel.set(i, true);
-    for (std::size_t j = i + 1; j < kernel.size(); ++j) {
-      kernel.set(j, true);
-      if (kernel.verdict() == verdict) return true;
-      kernel.set(j, false);
-    }
-    kernel.set(i, false);
-  }
-  return false;
+Set others(Set set) {
+  set.flip();
+  return set;
 }
 
-// Parts all sites from the last one on as long as the verdict stays, until none can be parted any more.
-void reduce(Fusing& kernel, Verdict verdict) {
-  kernel.set_all(true);
-  for (std::size_t left = kernel.size() + 1; kernel.fused().size() < left;) {
-    left = kernel.fused().size();
-    for (std::size_t i = kernel.size(); i-- > 0;) {
-      kernel.set(i, false);
-      if (kernel.verdict() != verdict) kernel.set(i, true);
+// Sets of one or two sites: the first that is both enough for the verdict, fused alone, and needed for it, all others
+// fused; or else the first smallest that is enough; empty where none is.
+Set one_or_two(const Fusing& kernel, Verdict verdict) {
+  std::vector<Set> enough;
+  Set set = kernel.none();
+  for (const bool pairs : {false, true}) {
+    const std::size_t before = enough.size();
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      for (std::size_t j = pairs ? i + 1 : i; j < (pairs ? set.size() : i + 1); ++j) {
+        set[i] = set[j] = true;
+        if (kernel.verdict(set) == verdict) enough.push_back(set);
+        set[i] = set[j] = false;
+      }
+    }
+    for (std::size_t i = before; i < enough.size(); ++i) {
+      if (kernel.verdict(others(enough[i])) != verdict) return enough[i];
     }
   }
+  return enough.empty() ? Set{} : enough.front();
+}
+
+// Parts sites from the last one on as long as the verdict stays, until none can be parted any more.
+Set reduced(const Fusing& kernel, Set set, Verdict verdict) {
+  for (std::ptrdiff_t left = size(set) + 1; size(set) < left;) {
+    left = size(set);
+    for (std::size_t i = set.size(); i-- > 0;) {
+      if (!set[i]) continue;
+      set[i] = false;
+      if (kernel.verdict(set) != verdict) set[i] = true;
+    }
+  }
+  return set;
 }
 
 }  // namespace
 
 Blame blame(const Lane& lane, const Pair& pair) {
-  Fusing kernel(lane, pair);
-  const Verdict without = kernel.verdict();
-  kernel.set_all(true);
-  const Verdict verdict = kernel.verdict();
-  if (verdict == without) return {};
-  if (find_one_or_two(kernel, verdict)) return {kernel.fused(), true};
-  reduce(kernel, verdict);
-  std::vector<cuda::ContractionSite> sites = kernel.fused();
-  const bool smallest = sites.size() <= 3;
-  return {std::move(sites), smallest};
+  const Fusing kernel(lane, pair);
+  const Verdict verdict = kernel.verdict(kernel.all());
+  if (verdict == kernel.verdict(kernel.none())) return {};
+  Set set = one_or_two(kernel, verdict);
+  const bool few = !set.empty();
+  if (!few) set = reduced(kernel, kernel.all(), verdict);
+  // Where the sites that are left do the same without it, one such set after the other.
+  Set needed = set;
+  while (kernel.verdict(others(needed)) == verdict) {
+    const Set more = reduced(kernel, others(needed), verdict);
+    for (std::size_t i = 0; i < needed.size(); ++i) needed[i] = needed[i] || more[i];
+  }
+  if (needed != set && kernel.verdict(needed) == verdict) return {kernel.named(needed), false};
+  return {kernel.named(set), few || size(set) <= 3};
 }
 
 }  // namespace graze::analysis

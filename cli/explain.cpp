@@ -46,7 +46,9 @@ void print_steps(const analysis::LaneExplanation& lane) {
                  : ": unknown, no rule of contraction replays this lane here",
              begin > 0 ? fmt::format(" ({} before, see --json)", begin) : "");
   for (int i = begin; i < end; ++i) print_step(lane.steps[static_cast<std::size_t>(i)]);
-  if (lane.first_wrong < 0 && lane.evidence != analysis::Evidence::none)
+  const bool all_right =
+      std::none_of(lane.steps.begin(), lane.steps.end(), [](const analysis::Step& step) { return step.wrong(); });
+  if (all_right && lane.evidence != analysis::Evidence::none)
     fmt::print("      every comparison goes as in exact arithmetic\n");
 }
 
@@ -61,7 +63,8 @@ std::string free_coordinates(const analysis::LaneExplanation& lane) {
 }
 
 void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before) {
-  fmt::print("  {}: {}, cause: {}\n", lane.lane->id, name(lane.verdict), name(lane.cause));
+  fmt::print("  {}: {}, cause: {}{}\n", lane.lane->id, name(lane.verdict), name(lane.cause),
+             lane.settled == analysis::Settled::yes ? "" : " (not settled)");
   const auto steps = [](const analysis::LaneExplanation& l) { return to_json(l)["steps"]; };
   if (before && before->lane->info == lane.lane->info && before->lane->scalar == lane.lane->scalar &&
       lane.evidence == analysis::Evidence::source && steps(*before) == steps(lane)) {

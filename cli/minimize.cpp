@@ -142,12 +142,13 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
   fmt::print("{}\n", magnitudes.size() < all.size() ? "; no selected lane is wrong on the others" : "");
   if (magnitudes.empty()) return;
   std::sort(magnitudes.begin(), magnitudes.end());
-  fmt::print("magnitudes other than 0 and 1, and how many signatures have so many (median {}):\n ",
-             magnitudes[magnitudes.size() / 2]);
+  std::string counts;
   for (int n = 0; n <= magnitudes.back(); ++n)
-    fmt::print(" {}: {}{}", n,
-               reports::grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))),
-               n == magnitudes.back() ? "\n" : ",");
+    counts +=
+        fmt::format("{}{}: {}", n == 0 ? "" : ", ", n,
+                    reports::grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))));
+  fmt::print("magnitudes other than 0 and 1, and how many signatures have so many (median {}):\n{}",
+             magnitudes[magnitudes.size() / 2], reports::wrapped(counts, output_screen().columns, 2, 2));
   fmt::print(
       "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
       "and, for the signatures that `graze report` shows on cards, explanations and ulp maps\n",

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/screen.h"
 #include "corpus/pair_format.h"
 #include "oracle/truth.h"
 #include "reports/terminal.h"
@@ -53,8 +54,8 @@ void check(const CheckOptions& options) {
       const std::string* label = corpus::field(*entry, "name");
       fmt::print("pair {}, line {}{}\n", number_of_pair, entry->line, label ? ": " + *label : "");
       std::fflush(stdout);
-      reports::print_pair(std::cout, entry->pair, t, under_test.lanes, verdicts);
-      if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
+      reports::print_pair(std::cout, entry->pair, t, under_test.lanes, verdicts, output_screen());
+      if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
       std::cout.flush();
     }
   }

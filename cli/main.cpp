@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "cli/commands.h"
+#include "cli/screen.h"
 #include "core/error.h"
 
 namespace {
@@ -13,7 +14,7 @@ namespace {
 // One line, whatever is in the names and texts that it quotes.
 int fail(std::string what, int status) {
   for (char& c : what) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
-  fmt::print(stderr, "graze: {}\n", what);
+  fmt::print(stderr, "{} {}\n", graze::reports::red(graze::cli::error_screen(), "graze:"), what);
   return status;
 }
 

@@ -19,8 +19,10 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/screen.h"
 #include "core/error.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/cost_estimate.h"
 #include "fuzz/minimise/carded_signatures.h"
 #include "fuzz/minimise/case_facts.h"
 #include "fuzz/minimise/minimised_cases.h"
@@ -48,19 +50,21 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
   const std::string from = found.from.empty() ? name : found.from;
   fmt::print("{}, {}\n", from, found.failure.lanes.front()->info->id);
   std::fflush(stdout);
-  reports::print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts);
-  std::cout << fmt::format(
-      "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
-      "  cause: {}, as before\n"
-      "  {}\n"
-      "  worst on the way: {} ulps\n",
-      analysis::key(fuzz::signature_of(found.failure, found.result.pair)),
-      fuzz::nontrivial_magnitudes(found.result.pair), fuzz::nontrivial_magnitudes(found.original),
-      analysis::name(found.result.reason.cause),
+  const reports::Screen screen = output_screen();
+  reports::print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts, screen);
+  const std::string minimal =
       found.result.one_minimal
           ? fmt::format("1-minimal: none of the {} single moves to a simpler pair keeps the failure and its cause",
                         reports::grouped(found.result.single_moves))
-          : fmt::format("perhaps not 1-minimal: stopped after {} moves", reports::grouped(fuzz::kMostMoved)),
+          : fmt::format("perhaps not 1-minimal: stopped after {} moves", reports::grouped(fuzz::kMostMoved));
+  std::cout << fmt::format(
+      "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
+      "  cause: {}, as before\n"
+      "{}"
+      "  worst on the way: {:.7g} ulps\n",
+      analysis::key(fuzz::signature_of(found.failure, found.result.pair)),
+      fuzz::nontrivial_magnitudes(found.result.pair), fuzz::nontrivial_magnitudes(found.original),
+      analysis::name(found.result.reason.cause), reports::wrapped(minimal, screen.columns, 2, 4),
       found.result.worst_ulps);
   std::cout.flush();
 }
@@ -79,11 +83,22 @@ int minimize_case(const MinimizeOptions& options) {
     entries.front().line = 2;
   }
   const std::atomic<bool>& interrupted = catch_interrupts();
-  std::size_t looked_at = 0;
-  const std::vector<fuzz::MinimisedCase> results =
-      fuzz::minimise_cases(under_test, entries, [&] { return interrupted ? true : (++looked_at, false); });
+  Progress progress("cases", entries.size(), isatty(STDERR_FILENO), error_screen());
+  fuzz::CostEstimate work({entries.size()});
+  const auto start = Clock::now();
+  double before = 0;
+  std::size_t asked = 0;
+  const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries, [&] {
+    const double now = seconds_since(start);
+    if (asked > 0) work.add(0, 1, now - before);
+    before = now;
+    if (const auto line = progress.line(asked, now, work.seconds_left())) fmt::print(stderr, "{}", *line);
+    if (!interrupted) ++asked;
+    return interrupted.load();
+  });
+  fmt::print(stderr, "{}", progress.end());
   if (interrupted) {
-    fmt::print(stderr, "graze: interrupted; minimised {} of {} cases and wrote nothing\n", looked_at, entries.size());
+    fmt::print(stderr, "graze: interrupted; minimised {} of {} cases and wrote nothing\n", asked, entries.size());
     return kInterrupted;
   }
   if (results.empty())
@@ -118,39 +133,6 @@ Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file,
           1e3 * seconds / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1)), seconds};
 }
 
-// An estimate by what the files and maps made so far took.
-class TimeLeft {
- public:
-  TimeLeft(std::size_t files, std::size_t maps, int threads) : files_{files}, maps_{maps}, threads_(threads) {}
-
-  void add(const Done& done, bool has_map) {
-    files_.add(done.seconds);
-    if (has_map) maps_.add(done.map_seconds);
-  }
-
-  std::optional<double> seconds() const {
-    if (files_.made == 0) return {};
-    return (files_.seconds_left() + maps_.seconds_left()) / static_cast<double>(threads_);
-  }
-
- private:
-  struct Work {
-    std::size_t left, made = 0;
-    double seconds = 0;
-
-    void add(double took) {
-      --left;
-      made += took > 0;  // not what was there before
-      seconds += took;
-    }
-    double seconds_left() const {
-      return made == 0 ? 0 : seconds / static_cast<double>(made) * static_cast<double>(left);
-    }
-  };
-  Work files_, maps_;
-  int threads_;
-};
-
 void print_directory(const std::string& directory, const std::vector<Done>& all) {
   std::vector<int> magnitudes;
   for (const Done& done : all) {
@@ -160,12 +142,13 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
   fmt::print("{}\n", magnitudes.size() < all.size() ? "; no selected lane is wrong on the others" : "");
   if (magnitudes.empty()) return;
   std::sort(magnitudes.begin(), magnitudes.end());
-  fmt::print("magnitudes other than 0 and 1, and how many signatures have so many (median {}):\n ",
-             magnitudes[magnitudes.size() / 2]);
+  std::string counts;
   for (int n = 0; n <= magnitudes.back(); ++n)
-    fmt::print(" {}: {}{}", n,
-               reports::grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))),
-               n == magnitudes.back() ? "\n" : ",");
+    counts +=
+        fmt::format("{}{}: {}", n == 0 ? "" : ", ", n,
+                    reports::grouped(static_cast<std::uint64_t>(std::count(magnitudes.begin(), magnitudes.end(), n))));
+  fmt::print("magnitudes other than 0 and 1, and how many signatures have so many (median {}):\n{}",
+             magnitudes[magnitudes.size() / 2], reports::wrapped(counts, output_screen().columns, 2, 2));
   fmt::print(
       "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
       "and, for the signatures that `graze report` shows on cards, explanations and ulp maps\n",
@@ -199,8 +182,12 @@ int minimize_directory(MinimizeOptions options) {
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const std::atomic<bool>& interrupted = catch_interrupts();
-  Progress progress("signatures", files.size(), isatty(STDERR_FILENO));
-  TimeLeft time_left(files.size(), maps_to_make, threads);
+  Progress progress("signatures", files.size(), isatty(STDERR_FILENO), error_screen());
+  enum Work : std::size_t { kFile, kMap };
+  fuzz::CostEstimate work({files.size(), maps_to_make});
+  const auto note = [&](Work kind, double took) {  // 0: it was there before
+    took > 0 ? work.add(kind, 1, took) : work.skip(kind, 1);
+  };
   const auto start = Clock::now();
   std::vector<Done> all(files.size());
   std::size_t count = 0;
@@ -214,9 +201,11 @@ int minimize_directory(MinimizeOptions options) {
       all[i].map_seconds = seconds_since(mapping);
     const std::lock_guard lock(mutex);
     ++count;
-    time_left.add(all[i], !to_map[i].empty());
-    if (const auto line = progress.line(count, seconds_since(start), time_left.seconds()))
-      fmt::print(stderr, "{}", *line);
+    note(kFile, all[i].seconds);
+    if (!to_map[i].empty()) note(kMap, all[i].map_seconds);
+    auto left = work.seconds_left();
+    if (left) left = *left / threads;
+    if (const auto line = progress.line(count, seconds_since(start), left)) fmt::print(stderr, "{}", *line);
   });
   fmt::print(stderr, "{}", progress.end());
   if (interrupted) {

@@ -9,6 +9,7 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/emit.h"
+#include "cli/screen.h"
 #include "oracle/truth.h"
 #include "reports/terminal.h"
 
@@ -76,8 +77,8 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
     fmt::print("{}\n", corpus::numbers_of(entry).value_or(name));
     std::fflush(stdout);
-    reports::print_pair(std::cout, entry.pair, t, under_test.lanes, verdicts);
-    if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
+    reports::print_pair(std::cout, entry.pair, t, under_test.lanes, verdicts, output_screen());
+    if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, verdicts) || changed;
     std::cout.flush();
   }

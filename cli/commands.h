@@ -17,6 +17,7 @@ void add_repro(CLI::App& app, int& status);
 void add_minimize(CLI::App& app, int& status);
 void add_corpus(CLI::App& app, int& status);
 void add_explain(CLI::App& app, int& status);
+void add_kinds(CLI::App& app, int& status);
 void add_map(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);

@@ -68,7 +68,11 @@ void print_steps(const analysis::LaneExplanation& lane, const reports::Screen& s
   for (const analysis::Step& step : shown) places = std::max(places, place(step).size());
   for (const analysis::Step& step : shown)
     print_step(step, &step == told, lane.lane->scalar, static_cast<int>(places), screen);
-  if (lane.first_wrong < 0) fmt::print("      every comparison goes as in exact arithmetic\n");
+  for (const analysis::Step& step : lane.then)
+    print_step(step, true, lane.lane->scalar, static_cast<int>(places), screen);
+  const bool all_right =
+      std::none_of(lane.steps.begin(), lane.steps.end(), [](const analysis::Step& step) { return step.wrong(); });
+  if (all_right) fmt::print("      every comparison goes as in exact arithmetic\n");
 }
 
 // "a[0].x b[2].z"
@@ -86,7 +90,8 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
   const auto line = [&](int indent, const std::string& text) {
     fmt::print("{}", reports::wrapped(text, screen.columns, indent, indent + 2));
   };
-  line(2, fmt::format("{}: {}, cause: {}", lane.lane->id, name(lane.verdict), name(lane.cause)));
+  line(2, fmt::format("{}: {}, cause: {}{}", lane.lane->id, name(lane.verdict), name(lane.cause),
+                      lane.settled == analysis::Settled::yes ? "" : " (not settled)"));
   const auto steps = [](const analysis::LaneExplanation& l) { return to_json(l)["steps"]; };
   if (before && before->lane->info == lane.lane->info && before->lane->scalar == lane.lane->scalar &&
       lane.evidence == analysis::Evidence::source && steps(*before) == steps(lane)) {
@@ -96,7 +101,7 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
   }
   if (!lane.contractions.sites.empty()) {
     line(4, fmt::format("contractions, {}:", lane.contractions.smallest ? "the smallest set that makes the difference"
-                                                                        : "none of which can be spared"));
+                                                                        : "sets of which each is enough"));
     for (const cuda::ContractionSite& site : lane.contractions.sites) {
       line(6, fmt::format("{}:{}, inlined at {}:{}, by {}", site.at.file, site.at.line, site.from.file, site.from.line,
                           site.by_ptxas ? "ptxas" : "nvcc's front end"));

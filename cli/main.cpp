@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   graze::cli::add_minimize(app, status);
   graze::cli::add_corpus(app, status);
   graze::cli::add_explain(app, status);
+  graze::cli::add_kinds(app, status);
   graze::cli::add_map(app, status);
   graze::cli::add_report(app, status);
   graze::cli::add_lanes(app, status);

@@ -23,8 +23,7 @@
 #include "core/error.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/cost_estimate.h"
-#include "fuzz/minimise/carded_signatures.h"
-#include "fuzz/minimise/case_facts.h"
+#include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "reports/terminal.h"
 
@@ -114,7 +113,6 @@ struct Done {
   int magnitudes = 0;       // of the first result
   double milliseconds = 0;  // of each case; 0 where it was done before
   double seconds = 0;       // of the file; 0 where it was done before
-  double map_seconds = 0;   // 0 without a map, and where it was done before
 };
 
 Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file, bool again) {
@@ -167,27 +165,13 @@ int minimize_directory(MinimizeOptions options) {
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<fs::path> files;
-  std::size_t maps_to_make = 0;
-  std::vector<std::string> to_map;  // of each, the signature whose card shows a map; empty for others
-  const std::vector<std::size_t> cards = fuzz::carded_signatures(summary);
-  for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
-    const Json& row = summary["signatures"][place];
-    // Pairs on which a device and its twin differ are kept too; they are nobody's failure.
-    const std::string key = row["key"];
-    files.push_back(directory / row["case"].get<std::string>());
-    to_map.push_back(std::binary_search(cards.begin(), cards.end(), place) ? key : "");
-    maps_to_make += !to_map.back().empty();
-  }
+  for (const Json& row : summary["signatures"]) files.push_back(directory / row["case"].get<std::string>());
 
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const std::atomic<bool>& interrupted = catch_interrupts();
   Progress progress("signatures", files.size(), isatty(STDERR_FILENO), error_screen());
-  enum Work : std::size_t { kFile, kMap };
-  fuzz::CostEstimate work({files.size(), maps_to_make});
-  const auto note = [&](Work kind, double took) {  // 0: it was there before
-    took > 0 ? work.add(kind, 1, took) : work.skip(kind, 1);
-  };
+  fuzz::CostEstimate work({files.size()});
   const auto start = Clock::now();
   std::vector<Done> all(files.size());
   std::size_t count = 0;
@@ -195,39 +179,41 @@ int minimize_directory(MinimizeOptions options) {
   tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
     if (interrupted) return;
     all[i] = minimize_file(under_test, files[i], options.again);
-    const auto mapping = Clock::now();
-    if (!to_map[i].empty()) fuzz::store_facts(under_test, files[i]);
-    if (all[i].minimised && !to_map[i].empty() && map_case(under_test, files[i], to_map[i], options.again))
-      all[i].map_seconds = seconds_since(mapping);
     const std::lock_guard lock(mutex);
     ++count;
-    note(kFile, all[i].seconds);
-    if (!to_map[i].empty()) note(kMap, all[i].map_seconds);
+    all[i].seconds > 0 ? work.add(0, 1, all[i].seconds) : work.skip(0, 1);  // 0: it was there before
     auto left = work.seconds_left();
     if (left) left = *left / threads;
     if (const auto line = progress.line(count, seconds_since(start), left)) fmt::print(stderr, "{}", *line);
   });
   fmt::print(stderr, "{}", progress.end());
+  if (count == files.size()) fmt::print(stderr, "graze: telling what kinds of failure these are\n");
+  const Json kinds = interrupted ? Json() : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
+  const auto mapping = Clock::now();
+  std::size_t maps = 0;
+  for (const Json& kind : kinds) {
+    if (!interrupted)
+      maps += map_case(under_test, directory / kind["simplest"]["case"].get<std::string>(), kind["subject"], options.again);
+  }
   if (interrupted) {
     fmt::print(stderr, "graze: interrupted; minimised {} of {} signatures; run the same command to go on\n",
                reports::grouped(count), reports::grouped(files.size()));
     return kInterrupted;
   }
+  const double map_seconds = seconds_since(mapping);
+  fuzz::write_kinds(directory, kinds);
   print_directory(options.name, all);
+  fmt::print("{} kinds of failure: `graze kinds {}` lists them\n", reports::grouped(kinds.size()), options.name);
 
   std::vector<double> times;
-  int maps = 0;
-  double map_seconds = 0;
   for (const Done& done : all) {
     if (done.milliseconds > 0) times.push_back(done.milliseconds);
-    maps += done.map_seconds > 0;
-    map_seconds += done.map_seconds;
   }
   std::sort(times.begin(), times.end());
   fuzz::append_timing(directory, {{"minimised", times.size()},
                                   {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
                                   {"mapped", maps},
-                                  {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / maps},
+                                  {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / static_cast<double>(maps)},
                                   {"seconds", seconds_since(start)},
                                   {"threads", threads}});
   return 0;

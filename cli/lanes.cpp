@@ -36,7 +36,7 @@ void print_lanes(bool json) {
     }
     fmt::print("  {:<36} {}\n", lane.id, here);
   }
-  if (json) fmt::print("{}\n", rows.dump(1));
+  fmt::print("{}\n", json ? rows.dump(1) : "\nNext: graze fuzz --lanes '*/f32/cpu'");
 }
 
 }  // namespace
@@ -55,6 +55,7 @@ void add_strata(CLI::App& app, int&) {
   command->footer("Example: graze strata");
   command->callback([] {
     for (const strata::StratumInfo& row : strata::kStrata) fmt::print("{:<20} {}\n", row.id, row.what);
+    fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
   });
 }
 

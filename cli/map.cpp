@@ -8,6 +8,7 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
 #include "reports/ulp_map_picture.h"
@@ -97,6 +98,7 @@ void map_case(const MapOptions& options) {
                              : ", along which verdicts change most");
   print_counts(map);
   write_pictures(map, options.out);
+  fmt::print("Next: graze repro {} --emit cpp\n", shell_word(options.name));
 }
 
 }  // namespace

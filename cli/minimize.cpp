@@ -20,6 +20,7 @@
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/carded_signatures.h"
 #include "fuzz/minimise/case_facts.h"
@@ -38,6 +39,7 @@ struct MinimizeOptions {
   std::string name, out;
   int threads = 0;
   bool again = false;
+  bool exact_input = false;
   LaneOptions lanes;
 };
 
@@ -46,7 +48,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 void print(const fuzz::MinimisedCase& found, const std::string& name) {
   const oracle::Truth t = oracle::truth(found.result.pair);
   const std::string from = found.from.empty() ? name : found.from;
-  fmt::print("{}, {}\n", from, found.failure.lanes.front()->info->id);
+  fmt::print("{}, {}\n", printable(from), found.failure.lanes.front()->info->id);
   std::fflush(stdout);
   reports::print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts);
   std::cout << fmt::format(
@@ -68,15 +70,22 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
 int minimize_case(const MinimizeOptions& options) {
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<corpus::Entry> entries = read_cases(options.name);
+  for (const corpus::Entry& entry : entries) {
+    if (options.exact_input) expect_exact_input(options.name, entry);
+    const std::string note = written_note(entry, oracle::truth(entry.pair));
+    if (!note.empty()) fmt::print(stderr, "graze: {}:{}: {}\n", options.name, entry.line, note);
+  }
   std::string text;
-  if (entries.front().line != 0) {
+  if (std::all_of(entries.begin(), entries.end(), [](auto& entry) { return entry.line != 0 && entry.lines == 1; })) {
     text = fuzz::read_whole(options.name);
-  } else {
+  } else {  // a stratum's pair, or a pasted one: as a file of pairs
     std::ostringstream out;
     corpus::write_header(out);
-    corpus::write_entry(out, entries.front());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      corpus::write_entry(out, entries[i]);
+      entries[i].line = i + 2;
+    }
     text = out.str();
-    entries.front().line = 2;
   }
   const std::atomic<bool>& interrupted = catch_interrupts();
   std::size_t looked_at = 0;
@@ -90,6 +99,9 @@ int minimize_case(const MinimizeOptions& options) {
     throw std::runtime_error(options.name + ": expected a case on which a lane is wrong, found none");
   for (const fuzz::MinimisedCase& found : results) print(found, options.name);
   if (!options.out.empty()) fuzz::write_whole(options.out, fuzz::with_results(text, entries, results));
+  // Nothing can be read again from a pipe or a device; behind a link may be the standard output.
+  if (options.out.empty() || fs::is_regular_file(fs::symlink_status(options.out)))
+    fmt::print("Next: graze explain {}\n", shell_word(options.out.empty() ? options.name : options.out));
   return 0;
 }
 
@@ -168,8 +180,9 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
                n == magnitudes.back() ? "\n" : ",");
   fmt::print(
       "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
-      "and, for the signatures that `graze report` shows on cards, explanations and ulp maps\n",
-      directory);
+      "and, for the signatures that `graze report` shows on cards, explanations and ulp maps\n"
+      "Next: graze report {}\n",
+      directory, shell_word(directory));
 }
 
 int minimize_directory(MinimizeOptions options) {
@@ -190,8 +203,8 @@ int minimize_directory(MinimizeOptions options) {
   for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
     const Json& row = summary["signatures"][place];
     // Pairs on which a device and its twin differ are kept too; they are nobody's failure.
-    const std::string key = row["key"];
-    files.push_back(directory / row["case"].get<std::string>());
+    const std::string key = row.at("key");
+    files.push_back(directory / row.at("case").get<std::string>());
     to_map.push_back(std::binary_search(cards.begin(), cards.end(), place) ? key : "");
     maps_to_make += !to_map.back().empty();
   }
@@ -258,9 +271,10 @@ void add_minimize(CLI::App& app, int& status) {
       ->required();
   command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file")
       ->check(not_empty());
+  add_exact_input(*command, options->exact_input);
   command->add_flag("--again", options->again, "Of a directory, also what is minimised already");
   command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
-      ->check(whole_number(0, 4096))
+      ->transform(whole_number(0, 4096))
       ->capture_default_str();
   add_lane_options(*command, options->lanes);
   command->callback([options, &status] {

@@ -28,16 +28,16 @@ analysis::Signature signature_of(const std::string& key) {
 }
 
 Json signature_row(const CampaignCounts& counts, const Json& found) {
-  const std::string key = found["key"];
+  const std::string key = found.at("key");
   const analysis::Signature signature = signature_of(key);
   std::string marks;
   for (const ReportLane& lane : counts.lanes) {
     if (lane.name.subject == signature.subject) marks += signature.mark_of(lane.name.within_subject());
   }
-  const double share = found["count"].get<double>() / static_cast<double>(counts.total.pairs);
+  const double share = found.at("count").get<double>() / static_cast<double>(counts.total.pairs);
   return {{"key", key},
           {"algorithm", signature.subject},
-          {"count", found["count"]},
+          {"count", found.at("count")},
           {"share", std::stod(fmt::format("{:.5g}", share))},
           {"contact", name(signature.contact)},
           {"dimensions", fmt::format("{}{}", signature.shape.dimension_a, signature.shape.dimension_b)},
@@ -173,11 +173,11 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
 
 Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& found, std::size_t& room,
              Lacking& lacking) {
-  const std::string file = found["case"];
+  const std::string file = found.at("case");
   const std::vector<corpus::Entry> entries = corpus::read_pairs(directory / file);
   if (entries.empty()) throw corpus::FormatError(file + ": expected at least one case, found none");
   const corpus::Entry& entry = fuzz::shown_case(entries);
-  const analysis::Signature signature = signature_of(found["key"]);
+  const analysis::Signature signature = signature_of(found.at("key"));
   const Verdict truth = verdict_of(text_of(entry, "truth"));
   const std::optional<Json> facts = stored(fuzz::facts_file(directory / file), entry.pair);
   const bool minimised = corpus::field(entry, "kind") != nullptr;

@@ -19,9 +19,10 @@ std::uint64_t errors(const Json& counts) {
          counts["declined"].get<std::uint64_t>();
 }
 
-// A share for a narrow column: "0", "12 %", "3.1e-05".
+// A share for a narrow column: "0", "12 %", "3.1e-05"; "-" of nothing.
 std::string share(std::uint64_t part, std::uint64_t whole) {
-  if (part == 0 || whole == 0) return "0";
+  if (whole == 0) return "-";
+  if (part == 0) return "0";
   const double x = static_cast<double>(part) / static_cast<double>(whole);
   return x >= 0.001 ? fmt::format("{:.3g} %", 100 * x) : fmt::format("{:.1e}", x);
 }
@@ -51,12 +52,15 @@ void print_lanes(std::ostream& out, const Json& summary) {
   for (const auto& lane : summary["spec"]["lanes"]) {
     const std::string id = lane;
     std::uint64_t sums[4] = {};
+    bool compared = false;  // with the cpu lane
     for (const auto& [stratum, row] : summary["strata"].items()) {
       int i = 0;
-      for (const auto& [kind, count] : row["lanes"][id].items()) sums[i++] += count.get<std::uint64_t>();
+      for (const auto& [kind, count] : row["lanes"][id].items())
+        sums[i++] += count.is_null() ? 0 : count.get<std::uint64_t>();
+      compared = compared || !row["lanes"][id]["differs_from_cpu"].is_null();
     }
     out << fmt::format("{:<36}{:>16}{:>16}{:>10}{:>18}\n", id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]),
-                       grouped(sums[3]));
+                       compared ? grouped(sums[3]) : "-");
   }
 }
 

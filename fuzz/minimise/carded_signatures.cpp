@@ -33,7 +33,7 @@ std::vector<std::size_t> carded_signatures(const Json& summary) {
   std::map<std::string, std::vector<Row>> of_algorithm;  // the commonest first, as the summary has them
   const Json& rows = summary["signatures"];
   for (std::size_t place = 0; place < rows.size(); ++place) {
-    const std::string key = rows[place]["key"];
+    const std::string key = rows[place].at("key");
     of_algorithm[analysis::subject_of(key)].push_back({place, key});
   }
   std::vector<std::size_t> cards;

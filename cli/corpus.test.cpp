@@ -20,14 +20,20 @@ class CorpusVerb : public CommandTest {
 TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
   campaign("c", "--pairs 20000 --strata 'lattice,degenerate'");
   const Ran added = shell("graze corpus add c --top 3");
-  EXPECT_EQ(added.out, "15 new, 0 seen again, 0 known already; corpus/regression/cases.pairs holds 15\n") << added.err;
+  EXPECT_EQ(added.out,
+            "15 new, 0 seen again, 0 known already; corpus/regression/cases.pairs holds 15\n"
+            "Next: graze corpus verify\n")
+      << added.err;
   const Ran listed = shell("graze corpus list | grep -c ^failing");
   EXPECT_EQ(listed.out, "15\n");
   const Ran held = shell("graze corpus verify --executor twin");
   EXPECT_EQ(held.status, 0) << held.out << held.err;
   EXPECT_NE(held.out.find("15 failing, 0 fixed, 0 flaky"), std::string::npos) << held.out;
   const Ran some = shell("graze corpus add c --signatures '*/moller_1997:*,none/*' --top 1 --corpus some");
-  EXPECT_EQ(some.out, "5 new, 0 seen again, 0 known already; some/cases.pairs holds 5\n") << some.err;
+  EXPECT_EQ(some.out,
+            "5 new, 0 seen again, 0 known already; some/cases.pairs holds 5\n"
+            "Next: graze corpus verify --corpus some\n")
+      << some.err;
   EXPECT_EQ(shell("graze corpus list --corpus some | grep -v moller_1997 | grep -cE '^ +(point|segment|area)/'").out,
             "0\n");
   // The same campaign again counts nothing; another one counts.

@@ -12,6 +12,7 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/screen.h"
+#include "core/text.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
@@ -121,17 +122,21 @@ struct ExplainOptions {
   std::string name;
   std::vector<std::string> globs;
   bool json = false;
+  bool exact_input = false;
 };
 
 void explain_cases(const ExplainOptions& options) {
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, fuzz::Executor::twin);
   const reports::Screen screen = output_screen();
+  bool wrong = false;
   for (const corpus::Entry& entry : read_cases(options.name)) {
+    if (options.exact_input) expect_exact_input(options.name, entry);
     const analysis::Explanation explanation = analysis::explain(entry.pair, under_test.lanes);
     if (options.json) {
       nlohmann::ordered_json line{{"case", options.name}, {"line", entry.line}};
       line.update(to_json(explanation));
       line["cuda"] = cuda_evidence(under_test);
+      if (const std::string note = written_note(entry, explanation.truth); !note.empty()) line["note"] = note;
       // A file's name need not be UTF-8, as JSON must.
       fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
       continue;
@@ -140,6 +145,8 @@ void explain_cases(const ExplainOptions& options) {
     // What it comes down to is said first.
     for (const std::string& text : analysis::sentences(explanation))
       fmt::print("{}", reports::bold(screen, reports::wrapped(text, screen.columns, 2, 4)));
+    if (const std::string note = written_note(entry, explanation.truth); !note.empty())
+      fmt::print("{}", reports::wrapped(note, screen.columns, 2, 4));
     if (explanation.lanes.empty()) {
       fmt::print("  {}\n", explanation.truth.verdict == Verdict::declined
                                ? "nothing to explain: a coordinate is not finite, and no verdict is right"
@@ -156,7 +163,9 @@ void explain_cases(const ExplainOptions& options) {
       print_lane(lane, before, screen);
       if (lane.lane->variant == Variant::cpu) before = &lane;
     }
+    wrong = wrong || !explanation.lanes.empty();
   }
+  if (wrong) fmt::print("Next: graze map {}\n", shell_word(options.name));
 }
 
 }  // namespace
@@ -169,6 +178,7 @@ void add_explain(CLI::App& app, int& status) {
   auto options = std::make_shared<ExplainOptions>();
   command->add_option("case", options->name, "A file of pairs, or STRATUM:SEED:INDEX")->required();
   add_globs(*command, "--lanes", options->globs, "Only lanes that match a pattern");
+  add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "One JSON object for each case, on a line of its own, with all values");
   command->callback([options, &status] {
     explain_cases(*options);

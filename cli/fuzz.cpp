@@ -14,6 +14,7 @@
 #include "cli/progress.h"
 #include "cli/screen.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/margin_figure.h"
@@ -108,8 +109,9 @@ int fuzz(const FuzzOptions& options) {
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
   if (!summary["signatures"].empty()) {
-    std::cout << fmt::format("The commonest disagreement again: graze repro {}/{}\n", options.out,
-                             summary["signatures"][0]["case"].get<std::string>());
+    const std::string first = options.out + '/' + summary["signatures"][0]["case"].get<std::string>();
+    std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",
+                             shell_word(first), shell_word(options.out));
   }
   return 0;
 }
@@ -123,13 +125,13 @@ void add_fuzz(CLI::App& app, int& status) {
   auto options = std::make_shared<FuzzOptions>();
   command
       ->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata; a mesh takes all of its own")
-      ->check(whole_number(1, kMostWhole))
+      ->transform(whole_number(1, kMostWhole))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of all strata")
-      ->check(whole_number(0, kMostWhole))
+      ->transform(whole_number(0, kMostWhole))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
-      ->check(whole_number(0, 4096))
+      ->transform(whole_number(0, 4096))
       ->capture_default_str();
   command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")
       ->take_last()
@@ -142,14 +144,14 @@ void add_fuzz(CLI::App& app, int& status) {
                    "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]; alone unless "
                    "--strata is given too")
       ->expected(1, 2);
-  static const std::map<std::string, fuzz::EngineChoice> engines{
-      {"auto", fuzz::EngineChoice::automatic}, {"cpu", fuzz::EngineChoice::cpu}, {"gpu", fuzz::EngineChoice::gpu}};
+  static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
+                static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   command
       ->add_option(
           "--engine", options->engine,
           "What judges the pairs: cpu (CGAL and GMP), gpu (all on the device, where all lanes are CUDA lanes), "
           "or auto; results do not depend on it")
-      ->transform(CLI::CheckedTransformer(engines))
+      ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
       ->option_text("auto|cpu|gpu");
   command->add_flag("--discard-damaged", options->discard_damaged,
                     "Go on with a damaged campaign from the batches that check");

@@ -61,6 +61,7 @@ void print_lanes(bool json) {
                                                     why_no_device, fmt::join(twins, "; or ")),
                                         screen.columns));
   }
+  if (!json) fmt::print("\nNext: graze fuzz --lanes '*/f32/cpu'\n");
 }
 
 }  // namespace
@@ -82,6 +83,7 @@ void add_strata(CLI::App& app, int&) {
     const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
     for (const strata::StratumInfo& row : strata::kStrata)
       fmt::print("{}", reports::wrapped(fmt::format("{:<20} {}", row.id, row.what), columns, 0, 21));
+    fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
   });
 }
 

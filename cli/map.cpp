@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/screen.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
@@ -106,6 +107,7 @@ void map_case(const MapOptions& options) {
   fmt::print("{}", reports::wrapped(what, output_screen().columns));
   print_counts(map);
   write_pictures(map, options.out);
+  fmt::print("Next: graze repro {} --emit cpp\n", shell_word(options.name));
 }
 
 }  // namespace

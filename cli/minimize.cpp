@@ -21,6 +21,7 @@
 #include "cli/progress.h"
 #include "cli/screen.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/cost_estimate.h"
 #include "fuzz/minimise/kinds.h"
@@ -39,6 +40,7 @@ struct MinimizeOptions {
   std::string name, out;
   int threads = 0;
   bool again = false;
+  bool exact_input = false;
   LaneOptions lanes;
 };
 
@@ -47,7 +49,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 void print(const fuzz::MinimisedCase& found, const std::string& name) {
   const oracle::Truth t = oracle::truth(found.result.pair);
   const std::string from = found.from.empty() ? name : found.from;
-  fmt::print("{}, {}\n", from, found.failure.lanes.front()->info->id);
+  fmt::print("{}, {}\n", printable(from), found.failure.lanes.front()->info->id);
   std::fflush(stdout);
   const reports::Screen screen = output_screen();
   reports::print_pair(std::cout, found.result.pair, t, found.failure.lanes, found.failure.verdicts, screen);
@@ -71,15 +73,22 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
 int minimize_case(const MinimizeOptions& options) {
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<corpus::Entry> entries = read_cases(options.name);
+  for (const corpus::Entry& entry : entries) {
+    if (options.exact_input) expect_exact_input(options.name, entry);
+    const std::string note = written_note(entry, oracle::truth(entry.pair));
+    if (!note.empty()) fmt::print(stderr, "graze: {}:{}: {}\n", options.name, entry.line, note);
+  }
   std::string text;
-  if (entries.front().line != 0) {
+  if (std::all_of(entries.begin(), entries.end(), [](auto& entry) { return entry.line != 0 && entry.lines == 1; })) {
     text = fuzz::read_whole(options.name);
-  } else {
+  } else {  // a stratum's pair, or a pasted one: as a file of pairs
     std::ostringstream out;
     corpus::write_header(out);
-    corpus::write_entry(out, entries.front());
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      corpus::write_entry(out, entries[i]);
+      entries[i].line = i + 2;
+    }
     text = out.str();
-    entries.front().line = 2;
   }
   const std::atomic<bool>& interrupted = catch_interrupts();
   Progress progress("cases", entries.size(), isatty(STDERR_FILENO), error_screen());
@@ -104,6 +113,9 @@ int minimize_case(const MinimizeOptions& options) {
     throw std::runtime_error(options.name + ": expected a case on which a lane is wrong, found none");
   for (const fuzz::MinimisedCase& found : results) print(found, options.name);
   if (!options.out.empty()) fuzz::write_whole(options.out, fuzz::with_results(text, entries, results));
+  // Nothing can be read again from a pipe or a device; behind a link may be the standard output.
+  if (options.out.empty() || fs::is_regular_file(fs::symlink_status(options.out)))
+    fmt::print("Next: graze explain {}\n", shell_word(options.out.empty() ? options.name : options.out));
   return 0;
 }
 
@@ -149,7 +161,7 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
              magnitudes[magnitudes.size() / 2], reports::wrapped(counts, output_screen().columns, 2, 2));
   fmt::print(
       "Wrote {}/cases/: the minimised pair first, then the worst one met, then the originals\n"
-      "and, for the signatures that `graze report` shows on cards, explanations and ulp maps\n",
+      "and, of each kind of failure, an explanation and the ulp maps of its simplest case\n",
       directory);
 }
 
@@ -165,7 +177,7 @@ int minimize_directory(MinimizeOptions options) {
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<fs::path> files;
-  for (const Json& row : summary["signatures"]) files.push_back(directory / row["case"].get<std::string>());
+  for (const Json& row : summary["signatures"]) files.push_back(directory / row.at("case").get<std::string>());
 
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -203,7 +215,8 @@ int minimize_directory(MinimizeOptions options) {
   const double map_seconds = seconds_since(mapping);
   fuzz::write_kinds(directory, kinds);
   print_directory(options.name, all);
-  fmt::print("{} kinds of failure: `graze kinds {}` lists them\n", reports::grouped(kinds.size()), options.name);
+  fmt::print("{} kinds of failure, listed by: graze kinds {}\nNext: graze report {}\n", reports::grouped(kinds.size()),
+             shell_word(options.name), shell_word(options.name));
 
   std::vector<double> times;
   for (const Done& done : all) {
@@ -233,9 +246,10 @@ void add_minimize(CLI::App& app, int& status) {
       ->required();
   command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file")
       ->check(not_empty());
+  add_exact_input(*command, options->exact_input);
   command->add_flag("--again", options->again, "Of a directory, also what is minimised already");
   command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
-      ->check(whole_number(0, 4096))
+      ->transform(whole_number(0, 4096))
       ->capture_default_str();
   add_lane_options(*command, options->lanes);
   command->callback([options, &status] {

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/csv.h"
 #include "reports/page.h"
@@ -67,7 +68,9 @@ void report(const ReportOptions& options) {
                             reports::read_summary(options.compare[0])["signatures"]);
     write_report(options.compare[1], after, "compare");
   } else {
-    write_report(options.directory, reports::make_report(options.directory), "report");
+    const Json made = reports::make_report(options.directory);
+    write_report(options.directory, made, "report");
+    if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", shell_word(options.directory));
   }
 }
 

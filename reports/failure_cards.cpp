@@ -28,16 +28,16 @@ analysis::Signature signature_of(const std::string& key) {
 }
 
 Json signature_row(const CampaignCounts& counts, const Json& found) {
-  const std::string key = found["key"];
+  const std::string key = found.at("key");
   const analysis::Signature signature = signature_of(key);
   std::string marks;
   for (const ReportLane& lane : counts.lanes) {
     if (lane.name.subject == signature.subject) marks += signature.mark_of(lane.name.within_subject());
   }
-  const double share = found["count"].get<double>() / static_cast<double>(counts.total.pairs);
+  const double share = found.at("count").get<double>() / static_cast<double>(counts.total.pairs);
   return {{"key", key},
           {"algorithm", signature.subject},
-          {"count", found["count"]},
+          {"count", found.at("count")},
           {"share", std::stod(fmt::format("{:.5g}", share))},
           {"contact", name(signature.contact)},
           {"dimensions", fmt::format("{}{}", signature.shape.dimension_a, signature.shape.dimension_b)},

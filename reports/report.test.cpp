@@ -146,6 +146,17 @@ TEST(Answer, OfExactLanesOnlyAndOfNothing) {
   EXPECT_EQ(answer_of(begun), std::vector<std::string>{"No pair has been decided yet."});
 }
 
+// What was not compared is null in a summary and in a report, and of no pairs there is no share.
+TEST(Tables, OfNothingThereIsNoShare) {
+  Json summary = summary_of({"moller_1997/f32/cuda-fma"}, {"uniform"}, {0, 3, 0, 0});
+  summary["strata"]["uniform"]["intersects"] = 1000;  // so that none can be a false positive
+  summary["strata"]["uniform"]["lanes"]["moller_1997/f32/cuda-fma"]["differs_from_cpu"] = nullptr;
+  const Json row = rates(counts_of(summary)).front();
+  EXPECT_TRUE(row["differs_from_cpu"].is_null());
+  EXPECT_EQ(row["false_positive"].dump(), R"({"count":0,"of":0,"share":null,"low":null,"high":null})");
+  EXPECT_EQ(row["false_negative"]["share"], 0.003);
+}
+
 TEST(Tables, ThresholdIsWhereErrorsEnd) {
   Json summary = summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {});
   const auto bucket = [&](const char* name, int pairs, int wrong) {
@@ -261,8 +272,7 @@ TEST_F(ReportTest, CardsWithoutTheMinimiserSayWhatTheSignatureDoes) {
     EXPECT_EQ(card["minimised"], false);
     Pair pair;
     for (int i = 0; i < kCoordinates; ++i)
-      coordinates(pair)[i] =
-          parse_float32(card["pair"]["hex"][static_cast<std::size_t>(i)].get<std::string>()).value();
+      coordinates(pair)[i] = parse_float32(card["pair"]["hex"][static_cast<std::size_t>(i)].get<std::string>()).value();
     std::vector<const Lane*> apart;
     const std::vector<Verdict> verdicts = decide(under_test, pair, apart);
     std::size_t compared = 0;
@@ -442,7 +452,7 @@ TEST(Page, OfManySignaturesIsUnderEightMebibytes) {
 }
 
 TEST(Report, NeedsACampaign) {
-  EXPECT_THROW(make_report("/nonexistent"), UsageError);
+  EXPECT_THROW(make_report("/nonexistent"), std::runtime_error);
   const fs::path directory = fs::temp_directory_path() / ("graze_damaged_" + std::to_string(getpid()));
   fs::create_directories(directory);
   fuzz::write_whole(directory / "summary.json", R"({"spec": {}, "strata": {}})");

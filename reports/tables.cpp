@@ -27,6 +27,8 @@ Json wrong_of(const StratumCounts& stratum, std::size_t lane) {
 }  // namespace
 
 Json to_json(const Share& share) {
+  // Of nothing there is no share.
+  if (share.of == 0) return {{"count", 0}, {"of", 0}, {"share", nullptr}, {"low", nullptr}, {"high", nullptr}};
   return {{"count", share.count},
           {"of", share.of},
           {"share", rounded(share.share)},

@@ -53,11 +53,14 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   for (const auto& lane : summary["spec"]["lanes"]) {
     const std::string id = lane;
     std::uint64_t sums[4] = {};
+    bool compared = false;  // with the cpu lane
     for (const auto& [stratum, row] : summary["strata"].items()) {
       int i = 0;
-      for (const auto& [kind, count] : row["lanes"][id].items()) sums[i++] += count.get<std::uint64_t>();
+      for (const auto& [kind, count] : row["lanes"][id].items())
+        sums[i++] += count.is_null() ? 0 : count.get<std::uint64_t>();
+      compared = compared || !row["lanes"][id]["differs_from_cpu"].is_null();
     }
-    table.add({id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]), grouped(sums[3])});
+    table.add({id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]), compared ? grouped(sums[3]) : "-"});
   }
   out << '\n' << table.text(screen);
 }
@@ -85,7 +88,8 @@ std::string grouped(std::uint64_t number) {
 }
 
 std::string bare_percent(std::uint64_t part, std::uint64_t whole) {
-  if (part == 0 || whole == 0) return "0";
+  if (whole == 0) return "-";
+  if (part == 0) return "0";
   if (part == whole) return "100";
   const double percent = 100 * static_cast<double>(part) / static_cast<double>(whole);
   if (percent < 0.001) return "<0.001";

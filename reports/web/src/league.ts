@@ -40,7 +40,7 @@ export function league_section(report: Report) {
   readout.textContent = kHint;
 
   const part = (share: Share | null, sign: string) =>
-    share === null ? h('span', { class: 'none' }, '–')
+    share === null || share.of === 0 ? h('span', { class: 'none' }, '–')
       : h('span', { class: heat_class(share.share), 'data-sign': sign }, bare_percent(share.share));
 
   function cell(lane: number, stratum: number | null) {

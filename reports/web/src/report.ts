@@ -3,7 +3,7 @@
 // numbers are computed there, the page only renders. Lanes and strata are referred to by their place in `lanes` and
 // `strata`. What is absent is null or an empty array.
 
-export interface Share { count: number; of: number; share: number; low: number; high: number }  // Wilson, 95 %; six significant digits are enough
+export interface Share { count: number; of: number; share: number; low: number; high: number }  // Wilson, 95 %; six significant digits are enough; the last three null of nothing
 
 export interface Report {
   format: 1;

@@ -122,7 +122,7 @@ Json commands_of(const corpus::Entry& entry, const analysis::Signature& signatur
   return rows;
 }
 
-// A program that shows the first wrong lane, on the host if one of its lanes is; and the truth, by a few lines.
+// Programs that show the first wrong lane of the host and the first of the device; and the truth, by a few lines.
 Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const analysis::Signature& signature,
                  Verdict truth, const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
@@ -135,12 +135,15 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
       if (!row["wrong"].get<bool>() || !lane.row || lane.name.subject != signature.subject || !shows(kind, *lane.row))
         continue;
       const SnippetCase found{name, entry.pair, truth, lane.row, verdict_of(row["verdict"].get<std::string>())};
-      rows.push_back({{"label", kSnippetKinds[static_cast<int>(kind)]}, {"text", snippet(kind, found)}});
-      return true;
+      std::string text = snippet(kind, found);
+      const std::string source = amalgamated_source(signature.subject);
+      if (const std::size_t at = text.find(source); at != text.npos) text.replace(at, source.size(), kSourceMark);
+      rows.push_back({{"label", kSnippetKinds[static_cast<int>(kind)]}, {"text", text}});
+      return;
     }
-    return false;
   };
-  if (!add_lane(SnippetKind::cpp)) add_lane(SnippetKind::cuda);
+  add_lane(SnippetKind::cpp);
+  add_lane(SnippetKind::cuda);
   for (const SnippetKind kind : {SnippetKind::python, SnippetKind::obj}) {
     rows.push_back({{"label", kSnippetKinds[static_cast<int>(kind)]},
                     {"text", snippet(kind, {name, entry.pair, truth, nullptr, truth})}});
@@ -169,6 +172,15 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
   }
   room -= size;
   return maps;
+}
+
+// The names of the pairs that the campaign kept of a signature: "near_edge_edge:1:42".
+Json kept_pairs(const std::filesystem::path& case_file) {
+  Json names = Json::array();
+  for (const corpus::Entry& entry : corpus::read_pairs(case_file)) {
+    if (!corpus::field(entry, "kind")) names.push_back(origin(entry));
+  }
+  return names;
 }
 
 Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& found, std::size_t& room,
@@ -253,6 +265,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
     const bool has_card = std::binary_search(carded.begin(), carded.end(), place);
     if (count > kMostSignatures && !has_card) continue;
     rows.push_back(signature_row(counts, found));
+    rows.back()["pairs"] = kept_pairs(directory / found["case"].get<std::string>());
     if (!has_card) continue;
     rows.back()["card"] = cards.size();
     cards.push_back(card_of(directory, counts, found, room, lacking));
@@ -263,6 +276,14 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
         fmt::format("The table shows the commonest {} of {} signatures; signatures.csv has all.", rows.size(), count));
   }
   say_what_is_missing(report["missing"], lacking, cards.size());
+  report["sources"] = Json::object();
+  for (const Json& card : cards) {
+    const std::string algorithm = rows[card["signature"].get<std::size_t>()]["algorithm"];
+    for (const Json& row : card["snippets"]) {
+      if (row["text"].get<std::string>().find(kSourceMark) != std::string::npos)
+        report["sources"][algorithm] = amalgamated_source(algorithm);
+    }
+  }
   report["signature_count"] = count;
   report["signatures"] = std::move(rows);
   report["cards"] = std::move(cards);

@@ -17,7 +17,8 @@ bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane
   if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || maps["panels"].size() != lanes.size() + 1)
     return false;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    if (maps["panels"][l + 1].value("name", "") != lanes[l]->id) return false;
+    const Json& panel = maps["panels"][l + 1];
+    if (panel.value("name", "") != lanes[l]->id || !panel.contains("shows")) return false;
   }
   return true;
 }

@@ -30,11 +30,18 @@ void say_what_the_page_is() {
     fmt::print("The page is plain: this build had no Node, or no npm packages (see reports/README.md)\n");
 }
 
-// NAME.html, NAME.json and tables in the directory.
+// NAME.html, NAME.json, costs.json and tables in the directory.
 void write_report(const fs::path& directory, const Json& report, const char* name) {
+  const Json costs = reports::make_costs(directory);
   fuzz::write_whole(directory / fmt::format("{}.json", name), reports::report_text(report));
-  fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report));
+  fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report, costs));
   std::string tables;
+  if (costs.is_null()) {
+    fs::remove(directory / "costs.json");
+  } else {
+    fuzz::write_whole(directory / "costs.json", reports::report_text(costs));
+    tables = ", costs.json";
+  }
   for (const reports::CsvTable& table : reports::csv_tables(directory, report)) {
     fuzz::write_whole(directory / table.name, table.text);
     tables += fmt::format(", {}", table.name);
@@ -44,9 +51,11 @@ void write_report(const fs::path& directory, const Json& report, const char* nam
   say_what_the_page_is();
 }
 
+// With what lanes cost, if that lies beside the report.
 std::string page_of(const std::string& file) {
   try {
-    return reports::page(reports::read_report(file));
+    const Json costs = Json::parse(fuzz::read_whole(fs::path(file).replace_filename("costs.json")), nullptr, false);
+    return reports::page(reports::read_report(file), costs.is_object() ? costs : Json());
   } catch (const Json::exception&) {
     throw std::runtime_error(file + ": expected a report of `graze report`, found something else");
   }

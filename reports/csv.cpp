@@ -69,10 +69,15 @@ std::string margins_csv(const CampaignCounts& counts) {
 }
 
 std::string thresholds_csv(const Json& report) {
-  Table table("lane,side,exponent,above,bound");
+  Table table("lane,group,stratum,side,exponent,above,bound");  // group and stratum empty: all of them together
+  const auto id_in = [&](const char* list, const Json& place) {
+    return place.is_null() ? place : report[list][place.get<std::size_t>()]["id"];
+  };
   for (const Json& row : report["thresholds"]) {
-    for (const char* side : {"disjoint", "intersects"})
-      table.row({lane_id(report, row), side, row[side]["exponent"], row[side]["above"], row[side]["bound"]});
+    for (const char* side : {"disjoint", "intersects"}) {
+      table.row({lane_id(report, row), id_in("groups", row["group"]), id_in("strata", row["stratum"]), side,
+                 row[side]["exponent"], row[side]["above"], row[side]["bound"]});
+    }
   }
   return table.text;
 }

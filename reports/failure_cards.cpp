@@ -105,7 +105,7 @@ Json commands_of(const corpus::Entry& entry, const std::string& subject, const s
   return rows;
 }
 
-// A program that shows the first lane of the kind, on the host if one of them is; and the truth, by a few lines.
+// Programs that show the first lane of the kind on the host and on the device; and the truth, by a few lines.
 Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const Json& kind, Verdict truth,
                  const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
@@ -121,12 +121,15 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
       const ReportLane& lane = counts.lanes[row["lane"].get<std::size_t>()];
       if (!is_of_kind(lane.id) || !lane.row || !shows(language, *lane.row)) continue;
       const SnippetCase found{name, entry.pair, truth, lane.row, verdict_of(row["verdict"].get<std::string>())};
-      rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", snippet(language, found)}});
-      return true;
+      std::string text = snippet(language, found);
+      const std::string source = amalgamated_source(kind["subject"].get<std::string>());
+      if (const std::size_t at = text.find(source); at != text.npos) text.replace(at, source.size(), kSourceMark);
+      rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", text}});
+      return;
     }
-    return false;
   };
-  if (!add_lane(SnippetKind::cpp)) add_lane(SnippetKind::cuda);
+  add_lane(SnippetKind::cpp);
+  add_lane(SnippetKind::cuda);
   for (const SnippetKind language : {SnippetKind::python, SnippetKind::obj}) {
     rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]},
                     {"text", snippet(language, {name, entry.pair, truth, nullptr, truth})}});
@@ -155,6 +158,15 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
   }
   room -= size;
   return maps;
+}
+
+// The names of the pairs that the campaign kept of a signature: "near_edge_edge:1:42".
+Json kept_pairs(const std::filesystem::path& case_file) {
+  Json names = Json::array();
+  for (const corpus::Entry& entry : corpus::read_pairs(case_file)) {
+    if (!corpus::field(entry, "kind")) names.push_back(origin(entry));
+  }
+  return names;
 }
 
 Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& kind, std::size_t& room,
@@ -243,6 +255,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   const std::size_t count = summary["signatures"].size();
   for (std::size_t place = 0; place < std::min(count, kMostSignatures); ++place) {
     rows.push_back(signature_row(counts, summary["signatures"][place]));
+    rows.back()["pairs"] = kept_pairs(directory / summary["signatures"][place]["case"].get<std::string>());
     const auto card = card_of_place.find(place);
     if (card != card_of_place.end()) rows.back()["card"] = card->second;
   }
@@ -251,6 +264,14 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
         fmt::format("The table shows the commonest {} of {} signatures; signatures.csv has all.", rows.size(), count));
   }
   say_what_is_missing(report["missing"], lacking, cards.size());
+  report["sources"] = Json::object();
+  for (const Json& card : cards) {
+    const std::string algorithm = rows[card["signature"].get<std::size_t>()]["algorithm"];
+    for (const Json& row : card["snippets"]) {
+      if (row["text"].get<std::string>().find(kSourceMark) != std::string::npos)
+        report["sources"][algorithm] = amalgamated_source(algorithm);
+    }
+  }
   report["signature_count"] = count;
   report["signatures"] = std::move(rows);
   report["cards"] = std::move(cards);

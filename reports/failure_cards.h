@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "reports/counts.h"
@@ -14,6 +15,9 @@ namespace graze::reports {
 inline constexpr std::size_t kMostCards = 60;
 inline constexpr std::size_t kMostSignatures = 5'000;
 inline constexpr std::size_t kMostMapBytes = 7 << 18;
+
+// Stands in a card's program for the source of its algorithm, which the report holds once, in `sources`.
+inline constexpr std::string_view kSourceMark = "@SOURCE@";
 
 // One row for each signature, the commonest first.
 nlohmann::ordered_json signature_rows(const CampaignCounts& counts, const nlohmann::ordered_json& summary);

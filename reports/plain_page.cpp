@@ -48,9 +48,23 @@ std::string share_cell(const Json& share) {
       rate_words(value));
 }
 
+std::string answer_section(const Json& report, const Json& costs) {
+  std::string text = "<h1>Graze: discrepancy report</h1>\n<h2>The answer</h2>\n<ol>\n";
+  for (const Json& sentence : costs.is_null() ? report["answer"] : costs["answer"])
+    text += "<li>" + html(sentence) + "</li>\n";
+  text += "</ol>\n";
+  if (!costs.is_null()) text += paragraph("Costs were measured on " + costs["machine"].get<std::string>() + ".");
+  text += paragraph(
+      "This build had no Node, or no npm packages, so the page lacks its interactive parts: sorting, filters, views "
+      "that turn, "
+      "ulp maps and copy buttons. The same data is in the JSON file and the CSV tables beside it.");
+  for (const Json& sentence : report["missing"]) text += paragraph(sentence);
+  return text;
+}
+
 std::string run_section(const Json& report) {
   const Json& run = report["run"];
-  std::string text = "<h1>Graze: discrepancy report</h1>\n";
+  std::string text = "<h2>What was run</h2>\n";
   text += paragraph(
       fmt::format("{} pairs, seed {}{}. Version {}, commit {}, {}; {}; {}.", grouped(run["pairs"]), run["seed"].dump(),
                   run["complete"] ? "" : ", not finished", run["build"]["version"].get<std::string>(),
@@ -58,15 +72,7 @@ std::string run_section(const Json& report) {
                   run["build"]["cuda"].is_null() ? "no nvcc" : run["build"]["cuda"].get<std::string>(),
                   run["build"]["device"].is_null() ? "no device" : run["build"]["device"].get<std::string>()));
   if (!run["machine"].is_null()) text += paragraph("Machine: " + run["machine"].get<std::string>());
-  text += "<pre>" + html(run["command"]) + "</pre>\n";
-  text += paragraph(
-      "This build had no Node, or no npm packages, so the page lacks its interactive parts: sorting, filters, views "
-      "that turn, "
-      "ulp maps and copy buttons. The same data is in the JSON file and the CSV tables beside it.");
-  for (const Json& sentence : report["missing"]) text += paragraph(sentence);
-  text += "<h2>The answer</h2>\n<ol>\n";
-  for (const Json& sentence : report["answer"]) text += "<li>" + html(sentence) + "</li>\n";
-  return text + "</ol>\n";
+  return text + "<pre>" + html(run["command"]) + "</pre>\n";
 }
 
 std::string league(const Json& report) {
@@ -91,20 +97,29 @@ std::string league(const Json& report) {
   return text + "</table></div>\n";
 }
 
+// "general: from 2^3 ulps (rate below 0.1 %)", of each group of strata.
+std::string threshold_words(const Json& report, std::size_t lane, const char* side) {
+  std::string text;
+  for (const Json& row : report["thresholds"]) {
+    if (row["lane"] != lane || row["group"].is_null()) continue;
+    const Json& t = row[side];
+    text += (text.empty() ? "" : "; ") + report["groups"][row["group"].get<std::size_t>()]["id"].get<std::string>() + ": " +
+            (!t["exponent"].is_null()
+                 ? fmt::format("from 2^{} ulps (rate below {})", t["exponent"].dump(), rate_words(t["bound"]))
+             : t["largest"].is_null() ? std::string("no pairs")
+                                      : fmt::format("errors up to 2^{} ulps", t["largest"].dump()));
+  }
+  return text;
+}
+
 std::string margin_section(const Json& report) {
   std::string text = "<h2>Share wrong against the exact margin</h2>\n";
   for (const Json& row : report["margins"]) {
     const auto lane = row["lane"].get<std::size_t>();
-    const Json& threshold = report["thresholds"][lane];
-    const auto from = [&](const char* side) {
-      const Json& t = threshold[side];
-      return t["exponent"].is_null()
-                 ? std::string("never")
-                 : fmt::format("from 2^{} ulps (rate below {})", t["exponent"].dump(), rate_words(t["bound"]));
-    };
     text += fmt::format(
-        "<figure>{}<figcaption>{}<br/>no error seen, disjoint: {}; intersecting: {}</figcaption></figure>\n",
-        margin_chart(row), html(report["lanes"][lane]["id"]), from("disjoint"), from("intersects"));
+        "<figure>{}<figcaption>{}<br/>no error seen, disjoint: {}<br/>intersecting: {}</figcaption></figure>\n",
+        margin_chart(row), html(report["lanes"][lane]["id"]), threshold_words(report, lane, "disjoint"),
+        threshold_words(report, lane, "intersects"));
   }
   return text;
 }
@@ -197,9 +212,10 @@ coplanar, margin, algorithm, and a mark for each of its lanes: + false positive,
 
 }  // namespace
 
-std::string plain_page(const Json& report) {
-  return kHead + run_section(report) + compare_section(report["compare"]) + league(report) + margin_section(report) +
-         extremes_section(report) + signature_section(report) + kDefinitions + "</body>\n</html>\n";
+std::string plain_page(const Json& report, const Json& costs) {
+  return kHead + answer_section(report, costs) + compare_section(report["compare"]) + league(report) +
+         margin_section(report) + extremes_section(report) + signature_section(report) + kDefinitions +
+         run_section(report) + "</body>\n</html>\n";
 }
 
 }  // namespace graze::reports

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
+#include "reports/costs.h"
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/tables.h"
@@ -131,18 +133,21 @@ Json make_report(const std::filesystem::path& directory) {
   const Json summary = read_summary(directory);
   try {
     const CampaignCounts counts = counts_of(summary);
-    Json report = {{"format", 1},
+    Json report = {{"format", 2},
                    {"run", run_of(directory, summary, counts)},
                    {"strata", strata_of(counts)},
                    {"lanes", lanes_of(summary, counts)},
-                   {"answer", answer(counts)},
+                   {"answer", answer(counts, nullptr)},
+                   {"groups", groups(counts)},
                    {"rates", rates(counts)},
+                   {"group_rates", group_rates(counts)},
                    {"side_by_side", side_by_side(counts)},
                    {"margins", margins(counts)},
                    {"thresholds", thresholds(counts)},
                    {"extremes", extremes(counts)},
                    {"signature_count", 0},
                    {"signatures", nullptr},
+                   {"sources", nullptr},
                    {"cards", nullptr},
                    {"missing", missing_of(counts)},
                    {"compare", nullptr}};
@@ -154,6 +159,17 @@ Json make_report(const std::filesystem::path& directory) {
   } catch (const std::out_of_range&) {
     throw corpus::FormatError((directory / "summary.json").string() +
                               ": expected a campaign's summary, found something else");
+  }
+}
+
+Json make_costs(const std::filesystem::path& directory) {
+  const CampaignCounts counts = counts_of(read_summary(directory));
+  try {
+    const std::optional<Costs> costs = read_costs(directory, counts);
+    return costs ? to_json(*costs, counts) : Json();
+  } catch (const Json::exception&) {
+    throw corpus::FormatError((directory / "timings.json").string() +
+                              ": expected a campaign's timings, found something else");
   }
 }
 
@@ -193,7 +209,7 @@ std::string report_text(const Json& report) {
 Json read_report(const std::filesystem::path& file) {
   Json report = Json::parse(fuzz::read_whole(file), nullptr, false);
   const auto is_list = [&](const char* part) { return report.value(part, Json()).is_array(); };
-  if (!report.is_object() || report.value("format", Json()) != 1 || !is_list("rates") || !is_list("lanes") ||
+  if (!report.is_object() || report.value("format", Json()) != 2 || !is_list("rates") || !is_list("lanes") ||
       !is_list("strata"))
     throw corpus::FormatError(file.string() + ": expected a report of `graze report`, found something else");
   return report;

@@ -9,11 +9,15 @@
 
 namespace graze::reports {
 
-// summary.json of a campaign's directory.   Throws: UsageError where there is none.
+// summary.json of a campaign's directory.   Throws: std::runtime_error where there is none.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
 
-// Throws: UsageError for a directory without a campaign; FormatError, std::runtime_error for damaged files.
+// Throws: std::runtime_error for a directory without a campaign, FormatError too for damaged files.
 nlohmann::ordered_json make_report(const std::filesystem::path& directory);
+
+// What the campaign's lanes cost, and the answer with it (costs.h): apart from the report, because it depends on the
+// machine. null where the campaign has no timings of its lanes.   Throws: as make_report.
+nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
 // The command that runs the whole campaign again.   Requires: what summary.json holds.
 std::string campaign_command(const nlohmann::ordered_json& summary);

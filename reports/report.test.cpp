@@ -23,8 +23,10 @@
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/page.h"
+#include "reports/snippet.h"
 #include "reports/tables.h"
 #include "reports/wilson.h"
+#include "strata/groups.h"
 
 namespace graze::reports {
 
@@ -78,32 +80,35 @@ Json summary_of(const std::vector<std::string>& lanes, const std::vector<std::st
   return summary;
 }
 
-std::vector<std::string> answer_of(const Json& summary) { return answer(counts_of(summary)); }
+std::vector<std::string> answer_of(const Json& summary) { return answer(counts_of(summary), nullptr); }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(Answer, OfOneLaneComparesNothing) {
   const auto said = answer_of(summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {3, 2, 0, 0}));
-  ASSERT_EQ(said.size(), 5u);
+  ASSERT_EQ(said.size(), 6u);
   EXPECT_EQ(said[0],
             "The only published lane, moller_1997/f32/cpu, is wrong on 5 (0.5 %, 95 % interval 0.214 % to 1.17 %) of "
             "1,000 pairs.");
-  EXPECT_EQ(said[1], "No other published lane ran, so there is none to be worse.");
-  EXPECT_TRUE(contains(said[2], "No lane with contraction ran"));
-  EXPECT_TRUE(contains(said[3], "were not drawn"));
-  EXPECT_EQ(said[4], "The only stratum is uniform (0.5 % of all verdicts wrong).");
+  EXPECT_EQ(said[1], "The only stratum is uniform (0.5 % of all verdicts wrong).");
+  // What the campaign cannot tell comes last.
+  EXPECT_EQ(said[2], "No exact lane ran, so there is none to recommend for every pair.");
+  EXPECT_EQ(said[3],
+            "Of the published lanes only those of moller_1997/f32 ran, so the campaign does not say which to avoid.");
+  EXPECT_TRUE(contains(said[4], "No lane with contraction ran"));
+  EXPECT_TRUE(contains(said[5], "were not drawn"));
 }
 
 TEST(Answer, WithoutErrorsSaysHowMuchThatProves) {
   const auto said = answer_of(summary_of(
       {"moller_1997/f32/cpu", "moller_1997/f32/cuda-nofma", "moller_1997/f32/cuda-fma"}, {"thesis", "uniform"}, {}));
-  EXPECT_EQ(said[0],
+  EXPECT_EQ(said[0], "No lane need be avoided: none is wrong on any pair of this campaign.");
+  EXPECT_EQ(said[1],
             "All 3 published lanes are wrong on none of 2,000 pairs, so with 95 % confidence each errs on fewer than "
             "0.15 % of such pairs.");
-  EXPECT_EQ(said[1], "No lane is worse than another: all 3 are wrong equally often.");
-  EXPECT_EQ(said[2], "Contraction changes no verdict of the one lane that ran with and without it.");
-  EXPECT_TRUE(contains(said[3], "none of 2 CUDA lanes differs from its cpu lane on any of 1,000 pairs")) << said[3];
-  EXPECT_EQ(said[4], "None of the 2 strata shows a wrong verdict.");
+  EXPECT_EQ(said[2], "None of the 2 strata shows a wrong verdict.");
+  EXPECT_EQ(said[3], "Contraction changes no verdict of the one lane that ran with and without it.");
+  EXPECT_TRUE(contains(said[4], "none of 2 CUDA lanes differs from its cpu lane on any of 1,000 pairs")) << said[4];
 }
 
 TEST(Answer, TellsWhatContractionChanges) {
@@ -113,18 +118,17 @@ TEST(Answer, TellsWhatContractionChanges) {
   summary["strata"]["thesis"]["lanes"]["interval_overlap/f32/cuda-fma"] = {
       {"false_positive", 7}, {"false_negative", 3}, {"declined", 0}, {"differs_from_cpu", 10}};
   const auto said = answer_of(summary);
-  EXPECT_EQ(
-      said[0],
-      "The safest of 3 published lanes are interval_overlap/f32/cpu and interval_overlap/f32/cuda-nofma: wrong on "
-      "none of 1,000 pairs (with 95 % confidence fewer than 0.299 %); exact/f32/cpu is wrong on none.");
+  EXPECT_EQ(said[0],
+            "Use exact/f32/cpu: right on all 1,000 pairs. What it costs is not settled: the campaign has no timings of "
+            "it.");
   EXPECT_EQ(
       said[1],
-      "The worst is interval_overlap/f32/cuda-fma: wrong on 10 pairs (1 %, 95 % interval 0.544 % to 1.83 %), 7 of "
-      "them false positives and 3 false negatives.");
-  EXPECT_TRUE(contains(said[2], "another verdict than interval_overlap/f32/cuda-nofma on 10 pairs (1 %")) << said[2];
-  EXPECT_TRUE(contains(said[2], "its wrong verdicts go from 0 to 10; 1 of 1 lanes")) << said[2];
-  EXPECT_TRUE(contains(said[3], "in interval_overlap/f32/cuda-fma: on 10 (1 %")) << said[3];
-  EXPECT_TRUE(contains(said[3], "of 1,000 pairs; without contraction on none.")) << said[3];
+      "Of the 3 published lanes the least wrong are interval_overlap/f32/cpu and interval_overlap/f32/cuda-nofma: on "
+      "none of 1,000 pairs (with 95 % confidence fewer than 0.299 %).");
+  EXPECT_TRUE(contains(said[3], "another verdict than interval_overlap/f32/cuda-nofma on 10 pairs (1 %")) << said[3];
+  EXPECT_TRUE(contains(said[3], "its wrong verdicts go from 0 to 10; 1 of 1 lanes")) << said[3];
+  EXPECT_TRUE(contains(said[4], "in interval_overlap/f32/cuda-fma: on 10 (1 %")) << said[4];
+  EXPECT_TRUE(contains(said[4], "of 1,000 pairs; without contraction on none.")) << said[4];
 }
 
 TEST(Answer, WithoutCpuLanesCountsWrongVerdicts) {
@@ -132,10 +136,10 @@ TEST(Answer, WithoutCpuLanesCountsWrongVerdicts) {
                             {1, 0, 0, 0});
   summary["strata"]["sliver"]["lanes"]["interval_overlap/f32/cuda-fma"]["false_positive"] = 5;
   const auto said = answer_of(summary);
+  EXPECT_TRUE(contains(said[1], "The most dangerous stratum is sliver (0.3 % of all verdicts wrong")) << said[1];
   EXPECT_TRUE(contains(said[2], "its wrong verdicts go from 2 to 6 of 2,000 pairs")) << said[2];
   EXPECT_TRUE(contains(said[2], "without a cpu lane beside them")) << said[2];
   EXPECT_TRUE(contains(said[3], "no CUDA lane ran beside its cpu lane")) << said[3];
-  EXPECT_TRUE(contains(said[4], "The most dangerous stratum is sliver (0.3 % of all verdicts wrong")) << said[4];
 }
 
 TEST(Answer, OfExactLanesOnlyAndOfNothing) {
@@ -157,25 +161,62 @@ TEST(Tables, OfNothingThereIsNoShare) {
   EXPECT_EQ(row["false_negative"]["share"], 0.003);
 }
 
+// What stands in thresholds for a group or stratum, by id; for all of them for "".
+Json threshold_of(const CampaignCounts& counts, const std::string& group, const std::string& stratum = "") {
+  for (const Json& row : thresholds(counts)) {
+    const auto is = [&](const char* key, const std::string& id, const auto& list) {
+      return row[key].is_null() ? id.empty() : list[row[key].template get<std::size_t>()].id == id;
+    };
+    if (is("group", group, counts.groups) && is("stratum", stratum, counts.strata)) return row;
+  }
+  return nullptr;
+}
+
 TEST(Tables, ThresholdIsWhereErrorsEnd) {
-  Json summary = summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {});
-  const auto bucket = [&](const char* name, int pairs, int wrong) {
-    summary["strata"]["uniform"]["margins"][name] = {{"pairs", pairs}, {"wrong", Json::object()}};
-    if (wrong) summary["strata"]["uniform"]["margins"][name]["wrong"]["moller_1997/f32/cpu"] = wrong;
+  Json summary = summary_of({"moller_1997/f32/cpu"}, {"uniform", "degenerate"}, {});
+  const auto bucket = [&](const char* stratum, const char* name, int pairs, int wrong) {
+    summary["strata"][stratum]["margins"][name] = {{"pairs", pairs}, {"wrong", Json::object()}};
+    if (wrong) summary["strata"][stratum]["margins"][name]["wrong"]["moller_1997/f32/cpu"] = wrong;
   };
-  bucket("+2^-3", 10, 0);
-  bucket("+2^0", 10, 1);
-  bucket("+2^2", 20, 0);
-  bucket("+2^5", 30, 0);
-  bucket("0", 5, 5);
-  bucket("-2^1", 10, 0);
-  bucket("-2^4", 10, 1);
-  const Json row = thresholds(counts_of(summary)).at(0);
-  EXPECT_EQ(row["disjoint"]["exponent"], 2);
-  EXPECT_EQ(row["disjoint"]["above"], 50);
-  EXPECT_NEAR(row["disjoint"]["bound"], 1 - std::pow(0.05, 1 / 50.0), 1e-6);
-  EXPECT_TRUE(row["intersects"]["exponent"].is_null());
-  EXPECT_EQ(row["intersects"]["bound"], 1);
+  bucket("uniform", "+2^-3", 10, 0);
+  bucket("uniform", "+2^0", 10, 1);
+  bucket("uniform", "+2^2", 20, 0);
+  bucket("uniform", "+2^5", 30, 0);
+  bucket("uniform", "0", 5, 5);
+  bucket("uniform", "-2^1", 10, 0);
+  bucket("uniform", "-2^4", 10, 1);
+  bucket("degenerate", "+2^9", 4, 1);
+  const CampaignCounts counts = counts_of(summary);
+  for (const Json& row : {threshold_of(counts, "general"), threshold_of(counts, "", "uniform")}) {
+    EXPECT_EQ(row["disjoint"]["exponent"], 2);
+    EXPECT_EQ(row["disjoint"]["above"], 50);
+    EXPECT_NEAR(row["disjoint"]["bound"], 1 - std::pow(0.05, 1 / 50.0), 1e-6);
+    EXPECT_TRUE(row["intersects"]["exponent"].is_null());
+    EXPECT_EQ(row["intersects"]["bound"], 1);
+    EXPECT_EQ(row["intersects"]["largest"], 4);
+  }
+  const Json other = threshold_of(counts, "degenerate"), all = threshold_of(counts, "");
+  EXPECT_TRUE(other["disjoint"]["exponent"].is_null());
+  EXPECT_EQ(other["disjoint"]["largest"], 9);
+  EXPECT_TRUE(other["intersects"]["largest"].is_null());  // no such pairs
+  EXPECT_TRUE(all["disjoint"]["exponent"].is_null());     // what pooling makes of it
+}
+
+TEST(Tables, GroupsHoldEveryStratumOnceAndAddUp) {
+  std::vector<std::string> strata;
+  for (const strata::StratumInfo& info : strata::kStrata) strata.emplace_back(info.id);
+  const CampaignCounts counts = counts_of(summary_of({"moller_1997/f32/cpu"}, strata, {3, 2, 0, 0}));
+  std::set<std::size_t> seen;
+  std::uint64_t pairs = 0;
+  for (const GroupCounts& group : counts.groups) {
+    for (const std::size_t s : group.strata) EXPECT_TRUE(seen.insert(s).second) << counts.strata[s].id;
+    EXPECT_EQ(group.counts.wrong(0), 5 * group.strata.size());
+    pairs += group.counts.pairs;
+  }
+  EXPECT_EQ(counts.groups.size(), 4u);
+  EXPECT_EQ(seen.size(), strata.size());
+  EXPECT_EQ(pairs, counts.total.pairs);
+  EXPECT_EQ(group_rates(counts).size(), 4u);
 }
 
 TEST(Tables, ExtremesOfAllStrataAddUp) {
@@ -236,7 +277,11 @@ TEST_F(ReportTest, SameBytesAgainAndForOtherThreads) {
   const Json one = make_report(root_ / "one"), again = make_report(root_ / "one"), two = make_report(root_ / "two");
   EXPECT_EQ(report_text(one), report_text(again));
   EXPECT_EQ(report_text(one), report_text(two));
-  EXPECT_EQ(page(one), page(two));
+  EXPECT_EQ(page(one, nullptr), page(two, nullptr));
+  const Json costs = make_costs(root_ / "one");
+  EXPECT_EQ(report_text(costs), report_text(make_costs(root_ / "one")));
+  EXPECT_FALSE(contains(report_text(one), " ns "));  // what depends on the machine stays apart
+  EXPECT_TRUE(contains(page(one, costs), costs["answer"][0].get<std::string>()));
   EXPECT_EQ(report_text(one).find(root_.string()), std::string::npos);
   EXPECT_EQ(Json::parse(report_text(one)), one);
 }
@@ -244,7 +289,7 @@ TEST_F(ReportTest, SameBytesAgainAndForOtherThreads) {
 TEST_F(ReportTest, AgreesWithTheSummary) {
   const Json report = make_report(root_ / "one"),
              summary = Json::parse(fuzz::read_whole(root_ / "one" / "summary.json"));
-  EXPECT_EQ(report["answer"].size(), 5u);
+  EXPECT_EQ(report["answer"].size(), 6u);
   ASSERT_EQ(report["rates"].size(), report["lanes"].size() * 4);  // three strata, and all
   for (const Json& row : report["rates"]) {
     if (row["stratum"].is_null()) continue;
@@ -312,6 +357,10 @@ TEST_F(ReportTest, CardsTellWhatTheMinimiserStored) {
     EXPECT_TRUE(contains(card["sentences"][0], "says"));
     EXPECT_EQ(card["maps"], Json({{"title", "t"}}));
     EXPECT_TRUE(contains(card["snippets"][0]["text"], "g++") || contains(card["snippets"][0]["text"], "nvcc"));
+    // The algorithm's source is in the report once.
+    const std::string algorithm = report["signatures"][card["signature"].get<std::size_t>()]["algorithm"];
+    EXPECT_TRUE(contains(card["snippets"][0]["text"], std::string(kSourceMark)));
+    EXPECT_EQ(report["sources"][algorithm], amalgamated_source(algorithm));
   }
   // Facts of another pair are not shown.
   const fs::path facts = fuzz::facts_file(root_ / "minimised" / report["cards"][0]["file"].get<std::string>());
@@ -355,7 +404,7 @@ TEST_F(ReportTest, TablesHaveARowAHeaderAndTheSameCellsEach) {
       ASSERT_EQ(std::count(line.begin(), line.end(), ','), std::count(header.begin(), header.end(), ',')) << line;
   }
   EXPECT_EQ(rows["signatures.csv"], report["signatures"].size());
-  EXPECT_EQ(rows["thresholds.csv"], 2 * report["lanes"].size());
+  EXPECT_EQ(rows["thresholds.csv"], 2 * report["lanes"].size() * (report["groups"].size() + 3 + 1));
   EXPECT_GT(rows["margins.csv"], 100u);
   EXPECT_GT(rows["rates.csv"], report["rates"].size());
 }
@@ -384,10 +433,11 @@ TEST_F(ReportTest, PlainPageIsWellFormedAndShowsEverything) {
   Json report = make_report(root_ / "one");
   add_comparison(report, report, report["signatures"], report["signatures"]);
   report["missing"].push_back("a <b> & \"c\"");
-  const std::string text = plain_page(report);
+  const std::string text = plain_page(report, make_costs(root_ / "one"));
   expect_well_formed(text);
   EXPECT_TRUE(contains(text, "a &lt;b&gt; &amp; &quot;c&quot;"));
   EXPECT_TRUE(contains(text, "had no Node"));
+  EXPECT_LT(text.find(" ns a general pair"), text.find("<h2>What was run"));
   EXPECT_EQ(text.find("<script"), std::string::npos);
   EXPECT_EQ(text.find("http"), std::string::npos);
   std::size_t drawings = 0;
@@ -397,12 +447,15 @@ TEST_F(ReportTest, PlainPageIsWellFormedAndShowsEverything) {
 
 TEST(Page, HoldsTheReportInItsElement) {
   const Json report = {{"text", "</script><!--"}};
-  const std::string text =
-      filled("<p><script type=\"application/json\" id=\"report\">old</script><script>code</script>", report);
+  const std::string text = filled(
+      "<p><script type=\"application/json\" id=\"costs\">null</script>"
+      "<script type=\"application/json\" id=\"report\">old</script><script>code</script>",
+      report, {{"passes", 9}});
   EXPECT_EQ(text,
-            "<p><script type=\"application/json\" id=\"report\">{\"text\":\"\\u003c/script>\\u003c!--\"}</script>"
+            "<p><script type=\"application/json\" id=\"costs\">{\"passes\":9}</script>"
+            "<script type=\"application/json\" id=\"report\">{\"text\":\"\\u003c/script>\\u003c!--\"}</script>"
             "<script>code</script>");
-  EXPECT_THROW(filled("<p>", report), std::logic_error);
+  EXPECT_THROW(filled("<p>", report, nullptr), std::logic_error);
 }
 
 TEST(Page, OfManySignaturesIsUnderEightMebibytes) {
@@ -442,7 +495,7 @@ TEST(Page, OfManySignaturesIsUnderEightMebibytes) {
                     Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump());
   fuzz::write_whole(directory / "summary.json", summary.dump());
   const Json report = make_report(directory);
-  const std::string html = page(report);
+  const std::string html = page(report, nullptr);
   EXPECT_EQ(report["cards"].size(), fuzz::kMostCards);
   EXPECT_EQ(report["signatures"].size(), kMostSignatures);
   EXPECT_EQ(report["signature_count"], 12'000);

@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/gpu_engine.h"
+#include "fuzz/campaign/lane_costs.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/cost_estimate.h"
 
@@ -146,14 +147,15 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
     progress.disagreements_of_source[static_cast<std::size_t>(batch->source)] += result.disagreements;
     report(progress);
   }
-  Outcome outcome{write_summary(campaign, store, progress.done == progress.total), store.oracle()};
-  append_timing(campaign.directory,
-                {{"pairs", progress.done_here},
-                 {"seconds", seconds()},
-                 {"threads", threads},
-                 {"machine", machine_name()},
-                 {"engine", campaign.engines.empty() ? "cpu" : "gpu"}},
-                outcome.oracle);
+  const bool complete = progress.done == progress.total;
+  Outcome outcome{write_summary(campaign, store, complete), store.oracle()};
+  Json run = {{"pairs", progress.done_here},
+              {"seconds", seconds()},
+              {"threads", threads},
+              {"machine", machine_name()},
+              {"engine", campaign.engines.empty() ? "cpu" : "gpu"}};
+  if (complete) run["costs"] = measure_costs(campaign);
+  append_timing(campaign.directory, run, outcome.oracle);
   return outcome;
 }
 

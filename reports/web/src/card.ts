@@ -61,15 +61,19 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
   return h('div', { class: 'maps' }, h('h4', {}, 'Ulp map'),
     h('p', {}, `${maps.title}: ${maps.x} to the right, ${maps.y} upwards; the case is in the middle. `,
       h('span', { class: 'map-key' }, maps.legend.map(({ colour, means }) => h('span', {}, h('i', { style: `background:${colour}` }), means)))),
-    h('div', { class: 'panels' }, maps.panels.map(({ name, png }) => h('figure', { class: name === 'truth' ? 'panel truth' : 'panel' },
-      h('div', {}, h('img', { src: `data:image/png;base64,${png}`, width: maps.size, height: maps.size, decoding: 'async', alt: `Ulp map of ${name}` })),
+    h('div', { class: 'panels' }, maps.panels.map(({ name, shows, png }) => h('figure', { class: name === 'truth' ? 'panel truth' : 'panel' },
+      h('div', {}, h('img', { src: `data:image/png;base64,${png}`, width: maps.size, height: maps.size, decoding: 'async', alt: `${name}: ${shows ?? 'counts of the map are not stored'}` })),
       h('figcaption', {}, name === 'truth' ? 'truth' : breakable(name.split('/').slice(1).join('/')))))));
 }
 
+// The programs of a card, with the source that the report holds once for all of them.
+export const snippet_texts = (report: Report, card: Card) => card.snippets.map(({ label, text }) =>
+  ({ label, text: text.replace('@SOURCE@', () => report.sources[report.signatures[card.signature].algorithm]) }));
+
 // One text at a time, chosen by its button.
-function snippets(card: Card) {
+function snippets(report: Report, card: Card) {
   const shown = h('div', {});
-  const buttons = card.snippets.map(({ label, text }) => {
+  const buttons = snippet_texts(report, card).map(({ label, text }) => {
     const button = h('button', { type: 'button', 'aria-pressed': 'false', onclick: () => {
       const open = button.getAttribute('aria-pressed') === 'true';
       buttons.forEach((other) => other.setAttribute('aria-pressed', 'false'));
@@ -81,32 +85,39 @@ function snippets(card: Card) {
   return h('div', { class: 'snippets' }, h('h4', {}, 'For a bug report'), h('div', { class: 'chips' }, buttons), shown);
 }
 
-// The inside of a card, made when it is opened.
-export function card_body(report: Report, card: Card, signature: Signature) {
-  const { truth } = card;
+// "intersects, contact: point, margin 0"
+function truth_words({ truth }: Card) {
   const where = truth.contact === 'none' ? `${figure(truth.margin)} apart` : truth.margin === 0 ? `contact: ${truth.contact}, margin 0`
     : `contact: ${truth.contact}, ${figure(Math.abs(truth.margin))} deep`;
-  const ulps = truth.margin === 0 ? '' : ` (${figure(Math.abs(truth.margin_ulps))} ulps)`;
+  return `${truth.verdict}, ${where}${truth.margin === 0 ? '' : ` (${figure(Math.abs(truth.margin_ulps))} ulps)`}`;
+}
+
+// The inside of a card, made when it is opened.
+export function card_body(report: Report, card: Card, signature: Signature) {
+  const truth = truth_words(card), [verdict] = truth.split(',');
   return h('div', { class: 'card-body' },
-    h('div', { class: 'card-top' }, stage(card),
+    h('div', { class: 'card-top' }, stage(card, truth),
       h('div', { class: 'card-facts' },
-        h('p', { class: 'truth' }, h('b', {}, `Truth: ${truth.verdict}`), `, ${where}${ulps}`),
+        h('p', { class: 'truth' }, h('b', {}, `Truth: ${verdict}`), truth.slice(verdict.length)),
         h('ul', { class: 'sentences' }, card.sentences.map((sentence) => h('li', {}, sentence))),
         coordinates(card))),
     h('div', { class: card.maps ? 'card-low' : '' }, h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)), card.maps && ulp_maps(card.maps)),
     h('h4', {}, 'Again'),
     h('div', { class: 'commands' }, card.commands.map(({ label, text }) => [h('span', { class: 'label' }, label), code_block(text, `the ${label} command`)])),
-    card.snippets.length > 0 && snippets(card),
+    card.snippets.length > 0 && snippets(report, card),
     h('p', { class: 'small' }, card.minimised ? `Minimised from ${card.from}; ` : `Not minimised, as drawn: ${card.from}; `, 'stored in ', h('code', {}, card.file),
       '; signature ', h('code', {}, ...breakable(signature.key))));
 }
 
-export function card_element(report: Report, card: Card, number: number) {
+// Of the card at that place.
+export const kind_id = (place: number) => `kind-${place + 1}`;
+
+export function card_element(report: Report, card: Card, place: number) {
   const signature = report.signatures[card.signature];
   const { details, open } = lazy_details([
-    h('span', { class: 'card-number' }, String(number)),
+    h('span', { class: 'card-number' }, String(place + 1)),
     h('span', { class: 'card-title' }, h('b', {}, signature.algorithm), ` wrong on ${signature_words(signature)}`),
     h('span', { class: 'card-count' }, `${count(signature.count)} pairs, ${percent(signature.share)}`),
-  ], () => card_body(report, card, signature), { class: 'card', id: `card-${number}` });
+  ], () => card_body(report, card, signature), { class: 'card', id: kind_id(place) });
   return { details, open };
 }

@@ -20,6 +20,9 @@ export function figure(value: number): string {
   return `${Number(digits)}·10${raised(Number(power))}`;
 }
 
+// "42 ns", "8.5 ns"
+export const nanoseconds = (value: number) => `${value.toFixed(value < 10 ? 1 : 0)} ns`;
+
 // A share in per cent, without the sign: 47.8, 0.156, <0.001.
 export function bare_percent(share: number): string {
   const percent = 100 * share;

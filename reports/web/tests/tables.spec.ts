@@ -105,6 +105,6 @@ test('signatures sort and filter, and lead to their card', async ({ page, report
   const link = page.locator('.signatures .link', { hasText: new RegExp(`^card ${last}$`) });
   while (!(await link.count()) && (await more.isVisible())) await more.click();
   await link.click();
-  await expect(page.locator(`#card-${last}`)).toHaveAttribute('open', '');
-  await expect(page.locator(`#card-${last} .truth`).first()).toBeInViewport();
+  await expect(page.locator(`#kind-${last}`)).toHaveAttribute('open', '');
+  await expect(page.locator(`#kind-${last} .truth`).first()).toBeInViewport();
 });

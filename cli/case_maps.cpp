@@ -15,10 +15,12 @@ namespace {
 
 // Whether the stored maps are these lanes' of this pair.
 bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
-  if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || maps["panels"].size() != lanes.size() + 1)
+  if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || !maps["panels"].is_array() ||
+      maps["panels"].size() != lanes.size() + 1)
     return false;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    if (maps["panels"][l + 1].value("name", "") != lanes[l]->id) return false;
+    const Json& panel = maps["panels"][l + 1];
+    if (!panel.is_object() || panel.value("name", Json()) != lanes[l]->id) return false;
   }
   return true;
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <iostream>
 #include <mutex>
 #include <optional>
@@ -40,6 +41,13 @@ struct MinimizeOptions {
   bool again = false;
   LaneOptions lanes;
 };
+
+// Of this thread, so that it does not depend on what else the machine does.
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -100,10 +108,12 @@ struct Done {
   double milliseconds = 0;  // of each case; 0 where it was done before
   double seconds = 0;       // of the file; 0 where it was done before
   double map_seconds = 0;   // 0 without a map, and where it was done before
+  double processor = 0;     // seconds of one core for the file's cases
 };
 
 Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file, bool again) {
   const auto start = Clock::now();
+  const double before = processor_seconds();
   std::vector<corpus::Entry> entries = corpus::read_pairs(file);
   if (entries.empty()) throw std::runtime_error(file.string() + ": expected at least one case, found none");
   if (!again && has_result(under_test, entries)) return {true, fuzz::nontrivial_magnitudes(entries.front().pair), 0};
@@ -114,8 +124,12 @@ Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file,
   const auto cases =
       std::count_if(entries.begin(), entries.end(), [](const corpus::Entry& e) { return !corpus::field(e, "kind"); });
   const double seconds = seconds_since(start);
-  return {true, fuzz::nontrivial_magnitudes(results.front().result.pair),
-          1e3 * seconds / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1)), seconds};
+  return {true,
+          fuzz::nontrivial_magnitudes(results.front().result.pair),
+          1e3 * seconds / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1)),
+          seconds,
+          0,
+          processor_seconds() - before};
 }
 
 // An estimate by what the files and maps made so far took.
@@ -190,8 +204,8 @@ int minimize_directory(MinimizeOptions options) {
   for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
     const Json& row = summary["signatures"][place];
     // Pairs on which a device and its twin differ are kept too; they are nobody's failure.
-    const std::string key = row["key"];
-    files.push_back(directory / row["case"].get<std::string>());
+    const std::string key = row.at("key");
+    files.push_back(fuzz::case_file(directory, row));
     to_map.push_back(std::binary_search(cards.begin(), cards.end(), place) ? key : "");
     maps_to_make += !to_map.back().empty();
   }
@@ -228,8 +242,10 @@ int minimize_directory(MinimizeOptions options) {
 
   std::vector<double> times;
   int maps = 0;
-  double map_seconds = 0;
+  double map_seconds = 0, processor = 0, worst = 0;
   for (const Done& done : all) {
+    processor += done.processor;
+    worst = std::max(worst, done.processor);
     if (done.milliseconds > 0) times.push_back(done.milliseconds);
     maps += done.map_seconds > 0;
     map_seconds += done.map_seconds;
@@ -237,6 +253,8 @@ int minimize_directory(MinimizeOptions options) {
   std::sort(times.begin(), times.end());
   fuzz::append_timing(directory, {{"minimised", times.size()},
                                   {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
+                                  {"processor_seconds", processor},
+                                  {"processor_seconds_worst", worst},
                                   {"mapped", maps},
                                   {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / maps},
                                   {"seconds", seconds_since(start)},

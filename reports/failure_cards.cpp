@@ -20,24 +20,24 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// Throws: FormatError.
+// Throws: std::invalid_argument.
 analysis::Signature signature_of(const std::string& key) {
   const std::optional<analysis::Signature> signature = analysis::parse_signature(key);
-  if (!signature) throw corpus::FormatError("expected the key of a signature, found '" + key + "'");
+  if (!signature) throw std::invalid_argument("expected the key of a signature, found '" + key + "'");
   return *signature;
 }
 
 Json signature_row(const CampaignCounts& counts, const Json& found) {
-  const std::string key = found["key"];
+  const std::string key = found.at("key");
   const analysis::Signature signature = signature_of(key);
   std::string marks;
   for (const ReportLane& lane : counts.lanes) {
     if (lane.name.subject == signature.subject) marks += signature.mark_of(lane.name.within_subject());
   }
-  const double share = found["count"].get<double>() / static_cast<double>(counts.total.pairs);
+  const double share = found.at("count").get<double>() / static_cast<double>(counts.total.pairs);
   return {{"key", key},
           {"algorithm", signature.subject},
-          {"count", found["count"]},
+          {"count", found.at("count")},
           {"share", std::stod(fmt::format("{:.5g}", share))},
           {"contact", name(signature.contact)},
           {"dimensions", fmt::format("{}{}", signature.shape.dimension_a, signature.shape.dimension_b)},
@@ -74,11 +74,29 @@ Json drawing_of(const Pair& pair) {
   return {{"contact", points(oracle::common_set(pair))}, {"planes_line", points(oracle::planes_line(pair))}};
 }
 
-// What is stored beside the case, if it is of this pair.
+// What is stored beside the case, if it is of this pair.   Throws: FormatError when it is not what is stored there.
 std::optional<Json> stored(const std::filesystem::path& file, const Pair& pair) {
   Json found = Json::parse(fuzz::read_whole(file), nullptr, false);
-  if (!found.is_object() || found.value("pair", "") != fuzz::pair_text(pair)) return std::nullopt;
+  if (!found.is_object() || found.value("pair", Json()) != fuzz::pair_text(pair)) return std::nullopt;
+  const auto are_texts = [](const Json& values) {
+    return std::all_of(values.begin(), values.end(), [](const Json& value) { return value.is_string(); });
+  };
+  const Json verdicts = found.value("verdicts", Json()), sentences = found.value("sentences", Json());
+  if (!verdicts.is_object() || !sentences.is_array() || !are_texts(verdicts) || !are_texts(sentences))
+    throw corpus::FormatError(file.string() + ": expected verdicts and sentences, found something else");
   return found;
+}
+
+double number_in(const std::filesystem::path& file, const corpus::Entry& entry, std::string_view key) {
+  const std::string text = text_of(entry, key);
+  std::size_t used = 0;
+  try {
+    const double value = std::stod(text, &used);
+    if (used == text.size()) return value;
+  } catch (const std::logic_error&) {
+  }
+  throw corpus::FormatError(
+      fmt::format("{}:{}: expected a number as {}, found '{}'", file.string(), entry.line, key, text));
 }
 
 Verdict verdict_of(std::string_view word) {
@@ -173,32 +191,33 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
 
 Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& found, std::size_t& room,
              Lacking& lacking) {
-  const std::string file = found["case"];
-  const std::vector<corpus::Entry> entries = corpus::read_pairs(directory / file);
-  if (entries.empty()) throw corpus::FormatError(file + ": expected at least one case, found none");
+  const std::string name_of_file = found.at("case");
+  const std::filesystem::path file = fuzz::case_file(directory, found);
+  const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
+  if (entries.empty()) throw corpus::FormatError(file.string() + ": expected at least one case, found none");
   const corpus::Entry& entry = fuzz::shown_case(entries);
-  const analysis::Signature signature = signature_of(found["key"]);
+  const analysis::Signature signature = signature_of(found.at("key"));
   const Verdict truth = verdict_of(text_of(entry, "truth"));
-  const std::optional<Json> facts = stored(fuzz::facts_file(directory / file), entry.pair);
+  const std::optional<Json> facts = stored(fuzz::facts_file(file), entry.pair);
   const bool minimised = corpus::field(entry, "kind") != nullptr;
   lacking.minimised += !minimised;
   lacking.explained += !facts;
   const std::string from = origin(entry);
   const Json verdicts = verdicts_of(counts, signature, truth, facts);
   return {{"signature", nullptr},
-          {"file", file},
+          {"file", name_of_file},
           {"minimised", minimised},
           {"from", from},
           {"pair", coordinates_of(entry.pair)},
           {"truth",
            {{"verdict", name(truth)},
             {"contact", text_of(entry, "contact")},
-            {"margin", std::stod(text_of(entry, "margin"))},
-            {"margin_ulps", std::stod(text_of(entry, "margin_ulps"))}}},
+            {"margin", number_in(file, entry, "margin")},
+            {"margin_ulps", number_in(file, entry, "margin_ulps")}}},
           {"drawing", drawing_of(entry.pair)},
           {"verdicts", verdicts},
           {"sentences", facts ? facts->at("sentences") : Json::array()},
-          {"maps", maps_of(directory / file, entry.pair, room, lacking)},
+          {"maps", maps_of(file, entry.pair, room, lacking)},
           {"commands", commands_of(entry, signature, from)},
           {"snippets", snippets_of(counts, entry, signature, truth, verdicts, from)}};
 }
@@ -230,7 +249,7 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
 
 Json signature_rows(const CampaignCounts& counts, const Json& summary) {
   Json rows = Json::array();
-  for (const Json& found : summary["signatures"]) {
+  for (const Json& found : summary.at("signatures")) {
     rows.push_back(signature_row(counts, found));
   }
   return rows;
@@ -247,8 +266,8 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   Json rows = Json::array(), cards = Json::array();
   std::size_t count = 0, room = kMostMapBytes;
   Lacking lacking;
-  for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
-    const Json& found = summary["signatures"][place];
+  for (std::size_t place = 0; place < summary.at("signatures").size(); ++place) {
+    const Json& found = summary.at("signatures")[place];
     ++count;
     const bool has_card = std::binary_search(carded.begin(), carded.end(), place);
     if (count > kMostSignatures && !has_card) continue;

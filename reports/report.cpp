@@ -24,10 +24,11 @@ namespace {
 // The machines that the campaign ran on, as far as their names are known.
 Json machines(const std::filesystem::path& directory) {
   const Json timings = Json::parse(fuzz::read_whole(directory / "timings.json"), nullptr, false);
-  if (!timings.is_object() || !timings.contains("runs")) return nullptr;
+  if (!timings.is_object() || !timings.value("runs", Json()).is_array()) return nullptr;
   std::set<std::string> names;
   for (const Json& run : timings["runs"]) {
-    if (run.contains("machine") && run.value("pairs", 0.0) > 0) names.insert(run["machine"].get<std::string>());
+    const Json machine = run.is_object() ? run.value("machine", Json()) : Json();
+    if (machine.is_string() && run.value("pairs", Json()) > Json(0)) names.insert(machine.get<std::string>());
   }
   return names.empty() ? Json() : Json(fmt::format("{}", fmt::join(names, "; ")));
 }
@@ -151,7 +152,7 @@ Json make_report(const std::filesystem::path& directory) {
   } catch (const Json::exception&) {
     throw corpus::FormatError((directory / "summary.json").string() +
                               ": expected a campaign's summary, found something else");
-  } catch (const std::out_of_range&) {
+  } catch (const std::logic_error&) {  // a text that is no number, or no signature
     throw corpus::FormatError((directory / "summary.json").string() +
                               ": expected a campaign's summary, found something else");
   }

@@ -31,9 +31,9 @@ std::vector<std::size_t> carded_signatures(const Json& summary) {
     std::string key;
   };
   std::map<std::string, std::vector<Row>> of_algorithm;  // the commonest first, as the summary has them
-  const Json& rows = summary["signatures"];
+  const Json& rows = summary.at("signatures");
   for (std::size_t place = 0; place < rows.size(); ++place) {
-    const std::string key = rows[place]["key"];
+    const std::string key = rows.at(place).at("key");
     of_algorithm[analysis::subject_of(key)].push_back({place, key});
   }
   std::vector<std::size_t> cards;
@@ -42,7 +42,7 @@ std::vector<std::size_t> carded_signatures(const Json& summary) {
     const std::size_t commonest = share - share / 4;
     std::size_t taken = 0;
     for (std::size_t i = 0; i < own.size() && taken < share; ++i) {
-      if (i >= commonest && !shows_contraction(summary["spec"]["lanes"], own[i].key)) continue;
+      if (i >= commonest && !shows_contraction(summary.at("spec").at("lanes"), own[i].key)) continue;
       cards.push_back(own[i].place);
       ++taken;
     }

@@ -49,7 +49,7 @@ void store_facts(const LanesUnderTest& under_test, const std::filesystem::path& 
   if (entries.empty()) throw corpus::FormatError(case_file.string() + ": expected at least one case, found none");
   const corpus::Entry& shown = shown_case(entries);
   const Json before = Json::parse(read_whole(facts_file(case_file)), nullptr, false);
-  if (before.is_object() && before.value("pair", "") == pair_text(shown.pair) && before.contains("verdicts")) {
+  if (before.is_object() && before.value("pair", Json()) == pair_text(shown.pair) && before.contains("verdicts")) {
     const Json& verdicts = before["verdicts"];
     const bool same_lanes = verdicts.size() == under_test.lanes.size() &&
                             std::all_of(under_test.lanes.begin(), under_test.lanes.end(),

@@ -140,6 +140,37 @@ def database_bytes(turn):
         judge(turn, campaign)
 
 
+def fnv1a(data, start=0xcbf29ce484222325):
+    for byte in data:
+        start = (start ^ byte) * 0x100000001b3 & (1 << 64) - 1
+    return start
+
+
+def signed(number):
+    return number - (1 << 64) if number >> 63 else number
+
+
+def forged(turn):
+    """A row is changed and its checksum with it: what it says may be believed, but nothing may break."""
+    for attempt in range(ATTEMPTS):
+        campaign = copy(turn, attempt)
+        with sqlite3.connect(campaign / DATABASE, isolation_level=None) as database:
+            of_campaign, = database.execute("SELECT checksum FROM campaign").fetchone()
+            rows = database.execute("SELECT id, source, first, pairs, counts FROM batch").fetchall()
+            row, *place, counts = turn.random.choice(rows)
+            start = f"{of_campaign & (1 << 64) - 1:016x} {' '.join(map(str, place))} ".encode()
+            counts = mutate.any_of(turn.random, counts, mutate.BINARY)
+            database.execute("UPDATE batch SET counts = ?, checksum = ? WHERE id = ?", [counts, signed(fnv1a(counts, fnv1a(start))), row])
+        database.close()
+        command = [*turn.bench.campaign("small"), "--out", campaign]
+        refused = turn.is_refused(turn.run(*command), DATABASE)
+        if refused:
+            turn.must_succeed(turn.run(*command, "--discard-damaged"))
+            turn.must_be_same(campaign, turn.bench.reference("small"))
+        turn.count("refused" if refused else "read")
+        shutil.rmtree(campaign)
+
+
 def sql(turn):
     """Through SQLite, which leaves a file that it finds nothing wrong with."""
     for attempt in range(ATTEMPTS):

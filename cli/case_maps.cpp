@@ -14,11 +14,12 @@ namespace {
 
 // Whether the stored maps are these lanes' of this pair.
 bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
-  if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || maps["panels"].size() != lanes.size() + 1)
+  if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || !maps["panels"].is_array() ||
+      maps["panels"].size() != lanes.size() + 1)
     return false;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     const Json& panel = maps["panels"][l + 1];
-    if (panel.value("name", "") != lanes[l]->id || !panel.contains("shows")) return false;
+    if (!panel.is_object() || panel.value("name", Json()) != lanes[l]->id || !panel.contains("shows")) return false;
   }
   return true;
 }

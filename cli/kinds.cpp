@@ -46,8 +46,9 @@ void print(const Json& kind, std::size_t number, const reports::Screen& screen) 
     return reports::wrapped(text, screen.columns, indent, indent + 2);
   };
   const std::string subject = kind["subject"], where = kind["line"], file = kind["simplest"]["case"];
-  const std::string title = fmt::format("kind-{}  {}: {}{}, {} pairs", number, subject, kind["cause"].get<std::string>(),
-                                        where.empty() ? "" : " at " + where, kind["shape"].get<std::string>());
+  const std::string title =
+      fmt::format("kind-{}  {}: {}{}, {} pairs", number, subject, kind["cause"].get<std::string>(),
+                  where.empty() ? "" : " at " + where, kind["shape"].get<std::string>());
   fmt::print("{}", reports::bold(screen, line(0, title)));
   fmt::print("{}", line(2, fmt::format("{} pairs of {} signatures; wrong: {}",
                                        reports::grouped(kind["pairs"].get<std::uint64_t>()),
@@ -58,9 +59,9 @@ void print(const Json& kind, std::size_t number, const reports::Screen& screen) 
     fmt::print("{}", line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of)));
   fmt::print("{}", line(2, "margins: " + shares(kind["margins"], 4)));
   if (!kind["strata"].empty()) fmt::print("{}", line(2, "strata of the kept pairs: " + shares(kind["strata"], 4)));
-  fmt::print("{}", line(2, fmt::format("simplest: {}, worst: {} ({:.4g} ulps)", file,
-                                       kind["worst"]["from"].get<std::string>(),
-                                       kind["worst"]["margin_ulps"].get<double>())));
+  fmt::print(
+      "{}", line(2, fmt::format("simplest: {}, worst: {} ({:.4g} ulps)", file, kind["worst"]["from"].get<std::string>(),
+                                kind["worst"]["margin_ulps"].get<double>())));
   for (const Json& text : kind["simplest"]["sentences"]) {
     fmt::print("{}", line(2, text.get<std::string>()));
     break;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <ctime>
 #include <iostream>
 #include <mutex>
 #include <optional>
@@ -43,6 +44,13 @@ struct MinimizeOptions {
   bool exact_input = false;
   LaneOptions lanes;
 };
+
+// Of this thread, so that it does not depend on what else the machine does.
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -125,10 +133,12 @@ struct Done {
   int magnitudes = 0;       // of the first result
   double milliseconds = 0;  // of each case; 0 where it was done before
   double seconds = 0;       // of the file; 0 where it was done before
+  double processor = 0;     // seconds of one core for the file's cases
 };
 
 Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file, bool again) {
   const auto start = Clock::now();
+  const double before = processor_seconds();
   std::vector<corpus::Entry> entries = corpus::read_pairs(file);
   if (entries.empty()) throw std::runtime_error(file.string() + ": expected at least one case, found none");
   if (!again && has_result(under_test, entries)) return {true, fuzz::nontrivial_magnitudes(entries.front().pair), 0};
@@ -140,7 +150,8 @@ Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file,
       std::count_if(entries.begin(), entries.end(), [](const corpus::Entry& e) { return !corpus::field(e, "kind"); });
   const double seconds = seconds_since(start);
   return {true, fuzz::nontrivial_magnitudes(results.front().result.pair),
-          1e3 * seconds / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1)), seconds};
+          1e3 * seconds / static_cast<double>(std::max<std::ptrdiff_t>(cases, 1)), seconds,
+          processor_seconds() - before};
 }
 
 void print_directory(const std::string& directory, const std::vector<Done>& all) {
@@ -177,7 +188,7 @@ int minimize_directory(MinimizeOptions options) {
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   std::vector<fs::path> files;
-  for (const Json& row : summary["signatures"]) files.push_back(directory / row.at("case").get<std::string>());
+  for (const Json& row : summary["signatures"]) files.push_back(fuzz::case_file(directory, row));
 
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -200,12 +211,14 @@ int minimize_directory(MinimizeOptions options) {
   });
   fmt::print(stderr, "{}", progress.end());
   if (count == files.size()) fmt::print(stderr, "graze: telling what kinds of failure these are\n");
-  const Json kinds = interrupted ? Json() : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
+  const Json kinds =
+      interrupted ? Json() : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
   const auto mapping = Clock::now();
   std::size_t maps = 0;
   for (const Json& kind : kinds) {
     if (!interrupted)
-      maps += map_case(under_test, directory / kind["simplest"]["case"].get<std::string>(), kind["subject"], options.again);
+      maps +=
+          map_case(under_test, directory / kind["simplest"]["case"].get<std::string>(), kind["subject"], options.again);
   }
   if (interrupted) {
     fmt::print(stderr, "graze: interrupted; minimised {} of {} signatures; run the same command to go on\n",
@@ -219,12 +232,17 @@ int minimize_directory(MinimizeOptions options) {
              shell_word(options.name), shell_word(options.name));
 
   std::vector<double> times;
+  double processor = 0, worst = 0;
   for (const Done& done : all) {
+    processor += done.processor;
+    worst = std::max(worst, done.processor);
     if (done.milliseconds > 0) times.push_back(done.milliseconds);
   }
   std::sort(times.begin(), times.end());
   fuzz::append_timing(directory, {{"minimised", times.size()},
                                   {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
+                                  {"processor_seconds", processor},
+                                  {"processor_seconds_worst", worst},
                                   {"mapped", maps},
                                   {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / static_cast<double>(maps)},
                                   {"seconds", seconds_since(start)},

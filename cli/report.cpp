@@ -10,6 +10,8 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/minimise/kinds.h"
+#include "reports/comparison.h"
 #include "reports/csv.h"
 #include "reports/page.h"
 
@@ -72,9 +74,10 @@ void report(const ReportOptions& options) {
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
     Json after = reports::make_report(options.compare[1]);
-    reports::add_comparison(after, reports::make_report(options.compare[0]),
-                            reports::read_summary(options.compare[1])["signatures"],
-                            reports::read_summary(options.compare[0])["signatures"]);
+    reports::add_comparison(after, reports::make_report(options.compare[0]), fuzz::read_kinds(options.compare[1]),
+                            fuzz::read_kinds(options.compare[0]));
+    fmt::print("{}\n", after["compare"]["headline"].get<std::string>());
+    for (const Json& sentence : after["compare"]["differences"]) fmt::print("{}\n", sentence.get<std::string>());
     write_report(options.compare[1], after, "compare");
   } else {
     const Json made = reports::make_report(options.directory);

@@ -20,10 +20,10 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// Throws: FormatError.
+// Throws: std::invalid_argument.
 analysis::Signature signature_of(const std::string& key) {
   const std::optional<analysis::Signature> signature = analysis::parse_signature(key);
-  if (!signature) throw corpus::FormatError("expected the key of a signature, found '" + key + "'");
+  if (!signature) throw std::invalid_argument("expected the key of a signature, found '" + key + "'");
   return *signature;
 }
 
@@ -44,7 +44,7 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
           {"coplanar", signature.shape.coplanar},
           {"margin", name_of_bucket(signature.bucket)},
           {"marks", marks},
-          {"card", nullptr}};
+          {"cards", Json::array()}};
 }
 
 std::string text_of(const corpus::Entry& entry, std::string_view key) {
@@ -72,6 +72,18 @@ Json drawing_of(const Pair& pair) {
     return rows;
   };
   return {{"contact", points(oracle::common_set(pair))}, {"planes_line", points(oracle::planes_line(pair))}};
+}
+
+double number_in(const std::filesystem::path& file, const corpus::Entry& entry, std::string_view key) {
+  const std::string text = text_of(entry, key);
+  std::size_t used = 0;
+  try {
+    const double value = std::stod(text, &used);
+    if (used == text.size()) return value;
+  } catch (const std::logic_error&) {
+  }
+  throw corpus::FormatError(
+      fmt::format("{}:{}: expected a number as {}, found '{}'", file.string(), entry.line, key, text));
 }
 
 Verdict verdict_of(std::string_view word) {
@@ -113,7 +125,7 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
       fmt::format("Case {}{}: contact {}, margin {} ({} ulps)", corpus::field(entry, "kind") ? "minimised from " : "",
                   from, text_of(entry, "contact"), text_of(entry, "margin"), text_of(entry, "margin_ulps"));
   const auto is_of_kind = [&](const std::string& id) {
-    const Json& lanes = kind["simplest"]["lanes"];
+    const Json& lanes = kind.at("simplest").at("lanes");
     return std::find(lanes.begin(), lanes.end(), id) != lanes.end();
   };
   const auto add_lane = [&](SnippetKind language) {
@@ -122,7 +134,7 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
       if (!is_of_kind(lane.id) || !lane.row || !shows(language, *lane.row)) continue;
       const SnippetCase found{name, entry.pair, truth, lane.row, verdict_of(row["verdict"].get<std::string>())};
       std::string text = snippet(language, found);
-      const std::string source = amalgamated_source(kind["subject"].get<std::string>());
+      const std::string source = amalgamated_source(kind.at("subject").get<std::string>());
       if (const std::size_t at = text.find(source); at != text.npos) text.replace(at, source.size(), kSourceMark);
       rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", text}});
       return;
@@ -172,17 +184,18 @@ Json kept_pairs(const std::filesystem::path& case_file) {
 Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& kind, std::size_t& room,
              Lacking& lacking) {
   const Json& simplest = kind.at("simplest");
-  const std::string file = simplest["case"], subject = kind["subject"];
-  const std::vector<corpus::Entry> entries = corpus::read_pairs(directory / file);
-  if (entries.empty() || fuzz::pair_text(entries.front().pair) != simplest["pair"].get<std::string>())
-    throw corpus::FormatError(file + ": expected the pair of kinds.json first, found another");
+  const std::string subject = kind.at("subject");
+  const std::filesystem::path file = fuzz::case_file(directory, simplest);
+  const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
+  if (entries.empty() || fuzz::pair_text(entries.front().pair) != simplest.at("pair").get<std::string>())
+    throw corpus::FormatError(file.string() + ": expected the pair of kinds.json first, found another");
   const corpus::Entry& entry = entries.front();
   const Verdict truth = verdict_of(text_of(entry, "truth"));
   const bool minimised = corpus::field(entry, "kind") != nullptr;
   lacking.minimised += !minimised;
   const std::string from = origin(entry);
-  const Json verdicts = verdicts_of(counts, truth, simplest["verdicts"]);
-  Json card = {{"file", file}};
+  const Json verdicts = verdicts_of(counts, truth, simplest.at("verdicts"));
+  Json card = {{"file", simplest.at("case")}};
   for (const char* field : {"key", "subject", "cause", "line", "shape", "pairs", "signatures", "lanes", "settled",
                             "strata", "margins", "worst"})
     card["kind"][field] = kind.at(field);
@@ -192,12 +205,12 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
                {"truth",
                 {{"verdict", name(truth)},
                  {"contact", text_of(entry, "contact")},
-                 {"margin", std::stod(text_of(entry, "margin"))},
-                 {"margin_ulps", std::stod(text_of(entry, "margin_ulps"))}}},
+                 {"margin", number_in(file, entry, "margin")},
+                 {"margin_ulps", number_in(file, entry, "margin_ulps")}}},
                {"drawing", drawing_of(entry.pair)},
                {"verdicts", verdicts},
-               {"sentences", simplest["sentences"]},
-               {"maps", maps_of(directory / file, entry.pair, room, lacking)},
+               {"sentences", simplest.at("sentences")},
+               {"maps", maps_of(file, entry.pair, room, lacking)},
                {"commands", commands_of(entry, subject, from)},
                {"snippets", snippets_of(counts, entry, kind, truth, verdicts, from)}});
   return card;
@@ -224,7 +237,7 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
 
 Json signature_rows(const CampaignCounts& counts, const Json& summary) {
   Json rows = Json::array();
-  for (const Json& found : summary["signatures"]) {
+  for (const Json& found : summary.at("signatures")) {
     rows.push_back(signature_row(counts, found));
   }
   return rows;
@@ -239,25 +252,30 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   }
   const Json kinds = fuzz::read_kinds(directory);
   if (kinds.is_null() && !summary["signatures"].empty())
-    report["missing"].push_back("The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
+    report["missing"].push_back(
+        "The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
   Json rows = Json::array(), cards = Json::array();
   std::size_t room = kMostMapBytes;
   Lacking lacking;
-  std::map<std::size_t, std::size_t> card_of_place;  // of each signature the first, which is the commonest
-  for (const Json& kind : kinds) {
-    if (cards.size() == kMostCards) break;
-    for (const Json& place : kind["places"]) card_of_place.try_emplace(place.get<std::size_t>(), cards.size());
-    cards.push_back(card_of(directory, counts, kind, room, lacking));
+  std::map<std::size_t, std::vector<std::size_t>> cards_of;  // of each signature, the commonest kind first
+  try {
+    for (const Json& kind : kinds) {
+      if (cards.size() == kMostCards) break;
+      for (const Json& place : kind.at("places")) cards_of[place.get<std::size_t>()].push_back(cards.size());
+      cards.push_back(card_of(directory, counts, kind, room, lacking));
+    }
+  } catch (const Json::exception&) {
+    throw corpus::FormatError((directory / "kinds.json").string() +
+                              ": expected what `graze minimize` writes, found something else");
   }
   if (kinds.size() > cards.size())
     report["missing"].push_back(
         fmt::format("Cards show the commonest {} of {} kinds; `graze kinds` lists all.", cards.size(), kinds.size()));
-  const std::size_t count = summary["signatures"].size();
+  const std::size_t count = summary.at("signatures").size();
   for (std::size_t place = 0; place < std::min(count, kMostSignatures); ++place) {
-    rows.push_back(signature_row(counts, summary["signatures"][place]));
-    rows.back()["pairs"] = kept_pairs(directory / summary["signatures"][place]["case"].get<std::string>());
-    const auto card = card_of_place.find(place);
-    if (card != card_of_place.end()) rows.back()["card"] = card->second;
+    rows.push_back(signature_row(counts, summary.at("signatures")[place]));
+    rows.back()["pairs"] = kept_pairs(fuzz::case_file(directory, summary.at("signatures")[place]));
+    rows.back()["cards"] = cards_of[place];
   }
   if (rows.size() < count) {
     report["missing"].push_back(
@@ -266,7 +284,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   say_what_is_missing(report["missing"], lacking, cards.size());
   report["sources"] = Json::object();
   for (const Json& card : cards) {
-    const std::string algorithm = rows[card["signature"].get<std::size_t>()]["algorithm"];
+    const std::string algorithm = card["kind"]["subject"];
     for (const Json& row : card["snippets"]) {
       if (row["text"].get<std::string>().find(kSourceMark) != std::string::npos)
         report["sources"][algorithm] = amalgamated_source(algorithm);

@@ -22,11 +22,6 @@ nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 // The command that runs the whole campaign again.   Requires: what summary.json holds.
 std::string campaign_command(const nlohmann::ordered_json& summary);
 
-// Fills `compare`: what has changed since another campaign. Rates are compared by the names of lane and stratum;
-// signatures are all that the two campaigns found (`signatures` of summary.json), of which a report may show a part.
-void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json& before,
-                    const nlohmann::ordered_json& signatures, const nlohmann::ordered_json& signatures_before);
-
 // The report as text: each row on a line of its own, so that two can be compared.
 std::string report_text(const nlohmann::ordered_json& report);
 

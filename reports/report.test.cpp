@@ -372,6 +372,80 @@ TEST_F(ReportTest, CardsTellWhatTheMinimiserStored) {
   EXPECT_FALSE(report["cards"][1]["sentences"].empty());
 }
 
+// Whatever is changed in a campaign's files: an error names the one that is to blame.
+TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
+  run("damaged", 2);
+  const fs::path folder = root_ / "damaged", summary_file = folder / "summary.json", timings = folder / "timings.json";
+  const Json summary = Json::parse(fuzz::read_whole(summary_file));
+  const auto blamed = [&](const fs::path& file, const std::string& text) -> std::string {
+    const std::string before = fuzz::read_whole(file);
+    fuzz::write_whole(file, text);
+    std::string said = "nothing";
+    try {
+      make_report(folder);
+    } catch (const std::runtime_error& error) {
+      said = error.what();
+    }
+    fuzz::write_whole(file, before);
+    return said.starts_with(file.string() + ":") ? "the file" : said;
+  };
+  for (const char* part : {"/signatures", "/signatures/0/key", "/signatures/0/count", "/signatures/0/case",
+                           "/strata/near_edge_edge/margins", "/spec/lanes", "/build", "/complete"}) {
+    const Json::json_pointer place(part);
+    for (const Json& instead :
+         {Json(), Json(-1.5), Json("x"), Json::array({Json::array()}), Json("../../case.pairs")}) {
+      Json other = summary;
+      other[place] = instead;
+      const std::string found = blamed(summary_file, other.dump());
+      EXPECT_TRUE(found == "the file" || found == "nothing") << part << ' ' << instead << ": " << found;
+    }
+    Json other = summary;
+    other[place.parent_pointer()].erase(place.back());
+    EXPECT_EQ(blamed(summary_file, other.dump()), "the file") << part;
+  }
+  for (const char* outside : {"/etc/passwd", "cases/../../x.pairs", "cases", "../cases/x.pairs"}) {
+    Json other = summary;
+    other["signatures"][0]["case"] = outside;
+    EXPECT_EQ(blamed(summary_file, other.dump()), "the file") << outside;
+  }
+  for (const char* other : {"[]", R"({"runs": 1})", R"({"runs": [1, {"machine": 1, "pairs": 2}, {"pairs": {}}]})"})
+    EXPECT_EQ(blamed(timings, other), "nothing");  // only names the machine
+
+  const fs::path cases = folder / summary["signatures"][0]["case"].get<std::string>();
+  std::string text = fuzz::read_whole(cases);
+  const std::string pair = fuzz::pair_text(fuzz::shown_case(corpus::read_pairs(cases)).pair);
+  for (const Json& facts : {Json{{"pair", pair}}, Json{{"pair", pair}, {"verdicts", {{"a", 1}}}, {"sentences", {"b"}}},
+                            Json{{"pair", pair}, {"verdicts", {{"a", "b"}}}, {"sentences", {nullptr}}}})
+    EXPECT_EQ(blamed(fuzz::facts_file(cases), facts.dump()), "the file") << facts;
+  EXPECT_EQ(blamed(fuzz::facts_file(cases), R"({"pair": 1})"), "nothing");
+  EXPECT_EQ(blamed(cases, text.replace(text.find("margin="), 8, "margin=x")), "the file");
+}
+
+// A report comes from anywhere (`graze report --from`): one that lacks something is refused, whatever it lacks.
+TEST_F(ReportTest, APlainPageOfARestOfAReportIsRefused) {
+  const Json report = make_report(root_ / "one");
+  std::vector<std::string> places;
+  const Json flat = report.flatten();
+  for (const auto& [place, value] : flat.items()) places.push_back(place);
+  std::size_t refused = 0;
+  for (std::size_t i = 0; i < places.size(); i += 1 + places.size() / 150) {
+    Json rest = report;
+    for (Json::json_pointer place(places[i]); !place.empty(); place.pop_back()) {
+      Json& parent = rest[place.parent_pointer()];
+      if (parent.is_array())
+        parent.erase(std::min<std::size_t>(std::stoul(place.back()), parent.size() - 1));
+      else
+        parent.erase(place.back());
+      try {
+        plain_page(rest);
+      } catch (const Json::exception&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 100u);
+}
+
 TEST_F(ReportTest, ComparesTwoCampaigns) {
   run("other", 2, 4);
   Json report = make_report(root_ / "other");

@@ -82,10 +82,18 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
   return summary;
 }
 
+std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row) {
+  const std::filesystem::path file = row.at("case").get<std::string>();
+  if (file.parent_path() != "cases" || file.extension() != ".pairs")
+    throw std::runtime_error(fmt::format("{}: expected cases of the form cases/NAME.pairs, found '{}'",
+                                         (directory / "summary.json").string(), file.string()));
+  return directory / file;
+}
+
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle) {
   const std::filesystem::path file = directory / "timings.json";
   Json timings = Json::parse(read_whole(file), nullptr, false);
-  if (!timings.is_object() || !timings.contains("runs")) timings = {{"runs", Json::array()}};
+  if (!timings.is_object() || !timings["runs"].is_array()) timings = {{"runs", Json::array()}};
   timings["runs"].push_back(run);
   if (!oracle.is_null()) timings["oracle"] = oracle;
   write_whole(file, timings.dump(1) + "\n");

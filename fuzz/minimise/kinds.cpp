@@ -14,6 +14,7 @@
 #include "analysis/explain.h"
 #include "analysis/signature.h"
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/minimise/simplicity.h"
@@ -45,7 +46,7 @@ Case read_case(const LanesUnderTest& under_test, const std::filesystem::path& di
   const auto signature = analysis::parse_signature(row.at("key").get<std::string>());
   if (!signature) throw corpus::FormatError("expected the key of a signature, found '" + row["key"].dump() + "'");
   Case c{*signature, row.at("case"), row.at("count"), {}, {}};
-  c.entries = corpus::read_pairs(directory / c.file);
+  c.entries = corpus::read_pairs(case_file(directory, row));
   if (c.entries.empty()) throw corpus::FormatError(c.file + ": expected at least one case, found none");
   for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
   c.reasons = reasons_of(under_test, c.signature.subject, c.shown().pair, truth_of(c.shown()));
@@ -66,10 +67,12 @@ std::vector<Kind> grouped(const std::vector<Case>& cases) {
     const Case& c = cases[place];
     for (const LaneReason& reason : c.reasons) {
       const std::string key = kind_key(c.signature.subject, reason, c.signature.shape);
-      Kind& kind = kinds
-                       .try_emplace(key, Kind{key, c.signature.subject, reason.cause, reason.line,
-                                              shape_name(c.signature.shape), 0, {}, {}})
-                       .first->second;
+      Kind& kind =
+          kinds
+              .try_emplace(
+                  key,
+                  Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature.shape), 0, {}, {}})
+              .first->second;
       kind.settled[0] += reason.settled;
       ++kind.settled[1];
       if (!kind.places.empty() && kind.places.back() == place) continue;
@@ -94,9 +97,8 @@ std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::s
     const Case& c = cases[place];
     const bool mixed = !std::all_of(c.reasons.begin(), c.reasons.end(),
                                     [&](const LaneReason& reason) { return is_of(kind, c, reason); });
-    const bool open = std::any_of(c.reasons.begin(), c.reasons.end(), [&](const LaneReason& reason) {
-      return is_of(kind, c, reason) && !reason.settled;
-    });
+    const bool open = std::any_of(c.reasons.begin(), c.reasons.end(),
+                                  [&](const LaneReason& reason) { return is_of(kind, c, reason) && !reason.settled; });
     return std::tuple(mixed, open, shown.contains(pair_text(c.shown().pair)), simplicity(c.shown().pair));
   };
   const std::size_t best = *std::min_element(kind.places.begin(), kind.places.end(),
@@ -118,7 +120,7 @@ Json simplest_pair(const LanesUnderTest& under_test, const Kind& kind, const Cas
   const std::vector<Verdict> verdicts = decide(under_test, c.shown().pair, apart);
   if (!apart.empty())
     throw std::runtime_error(apart.front()->id + ": expected one verdict of device and twin, found two");
-  Json result = {{"case", c.file},          {"pair", pair_text(c.shown().pair)}, {"from", origin(c.shown())},
+  Json result = {{"case", c.file},         {"pair", pair_text(c.shown().pair)}, {"from", origin(c.shown())},
                  {"lanes", Json::array()}, {"verdicts", Json::object()},        {"sentences", Json::array()}};
   std::vector<const Lane*> own, others;
   for (const LaneReason& reason : c.reasons) {
@@ -144,7 +146,8 @@ Json worst_pair(const LanesUnderTest& under_test, const Kind& kind, const std::v
   };
   std::vector<Candidate> candidates;
   for (const std::size_t place : kind.places) {
-    for (const corpus::Entry& entry : cases[place].entries) candidates.push_back({&cases[place], &entry, ulps_of(entry)});
+    for (const corpus::Entry& entry : cases[place].entries)
+      candidates.push_back({&cases[place], &entry, ulps_of(entry)});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& l, const Candidate& r) { return l.ulps > r.ulps; });
@@ -200,7 +203,8 @@ Json row_of(const LanesUnderTest& under_test, const Kind& kind, const std::vecto
 
 std::string hash_of_summary(const std::filesystem::path& directory) {
   std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
-  for (const char c : read_whole(directory / "summary.json")) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  for (const char c : read_whole(directory / "summary.json"))
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
   return fmt::format("{:016x}", hash);
 }
 
@@ -272,8 +276,7 @@ Json read_kinds(const std::filesystem::path& directory) {
 }
 
 void write_kinds(const std::filesystem::path& directory, const Json& kinds) {
-  write_whole(directory / "kinds.json",
-              Json{{"summary", hash_of_summary(directory)}, {"kinds", kinds}}.dump(1) + "\n");
+  write_whole(directory / "kinds.json", Json{{"summary", hash_of_summary(directory)}, {"kinds", kinds}}.dump(1) + "\n");
 }
 
 }  // namespace graze::fuzz

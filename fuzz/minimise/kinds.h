@@ -43,13 +43,14 @@ std::string kind_key(std::string_view subject, const LaneReason& reason, const o
 //  "simplest": {"case", "pair", "from", "lanes": [id], "verdicts": {id: verdict}, "sentences": [text]},
 //  "worst": {"case", "pair", "from", "margin_ulps"}}
 // `pairs` are those of its signatures, each told by one pair: what was minimised, or else the first one kept. Of the
-// simplest pair all lanes that are wrong are of the kind where there is such a pair; the worst one has the largest margin
-// of all kept pairs that are of the kind, of those looked at (kMostLookedAt).
-// Returns: the commonest first, equal ones by key. Nothing once `stop`, which is asked now and then, says so.
-// Deterministic, whatever the threads.   Throws: FormatError; std::runtime_error where a device and its twin differ.
+// simplest pair all lanes that are wrong are of the kind where there is such a pair; the worst one has the largest
+// margin of all kept pairs that are of the kind, of those looked at (kMostLookedAt). Returns: the commonest first,
+// equal ones by key. Nothing once `stop`, which is asked now and then, says so. Deterministic, whatever the threads.
+// Throws: FormatError; std::runtime_error where a device and its twin differ.
 inline constexpr std::size_t kMostLookedAt = 40;
-Json find_kinds(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,
-                const std::function<bool()>& stop = [] { return false; });
+Json find_kinds(
+    const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,
+    const std::function<bool()>& stop = [] { return false; });
 
 // The kinds that `graze minimize` stored; null without them, and where the campaign has changed since.
 Json read_kinds(const std::filesystem::path& directory);

@@ -12,6 +12,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/files.h"
+#include "strata/strata.h"
 
 namespace graze::fuzz {
 namespace {
@@ -24,13 +25,17 @@ class Kinds : public testing::Test {
   static void SetUpTestSuite() {
     directory_ = fs::temp_directory_path() / ("graze_kinds_" + std::to_string(getpid()));
     fs::remove_all(directory_);
-    CampaignSpec spec;
-    spec.seed = 5;
-    spec.pairs = 19 * 300;
-    spec.globs = {"*"};
-    run_campaign(spec, directory_);
+    under_test_ = select_lanes({}, Executor::twin);
+    Campaign campaign;
+    campaign.seed = 5;
+    campaign.sources = strata::stratum_sources(campaign.seed, std::size(strata::kStrata) * 300, {"*"});
+    campaign.under_test = &under_test_;
+    campaign.threads = 2;
+    campaign.directory = directory_;
+    campaign.spec = campaign_spec(campaign);
+    campaign.build = build_info(under_test_);
+    run_campaign(campaign, std::atomic<bool>{false}, [](const Progress&) {});
     summary_ = Json::parse(read_whole(directory_ / "summary.json"));
-    under_test_ = select_lanes(summary_["spec"]["lanes"].get<std::vector<std::string>>(), Executor::twin);
     kinds_ = find_kinds(under_test_, directory_, summary_);
   }
   static void TearDownTestSuite() { fs::remove_all(directory_); }
@@ -72,23 +77,26 @@ TEST_F(Kinds, TheirPairsAreOfTheKind) {
   for (const Json& kind : kinds_) {
     for (const char* which : {"simplest", "worst"}) {
       const Pair pair = pair_of(kind[which]);
-      const oracle::Truth truth = oracle::truth(pair);
-      EXPECT_EQ(shape_name(truth.shape), kind["shape"]) << kind["key"];
+      const Verdict truth = oracle::cgal_verdict(pair);
+      const oracle::Shape shape = oracle::shape(pair);
+      EXPECT_EQ(shape_name(shape), kind["shape"]) << kind["key"];
       std::set<std::string> lanes;
-      for (const LaneReason& reason : reasons_of(under_test_, kind["subject"].get<std::string>(), pair, truth.verdict)) {
-        if (kind_key(kind["subject"].get<std::string>(), reason, truth.shape) == kind["key"])
-          lanes.insert(reason.lane->id);
+      for (const LaneReason& reason : reasons_of(under_test_, kind["subject"].get<std::string>(), pair, truth)) {
+        if (kind_key(kind["subject"].get<std::string>(), reason, shape) == kind["key"]) lanes.insert(reason.lane->id);
       }
       EXPECT_FALSE(lanes.empty()) << kind["key"] << ' ' << which;
       for (const std::string& lane : lanes)
         EXPECT_NE(std::find(kind["lanes"].begin(), kind["lanes"].end(), lane), kind["lanes"].end()) << lane;
-      if (which == std::string("simplest"))
+      if (which == std::string("simplest")) {
         EXPECT_EQ(lanes, kind["simplest"]["lanes"].get<std::set<std::string>>()) << kind["key"];
+      }
     }
     ASSERT_FALSE(kind["simplest"]["sentences"].empty());
     const std::string first = kind["simplest"]["sentences"][0];
     const std::string line = kind["line"];
-    if (kind["cause"] != "logic" && !line.empty()) EXPECT_NE(first.find(line), std::string::npos) << kind["key"] << first;
+    if (kind["cause"] != "logic" && !line.empty()) {
+      EXPECT_NE(first.find(line), std::string::npos) << kind["key"] << first;
+    }
     EXPECT_TRUE(first.starts_with(kind["subject"].get<std::string>()));
   }
 }

@@ -12,6 +12,7 @@
 #include "analysis/signature.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimised_cases.h"
 
@@ -64,7 +65,7 @@ std::vector<FoundFailure> found_in_summary(const std::filesystem::path& director
   for (const Json& row : summary.at("signatures")) {  // the commonest first
     const std::string recorded = row.at("key");
     if (!matches_any(globs, recorded)) continue;
-    const std::filesystem::path file = directory / row.at("case").get<std::string>();
+    const std::filesystem::path file = case_file(directory, row);
     const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
     if (entries.empty()) throw corpus::FormatError(file.string() + ": expected at least one case, found none");
     const std::string* own = corpus::field(entries.front(), "signature");

@@ -1,31 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/blame.h"
 
-#include <algorithm>
+#include <bit>
+#include <optional>
 
 namespace graze::analysis {
 namespace {
 
-using Set = std::vector<bool>;  // of sites, in program order
+// Sites, a bit for each, in program order.
+struct Set {
+  std::size_t sites;
+  std::vector<std::uint64_t> bits = std::vector<std::uint64_t>(sites / 64 + 1);
 
-std::ptrdiff_t size(const Set& set) { return std::count(set.begin(), set.end(), true); }
+  bool has(std::size_t site) const { return bits[site / 64] >> (site % 64) & 1; }
+  void flip(std::size_t site) { bits[site / 64] ^= std::uint64_t{1} << (site % 64); }
+  int size() const {
+    int sum = 0;
+    for (const std::uint64_t word : bits) sum += std::popcount(word);
+    return sum;
+  }
+  bool operator==(const Set&) const = default;
+};
+
+Set others(Set set) {
+  for (std::size_t i = 0; i < set.sites; ++i) set.flip(i);
+  return set;
+}
 
 // A kernel of which any sites can be fused.
 class Fusing {
  public:
   Fusing(const Lane& lane, const Pair& pair) : lane_(lane), pair_(pair), sites_(cuda::contraction_sites(lane)) {}
 
-  Set none() const { return Set(sites_.size()); }
-  Set all() const { return Set(sites_.size(), true); }
-  Verdict verdict(const Set& fused) const {
-    std::vector<std::uint64_t> bits(sites_.size() / 64 + 1);
-    for (std::size_t i = 0; i < fused.size(); ++i) bits[i / 64] |= std::uint64_t{fused[i]} << (i % 64);
-    return cuda::decide_fusing(lane_, pair_, bits);
-  }
+  Set none() const { return {sites_.size()}; }
+  Set all() const { return others(none()); }
+  Verdict verdict(const Set& fused) const { return cuda::decide_fusing(lane_, pair_, fused.bits); }
   std::vector<cuda::ContractionSite> named(const Set& set) const {
     std::vector<cuda::ContractionSite> result;
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      if (set[i]) result.push_back(sites_[i]);
+    for (std::size_t i = 0; i < set.sites; ++i) {
+      if (set.has(i)) result.push_back(sites_[i]);
     }
     return result;
   }
@@ -36,40 +49,37 @@ class Fusing {
   std::span<const cuda::ContractionSite> sites_;
 };
 
-Set others(Set set) {
-  set.flip();
-  return set;
-}
-
-// Sets of one or two sites: the first that is both enough for the verdict, fused alone, and needed for it, all others
-// fused; or else the first smallest that is enough; empty where none is.
-Set one_or_two(const Fusing& kernel, Verdict verdict) {
+// A set of one or two sites: the first that is both enough for the verdict, fused alone, and needed for it, all others
+// fused; or else the first smallest that is enough; nothing where none is.
+std::optional<Set> one_or_two(const Fusing& kernel, Verdict verdict) {
   std::vector<Set> enough;
   Set set = kernel.none();
   for (const bool pairs : {false, true}) {
     const std::size_t before = enough.size();
-    for (std::size_t i = 0; i < set.size(); ++i) {
-      for (std::size_t j = pairs ? i + 1 : i; j < (pairs ? set.size() : i + 1); ++j) {
-        set[i] = set[j] = true;
+    for (std::size_t i = 0; i < set.sites; ++i) {
+      set.flip(i);
+      for (std::size_t j = i + 1; j < (pairs ? set.sites : i + 2); ++j) {
+        if (pairs) set.flip(j);
         if (kernel.verdict(set) == verdict) enough.push_back(set);
-        set[i] = set[j] = false;
+        if (pairs) set.flip(j);
       }
+      set.flip(i);
     }
     for (std::size_t i = before; i < enough.size(); ++i) {
       if (kernel.verdict(others(enough[i])) != verdict) return enough[i];
     }
   }
-  return enough.empty() ? Set{} : enough.front();
+  return enough.empty() ? std::nullopt : std::optional(enough.front());
 }
 
 // Parts sites from the last one on as long as the verdict stays, until none can be parted any more.
 Set reduced(const Fusing& kernel, Set set, Verdict verdict) {
-  for (std::ptrdiff_t left = size(set) + 1; size(set) < left;) {
-    left = size(set);
-    for (std::size_t i = set.size(); i-- > 0;) {
-      if (!set[i]) continue;
-      set[i] = false;
-      if (kernel.verdict(set) != verdict) set[i] = true;
+  for (int left = set.size() + 1; set.size() < left;) {
+    left = set.size();
+    for (std::size_t i = set.sites; i-- > 0;) {
+      if (!set.has(i)) continue;
+      set.flip(i);
+      if (kernel.verdict(set) != verdict) set.flip(i);
     }
   }
   return set;
@@ -81,17 +91,16 @@ Blame blame(const Lane& lane, const Pair& pair) {
   const Fusing kernel(lane, pair);
   const Verdict verdict = kernel.verdict(kernel.all());
   if (verdict == kernel.verdict(kernel.none())) return {};
-  Set set = one_or_two(kernel, verdict);
-  const bool few = !set.empty();
-  if (!few) set = reduced(kernel, kernel.all(), verdict);
+  const std::optional<Set> few = one_or_two(kernel, verdict);
+  const Set set = few ? *few : reduced(kernel, kernel.all(), verdict);
   // Where the sites that are left do the same without it, one such set after the other.
   Set needed = set;
   while (kernel.verdict(others(needed)) == verdict) {
     const Set more = reduced(kernel, others(needed), verdict);
-    for (std::size_t i = 0; i < needed.size(); ++i) needed[i] = needed[i] || more[i];
+    for (std::size_t i = 0; i < needed.bits.size(); ++i) needed.bits[i] |= more.bits[i];
   }
   if (needed != set && kernel.verdict(needed) == verdict) return {kernel.named(needed), false};
-  return {kernel.named(set), few || size(set) <= 3};
+  return {kernel.named(set), few || set.size() <= 3};
 }
 
 }  // namespace graze::analysis

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <map>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -12,6 +14,7 @@
 #include "fuzz/minimise/kinds.h"
 #include "reports/report.h"
 #include "reports/terminal.h"
+#include "reports/text_table.h"
 
 namespace graze::cli {
 namespace {
@@ -68,7 +71,22 @@ void print(const Json& kind, std::size_t number, const reports::Screen& screen) 
   }
 }
 
-void kinds_of(const std::string& directory, bool json) {
+// Of each cause, how many of the lanes looked at stood up to the audit (analysis/audit.h).
+void print_audit(const Json& kinds, const reports::Screen& screen) {
+  std::map<std::string, std::array<std::uint64_t, 2>> of_cause;
+  for (const Json& kind : kinds) {
+    auto& sum = of_cause[kind.at("cause")];
+    for (std::size_t i = 0; i < 2; ++i) sum[i] += kind.at("settled").at(i).get<std::uint64_t>();
+  }
+  reports::TextTable table({{"cause", reports::Align::left}, {"lanes audited"}, {"settled"}, {"not settled"}});
+  for (const auto& [cause, sum] : of_cause) {
+    if (sum[1] > 0)
+      table.add({cause, reports::grouped(sum[1]), reports::grouped(sum[0]), reports::grouped(sum[1] - sum[0])});
+  }
+  fmt::print("{}", table.text(screen));
+}
+
+void kinds_of(const std::string& directory, bool json, bool all) {
   const Json summary = reports::read_summary(directory);
   Json kinds = fuzz::read_kinds(directory);
   if (kinds.is_null()) {
@@ -79,15 +97,24 @@ void kinds_of(const std::string& directory, bool json) {
     if (interrupted) throw std::runtime_error(directory + ": interrupted, nothing was written");
   }
   const reports::Screen screen = output_screen();
-  std::size_t number = 0;
-  for (Json& kind : kinds) {
-    if (json) {
-      fmt::print("{}\n", kind.dump());
-    } else {
-      print(kind, ++number, screen);
-    }
+  if (json) {
+    for (const Json& kind : kinds) fmt::print("{}\n", kind.dump());
+    return;
   }
-  if (!json && kinds.empty()) fmt::print("no failures\n");
+  if (kinds.empty()) fmt::print("no failures\n");
+  const std::size_t shown = all ? kinds.size() : std::min(kinds.size(), fuzz::kMostShown);
+  double told = 0, sum = 0;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (i < shown) print(kinds.at(i), i + 1, screen);
+    sum += kinds.at(i).at("pairs").get<double>();
+    told += i < shown ? kinds.at(i).at("pairs").get<double>() : 0;
+  }
+  if (shown < kinds.size())
+    fmt::print("{}", reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the pairs; --all lists them",
+                                                  kinds.size() - shown, 100 * (1 - told / sum)),
+                                      screen.columns));
+  if (!kinds.empty()) fmt::print("\n");
+  print_audit(kinds, screen);
 }
 
 }  // namespace
@@ -96,12 +123,13 @@ void add_kinds(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("kinds", "Say what kinds of failure a campaign found");
   command->footer("Example: graze kinds campaign");
   auto directory = std::make_shared<std::string>();
-  auto json = std::make_shared<bool>(false);
+  auto json = std::make_shared<bool>(false), all = std::make_shared<bool>(false);
   command->add_option("directory", *directory, "A campaign's directory; rather one that `graze minimize` went through")
       ->required();
   command->add_flag("--json", *json, "One object a line, as docs/formats.md describes it");
-  command->callback([directory, json, &status] {
-    kinds_of(*directory, *json);
+  command->add_flag("--all", *all, "Also the rare ones");
+  command->callback([directory, json, all, &status] {
+    kinds_of(*directory, *json, *all);
     status = 0;
   });
 }

@@ -214,12 +214,12 @@ int minimize_directory(MinimizeOptions options) {
   const Json kinds =
       interrupted ? Json() : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
   const auto mapping = Clock::now();
-  std::size_t maps = 0;
-  for (const Json& kind : kinds) {
-    if (!interrupted)
-      maps +=
-          map_case(under_test, directory / kind["simplest"]["case"].get<std::string>(), kind["subject"], options.again);
-  }
+  std::atomic<std::size_t> maps = 0;
+  tbb::parallel_for(std::size_t{0}, std::min(kinds.size(), fuzz::kMostShown), [&](std::size_t i) {
+    if (interrupted) return;
+    const Json& kind = kinds.at(i);
+    maps += map_case(under_test, fuzz::case_file(directory, kind.at("simplest")), kind.at("subject"), options.again);
+  });
   if (interrupted) {
     fmt::print(stderr, "graze: interrupted; minimised {} of {} signatures; run the same command to go on\n",
                reports::grouped(count), reports::grouped(files.size()));
@@ -239,14 +239,15 @@ int minimize_directory(MinimizeOptions options) {
     if (done.milliseconds > 0) times.push_back(done.milliseconds);
   }
   std::sort(times.begin(), times.end());
-  fuzz::append_timing(directory, {{"minimised", times.size()},
-                                  {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
-                                  {"processor_seconds", processor},
-                                  {"processor_seconds_worst", worst},
-                                  {"mapped", maps},
-                                  {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / static_cast<double>(maps)},
-                                  {"seconds", seconds_since(start)},
-                                  {"threads", threads}});
+  fuzz::append_timing(directory,
+                      {{"minimised", times.size()},
+                       {"milliseconds_a_case", times.empty() ? 0 : times[times.size() / 2]},
+                       {"processor_seconds", processor},
+                       {"processor_seconds_worst", worst},
+                       {"mapped", maps.load()},
+                       {"milliseconds_a_map", maps == 0 ? 0 : 1e3 * map_seconds / static_cast<double>(maps.load())},
+                       {"seconds", seconds_since(start)},
+                       {"threads", threads}});
   return 0;
 }
 

@@ -260,7 +260,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   std::map<std::size_t, std::vector<std::size_t>> cards_of;  // of each signature, the commonest kind first
   try {
     for (const Json& kind : kinds) {
-      if (cards.size() == kMostCards) break;
+      if (cards.size() == fuzz::kMostShown) break;
       for (const Json& place : kind.at("places")) cards_of[place.get<std::size_t>()].push_back(cards.size());
       cards.push_back(card_of(directory, counts, kind, room, lacking));
     }

@@ -11,8 +11,7 @@
 
 namespace graze::reports {
 
-// What keeps the page's size: cards, rows in its table, and bytes of all its maps.
-inline constexpr std::size_t kMostCards = 60;
+// What keeps the page's size: rows in its table, and bytes of all its maps.
 inline constexpr std::size_t kMostSignatures = 5'000;
 inline constexpr std::size_t kMostMapBytes = 7 << 18;
 

@@ -146,7 +146,7 @@ std::string card(const Json& report, const Json& found) {
   const Json& kind = found.at("kind");
   std::string text = fmt::format("<h3>{}</h3>\n<figure>{}</figure>\n<pre>", html(kind.at("key")), pair_drawing(found));
   for (std::size_t i = 0; i < 18; ++i) {
-    const auto coordinate = [&](const char* kind) { return found.at("pair").at(kind).at(i).get<std::string>(); };
+    const auto coordinate = [&](const char* form) { return found.at("pair").at(form).at(i).get<std::string>(); };
     if (i % 3 == 0) text += fmt::format("{}[{}]", i < 9 ? 'a' : 'b', i / 3 % 3);
     text += fmt::format(" {} ({}){}", coordinate("decimal"), coordinate("hex"), i % 3 == 2 ? "\n" : "");
   }

@@ -73,8 +73,8 @@ std::vector<Kind> grouped(const std::vector<Case>& cases) {
                   key,
                   Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature.shape), 0, {}, {}})
               .first->second;
-      kind.settled[0] += reason.settled;
-      ++kind.settled[1];
+      kind.settled[0] += reason.audited && reason.settled;
+      kind.settled[1] += reason.audited;
       if (!kind.places.empty() && kind.places.back() == place) continue;
       kind.places.push_back(place);
       kind.pairs += c.pairs;
@@ -227,7 +227,7 @@ std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string
       if (found != accounts.end()) told = &*found;
     }
     result.push_back({account.lane, std::string(analysis::name(told->cause)), told->told() ? told->told()->line : "",
-                      account.settled == analysis::Settled::yes});
+                      account.settled == analysis::Settled::yes, account.lane->explainable});
   }
   return result;
 }

@@ -21,12 +21,16 @@ struct LaneReason {
   std::string cause;
   std::string line;  // "core/algorithms/moller_1997.h:117"; empty where no comparison is to blame, or none is known
   bool settled;
+  bool audited;      // what the lane computes is known, so that the cause could be checked
 };
 
 // Of the subject's lanes under test that are wrong on the pair. A lane whose run is not known has the reason of its
 // source with every operation rounded as written, where that is wrong alike.
 std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string_view subject, const Pair& pair,
                                    Verdict truth);
+
+// So many kinds are shown to a person: listed, on cards, with maps. There are hundreds, most of them of a few pairs.
+inline constexpr std::size_t kMostShown = 40;
 
 // The 18 hex floats, as a file of pairs has them.
 std::string pair_text(const Pair& pair);

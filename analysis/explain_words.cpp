@@ -91,11 +91,9 @@ std::string list(const std::vector<cuda::ContractionSite>& sites) {
 
 // Why the cause is not settled; empty where it is, and where the reason says so already.
 std::string doubt(const LaneExplanation& lane) {
-  const bool range = lane.cause == Cause::overflow || lane.cause == Cause::underflow;
   switch (lane.settled) {
     case Settled::not_without:
-      return range ? "; not settled: with exponents without limits rounding makes it wrong as well"
-                   : "; not settled: without that something else makes it wrong as well";
+      return "; not settled: without that something else makes it wrong as well";
     case Settled::not_alone:
       return "; not settled: that alone, with all else exact, does not make it wrong";
     case Settled::unknown:
@@ -138,6 +136,9 @@ std::string remedy(const LaneExplanation& lane) {
                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
   if (lane.cause == Cause::rounding) return bits;
   if (lane.settled != Settled::not_without) return "with exponents without limits it is right";
+  if (lane.bits_needed == (lane.lane->scalar == Scalar::f32 ? 24 : 53))
+    return std::string("with exponents without limits") +
+           (lane.rule == Contraction::none ? "" : ", and without contraction,") + " it is right";
   return bits + (lane.bits_needed == 0 ? ", even with" : " with") + " exponents without limits";
 }
 

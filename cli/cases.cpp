@@ -19,7 +19,8 @@ std::uint64_t number(const std::string& text, const std::string& name) {
 
 // "disjoint, 1e-11 apart", "they share a segment, 0.25 deep"
 std::string words(const oracle::Truth& truth) {
-  if (truth.verdict == Verdict::disjoint) return fmt::format("disjoint, {:.3g} apart", truth.margin);
+  if (truth.verdict == Verdict::disjoint)
+    return truth.margin > 0 ? fmt::format("disjoint, {:.3g} apart", truth.margin) : "disjoint, less than 5e-324 apart";
   const char* contact = truth.contact == Contact::point     ? "they touch in a point"
                         : truth.contact == Contact::segment ? "they share a segment"
                                                             : "they share an area";

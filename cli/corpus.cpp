@@ -56,7 +56,7 @@ std::vector<corpus::Entry> cases_to_add(const std::string& name, bool exact_inpu
   for (const corpus::Entry& entry : entries) {
     if (exact_input) expect_exact_input(name, entry);
     const std::string note = written_note(entry, oracle::truth(entry.pair));
-    if (!note.empty()) fmt::print(stderr, "graze: {}:{}: {}\n", name, entry.line, note);
+    if (!note.empty()) fmt::print("{}:{}: {}\n", name, entry.line, note);
   }
   return entries;
 }
@@ -92,7 +92,7 @@ void add(const CorpusOptions& options) {
       try {
         ++count[static_cast<std::size_t>(fuzz::add(corpus, failure, under_test.lanes, by_bench))];
       } catch (const std::runtime_error& error) {
-        throw std::runtime_error(name + ": " + error.what());
+        throw std::runtime_error((failure.file.empty() ? name : failure.file) + ": " + error.what());
       }
     }
   }

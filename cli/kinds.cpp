@@ -88,14 +88,9 @@ void print_audit(const Json& kinds, const reports::Screen& screen) {
 
 void kinds_of(const std::string& directory, bool json, bool all) {
   const Json summary = reports::read_summary(directory);
-  Json kinds = fuzz::read_kinds(directory);
-  if (kinds.is_null()) {
-    const auto lanes = summary.at("spec").at("lanes").get<std::vector<std::string>>();
-    const fuzz::LanesUnderTest under_test = fuzz::select_lanes(lanes, fuzz::Executor::twin);
-    const std::atomic<bool>& interrupted = catch_interrupts();
-    kinds = fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
-    if (interrupted) throw std::runtime_error(directory + ": interrupted, nothing was written");
-  }
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  const Json kinds = fuzz::kinds_of(directory, summary, [&] { return interrupted.load(); });
+  if (interrupted) throw std::runtime_error(directory + ": interrupted, nothing was written");
   const reports::Screen screen = output_screen();
   if (json) {
     for (const Json& kind : kinds) fmt::print("{}\n", kind.dump());

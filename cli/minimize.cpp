@@ -84,7 +84,7 @@ int minimize_case(const MinimizeOptions& options) {
   for (const corpus::Entry& entry : entries) {
     if (options.exact_input) expect_exact_input(options.name, entry);
     const std::string note = written_note(entry, oracle::truth(entry.pair));
-    if (!note.empty()) fmt::print(stderr, "graze: {}:{}: {}\n", options.name, entry.line, note);
+    if (!note.empty()) fmt::print("{}:{}: {}\n", options.name, entry.line, note);
   }
   std::string text;
   if (std::all_of(entries.begin(), entries.end(), [](auto& entry) { return entry.line != 0 && entry.lines == 1; })) {
@@ -190,6 +190,8 @@ int minimize_directory(MinimizeOptions options) {
   std::vector<fs::path> files;
   for (const Json& row : summary["signatures"]) files.push_back(fuzz::case_file(directory, row));
 
+  fs::remove(directory / "kinds.json");  // of the cases as they were
+
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -210,7 +212,6 @@ int minimize_directory(MinimizeOptions options) {
     if (const auto line = progress.line(count, seconds_since(start), left)) fmt::print(stderr, "{}", *line);
   });
   fmt::print(stderr, "{}", progress.end());
-  if (count == files.size()) fmt::print(stderr, "graze: telling what kinds of failure these are\n");
   const Json kinds =
       interrupted ? Json() : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
   const auto mapping = Clock::now();

@@ -44,10 +44,13 @@ Verdict truth_of(const corpus::Entry& entry) {
 
 Case read_case(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& row) {
   const auto signature = analysis::parse_signature(row.at("key").get<std::string>());
-  if (!signature) throw corpus::FormatError("expected the key of a signature, found '" + row["key"].dump() + "'");
+  if (!signature)
+    throw corpus::FormatError((directory / "summary.json").string() + ": expected the key of a signature, found " +
+                              row.at("key").dump());
   Case c{*signature, row.at("case"), row.at("count"), {}, {}};
   c.entries = corpus::read_pairs(case_file(directory, row));
-  if (c.entries.empty()) throw corpus::FormatError(c.file + ": expected at least one case, found none");
+  if (c.entries.empty())
+    throw corpus::FormatError((directory / c.file).string() + ": expected at least one case, found none");
   for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
   c.reasons = reasons_of(under_test, c.signature.subject, c.shown().pair, truth_of(c.shown()));
   return c;
@@ -244,8 +247,10 @@ std::string_view shape_name(const oracle::Shape& shape) {
 }
 
 std::string kind_key(std::string_view subject, const LaneReason& reason, const oracle::Shape& shape) {
+  std::string cause = reason.cause;
+  std::replace(cause.begin(), cause.end(), ' ', '_');
   const std::string file = reason.line.substr(reason.line.rfind('/') + 1);
-  return fmt::format("{}/{}/{}/{}", subject, reason.cause, file.empty() ? "-" : file, shape_name(shape));
+  return fmt::format("{}/{}/{}/{}", subject, cause, file.empty() ? "-" : file, shape_name(shape));
 }
 
 Json find_kinds(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,
@@ -273,6 +278,18 @@ Json read_kinds(const std::filesystem::path& directory) {
   const bool current = stored.is_object() && stored.contains("kinds") && stored["kinds"].is_array() &&
                        stored.value("summary", "") == hash_of_summary(directory);
   return current ? stored["kinds"] : Json();
+}
+
+Json kinds_of(const std::filesystem::path& directory, const Json& summary, const std::function<bool()>& stop) {
+  Json kinds = read_kinds(directory);
+  if (!kinds.is_null()) return kinds;
+  const auto lanes = summary.at("spec").at("lanes").get<std::vector<std::string>>();
+  kinds = find_kinds(select_lanes(lanes, Executor::twin), directory, summary, stop);
+  try {
+    if (!kinds.is_null()) write_kinds(directory, kinds);
+  } catch (const std::runtime_error&) {  // in a folder that cannot be written to they are found anew each time
+  }
+  return kinds;
 }
 
 void write_kinds(const std::filesystem::path& directory, const Json& kinds) {

@@ -21,7 +21,7 @@ struct LaneReason {
   std::string cause;
   std::string line;  // "core/algorithms/moller_1997.h:117"; empty where no comparison is to blame, or none is known
   bool settled;
-  bool audited;      // what the lane computes is known, so that the cause could be checked
+  bool audited;  // what the lane computes is known, so that the cause could be checked
 };
 
 // Of the subject's lanes under test that are wrong on the pair. A lane whose run is not known has the reason of its
@@ -56,8 +56,13 @@ Json find_kinds(
     const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
 
-// The kinds that `graze minimize` stored; null without them, and where the campaign has changed since.
+// The kinds stored; null without them, and where the campaign has changed since.
 Json read_kinds(const std::filesystem::path& directory);
+// The same, or those of the campaign's lanes, found now and stored.   Throws: as find_kinds; UsageError for lanes that
+// are none here.
+Json kinds_of(
+    const std::filesystem::path& directory, const Json& summary,
+    const std::function<bool()>& stop = [] { return false; });
 void write_kinds(const std::filesystem::path& directory, const Json& kinds);
 
 }  // namespace graze::fuzz

@@ -113,8 +113,8 @@ std::string compare_csv(const Json& compare) {
   const auto add = [&](const char* what) {
     for (const Json& row : compare[what]) {
       const bool gained = what == std::string_view("gained");
-      table.row({what, nullptr, nullptr, row["key"], gained ? Json() : row["count"], nullptr, nullptr,
-                 gained ? row["count"] : Json(), nullptr, nullptr, nullptr});
+      table.row({std::string("kind ") + what, nullptr, nullptr, row["key"], gained ? Json() : row["count"], nullptr,
+                 nullptr, gained ? row["count"] : Json(), nullptr, nullptr, nullptr});
     }
   };
   add("gained");

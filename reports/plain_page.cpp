@@ -102,7 +102,7 @@ std::string threshold_words(const Json& report, std::size_t lane, const char* si
   std::string text;
   for (const Json& row : report.at("thresholds")) {
     if (row.at("lane") != lane || row.at("group").is_null()) continue;
-    const Json& t = row[side];
+    const Json& t = row.at(side);
     text += (text.empty() ? "" : "; ") +
             report.at("groups")[row.at("group").get<std::size_t>()].at("id").get<std::string>() + ": " +
             (!t.at("exponent").is_null()
@@ -119,7 +119,7 @@ std::string margin_section(const Json& report) {
     const auto lane = row.at("lane").get<std::size_t>();
     text += fmt::format(
         "<figure>{}<figcaption>{}<br/>no error seen, disjoint: {}<br/>intersecting: {}</figcaption></figure>\n",
-        margin_chart(row), html(report.at("lanes")[lane].at("id")), threshold_words(report, lane, "disjoint"),
+        margin_chart(row), html(report.at("lanes").at(lane).at("id")), threshold_words(report, lane, "disjoint"),
         threshold_words(report, lane, "intersects"));
   }
   return text;

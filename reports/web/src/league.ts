@@ -55,7 +55,7 @@ export function league_section(report: Report) {
       readout.textContent = `${cell_words(report, cell)}: ${rate[kind] ? `none in ${in_full(rate[kind])}` : 'not counted'}, so no pair shows one.`;
       return;
     }
-    go_to('signatures', { cell: cell_text(report, cell) });
+    go_to('kinds', { cell: cell_text(report, cell) });
   }
 
   function cell(lane: number, stratum: number | null) {

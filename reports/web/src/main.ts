@@ -5,6 +5,7 @@ import { compare_section } from './compare';
 import { h } from './dom';
 import { count } from './format';
 import { extremes_section } from './extremes';
+import { failure_sections } from './failures';
 import { heat_styles } from './heat';
 import { league_section } from './league';
 import { margins_section } from './margins';
@@ -12,14 +13,13 @@ import { method_section } from './method';
 import type { Costs, Report } from './report';
 import { answer_section, run_section } from './run';
 import { side_by_side_section } from './side_by_side';
-import { signatures_section } from './signatures';
 import { follow_fragment } from './state';
 
 function build(report: Report, costs: Costs | null) {
   document.head.append(heat_styles());
-  const signatures = signatures_section(report);
+  const failures = failure_sections(report);
   const sections = [
-    answer_section(report, costs), compare_section(report), league_section(report), signatures.element, margins_section(report),
+    answer_section(report, costs), compare_section(report), league_section(report), ...failures.sections, margins_section(report),
     extremes_section(report), side_by_side_section(report), method_section(), run_section(report, costs),
   ].filter((one) => one !== null);
   const contents = sections.map((one) => h('a', { href: `#${one.id}` }, one.querySelector('h2')!.textContent));
@@ -30,7 +30,7 @@ function build(report: Report, costs: Costs | null) {
       h('p', {}, `Where triangle-triangle tests stop being right: ${count(pairs)} pairs of ${report.strata.length} ${report.strata.length === 1 ? 'stratum' : 'strata'}, ${report.lanes.length} lanes, seed ${seed}`)),
     h('nav', { 'aria-label': 'Contents' }, contents), h('main', {}, sections));
   follow_fragment((id) => {
-    signatures.open(id);
+    failures.open(id);
     document.getElementById(id)?.scrollIntoView({ block: 'start' });
   });
 }

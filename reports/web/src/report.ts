@@ -50,24 +50,25 @@ export interface Report {
   // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair). A
   // cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
   extremes: { kind: "scale" | "offset"; step: number; lane: number; cells: { exponent: number; wrong: Share }[] }[];
-  signature_count: number;                 // all; `signatures` holds the first of them by pairs, `cards` say how
+  signature_count: number;                 // all; `signatures` holds the first of them by pairs
   signatures: {                            // every signature listed that fits (table), commonest first
     key: string; algorithm: string; count: number; share: number;   // of all pairs
     contact: string; dimensions: string; coplanar: boolean; margin: string;   // "-2^-3", "0", "2^4" ulps
     marks: string;   // one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
-    card: number | null;                   // place in `cards`
+    cards: number[];                       // places in `cards` of the kinds that it belongs to, commonest first
     pairs: string[];                       // those kept of it, "near_edge_edge:1:42"
   }[];
   sources: { [algorithm: string]: string };  // stands for "@SOURCE@" in the snippets of the algorithm's cards
-  cards: {
-    signature: number; file: string; minimised: boolean; from: string;   // "near_edge_edge:1:42"
+  cards: {                                 // one for each kind of failure, the commonest first; the pair is its simplest case
+    kind: FailureKind;
+    file: string; minimised: boolean; from: string;                        // "near_edge_edge:1:42"
     pair: { decimal: string[]; hex: string[]; value: number[] };           // 18 each, a[0].x … b[2].z
     truth: { verdict: string; contact: string; margin: number; margin_ulps: number };
     // For the drawing: points in double (from exact values), the common set and the line of both planes, clipped to it.
     drawing: { contact: number[][]; planes_line: number[][] };              // 0, 1, 2 or more points; 0 or 2 points
     verdicts: { lane: number; verdict: "disjoint" | "intersects" | "declined"; wrong: boolean }[];   // all lanes run
-    sentences: string[];                   // explain's
-    // What `graze minimize DIR` stored; null where it did not, or for another pair than the one shown.
+    sentences: string[];                   // explain's, the first ones on lanes of the kind
+    // What `graze minimize DIR` stored; null where it did not, for another pair than the one shown, or for want of room.
     maps: { title: string; x: string; y: string; size: number;             // "b[0].x", "b[0].y", 256; y grows upwards
             legend: { colour: string; means: string }[];                   // "#rrggbb" as in the panels, "disjoint", …
             // name: "truth" or a lane id; shows: its counts in words, absent in maps stored before; png: base64
@@ -79,8 +80,27 @@ export interface Report {
   compare: Compare | null;
 }
 
+// What several signatures have in common (fuzz/minimise/kinds.h): a subject (algorithm), a cause, the source line of the
+// comparison that decides, and the shape of the pairs.
+export interface FailureKind {
+  key: string;                             // "moller_1997/rounding/moller_1997.h:117/general"
+  subject: string; cause: string;
+  line: string;                            // "core/algorithms/moller_1997.h:117"; empty where no comparison is to blame
+  shape: 'general' | 'coplanar' | 'degenerate';
+  pairs: number; signatures: number;
+  lanes: string[];                         // ids of those that fail so, on some pair of the kind
+  settled: [number, number];               // lanes for which the audit of the cause passed, of those it could look at
+  strata: { [id: string]: number };        // of the pairs kept, at most four of each signature
+  margins: { [bucket: string]: number };   // of all its pairs; "-2^-3", "0", "+2^4" ulps
+  worst: { case: string; pair: string; from: string; margin_ulps: number };   // pair: 18 hex floats
+}
+
 export interface Compare {                 // `--compare DIR1 DIR2`: run is DIR2, other is DIR1
   other: Report["run"];
-  rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[];   // changed: intervals apart
-  gained: { key: string; count: number }[]; lost: { key: string; count: number }[];
+  headline: string;                        // "Nothing changed: …", "Changed: …"
+  differences: string[];                   // sentences on how the campaigns differ
+  rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[];   // changed: more than by chance
+  gained: { key: string; signatures: number; count: number }[];          // kinds, with their signatures and pairs
+  lost: { key: string; signatures: number; count: number }[];
+  kinds_compared: boolean;                 // false where `graze minimize` went not through both
 }

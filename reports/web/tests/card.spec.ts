@@ -69,11 +69,10 @@ test('commands, coordinates and snippets are copied', async ({ page, report }) =
   }
   await card.locator('[aria-label="Copy the coordinates"]').click();
   expect(await clipboard()).toBe(data.pair.hex.join(' '));
-  const { algorithm } = report.signatures[data.signature];
   for (const { label, text } of data.snippets) {
     await card.locator('.snippets button', { hasText: new RegExp(`^${label}$`) }).click();
     await card.locator(`[aria-label="Copy the ${label} snippet"]`).click();
-    expect(await clipboard()).toBe(text.replace('@SOURCE@', () => report.sources[algorithm]));
+    expect(await clipboard()).toBe(text.replace('@SOURCE@', () => report.sources[data.kind.subject]));
   }
 });
 

@@ -42,15 +42,16 @@ test('real costs are what report.ts says', ({}, info) => {
 
 test('and others are told apart', ({}, info) => {
   const whole = read(process.env.GRAZE_REPORT!);
-  const right: Report = { ...whole, rates: [], margins: [], signatures: [], cards: whole.cards.slice(0, 1) };
+  const right: Report = { ...whole, rates: [], margins: [], thresholds: [], extremes: [], side_by_side: [], signatures: [], sources: {}, cards: [{ ...whole.cards[0], maps: null, snippets: [] }] };
   const { strata: _, ...missing } = right;
   const said = complaints({
     missing,
     more: { ...right, lane: 1 },
+    kind: { ...right, cards: [{ ...right.cards[0], kind: { ...right.cards[0].kind, shape: 'round' } }] },
     deeper: { ...right, cards: [{ ...right.cards[0], truth: { ...right.cards[0].truth, ulps: 0 } }] },
     other_type: { ...right, run: { ...right.run, seed: '1' } },
     other_word: { ...right, lanes: [{ ...right.lanes[0], scalar: 'f16' }] },
   }, info);
   for (const part of ["Property 'strata' is missing", `'"lane"' does not exist`, `'"ulps"' does not exist`, "'string' is not assignable to type 'number'",
-    `'"f16"' is not assignable`]) expect(said).toContain(part);
+    `'"f16"' is not assignable`, `'"round"' is not assignable`]) expect(said).toContain(part);
 });

@@ -101,6 +101,7 @@ test('the keyboard reaches the answer first, and shows where it is', async ({ pa
 
 for (const [colorScheme, where] of [['light', 'desk'], ['dark', 'desk'], ['light', 'phone']] as const) {
   test(`axe finds nothing, ${colorScheme}, on a ${where}`, async ({ page }) => {
+    test.slow();
     if (where === 'phone') await page.setViewportSize(kPhone);
     await page.emulateMedia({ colorScheme });
     await open_card(page, 1);

@@ -6,10 +6,10 @@
 
 namespace graze::reports {
 
-// A rate has changed when its intervals are apart that hold the true rate but for once in 2,000 times: by chance alone
-// that happens to one comparison in a million. A kind of failure has come or gone when one campaign has none of it
-// where at least kLeastSignatures of its signatures were to be expected; that is as rare.
-inline constexpr double kComparedZ = 3.5;
+// A rate has changed when a difference as large comes about by chance in less than one of a million comparisons. A kind
+// of failure has come or gone when one campaign has none of it where at least kLeastSignatures of its signatures were to
+// be expected; that is as rare.
+inline constexpr double kLeastChance = 1e-6;
 inline constexpr double kLeastSignatures = 14;
 
 // Fills `compare` of the second campaign's report: {"other": run, "headline", "differences": [sentence], "rates",

@@ -15,14 +15,13 @@ struct Share {
   bool apart(const Share& other) const { return high < other.low || other.high < low; }
 };
 
-inline constexpr double kZ95 = 1.959963984540054;  // 97.5 % of a normal distribution lie below
-
 // Reference: Wilson 1927, the score interval.
-inline Share share_of(std::uint64_t count, std::uint64_t of, double z = kZ95) {
+inline Share share_of(std::uint64_t count, std::uint64_t of) {
   if (of == 0) return {};
-  const double n = static_cast<double>(of), p = static_cast<double>(count) / n, z2 = z * z;
+  constexpr double kZ = 1.959963984540054;  // 97.5 % of a normal distribution lie below
+  const double n = static_cast<double>(of), p = static_cast<double>(count) / n, z2 = kZ * kZ;
   const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
-  const double half = z / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
+  const double half = kZ / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
   return {count, of, p, count == 0 ? 0 : std::max(0.0, middle - half), count == of ? 1 : std::min(1.0, middle + half)};
 }
 

@@ -78,7 +78,7 @@ std::vector<FoundFailure> found_in_kinds(const std::filesystem::path& directory,
     if (!signature) throw corpus::FormatError(file.string() + ": expected a case with a signature, found none");
     const std::string key = kind.at("key");
     if (!matches_any(globs, *signature) && !matches_any(globs, key)) continue;
-    if (taken[kind.at("subject")]++ == most) continue;
+    if (taken[kind.at("subject")]++ >= most) continue;
     failures.push_back({*signature, entries.front(), kind.at("pairs"), seen, key, file.string()});
   }
   return failures;

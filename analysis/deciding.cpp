@@ -67,7 +67,9 @@ class Search {
       const Seen<double>& seen = run.seen[i];
       if (!seen.compared || seen.taken == exact[i].held || corrects(chosen, seen)) continue;
       if (without_cause_ && without.seen.empty()) without = without_cause_(path);
-      if (without_cause_ && without.seen[i].held != exact[i].held) continue;
+      // What is not finite any more is the cause's doing, whatever rounding would say in its place.
+      const bool finite = std::isfinite(seen.left) && std::isfinite(seen.right);
+      if (without_cause_ && finite && without.seen[i].held != exact[i].held) continue;
       result.push_back({i,
                         seen,
                         exact[i],

@@ -92,13 +92,20 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
   const std::string text = read_whole(file);
   if (text.empty())
     throw std::runtime_error(directory.string() + ": expected a campaign's directory, found no summary.json in it");
+  Json summary, kinds;
   try {
-    const Json summary = Json::parse(text);
+    summary = Json::parse(text);
     if (!summary.at("complete").get<bool>())
       throw UsageError(directory.string() + ": expected a finished campaign, found one that was interrupted");
-    return found_in_kinds(directory, summary, kinds_of(directory, summary), globs, most);
+    kinds = kinds_of(directory, summary);
   } catch (const Json::exception&) {
-    throw corpus::FormatError(file.string() + ": expected a campaign's summary and kinds.json, found something else");
+    throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
+  }
+  try {
+    return found_in_kinds(directory, summary, kinds, globs, most);
+  } catch (const Json::exception&) {
+    throw corpus::FormatError((directory / "kinds.json").string() +
+                              ": expected what `graze minimize` writes, found something else");
   }
 }
 

@@ -1,28 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/blame.h"
 
+#include <bit>
+#include <optional>
+
 namespace graze::analysis {
 namespace {
 
-// A kernel with some sites fused.
+// Sites, a bit for each, in program order.
+struct Set {
+  std::size_t sites;
+  std::vector<std::uint64_t> bits = std::vector<std::uint64_t>(sites / 64 + 1);
+
+  bool has(std::size_t site) const { return bits[site / 64] >> (site % 64) & 1; }
+  void flip(std::size_t site) { bits[site / 64] ^= std::uint64_t{1} << (site % 64); }
+  int size() const {
+    int sum = 0;
+    for (const std::uint64_t word : bits) sum += std::popcount(word);
+    return sum;
+  }
+  bool operator==(const Set&) const = default;
+};
+
+Set others(Set set) {
+  for (std::size_t i = 0; i < set.sites; ++i) set.flip(i);
+  return set;
+}
+
+// A kernel of which any sites can be fused.
 class Fusing {
  public:
-  Fusing(const Lane& lane, const Pair& pair)
-      : lane_(lane), pair_(pair), sites_(cuda::contraction_sites(lane)), bits_(sites_.size() / 64 + 1) {}
+  Fusing(const Lane& lane, const Pair& pair) : lane_(lane), pair_(pair), sites_(cuda::contraction_sites(lane)) {}
 
-  std::size_t size() const { return sites_.size(); }
-  void set(std::size_t site, bool fused) {
-    const std::uint64_t bit = std::uint64_t{1} << (site % 64);
-    bits_[site / 64] = fused ? bits_[site / 64] | bit : bits_[site / 64] & ~bit;
-  }
-  void set_all(bool fused) {
-    for (std::size_t i = 0; i < size(); ++i) set(i, fused);
-  }
-  Verdict verdict() const { return cuda::decide_fusing(lane_, pair_, bits_); }
-  std::vector<cuda::ContractionSite> fused() const {
+  Set none() const { return {sites_.size()}; }
+  Set all() const { return others(none()); }
+  Verdict verdict(const Set& fused) const { return cuda::decide_fusing(lane_, pair_, fused.bits); }
+  std::vector<cuda::ContractionSite> named(const Set& set) const {
     std::vector<cuda::ContractionSite> result;
-    for (std::size_t i = 0; i < size(); ++i) {
-      if (bits_[i / 64] >> (i % 64) & 1) result.push_back(sites_[i]);
+    for (std::size_t i = 0; i < set.sites; ++i) {
+      if (set.has(i)) result.push_back(sites_[i]);
     }
     return result;
   }
@@ -31,54 +47,60 @@ class Fusing {
   const Lane& lane_;
   const Pair& pair_;
   std::span<const cuda::ContractionSite> sites_;
-  std::vector<std::uint64_t> bits_;
 };
 
-// Leaves the first of the single sites that give the verdict fused, or else the first two.
-bool find_one_or_two(Fusing& kernel, Verdict verdict) {
-  kernel.set_all(false);
-  for (std::size_t i = 0; i < kernel.size(); ++i) {
-    kernel.set(i, true);
-    if (kernel.verdict() == verdict) return true;
-    kernel.set(i, false);
-  }
-  for (std::size_t i = 0; i < kernel.size(); ++i) {
-    kernel.set(i, true);
-    for (std::size_t j = i + 1; j < kernel.size(); ++j) {
-      kernel.set(j, true);
-      if (kernel.verdict() == verdict) return true;
-      kernel.set(j, false);
+// A set of one or two sites: the first that is both enough for the verdict, fused alone, and needed for it, all others
+// fused; or else the first smallest that is enough; nothing where none is.
+std::optional<Set> one_or_two(const Fusing& kernel, Verdict verdict) {
+  std::vector<Set> enough;
+  Set set = kernel.none();
+  for (const bool pairs : {false, true}) {
+    const std::size_t before = enough.size();
+    for (std::size_t i = 0; i < set.sites; ++i) {
+      set.flip(i);
+      for (std::size_t j = i + 1; j < (pairs ? set.sites : i + 2); ++j) {
+        if (pairs) set.flip(j);
+        if (kernel.verdict(set) == verdict) enough.push_back(set);
+        if (pairs) set.flip(j);
+      }
+      set.flip(i);
     }
-    kernel.set(i, false);
+    for (std::size_t i = before; i < enough.size(); ++i) {
+      if (kernel.verdict(others(enough[i])) != verdict) return enough[i];
+    }
   }
-  return false;
+  return enough.empty() ? std::nullopt : std::optional(enough.front());
 }
 
-// Parts all sites from the last one on as long as the verdict stays, until none can be parted any more.
-void reduce(Fusing& kernel, Verdict verdict) {
-  kernel.set_all(true);
-  for (std::size_t left = kernel.size() + 1; kernel.fused().size() < left;) {
-    left = kernel.fused().size();
-    for (std::size_t i = kernel.size(); i-- > 0;) {
-      kernel.set(i, false);
-      if (kernel.verdict() != verdict) kernel.set(i, true);
+// Parts sites from the last one on as long as the verdict stays, until none can be parted any more.
+Set reduced(const Fusing& kernel, Set set, Verdict verdict) {
+  for (int left = set.size() + 1; set.size() < left;) {
+    left = set.size();
+    for (std::size_t i = set.sites; i-- > 0;) {
+      if (!set.has(i)) continue;
+      set.flip(i);
+      if (kernel.verdict(set) != verdict) set.flip(i);
     }
   }
+  return set;
 }
 
 }  // namespace
 
 Blame blame(const Lane& lane, const Pair& pair) {
-  Fusing kernel(lane, pair);
-  const Verdict without = kernel.verdict();
-  kernel.set_all(true);
-  const Verdict verdict = kernel.verdict();
-  if (verdict == without) return {};
-  if (find_one_or_two(kernel, verdict)) return {kernel.fused(), true};
-  reduce(kernel, verdict);
-  std::vector<cuda::ContractionSite> sites = kernel.fused();
-  const bool smallest = sites.size() <= 3;
-  return {std::move(sites), smallest};
+  const Fusing kernel(lane, pair);
+  const Verdict verdict = kernel.verdict(kernel.all());
+  if (verdict == kernel.verdict(kernel.none())) return {};
+  const std::optional<Set> few = one_or_two(kernel, verdict);
+  const Set set = few ? *few : reduced(kernel, kernel.all(), verdict);
+  // Where the sites that are left do the same without it, one such set after the other.
+  Set needed = set;
+  while (kernel.verdict(others(needed)) == verdict) {
+    const Set more = reduced(kernel, others(needed), verdict);
+    for (std::size_t i = 0; i < needed.bits.size(); ++i) needed.bits[i] |= more.bits[i];
+  }
+  if (needed != set && kernel.verdict(needed) == verdict) return {kernel.named(needed), false};
+  return {kernel.named(set), few || set.size() <= 3};
 }
 
 }  // namespace graze::analysis

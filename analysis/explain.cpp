@@ -9,6 +9,8 @@
 #include <limits>
 #include <map>
 
+#include "analysis/audit.h"
+
 namespace graze::analysis {
 namespace {
 
@@ -38,19 +40,11 @@ std::string line_of(const std::source_location& where) {
   return fmt::format("{}:{}", folder == std::string_view::npos ? file : file.substr(folder), where.line());
 }
 
-// What all lanes of an algorithm share.
-struct Algorithm {
-  oracle::Exactly exactly;
-  int bits_needed_f32, bits_needed_f64;
-};
-
 // Where roots or quotients leave a tie open in every precision, the verdict may be right with some numbers of bits and
 // wrong with others, without end. There, a number of bits is called enough only when it is less than half of kMostBits.
-Algorithm study(int algorithm, const Pair& pair, Verdict truth) {
-  const oracle::Exactly exactly = oracle::decide_exactly(algorithm, pair);
-  int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair, truth, 24) : 0;
-  if (!exactly.certain && bits > oracle::kMostBits / 2) bits = 0;
-  return {exactly, bits, bits == 0 ? 0 : std::max(bits, 53)};
+int bits_needed(int algorithm, const oracle::Exactly& exactly, const Pair& pair, Verdict truth) {
+  const int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair, truth, 24) : 0;
+  return !exactly.certain && bits > oracle::kMostBits / 2 ? 0 : bits;
 }
 
 // The pairs beside the pair, and the truth of those whose truth is another question.
@@ -106,62 +100,80 @@ Cause refined(const LaneExplanation& lane, const Pair& pair) {
   return first == oracle::RangeEvent::overflow && !lost ? Cause::overflow : Cause::underflow;
 }
 
-// The path up to a comparison, which goes the other way.
-Path turned_at(const Path& path, std::size_t comparison) {
-  Path turned(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(comparison) + 1);
-  turned[comparison] = !turned[comparison];
-  return turned;
+Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
+  return {line_of(seen.where),
+          seen.site ? name_of(*seen.site) : "",
+          seen.compared ? kRelations[static_cast<int>(seen.relation)] : "",
+          exact.left,
+          exact.right,
+          exact.difference,
+          seen.held,
+          exact.held};
+}
+
+// What the comparisons on a path would say without the cause; empty for rounding, without which they are exact.
+WithoutCause without(Cause cause, const Lane& lane, const Pair& pair, const Replay& run) {
+  if (cause == Cause::contraction)
+    return [&](const Path& path) { return run_led(lane, pair, Contraction::none, path); };
+  if (cause == Cause::overflow || cause == Cause::underflow) {
+    return [&](const Path& path) {
+      return oracle::run_limited(lane.algorithm, lane.scalar, pair, {false, false}, run.rule, path);
+    };
+  }
+  return {};
 }
 
 void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth, const oracle::Exactly& exactly) {
   const Lane& lane = *result.lane;
   const Replay run = replay(lane, pair);
   result.evidence = run.evidence;
+  result.rule = run.rule;
   if (run.evidence == Evidence::none) return;
+  if (result.cause != Cause::logic)
+    result.deciding =
+        deciding_comparisons(lane, pair, truth, run, exactly.bits, without(result.cause, lane, pair, run));
+  const std::vector<Decider>& deciding = result.deciding.comparisons;
   const std::vector<oracle::ExactStep> exact =
       oracle::exact_steps(lane.algorithm, lane.scalar, pair, run.run, exactly.bits);
-  const Path path = path_of(run.run);
-  std::size_t comparison = 0;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const Seen<double>& seen = run.run.seen[i];
-    const bool wrong = seen.compared && seen.held != exact[i].held;
-    if (seen.site || wrong) {
-      const int place = static_cast<int>(result.steps.size());
-      result.steps.push_back({line_of(seen.where), seen.site ? name_of(*seen.site) : "",
-                              seen.compared ? kRelations[static_cast<int>(seen.relation)] : "", exact[i].left,
-                              exact[i].right, exact[i].difference, seen.held, exact[i].held});
-      if (wrong && result.first_wrong < 0) result.first_wrong = place;
-      if (wrong && result.decisive < 0 && run_led(lane, pair, run.rule, turned_at(path, comparison)).verdict == truth)
-        result.decisive = place;
-    }
-    comparison += seen.compared;
+    if (!deciding.empty() && deciding.front().place == i) result.decisive = static_cast<int>(result.steps.size());
+    if (seen.site || (seen.compared && seen.held != exact[i].held)) result.steps.push_back(step_of(seen, exact[i]));
   }
+  for (std::size_t i = 1; i < deciding.size(); ++i) result.then.push_back(step_of(deciding[i].seen, deciding[i].exact));
 }
 
-LaneExplanation explain_lane(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth,
-                             const Algorithm& algorithm, const Neighbours& neighbours) {
-  LaneExplanation result{
-      .lane = &lane,
-      .verdict = verdict,
-      .cause = first_cause(lane, pair, truth, algorithm.exactly),
-      .exactly = algorithm.exactly,
-      .evidence = Evidence::none,
-      .steps = {},
-      .contractions = {},
-      .bits_needed = lane.scalar == Scalar::f32 ? algorithm.bits_needed_f32 : algorithm.bits_needed_f64,
-      .matters = {},
-      .orders = wrong_of(lane, neighbours.orders, truth),
-      .mirrored = wrong_of(lane, neighbours.mirrored, truth),
-      .scalings = wrong_of(lane, neighbours.scalings, truth)};
-  add_steps(result, pair, truth, algorithm.exactly);
+LaneExplanation account_of(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth,
+                           const oracle::Exactly& exactly) {
+  LaneExplanation result{};
+  result.lane = &lane;
+  result.verdict = verdict;
+  result.cause = first_cause(lane, pair, truth, exactly);
+  result.exactly = exactly;
+  add_steps(result, pair, truth, exactly);
   result.cause = refined(result, pair);
   if (!cuda::contraction_sites(lane).empty()) result.contractions = blame(lane, pair);
+  result.settled = audit(result, pair, truth);
+  return result;
+}
+
+// Lanes with the same run: the same source, every operation rounded as written.
+bool same_run(const Lane& l, const Lane& r) {
+  const auto rounded = [](const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; };
+  return l.info == r.info && l.scalar == r.scalar && rounded(l) && rounded(r);
+}
+
+void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, const Neighbours& neighbours) {
+  const Lane& lane = *result.lane;
+  result.bits_needed = bits_needed;
+  result.orders = wrong_of(lane, neighbours.orders, truth);
+  result.mirrored = wrong_of(lane, neighbours.mirrored, truth);
+  result.scalings = wrong_of(lane, neighbours.scalings, truth);
   for (std::size_t c = 0; c < kCoordinates; ++c) {
     const std::vector<Pair>& nudged = neighbours.nudged[c];
     result.matters[c] =
         !neighbours.truth_stays[c] || wrong_of(lane, nudged, truth).wrong < static_cast<int>(nudged.size());
   }
-  return result;
 }
 
 }  // namespace
@@ -185,27 +197,54 @@ bool leaves_exponents(const Lane& lane, const Pair& pair) {
   return std::fetestexcept(FE_OVERFLOW | FE_UNDERFLOW) != 0;
 }
 
+std::string_view name(Settled settled) {
+  constexpr std::string_view kNames[] = {"yes", "not without it", "not alone", "unknown"};
+  return kNames[static_cast<int>(settled)];
+}
+
 std::string_view name(Cause cause) {
   constexpr std::string_view kNames[] = {"rounding", "contraction", "fast math", "overflow", "underflow", "logic"};
   return kNames[static_cast<int>(cause)];
 }
 
-Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
-  Explanation result{pair, oracle::truth(pair), {}};
-  const Verdict right = result.truth.verdict;
-  if (right == Verdict::declined) return result;
-  std::map<const AlgorithmInfo*, Algorithm> algorithms;
-  std::optional<Neighbours> neighbours;
+std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span<const Lane* const> lanes) {
+  std::vector<LaneExplanation> result;
+  if (truth == Verdict::declined) return result;
+  std::map<const AlgorithmInfo*, oracle::Exactly> exactly;
   for (const Lane* lane : lanes) {
     if (lane->exact) continue;
     const Verdict verdict = decide_lane(*lane, pair);
-    if (verdict == right) continue;
-    if (!neighbours) neighbours.emplace(pair, right);
-    auto found = algorithms.find(lane->info);
-    if (found == algorithms.end()) {
-      found = algorithms.emplace(lane->info, study(lane->algorithm, pair, right)).first;
+    if (verdict == truth) continue;
+    const auto same = std::find_if(result.begin(), result.end(), [&](const LaneExplanation& other) {
+      return other.verdict == verdict && same_run(*other.lane, *lane);
+    });
+    if (same != result.end()) {
+      LaneExplanation copy = *same;
+      copy.lane = lane;
+      result.push_back(std::move(copy));
+      continue;
     }
-    result.lanes.push_back(explain_lane(*lane, verdict, pair, right, found->second, *neighbours));
+    auto found = exactly.find(lane->info);
+    if (found == exactly.end())
+      found = exactly.emplace(lane->info, oracle::decide_exactly(lane->algorithm, pair)).first;
+    result.push_back(account_of(*lane, verdict, pair, truth, found->second));
+  }
+  return result;
+}
+
+Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
+  Explanation result{pair, oracle::truth(pair), {}};
+  const Verdict truth = result.truth.verdict;
+  result.lanes = accounts(pair, truth, lanes);
+  if (result.lanes.empty()) return result;
+  const Neighbours neighbours(pair, truth);
+  std::map<const AlgorithmInfo*, int> bits;
+  for (LaneExplanation& lane : result.lanes) {
+    const bool f32 = lane.lane->scalar == Scalar::f32;
+    auto found = bits.find(lane.lane->info);
+    if (found == bits.end())
+      found = bits.emplace(lane.lane->info, bits_needed(lane.lane->algorithm, lane.exactly, pair, truth)).first;
+    add_surroundings(lane, truth, f32 || found->second == 0 ? found->second : std::max(found->second, 53), neighbours);
   }
   return result;
 }

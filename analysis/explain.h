@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/blame.h"
+#include "analysis/deciding.h"
 #include "analysis/lane_trace.h"
 #include "analysis/neighbours.h"
 #include "core/lanes.h"
@@ -30,6 +31,15 @@ namespace graze::analysis {
 //   rounding     otherwise
 enum class Cause { rounding, contraction, fast_math, overflow, underflow, logic };
 std::string_view name(Cause cause);
+
+// Whether the cause stands up to the audit of analysis/audit.h.
+enum class Settled {
+  yes,
+  not_without,  // without it something else makes the verdict wrong as well
+  not_alone,    // alone it does not make the verdict wrong
+  unknown       // what the lane computed is not known
+};
+std::string_view name(Settled settled);
 
 // A value that the algorithm asked its policy about, or a comparison.
 struct Step {
@@ -54,19 +64,19 @@ struct LaneExplanation {
   oracle::Exactly exactly;  // what the algorithm says in exact arithmetic
   Evidence evidence;        // how well the steps are known to be the lane's own
   std::vector<Step> steps;  // in order: values and comparisons of the policy's, and all comparisons that went wrong
-  int first_wrong = -1;     // step; -1 when every comparison went as in exact arithmetic
-  int decisive = -1;   // first step that, had it alone gone right, would have made the verdict right; -1: no single
-  Blame contractions;  // of a cuda-fma lane whose verdict contraction changes
-  int bits_needed;     // least mantissa, from the lane's own on, with which and with any longer one of up to
-                       // kMostBits it is right; 0 without one, and where it would be luck (see explain.cpp)
+  Contraction rule;         // by which the run was replayed
+  Deciding deciding;        // the comparisons that decide, as far as they go wrong by the cause
+  int decisive = -1;        // the first of them, a step; -1 where none is known
+  std::vector<Step> then;   // the others: each goes wrong once those before it are corrected
+  Blame contractions;       // of a cuda-fma lane whose verdict contraction changes
+  Settled settled;
+  int bits_needed;  // least mantissa, from the lane's own on, with which and with any longer one of up to
+                    // kMostBits it is right; 0 without one, and where it would be luck (see explain.cpp)
   std::array<bool, kCoordinates> matters;  // false: all its nudges leave the truth and the lane's verdict as they are
   WrongOf orders, mirrored, scalings;      // see neighbours.h
 
-  // The comparison to tell of; null without one, and where the algorithm itself is to blame.
-  const Step* told() const {
-    const int step = decisive >= 0 ? decisive : first_wrong;
-    return step < 0 || cause == Cause::logic ? nullptr : &steps[static_cast<std::size_t>(step)];
-  }
+  // The comparison to tell of, the first that decides; null without one, and where the algorithm itself is to blame.
+  const Step* told() const { return decisive < 0 ? nullptr : &steps[static_cast<std::size_t>(decisive)]; }
 };
 
 struct Explanation {
@@ -78,6 +88,10 @@ struct Explanation {
 // Explains each of the lanes that is wrong on the pair; CUDA lanes by their twins. Deterministic.
 // Requires: lanes that run here, or have a twin. A pair with a coordinate that is not finite has no wrong lanes.
 Explanation explain(const Pair& pair, std::span<const Lane* const> lanes);
+
+// The same of each wrong lane, without what lies around the pair: bits_needed, matters, orders, mirrored and scalings
+// are not set. A fraction of the time.
+std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span<const Lane* const> lanes);
 
 // The cause that explain gives, without the rest of it: a twentieth of the time, or a third where it says rounding.
 // Requires: the lane runs here or has a twin, and is wrong on the pair; truth is the pair's.

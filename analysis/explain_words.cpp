@@ -31,21 +31,6 @@ std::string words(const cuda::ContractionSite& site) {
   return inlined ? fmt::format("{} (inlined at {}:{})", at, site.from.file, site.from.line) : at;
 }
 
-// "A", "A and B", "A, B and 3 more": equal ones once.
-std::string list(const std::vector<cuda::ContractionSite>& sites) {
-  std::vector<std::string> names;
-  for (const cuda::ContractionSite& site : sites) {
-    if (std::find(names.begin(), names.end(), words(site)) == names.end()) names.push_back(words(site));
-  }
-  constexpr std::size_t kMost = 3;
-  const std::size_t more = names.size() > kMost ? names.size() - kMost : 0;
-  std::string result = names.front();
-  for (std::size_t i = 1; i < names.size() - more; ++i) {
-    result += (more == 0 && i + 1 == names.size() ? " and " : ", ") + names[i];
-  }
-  return more == 0 ? result : fmt::format("{} and {} more", result, more);
-}
-
 // What the compared value is: the last value of the policy's that it equals, or else what the policy was asked.
 std::string_view what(const LaneExplanation& lane, const Step& told) {
   const auto in_words = [](std::string_view site) -> std::string_view {
@@ -64,15 +49,58 @@ std::string_view what(const LaneExplanation& lane, const Step& told) {
   return told.right.decimal == "0" && told.right.lane == 0 ? "a number" : "the difference of two numbers";
 }
 
-// "which turns a signed distance of exactly 0 into 1.2e-09, so that the comparison at … goes the wrong way"
+// "A", "A and B", "A, B and 3 more"
+std::string list(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 3;
+  const std::size_t more = names.size() > kMost ? names.size() - kMost : 0;
+  std::string result = names.front();
+  for (std::size_t i = 1; i < names.size() - more; ++i) {
+    result += (more == 0 && i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return more == 0 ? result : fmt::format("{} and {} more", result, more);
+}
+
+// "turns a signed distance of exactly 0 into 1.2e-09, so that the comparison at … goes the wrong way"
 std::string effect(const LaneExplanation& lane) {
   const Step* told = lane.told();
   if (!told) return "";
   const std::string into = std::isfinite(told->difference.lane) ? fmt::format("{:.6g}", told->difference.lane)
                            : std::isnan(told->difference.lane)  ? "NaN"
                                                                 : "infinity";
-  return fmt::format("turns {} of exactly {} into {}, so that the comparison at {} goes the wrong way",
-                     what(lane, *told), told->difference.decimal, into, told->line);
+  std::string text = fmt::format("turns {} of exactly {} into {}, so that the comparison at {} goes the wrong way",
+                                 what(lane, *told), told->difference.decimal, into, told->line);
+  if (!lane.deciding.by_cause)
+    text = fmt::format("makes it wrong together with rounding, by the comparison at {}", told->line);
+  std::vector<std::string> then;
+  for (const Step& step : lane.then) {
+    if (std::find(then.begin(), then.end(), step.line) == then.end()) then.push_back(step.line);
+  }
+  if (!then.empty())
+    text +=
+        fmt::format(" and, were it right, {} at {}", lane.then.size() == 1 ? "the next one" : "later ones", list(then));
+  return text;
+}
+
+std::string list(const std::vector<cuda::ContractionSite>& sites) {
+  std::vector<std::string> names;
+  for (const cuda::ContractionSite& site : sites) {
+    if (std::find(names.begin(), names.end(), words(site)) == names.end()) names.push_back(words(site));
+  }
+  return list(names);
+}
+
+// Why the cause is not settled; empty where it is, and where the reason says so already.
+std::string doubt(const LaneExplanation& lane) {
+  switch (lane.settled) {
+    case Settled::not_without:
+      return "; not settled: without that something else makes it wrong as well";
+    case Settled::not_alone:
+      return "; not settled: that alone, with all else exact, does not make it wrong";
+    case Settled::unknown:
+      return lane.cause == Cause::fast_math ? "" : "; not settled: what it computed is not known";
+    default:
+      return "";
+  }
 }
 
 std::string reason(const LaneExplanation& lane) {
@@ -100,23 +128,25 @@ std::string reason(const LaneExplanation& lane) {
 }
 
 std::string remedy(const LaneExplanation& lane) {
-  const int own = lane.lane->scalar == Scalar::f32 ? 24 : 53;
   if (lane.cause == Cause::logic) return "no arithmetic would help";
   if (lane.cause == Cause::contraction) return "without contraction it is right";
   if (lane.cause == Cause::fast_math) return "with every operation rounded as written it is right";
-  const bool range = lane.cause == Cause::overflow || lane.cause == Cause::underflow;
-  const std::string bits =
-      lane.bits_needed == 0     ? fmt::format("no mantissa of up to {} bits would be enough", oracle::kMostBits)
-      : lane.bits_needed == own ? fmt::format("its {} mantissa bits would be enough", own)
-                                : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
-  return bits + (range ? " with exponents without limits" : "");
+  const std::string bits = lane.bits_needed == 0
+                               ? fmt::format("no mantissa of up to {} bits would be enough", oracle::kMostBits)
+                               : fmt::format("{} mantissa bits would be enough", lane.bits_needed);
+  if (lane.cause == Cause::rounding) return bits;
+  if (lane.settled != Settled::not_without) return "with exponents without limits it is right";
+  if (lane.bits_needed == (lane.lane->scalar == Scalar::f32 ? 24 : 53))
+    return std::string("with exponents without limits") +
+           (lane.rule == Contraction::none ? "" : ", and without contraction,") + " it is right";
+  return bits + (lane.bits_needed == 0 ? ", even with" : " with") + " exponents without limits";
 }
 
 // Lanes that one account fits.
 bool alike(const LaneExplanation& l, const LaneExplanation& r) {
   const auto line = [](const LaneExplanation& lane) { return lane.told() ? lane.told()->line : ""; };
-  return l.lane->scalar == r.lane->scalar && l.verdict == r.verdict && l.cause == r.cause && line(l) == line(r) &&
-         l.contractions.sites.empty() == r.contractions.sites.empty();
+  return l.lane->scalar == r.lane->scalar && l.verdict == r.verdict && l.cause == r.cause && l.settled == r.settled &&
+         line(l) == line(r) && l.contractions.sites.empty() == r.contractions.sites.empty();
 }
 
 nlohmann::ordered_json number(double x) {
@@ -173,7 +203,8 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
   const Lane& lane = *first->lane;
   const std::string also = others.empty() ? "" : "; also wrong: " + others;
   return fmt::format("{}/{} ({}) says {}, but the triangles {}: {}; {}{}.", lane.info->id, name(lane.scalar), same,
-                     name(first->verdict), phrase(explanation.truth), reason(*first), remedy(*first), also);
+                     name(first->verdict), phrase(explanation.truth), reason(*first) + doubt(*first), remedy(*first),
+                     also);
 }
 
 std::vector<std::string> sentences(const Explanation& explanation) {
@@ -189,12 +220,14 @@ nlohmann::ordered_json to_json(const LaneExplanation& lane) {
   nlohmann::ordered_json json{{"lane", lane.lane->id},
                               {"verdict", name(lane.verdict)},
                               {"cause", name(lane.cause)},
+                              {"settled", name(lane.settled)},
                               {"exactly", name(lane.exactly.verdict)},
                               {"exactly_settled", lane.exactly.settled},
                               {"evidence", name(lane.evidence)}};
-  const auto step = [](int place) { return place < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(place); };
-  json["first_wrong"] = step(lane.first_wrong);
-  json["decisive"] = step(lane.decisive);
+  json["decisive"] = lane.decisive < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(lane.decisive);
+  json["then"] = nlohmann::ordered_json::array();
+  for (const Step& s : lane.then) json["then"].push_back(to_json(s));
+  json["decisive_smallest"] = lane.deciding.smallest;
   json["steps"] = nlohmann::ordered_json::array();
   for (const Step& s : lane.steps) json["steps"].push_back(to_json(s));
   json["contractions"] = nlohmann::ordered_json::array();

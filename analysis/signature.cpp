@@ -91,11 +91,13 @@ std::optional<Signature> parse_signature(std::string_view key) {
                       (*shape == "coplanar" || *shape == "skew");
   auto wrong_lanes = wrong_lanes_of(rest);
   if (!contact || !bucket || !shaped || !wrong_lanes) return std::nullopt;
-  return Signature{*contact,
+  Signature result{*contact,
                    {(*dimensions)[0] - '0', (*dimensions)[1] - '0', *shape == "coplanar"},
                    *bucket,
                    std::string(*subject),
                    std::move(*wrong_lanes)};
+  if (analysis::key(result) != key) return std::nullopt;  // a number written otherwise, or too large
+  return result;
 }
 
 std::string subject_of(std::string_view key) {

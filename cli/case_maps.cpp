@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "analysis/signature.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/ulp_map_picture.h"
@@ -15,10 +14,12 @@ namespace {
 
 // Whether the stored maps are these lanes' of this pair.
 bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
-  if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || maps["panels"].size() != lanes.size() + 1)
+  if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || !maps["panels"].is_array() ||
+      maps["panels"].size() != lanes.size() + 1)
     return false;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    if (maps["panels"][l + 1].value("name", "") != lanes[l]->id) return false;
+    const Json& panel = maps["panels"][l + 1];
+    if (!panel.is_object() || panel.value("name", Json()) != lanes[l]->id || !panel.contains("shows")) return false;
   }
   return true;
 }
@@ -26,12 +27,12 @@ bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane
 }  // namespace
 
 bool map_case(const fuzz::LanesUnderTest& under_test, const std::filesystem::path& case_file,
-              const std::string& signature, bool again) {
+              const std::string& subject, bool again) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
   const Pair pair = corpus::read_pairs(case_file).at(0).pair;
   std::vector<const Lane*> lanes;
   std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
-               [&](const Lane* lane) { return lane->info->id == analysis::subject_of(signature); });
+               [&](const Lane* lane) { return lane->info->id == subject; });
   if (!again && is_current(Json::parse(fuzz::read_whole(file), nullptr, false), pair, lanes)) return false;
   const analysis::UlpMap map = analysis::ulp_map(pair, lanes, analysis::liveliest_coordinates(pair, lanes));
   fuzz::write_whole(file, reports::to_json(map).dump(1) + "\n");

@@ -9,9 +9,9 @@
 
 namespace graze::cli {
 
-// Maps the file's first case on the lanes under test of the signature's algorithm, along the liveliest coordinates,
+// Maps the file's first case on the subject's lanes under test, along the liveliest coordinates,
 // unless that is there already or `again`. Returns: whether it was done now. Throws: OracleApart, std::runtime_error.
 bool map_case(const fuzz::LanesUnderTest& under_test, const std::filesystem::path& case_file,
-              const std::string& signature, bool again);
+              const std::string& subject, bool again);
 
 }  // namespace graze::cli

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cases.h"
 
+#include <fmt/format.h>
+
 #include "core/error.h"
 #include "core/text.h"
+#include "oracle/written.h"
 #include "strata/pair_source.h"
 
 namespace graze::cli {
@@ -14,11 +17,23 @@ std::uint64_t number(const std::string& text, const std::string& name) {
   return *value;
 }
 
+// "disjoint, 1e-11 apart", "they share a segment, 0.25 deep"
+std::string words(const oracle::Truth& truth) {
+  if (truth.verdict == Verdict::disjoint)
+    return truth.margin > 0 ? fmt::format("disjoint, {:.3g} apart", truth.margin) : "disjoint, less than 5e-324 apart";
+  const char* contact = truth.contact == Contact::point     ? "they touch in a point"
+                        : truth.contact == Contact::segment ? "they share a segment"
+                                                            : "they share an area";
+  return truth.margin < 0 ? fmt::format("{}, {:.3g} deep", contact, -truth.margin) : contact;
+}
+
 }  // namespace
 
 std::vector<corpus::Entry> read_cases(const std::string& name) {
   const std::size_t first = name.find(':'), last = name.rfind(':');
-  if (first == std::string::npos || first == last || name.find('/') != std::string::npos) {
+  const bool three_numbers = first != std::string::npos && first != last && name.find('/') == std::string::npos;
+  std::error_code ignored;
+  if (!three_numbers || std::filesystem::exists(name, ignored)) {
     std::vector<corpus::Entry> entries = corpus::read_pairs(name);
     if (entries.empty()) throw std::runtime_error(name + ": expected at least one case, found none");
     return entries;
@@ -28,6 +43,31 @@ std::vector<corpus::Entry> read_cases(const std::string& name) {
   const std::vector<strata::PairSource> sources = strata::stratum_sources(number(seed, name), 1, {stratum});
   if (sources.size() != 1) throw UsageError(name + ": expected one stratum, found a pattern of several");
   return {{sources.front().pair(number(index, name)), {{"stratum", stratum}, {"seed", seed}, {"index", index}}, 0}};
+}
+
+std::string written_note(const corpus::Entry& entry, const oracle::Truth& stored) {
+  if (entry.written.empty()) return "";
+  const std::optional<oracle::Truth> written = oracle::truth_as_written(entry.written, entry.pair);
+  if (!written) return "";
+  const auto sign = [](double margin) { return (margin > 0) - (margin < 0); };
+  const bool alike = written->verdict == stored.verdict && written->contact == stored.contact &&
+                     sign(written->margin) == sign(stored.margin);
+  return alike ? "" : fmt::format("as written: {}; as stored in float32: {}", words(*written), words(stored));
+}
+
+CLI::Option* add_exact_input(CLI::App& command, bool& exact_input) {
+  return command.add_flag("--exact-input", exact_input,
+                          "Refuse numbers that float32 does not hold as they are written");
+}
+
+void expect_exact_input(const std::string& name, const corpus::Entry& entry) {
+  if (entry.written.empty()) return;
+  if (const std::optional<std::size_t> i = oracle::first_rounded(entry.written, entry.pair)) {
+    throw UsageError(
+        fmt::format("{}:{}: expected numbers that float32 holds as written (--exact-input), found {} as "
+                    "number {}",
+                    name, entry.line, shown(entry.written[*i]), *i + 1));
+  }
 }
 
 }  // namespace graze::cli

@@ -7,7 +7,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/cases.h"
 #include "cli/commands.h"
+#include "cli/screen.h"
+#include "core/text.h"
 #include "corpus/pair_format.h"
 #include "oracle/truth.h"
 #include "reports/terminal.h"
@@ -20,6 +23,7 @@ struct CheckOptions {
   LaneOptions lanes;
   bool json = false;
   bool truth_only = false;
+  bool exact_input = false;
 };
 
 nlohmann::ordered_json number(double x) {
@@ -33,11 +37,16 @@ void check(const CheckOptions& options) {
   fuzz::LanesUnderTest under_test;
   if (!options.truth_only) under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   const std::string evidence = cuda_evidence(under_test);
-  corpus::PairReader reader(from_stdin ? std::cin : file, from_stdin ? "standard input" : options.file);
+  const std::string name_of_input = from_stdin ? "standard input" : options.file;
+  corpus::PairReader reader(from_stdin ? std::cin : file, name_of_input);
   std::size_t number_of_pair = 0;
+  bool wrong = false;
   for (; const auto entry = reader.next(); ++number_of_pair) {
+    if (options.exact_input) expect_exact_input(name_of_input, *entry);
     const oracle::Truth t = oracle::truth(entry->pair);
+    const std::string note = written_note(*entry, t);
     const std::vector<Verdict> verdicts = options.truth_only ? std::vector<Verdict>() : decide(under_test, entry->pair);
+    wrong = wrong || some_is_wrong(verdicts, t.verdict);
     if (options.json) {
       nlohmann::ordered_json line = {{"pair", number_of_pair},
                                      {"truth",
@@ -48,19 +57,20 @@ void check(const CheckOptions& options) {
                                      {"lanes", nlohmann::ordered_json::object()}};
       for (std::size_t l = 0; l < verdicts.size(); ++l) line["lanes"][under_test.lanes[l]->id] = name(verdicts[l]);
       if (!evidence.empty()) line["cuda"] = evidence;
-      fmt::print("{}\n", line.dump());
+      if (!note.empty()) line["note"] = note;
+      fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
     } else {
       const std::string* label = corpus::field(*entry, "name");
-      fmt::print("pair {}, line {}{}\n", number_of_pair, entry->line, label ? ": " + *label : "");
+      fmt::print("pair {}, line {}{}\n", number_of_pair, entry->line, label ? ": " + printable(*label) : "");
       std::fflush(stdout);
-      reports::print_pair(std::cout, entry->pair, t, under_test.lanes, verdicts);
-      if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
+      reports::print_pair(std::cout, entry->pair, t, under_test.lanes, verdicts, output_screen());
+      if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
+      if (!note.empty()) std::cout << reports::wrapped(note, output_screen().columns, 2, 4);
       std::cout.flush();
     }
   }
-  if (number_of_pair == 0)
-    throw std::runtime_error((from_stdin ? "standard input" : options.file) +
-                             ": expected at least one pair, found none");
+  if (number_of_pair == 0) throw std::runtime_error(name_of_input + ": expected at least one pair, found none");
+  if (wrong && !from_stdin && !options.json) fmt::print("Next: graze explain {}\n", shell_word(options.file));
 }
 
 }  // namespace
@@ -71,8 +81,9 @@ void add_check(CLI::App& app, int&) {
   auto options = std::make_shared<CheckOptions>();
   command->add_option("file", options->file, "File of pairs (18 numbers a line), or - for standard input")->required();
   add_lane_options(*command, options->lanes);
+  add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "One JSON object for each pair, on a line of its own");
-  command->add_flag("--truth-only", options->truth_only, "Run just the oracle");
+  command->add_flag("--truth-only", options->truth_only, "Run just the oracle")->excludes("--lanes");
   command->callback([options] { check(*options); });
 }
 

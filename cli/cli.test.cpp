@@ -60,23 +60,30 @@ TEST_F(Cli, BadPairsGetOneLineAndKeepWhatCameBefore) {
   expect_error("graze repro missing.pairs", 1, "missing.pairs: expected");
 }
 
-TEST_F(Cli, WrongUseExitsWithTwo) {
-  expect_error("graze", 2, "subcommand");
-  expect_error("graze fuzz --pairs many", 2, "--pairs");
-  expect_error("graze nosuch", 2, "found 'nosuch'");
-  expect_error("graze fuzz --pairs 0", 2, "found '0'");
-  expect_error("graze fuzz --pairs -5", 2, "found '-5'");
-  expect_error("graze fuzz --seed 99999999999999999999999", 2, "expected a whole number");
-  expect_error("graze fuzz --threads -1", 2, "from 0 to 4096");
-  expect_error("graze fuzz --executor gpu", 2, "gpu");
-  expect_error("graze repro 'near_*:1:0'", 2, "expected one stratum");
-  expect_error("graze fuzz --lanes 'moler_*'", 2, "found 'moler_*'");
-  expect_error("graze fuzz --strata 'uniform,nowhere'", 2, "found 'nowhere'");
-  expect_error("echo | graze check - --lanes nothing", 2, "found 'nothing'");
-  expect_error("graze repro uniform:x:3", 2, "found 'x'");
-  expect_error("graze repro nowhere:1:3", 2, "found 'nowhere'");
-  expect_error("graze fuzz --pairs 100 --out here > /dev/null && graze fuzz --pairs 200 --out here", 2,
-               "here: holds another campaign");
+// What was not compared is no zero.
+TEST_F(Cli, NothingComparedIsSaidEverywhere) {
+  const std::string fuzz = "graze fuzz --executor twin --pairs 30 --strata uniform ";
+  const Ran ran = shell(fuzz + "--lanes 'moller_1997/f32/cuda-fma' --out c");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(Json::parse(contents(
+      shell.folder / "c/summary.json"))["strata"]["uniform"]["lanes"]["moller_1997/f32/cuda-fma"]["differs_from_cpu"]
+                  .is_null());
+  const std::size_t row = ran.out.find("moller_1997/f32/cuda-fma");
+  EXPECT_TRUE(ran.out.substr(row, ran.out.find('\n', row) - row).ends_with(" -")) << ran.out;
+  const Ran beside = shell(fuzz + "--lanes 'moller_1997/f32/c*' --json --out d");
+  const Json lanes = Json::parse(beside.out)["strata"]["uniform"]["lanes"];
+  EXPECT_TRUE(lanes["moller_1997/f32/cpu"]["differs_from_cpu"].is_null());
+  EXPECT_EQ(lanes["moller_1997/f32/cuda-nofma"]["differs_from_cpu"], 0);
+  // A stratum without pairs has no shares.
+  const Ran none = shell("graze fuzz --pairs 1 --strata 'uniform,thesis' --lanes 'moller_*/f32/cpu' --out e");
+  EXPECT_NE(none.out.find("\nthesis                         0           -                       -\n"),
+            std::string::npos)
+      << none.out;
+  expect_done("graze report c && graze report d && graze report e");
+  EXPECT_TRUE(Json::parse(contents(shell.folder / "c/report.json"))["rates"][0]["differs_from_cpu"].is_null());
+  expect_done("grep -q '^moller_1997/f32/cuda-fma,uniform,wrong,' c/rates.csv && ! grep differs_from_cpu c/rates.csv");
+  expect_done("! grep '^moller_1997/f32/cpu,uniform,differs_from_cpu' d/rates.csv");
+  expect_done("grep -q '^moller_1997/f32/cuda-nofma,uniform,differs_from_cpu,0,30,0' d/rates.csv");
 }
 
 TEST_F(Cli, MeshesThatDoNotParseAreNamed) {
@@ -163,12 +170,16 @@ TEST_F(Cli, OutGoesIntoWhatStandsThere) {
 TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
   expect_error("mkdir a; echo '{\"signatures\":[{}],\"spec\":{\"lanes\":5}}' > a/summary.json; graze minimize a", 1,
                "a/summary.json: expected a campaign's summary, found something else");
+  expect_error("cp -r a e; sed -i 's/5/[\"exact\\/f32\\/cpu\"]/' e/summary.json; graze minimize e", 1,
+               "e/summary.json: expected a campaign's summary, found something else");
   expect_error("mkdir -p b/summary.json; graze report b", 1,
                "b/summary.json: expected to read it, found: Is a directory");
   expect_error("echo '{\"format\":1,\"rates\":5}' > r.json; graze report --from r.json --out r.html", 1,
                "r.json: expected a report of `graze report`, found something else");
   expect_error("graze minimize none", 1, "none: expected");
   expect_error("graze report none", 1, "none: expected");
+  expect_error("mkdir c; echo '{\"spec\": {\"lanes\": 1}, \"signatures\": [{}]}' > c/summary.json; graze corpus add c",
+               1, "c/summary.json: expected a campaign's summary, found something else");
   expect_error(
       "printf 'OFF\\n6 2 0\\n0 0 0\\n4 0 0\\n0 4 0\\n1 1 -1\\n1 1 1\\n2 1 1\\n3 0 1 2\\n3 3 4 5\\n' > $'\\xff.off'; "
       "graze fuzz --mesh $'\\xff.off'",
@@ -232,7 +243,7 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
 
 TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
   for (const std::string verb :
-       {"fuzz", "check", "repro", "explain", "lanes", "strata"}) {  // prove-twin needs a device
+       {"fuzz", "check", "repro", "explain", "dump", "lanes", "strata"}) {  // prove-twin needs a device
     const Ran help = shell("graze " + verb + " --help");
     EXPECT_EQ(help.status, 0);
     const std::size_t at = help.out.find("Example: ");

@@ -17,7 +17,9 @@ void add_repro(CLI::App& app, int& status);
 void add_minimize(CLI::App& app, int& status);
 void add_corpus(CLI::App& app, int& status);
 void add_explain(CLI::App& app, int& status);
+void add_kinds(CLI::App& app, int& status);
 void add_map(CLI::App& app, int& status);
+void add_dump(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
@@ -36,14 +38,21 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
 // The most of any number of pairs, and of seeds: 2^53, up to which all are whole in every reader of JSON.
 inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
-// Accepts whole numbers in [least, most] and nothing else: CLI11 alone would wrap negative ones.
+// Accepts whole numbers in [least, most], also as 1e6, 10M or 1_000_000, and nothing else. To be used by transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
 // Accepts any text but an empty one, which names no file.
 CLI::Validator not_empty();
 
+// Accepts these words and nothing else. To be used by transform(), which leaves the word or its place.
+enum class Chosen { word, place };
+CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
+
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair);
+
+// Whether a verdict is not the truth; no verdict is wrong of a pair that the truth declines.
+bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);
 
 // What runs the CUDA lanes under test, in one line: each kind of evidence once. Empty without CUDA lanes.
 std::string cuda_evidence(const fuzz::LanesUnderTest& under_test);

@@ -11,6 +11,7 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/files.h"
 #include "fuzz/regression/found_failure.h"
 #include "reports/terminal.h"
@@ -27,6 +28,7 @@ struct CorpusOptions {
   std::size_t most = std::numeric_limits<std::size_t>::max();
   LaneOptions lanes;
   bool update = false;
+  bool exact_input = false;
 
   std::filesystem::path file() const { return std::filesystem::path(folder) / "cases.pairs"; }
 };
@@ -49,15 +51,31 @@ fuzz::DecideLanes decide_by(const fuzz::LanesUnderTest& under_test) {
   return [&under_test](const Pair& pair, std::vector<const Lane*>& apart) { return decide(under_test, pair, apart); };
 }
 
+std::vector<corpus::Entry> cases_to_add(const std::string& name, bool exact_input) {
+  std::vector<corpus::Entry> entries = read_cases(name);
+  for (const corpus::Entry& entry : entries) {
+    if (exact_input) expect_exact_input(name, entry);
+    const std::string note = written_note(entry, oracle::truth(entry.pair));
+    if (!note.empty()) fmt::print("{}:{}: {}\n", name, entry.line, note);
+  }
+  return entries;
+}
+
+void print_next(const CorpusOptions& options, const char* verb) {
+  const bool usual = options.folder == CorpusOptions().folder;
+  fmt::print("Next: graze corpus {}{}\n", verb, usual ? "" : " --corpus " + shell_word(options.folder));
+}
+
 void add(const CorpusOptions& options) {
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
   const fuzz::DecideLanes by_bench = decide_by(under_test);
   const Json build = fuzz::build_info(under_test);
   std::vector<std::pair<std::string, std::vector<fuzz::FoundFailure>>> found;
   for (const std::string& name : options.names) {
-    found.emplace_back(name, std::filesystem::is_directory(name)
-                                 ? fuzz::found_in_campaign(name, options.signatures, options.most)
-                                 : fuzz::found_in_cases(read_cases(name), build, under_test.lanes, by_bench));
+    found.emplace_back(
+        name, std::filesystem::is_directory(name)
+                  ? fuzz::found_in_campaign(name, options.signatures, options.most)
+                  : fuzz::found_in_cases(cases_to_add(name, options.exact_input), build, under_test.lanes, by_bench));
     if (found.back().second.empty())
       throw std::runtime_error(name + ": expected a case on which some lane is wrong, found none");
   }
@@ -74,7 +92,7 @@ void add(const CorpusOptions& options) {
       try {
         ++count[static_cast<std::size_t>(fuzz::add(corpus, failure, under_test.lanes, by_bench))];
       } catch (const std::runtime_error& error) {
-        throw std::runtime_error(name + ": " + error.what());
+        throw std::runtime_error((failure.file.empty() ? name : failure.file) + ": " + error.what());
       }
     }
   }
@@ -82,13 +100,15 @@ void add(const CorpusOptions& options) {
   fmt::print("{} new, {} seen again, {} known already; {} holds {}\n", reports::grouped(count[0]),
              reports::grouped(count[1]), reports::grouped(count[2]), options.file().string(),
              reports::grouped(corpus.size()));
+  print_next(options, "verify");
 }
 
 void list(const CorpusOptions& options) {
   for (const auto& [signature, c] : read_corpus(options)) {
     fmt::print("{:<8}{:>11}  {}\n{:21}{}\n{:21}first: {}\n{:21}last:  {}\n", name(c.state), reports::grouped(c.count),
-               c.name, "", signature, "", c.first, "", c.last);
+               printable(c.name), "", printable(signature), "", printable(c.first), "", printable(c.last));
   }
+  print_next(options, "verify");
 }
 
 int verify(const CorpusOptions& options) {
@@ -100,7 +120,8 @@ int verify(const CorpusOptions& options) {
   const fuzz::Verified result = graze::fuzz::verify(corpus, under_test.lanes, decide_by(under_test));
   std::array<std::size_t, 3> states{};
   for (const auto& [signature, c] : corpus) ++states[static_cast<std::size_t>(c.state)];
-  for (const fuzz::Change& change : result.changes) fmt::print("{}: {}\n", change.name, change.what);
+  for (const fuzz::Change& change : result.changes)
+    fmt::print("{}: {}\n", printable(change.name), printable(change.what));
   fmt::print("{} cases on {} lanes: {} failing, {} fixed, {} flaky; {} verdicts compared, {} changes{}\n",
              reports::grouped(corpus.size()), under_test.lanes.size(), states[0], states[1], states[2],
              reports::grouped(result.compared), result.changes.size(), options.update ? ", recorded" : "");
@@ -112,6 +133,7 @@ int verify(const CorpusOptions& options) {
   }
   if (result.compared == 0)
     throw std::runtime_error(options.file().string() + ": expected a record of these lanes to compare, found none");
+  if (!result.changes.empty()) print_next(options, "verify --update");
   return result.changes.empty() ? 0 : 1;
 }
 
@@ -140,7 +162,8 @@ void add_corpus(CLI::App& app, int& status) {
       ->required();
   add_globs(*command, "--signatures", options->signatures, "Of a campaign only signatures that match a pattern");
   command->add_option("--top", options->most, "Of a campaign only the commonest signatures, so many an algorithm")
-      ->check(whole_number(1, 1'000'000'000));
+      ->transform(whole_number(1, 1'000'000'000));
+  add_exact_input(*command, options->exact_input);
   add_lane_options(*command, options->lanes);
   command->callback([options] { add(*options); });
 

@@ -8,6 +8,7 @@
 #include "analysis/signature.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "core/text.h"
 #include "oracle/truth.h"
 
 namespace graze::cli {
@@ -15,11 +16,11 @@ namespace {
 
 // Where the case is from: its numbers, or those it was minimised from, its name, or its line.
 std::string origin(const std::string& name, const corpus::Entry& entry) {
-  if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return *numbers;
+  if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
   const std::string *kind = corpus::field(entry, "kind"), *from = corpus::field(entry, "from"),
                     *label = corpus::field(entry, "name");
-  if (kind && from) return fmt::format("{} from {}", *kind, *from);
-  return label ? *label : entry.line > 0 ? fmt::format("{}:{}", name, entry.line) : name;
+  if (kind && from) return printable(*kind + " from " + *from);
+  return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", name, entry.line) : name);
 }
 
 std::string described(const std::string& name, const corpus::Entry& entry, const oracle::Truth& t) {

@@ -7,47 +7,73 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <span>
 
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "cli/screen.h"
+#include "core/text.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
 namespace {
 
-std::string words(const oracle::Beside& beside) {
-  const std::string error = std::isinf(beside.ulps) ? "" : fmt::format("  {:.3g} ulps", beside.ulps);
-  return fmt::format("{:<14.7g} exact {:<14}{}", beside.lane, beside.decimal, error);
+// Whether a value is off by more than a thousandth: less is what rounding does, and explains nothing.
+bool is_off(const oracle::Beside& beside, Scalar scalar) {
+  return !(beside.ulps <= std::ldexp(1e-3, scalar == Scalar::f32 ? 23 : 52));
 }
 
-void print_step(const analysis::Step& step) {
-  fmt::print("      {:<34} {:<15}", step.line, step.site);
+// "guigue_devillers_2003.h:111"
+std::string place(const analysis::Step& step) { return step.line.substr(step.line.rfind('/') + 1); }
+
+// A value, with the exact one where it is off; a comparison, with that of the exact values where it goes another way.
+// Of these the one to tell of is marked. places: columns for the place.
+void print_step(const analysis::Step& step, bool told, Scalar scalar, int places, const reports::Screen& screen) {
+  std::string text = fmt::format("{}{:<{}}  ", told ? "   => " : "      ", place(step), places), exactly;
+  const int hang = reports::width_of(text);
   if (step.relation.empty()) {
-    fmt::print("{}\n", words(step.left));
-    return;
+    text += fmt::format("{}: {:.7g}", step.site, step.left.lane);
+    if (is_off(step.left, scalar)) exactly = "exactly " + step.left.decimal;
+  } else {
+    text += fmt::format("{:.7g} {} {:.7g} is {}", step.left.lane, step.relation, step.right.lane, step.held);
+    if (step.wrong())
+      exactly = fmt::format("exactly {} {} {} is {}", step.left.decimal, step.relation, step.right.decimal, step.holds);
   }
-  fmt::print("{:.7g} {} {:.7g} is {}; exact {} {} {} is {}; difference {}{}\n", step.left.lane, step.relation,
-             step.right.lane, step.held, step.left.decimal, step.relation, step.right.decimal, step.holds,
-             words(step.difference), step.wrong() ? "  WRONG" : "");
+  if (!exactly.empty()) {
+    const bool fits = reports::width_of(text) + 2 + reports::width_of(exactly) <= screen.columns;
+    text += (step.relation.empty() ? "," : ";") +
+            (fits ? " " : "\n" + std::string(static_cast<std::size_t>(hang), ' ')) + exactly;
+  }
+  fmt::print("{}\n", told ? reports::red(screen, text) : text);
 }
 
 // The values up to the comparison to tell of, or all; at most the last kMost of them.
-void print_steps(const analysis::LaneExplanation& lane) {
+void print_steps(const analysis::LaneExplanation& lane, const reports::Screen& screen) {
   constexpr int kMost = 12;
+  if (lane.evidence == analysis::Evidence::none) {
+    fmt::print("    values: unknown, no rule of contraction replays this lane here\n");
+    return;
+  }
   const analysis::Step* told = lane.told();
   const int end = told ? static_cast<int>(told - lane.steps.data()) + 1 : static_cast<int>(lane.steps.size());
   const int begin = std::max(0, end - kMost);
-  fmt::print("    values{}:{}\n",
-             lane.evidence == analysis::Evidence::source ? ""
-             : lane.evidence == analysis::Evidence::hash
-                 ? " (contracted by a rule; they have the hash of the lane's twin)"
-             : lane.evidence == analysis::Evidence::verdict
-                 ? " (contracted by a rule; only the verdict is known to be the lane's)"
-                 : ": unknown, no rule of contraction replays this lane here",
-             begin > 0 ? fmt::format(" ({} before, see --json)", begin) : "");
-  for (int i = begin; i < end; ++i) print_step(lane.steps[static_cast<std::size_t>(i)]);
-  if (lane.first_wrong < 0 && lane.evidence != analysis::Evidence::none)
-    fmt::print("      every comparison goes as in exact arithmetic\n");
+  const std::string_view known = lane.evidence == analysis::Evidence::source ? ""
+                                 : lane.evidence == analysis::Evidence::hash
+                                     ? " (contracted by a rule; they have the hash of the lane's twin)"
+                                     : " (contracted by a rule; only the verdict is known to be the lane's)";
+  const std::string before = begin > 0 ? fmt::format(" ({} before, see --json)", begin) : "";
+  fmt::print("{}", reports::wrapped(fmt::format("values{}{}:", known, before), screen.columns, 4, 6));
+  const auto shown =
+      std::span(lane.steps).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+  std::size_t places = 0;
+  for (const analysis::Step& step : shown) places = std::max(places, place(step).size());
+  for (const analysis::Step& step : shown)
+    print_step(step, &step == told, lane.lane->scalar, static_cast<int>(places), screen);
+  for (const analysis::Step& step : lane.then)
+    print_step(step, true, lane.lane->scalar, static_cast<int>(places), screen);
+  const bool all_right =
+      std::none_of(lane.steps.begin(), lane.steps.end(), [](const analysis::Step& step) { return step.wrong(); });
+  if (all_right) fmt::print("      every comparison goes as in exact arithmetic\n");
 }
 
 // "a[0].x b[2].z"
@@ -60,67 +86,86 @@ std::string free_coordinates(const analysis::LaneExplanation& lane) {
   return names.empty() ? " none" : names;
 }
 
-void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before) {
-  fmt::print("  {}: {}, cause: {}\n", lane.lane->id, name(lane.verdict), name(lane.cause));
+void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before,
+                const reports::Screen& screen) {
+  const auto line = [&](int indent, const std::string& text) {
+    fmt::print("{}", reports::wrapped(text, screen.columns, indent, indent + 2));
+  };
+  line(2, fmt::format("{}: {}, cause: {}{}", lane.lane->id, name(lane.verdict), name(lane.cause),
+                      lane.settled == analysis::Settled::yes ? "" : " (not settled)"));
   const auto steps = [](const analysis::LaneExplanation& l) { return to_json(l)["steps"]; };
   if (before && before->lane->info == lane.lane->info && before->lane->scalar == lane.lane->scalar &&
       lane.evidence == analysis::Evidence::source && steps(*before) == steps(lane)) {
     fmt::print("    values: those of {}\n", before->lane->id);
   } else {
-    print_steps(lane);
+    print_steps(lane, screen);
   }
   if (!lane.contractions.sites.empty()) {
-    fmt::print("    contractions, {}:\n", lane.contractions.smallest ? "the smallest set that makes the difference"
-                                                                     : "none of which can be spared");
+    line(4, fmt::format("contractions, {}:", lane.contractions.smallest ? "the smallest set that makes the difference"
+                                                                        : "sets of which each is enough"));
     for (const cuda::ContractionSite& site : lane.contractions.sites) {
-      fmt::print("      {}:{}, inlined at {}:{}, by {}\n", site.at.file, site.at.line, site.from.file, site.from.line,
-                 site.by_ptxas ? "ptxas" : "nvcc's front end");
+      line(6, fmt::format("{}:{}, inlined at {}:{}, by {}", site.at.file, site.at.line, site.from.file, site.from.line,
+                          site.by_ptxas ? "ptxas" : "nvcc's front end"));
     }
   }
-  fmt::print("    mantissa bits it would have needed: {}\n",
-             lane.cause == analysis::Cause::logic ? "no number of bits helps"
-             : lane.bits_needed == 0              ? fmt::format("more than {}", oracle::kMostBits)
-                                                  : fmt::format("{}", lane.bits_needed));
-  fmt::print("    coordinates that do not matter:{}\n", free_coordinates(lane));
-  fmt::print("    wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}\n",
-             lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
-             lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling);
+  line(4, fmt::format("mantissa bits it would have needed: {}",
+                      lane.cause == analysis::Cause::logic ? "no number of bits helps"
+                      : lane.bits_needed == 0              ? fmt::format("more than {}", oracle::kMostBits)
+                                                           : fmt::format("{}", lane.bits_needed)));
+  line(4, "coordinates that do not matter:" + free_coordinates(lane));
+  line(4, fmt::format("wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}",
+                      lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
+                      lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling));
 }
 
 struct ExplainOptions {
   std::string name;
   std::vector<std::string> globs;
   bool json = false;
+  bool exact_input = false;
 };
 
 void explain_cases(const ExplainOptions& options) {
   const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, fuzz::Executor::twin);
+  const reports::Screen screen = output_screen();
+  bool wrong = false;
   for (const corpus::Entry& entry : read_cases(options.name)) {
+    if (options.exact_input) expect_exact_input(options.name, entry);
     const analysis::Explanation explanation = analysis::explain(entry.pair, under_test.lanes);
     if (options.json) {
       nlohmann::ordered_json line{{"case", options.name}, {"line", entry.line}};
       line.update(to_json(explanation));
       line["cuda"] = cuda_evidence(under_test);
+      if (const std::string note = written_note(entry, explanation.truth); !note.empty()) line["note"] = note;
       // A file's name need not be UTF-8, as JSON must.
       fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
       continue;
     }
     fmt::print("{}{}\n", options.name, entry.line > 0 ? fmt::format(":{}", entry.line) : "");
-    std::fflush(stdout);
-    reports::print_pair(std::cout, entry.pair, explanation.truth, under_test.lanes, decide(under_test, entry.pair));
-    std::cout.flush();
-    const analysis::LaneExplanation* before = nullptr;
-    for (const analysis::LaneExplanation& lane : explanation.lanes) {
-      print_lane(lane, before);
-      if (lane.lane->variant == Variant::cpu) before = &lane;
-    }
+    // What it comes down to is said first.
+    for (const std::string& text : analysis::sentences(explanation))
+      fmt::print("{}", reports::bold(screen, reports::wrapped(text, screen.columns, 2, 4)));
+    if (const std::string note = written_note(entry, explanation.truth); !note.empty())
+      fmt::print("{}", reports::wrapped(note, screen.columns, 2, 4));
     if (explanation.lanes.empty()) {
       fmt::print("  {}\n", explanation.truth.verdict == Verdict::declined
                                ? "nothing to explain: a coordinate is not finite, and no verdict is right"
                                : "nothing to explain: no lane is wrong");
     }
-    for (const std::string& text : analysis::sentences(explanation)) fmt::print("  {}\n", text);
+    fmt::print("\n");
+    std::fflush(stdout);
+    reports::print_pair(std::cout, entry.pair, explanation.truth, under_test.lanes, decide(under_test, entry.pair),
+                        screen);
+    std::cout.flush();
+    const analysis::LaneExplanation* before = nullptr;
+    for (const analysis::LaneExplanation& lane : explanation.lanes) {
+      fmt::print("\n");
+      print_lane(lane, before, screen);
+      if (lane.lane->variant == Variant::cpu) before = &lane;
+    }
+    wrong = wrong || !explanation.lanes.empty();
   }
+  if (wrong) fmt::print("Next: graze map {}\n", shell_word(options.name));
 }
 
 }  // namespace
@@ -133,6 +178,7 @@ void add_explain(CLI::App& app, int& status) {
   auto options = std::make_shared<ExplainOptions>();
   command->add_option("case", options->name, "A file of pairs, or STRATUM:SEED:INDEX")->required();
   add_globs(*command, "--lanes", options->globs, "Only lanes that match a pattern");
+  add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "One JSON object for each case, on a line of its own, with all values");
   command->callback([options, &status] {
     explain_cases(*options);

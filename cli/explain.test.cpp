@@ -18,8 +18,26 @@ TEST_F(ExplainCommand, SaysWhyInOneSentenceAnAlgorithm) {
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.out.find("cause: contraction"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("interval_overlap/f32 (cuda-fma) says disjoint, but"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find(" is false; exact "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" is true; exactly "), std::string::npos) << ran.out;
   EXPECT_EQ(ran.err, "");
+}
+
+// Rounding by an ulp or two is no news: only what is off has the exact value beside it, and only what decides a mark.
+TEST_F(ExplainCommand, SaysItsSentenceFirstAndMarksWhatMatters) {
+  std::ofstream(shell.folder / "p") << "0.1 0.2 0.3 0.4 0.9 0.2 0.7 0.1 0.6 0.1 0.2 0.3 0.5 0.5 0.9 -0.3 0.8 0.4\n";
+  const std::string out = shell("graze explain p --lanes 'guigue*/f32/cpu'").out;
+  ASSERT_TRUE(out.starts_with("p:1\n  guigue_devillers_2003/f32 (cpu) says disjoint, but the triangles meet in a"))
+      << out;
+  EXPECT_NE(out.find("\n    values:\n"
+                     "      guigue_devillers_2003.h:110  plane_distance: -1.490116e-08, exactly 0\n"
+                     "      guigue_devillers_2003.h:110  plane_distance: -0.331\n"
+                     "      guigue_devillers_2003.h:110  plane_distance: -0.06199999\n"
+                     "   => guigue_devillers_2003.h:111  4.932284e-09 > 0 is true;\n"
+                     "                                   exactly 0 > 0 is false\n"
+                     "    mantissa bits"),
+            std::string::npos)
+      << out;
+  EXPECT_EQ(out.find("=>"), out.rfind("=>"));
 }
 
 TEST_F(ExplainCommand, JsonIsOneObjectACaseAndTheSameBytesTwice) {

@@ -7,10 +7,14 @@
 #include <csignal>
 #include <iostream>
 #include <map>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/screen.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/margin_figure.h"
@@ -35,18 +39,14 @@ struct FuzzOptions {
   bool discard_damaged = false;
 };
 
-// One line on a terminal, rewritten after each batch.
-void show(const fuzz::Progress& progress, const std::vector<strata::PairSource>& sources) {
+// What the live line says besides progress, where there is room.
+std::vector<std::string> details(const fuzz::Progress& progress, const std::vector<strata::PairSource>& sources) {
   const double rate = static_cast<double>(progress.done_here) / std::max(progress.seconds, 1e-9);
-  const auto left =
-      static_cast<std::uint64_t>(static_cast<double>(progress.total - progress.done) / std::max(rate, 1.0));
   const auto& yields = progress.disagreements_of_source;
   const auto best = static_cast<std::size_t>(std::max_element(yields.begin(), yields.end()) - yields.begin());
-  fmt::print(stderr,
-             "\r{:3}%  {} of {} pairs  {} pairs/s  {}:{:02} left  {} disagreements, {} signatures, most in {}\033[K",
-             100 * progress.done / progress.total, reports::grouped(progress.done), reports::grouped(progress.total),
-             reports::grouped(static_cast<std::uint64_t>(rate)), left / 60, left % 60,
-             reports::grouped(progress.disagreements), reports::grouped(progress.signatures), sources[best].id);
+  return {reports::grouped(progress.disagreements) + " disagreements",
+          reports::grouped(progress.signatures) + " signatures",
+          reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
 }
 
 int fuzz(const FuzzOptions& options) {
@@ -86,10 +86,16 @@ int fuzz(const FuzzOptions& options) {
       fmt::print(stderr, "graze: kept {} pairs in {} batches that check; the damaged database is now {}\n",
                  reports::grouped(kept->pairs), reports::grouped(kept->batches), kept->damaged.string());
   }
+  const reports::Screen errors = error_screen();
+  std::optional<Progress> live;
   const auto [summary, oracle] = fuzz::run_campaign(campaign, interrupted, [&](const fuzz::Progress& progress) {
-    if (on_terminal) show(progress, campaign.sources);
+    if (!on_terminal) return;
+    if (!live) live.emplace("pairs", progress.total, on_terminal, errors);
+    const auto line =
+        live->line(progress.done, progress.seconds, progress.seconds_left, details(progress, campaign.sources));
+    if (line) fmt::print(stderr, "{}", *line);
   });
-  if (on_terminal) fmt::print(stderr, "\r\033[K");
+  if (live) fmt::print(stderr, "{}", live->end());
   fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(summary));
   if (!summary["complete"]) {
     fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
@@ -99,12 +105,13 @@ int fuzz(const FuzzOptions& options) {
     std::cout << summary.dump(1) << '\n';
     return 0;
   }
-  reports::print_summary(std::cout, summary, oracle);
+  reports::print_summary(std::cout, summary, oracle, output_screen());
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
   if (!summary["signatures"].empty()) {
-    std::cout << fmt::format("The commonest disagreement again: graze repro {}/{}\n", options.out,
-                             summary["signatures"][0]["case"].get<std::string>());
+    const std::string first = options.out + '/' + summary["signatures"][0]["case"].get<std::string>();
+    std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",
+                             shell_word(first), shell_word(options.out));
   }
   return 0;
 }
@@ -118,13 +125,13 @@ void add_fuzz(CLI::App& app, int& status) {
   auto options = std::make_shared<FuzzOptions>();
   command
       ->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata; a mesh takes all of its own")
-      ->check(whole_number(1, kMostWhole))
+      ->transform(whole_number(1, kMostWhole))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of all strata")
-      ->check(whole_number(0, kMostWhole))
+      ->transform(whole_number(0, kMostWhole))
       ->capture_default_str();
   command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
-      ->check(whole_number(0, 4096))
+      ->transform(whole_number(0, 4096))
       ->capture_default_str();
   command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")
       ->take_last()
@@ -137,14 +144,14 @@ void add_fuzz(CLI::App& app, int& status) {
                    "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]; alone unless "
                    "--strata is given too")
       ->expected(1, 2);
-  static const std::map<std::string, fuzz::EngineChoice> engines{
-      {"auto", fuzz::EngineChoice::automatic}, {"cpu", fuzz::EngineChoice::cpu}, {"gpu", fuzz::EngineChoice::gpu}};
+  static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
+                static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   command
       ->add_option(
           "--engine", options->engine,
           "What judges the pairs: cpu (CGAL and GMP), gpu (all on the device, where all lanes are CUDA lanes), "
           "or auto; results do not depend on it")
-      ->transform(CLI::CheckedTransformer(engines))
+      ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
       ->option_text("auto|cpu|gpu");
   command->add_flag("--discard-damaged", options->discard_damaged,
                     "Go on with a damaged campaign from the batches that check");

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // `graze lanes` and `graze strata`: the two tables, as the code has them.
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/commands.h"
+#include "cli/screen.h"
 #include "strata/strata.h"
 
 namespace graze::cli {
@@ -14,7 +18,10 @@ void print_lanes(bool json) {
   std::string why_no_device;
   const auto device = cuda::open_device(why_no_device);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  constexpr std::string_view kTwin = "available (twin, ";
+  std::set<std::string> twins;
   const AlgorithmInfo* last = nullptr;
+  const reports::Screen screen = output_screen();
   for (const Lane& lane : lanes()) {
     const std::string here = fuzz::status(lane, device.get(), why_no_device);
     if (json) {
@@ -30,13 +37,31 @@ void print_lanes(bool json) {
       continue;
     }
     if (lane.info != last) {
-      fmt::print("{}{}: {}\n  coplanar: {}\n  degenerate: {}\n  order: {}\n", last ? "\n" : "", lane.info->id,
-                 lane.info->paper, lane.info->coplanar, lane.info->degenerate, lane.info->order);
+      const auto line = [&](std::string_view what, std::string_view text, int indent) {
+        fmt::print("{}", reports::wrapped(fmt::format("{}: {}", what, text), screen.columns, indent, indent + 2));
+      };
+      if (last) fmt::print("\n");
+      line(lane.info->id, lane.info->paper, 0);
+      line("coplanar", lane.info->coplanar, 2);
+      line("degenerate", lane.info->degenerate, 2);
+      line("order", lane.info->order, 2);
       last = lane.info;
     }
-    fmt::print("  {:<36} {}\n", lane.id, here);
+    // What a twin is trusted for is long, and the same for most: it stands once, below.
+    const bool twin = here.starts_with(kTwin);
+    if (twin) twins.insert(here.substr(kTwin.size(), here.size() - kTwin.size() - 1));
+    if (here == "available (twin)") twins.insert("not verified");
+    const std::string shown = twin ? "available (twin)" : here;
+    fmt::print("{}", reports::wrapped(fmt::format("{:<36} {}", lane.id, shown), screen.columns, 2, 6));
   }
   if (json) fmt::print("{}\n", rows.dump(1));
+  if (!twins.empty()) {
+    fmt::print("\n{}", reports::wrapped(fmt::format("CUDA lanes run by their twins, on the CPU, for there is no device "
+                                                    "({}). Twins are: {}.",
+                                                    why_no_device, fmt::join(twins, "; or ")),
+                                        screen.columns));
+  }
+  if (!json) fmt::print("\nNext: graze fuzz --lanes '*/f32/cpu'\n");
 }
 
 }  // namespace
@@ -54,7 +79,11 @@ void add_strata(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("strata", "List the strata: the named generators of pairs");
   command->footer("Example: graze strata");
   command->callback([] {
-    for (const strata::StratumInfo& row : strata::kStrata) fmt::print("{:<20} {}\n", row.id, row.what);
+    // One line each for programs that read the list.
+    const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
+    for (const strata::StratumInfo& row : strata::kStrata)
+      fmt::print("{}", reports::wrapped(fmt::format("{:<20} {}", row.id, row.what), columns, 0, 21));
+    fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
   });
 }
 

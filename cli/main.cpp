@@ -2,18 +2,33 @@
 // The `graze` command. Exit status: 0 done, 1 a failed run or a failed check, 2 wrong use, 130 interrupted.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 
 #include "cli/commands.h"
+#include "cli/screen.h"
 #include "core/error.h"
+#include "core/text.h"
 
 namespace {
+
+// The first word is a verb, or one of the flags that stand without one.
+void expect_verb(const CLI::App& app, const std::string& word) {
+  if (word == "--help" || word == "-h" || word == "--version") return;
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
+  if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
+  throw graze::UsageError(
+      "expected a verb (see `graze --help`), found " +
+      (word.empty() ? "none" : "'" + graze::printable(word) + "'" + graze::did_you_mean(word, verbs)));
+}
 
 // One line, whatever is in the names and texts that it quotes.
 int fail(std::string what, int status) {
   for (char& c : what) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
-  fmt::print(stderr, "graze: {}\n", what);
+  fmt::print(stderr, "{} {}\n", graze::reports::red(graze::cli::error_screen(), "graze:"), what);
   return status;
 }
 
@@ -31,16 +46,15 @@ int main(int argc, char** argv) {
   graze::cli::add_minimize(app, status);
   graze::cli::add_corpus(app, status);
   graze::cli::add_explain(app, status);
+  graze::cli::add_kinds(app, status);
   graze::cli::add_map(app, status);
+  graze::cli::add_dump(app, status);
   graze::cli::add_report(app, status);
   graze::cli::add_lanes(app, status);
   graze::cli::add_strata(app, status);
   graze::cli::add_prove_twin(app, status);
   try {
-    if (argc > 1 && argv[1][0] != '-' &&
-        app.get_subcommands([&](CLI::App* verb) { return verb->check_name(argv[1]); }).empty()) {
-      throw graze::UsageError(std::string("expected a verb (see `graze --help`), found '") + argv[1] + "'");
-    }
+    expect_verb(app, argc > 1 ? argv[1] : "");
     app.parse(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush())
       throw std::runtime_error("standard output: expected room for the output, found none");

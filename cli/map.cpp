@@ -7,9 +7,12 @@
 
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "cli/screen.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
+#include "reports/text_table.h"
 #include "reports/ulp_map_picture.h"
 
 namespace graze::cli {
@@ -46,21 +49,26 @@ bool is_plain(const analysis::UlpMap& map) {
 }
 
 void print_counts(const analysis::UlpMap& map) {
-  const auto row = [](const std::string& name, const auto&... columns) {
-    fmt::print("  {:<38}", name);
-    (fmt::print("{:>16}", columns), ...);
-    fmt::print("\n");
-  };
-  row("", "disjoint", "intersects", "false positive", "false negative", "declined", "not finite");
+  using analysis::Cell;
+  reports::TextTable table({{"", reports::Align::left},
+                            {"disjoint"},
+                            {"intersects"},
+                            {"false positive"},
+                            {"false negative"},
+                            {"declined"},
+                            {"not finite"}});
   for (const analysis::UlpPanel& panel : map.panels) {
     const auto counts = panel.counts();
-    const auto count = [&](analysis::Cell cell) {
-      return reports::grouped(static_cast<std::uint64_t>(counts[static_cast<std::size_t>(cell)]));
-    };
-    row(panel.name(), count(analysis::Cell::disjoint), count(analysis::Cell::intersects),
-        count(analysis::Cell::false_positive), count(analysis::Cell::false_negative), count(analysis::Cell::declined),
-        count(analysis::Cell::not_finite));
+    std::vector<reports::Cell> row{panel.name()};
+    for (const Cell cell : {Cell::disjoint, Cell::intersects, Cell::false_positive, Cell::false_negative,
+                            Cell::declined, Cell::not_finite}) {
+      const auto count = static_cast<std::uint64_t>(counts[static_cast<std::size_t>(cell)]);
+      const bool wrong = count > 0 && (cell == Cell::false_positive || cell == Cell::false_negative);
+      row.emplace_back(reports::grouped(count), wrong);
+    }
+    table.add(std::move(row));
   }
+  fmt::print("{}", table.text(output_screen(), 2));
 }
 
 // One picture, or one for each panel where a directory is asked for.
@@ -89,14 +97,17 @@ void map_case(const MapOptions& options) {
   const analysis::MovedCoordinates moved =
       asked ? *asked : analysis::liveliest_coordinates(entry.pair, under_test.lanes);
   const analysis::UlpMap map = analysis::ulp_map(entry.pair, under_test.lanes, moved);
-  fmt::print("{}{}: {} x {} cells, {} to the right and {} upwards by an ulp each{}\n", options.name,
-             entry.line > 0 ? fmt::format(":{}", entry.line) : "", analysis::kMapSize, analysis::kMapSize,
-             analysis::name_of_coordinate(moved.x), analysis::name_of_coordinate(moved.y),
-             asked           ? ""
-             : is_plain(map) ? "; no verdict changes"
-                             : ", along which verdicts change most");
+  const std::string what =
+      fmt::format("{}{}: {} x {} cells, {} to the right and {} upwards by an ulp each{}", options.name,
+                  entry.line > 0 ? fmt::format(":{}", entry.line) : "", analysis::kMapSize, analysis::kMapSize,
+                  analysis::name_of_coordinate(moved.x), analysis::name_of_coordinate(moved.y),
+                  asked           ? ""
+                  : is_plain(map) ? "; no verdict changes"
+                                  : ", along which verdicts change most");
+  fmt::print("{}", reports::wrapped(what, output_screen().columns));
   print_counts(map);
   write_pictures(map, options.out);
+  fmt::print("Next: graze repro {} --emit cpp\n", shell_word(options.name));
 }
 
 }  // namespace

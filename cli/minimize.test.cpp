@@ -41,6 +41,10 @@ TEST_F(Minimize, ACaseIsPrintedAndWrittenWithItsOriginal) {
 TEST_F(Minimize, ACampaignTwiceIsTheSameBytesWhateverTheThreads) {
   expect_done(std::string(kFuzz) + "--out one > /dev/null && cp -r one two && cp -r one fresh");
   expect_done("graze minimize one --threads 1 && graze minimize two --threads 4 && diff -r one/cases two/cases");
+  const auto run = nlohmann::json::parse(contents(shell.folder / "one/timings.json"))["runs"].back();
+  EXPECT_GT(run["processor_seconds_worst"], 0);
+  EXPECT_LT(run["processor_seconds_worst"], 0.5 * run["processor_seconds"].get<double>());
+  EXPECT_LT(run["processor_seconds_worst"], 30);
   const auto summary = nlohmann::json::parse(contents(shell.folder / "one/summary.json"));
   ASSERT_GT(summary["signatures"].size(), 50u);
   for (const auto& row : summary["signatures"]) {

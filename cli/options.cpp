@@ -1,23 +1,87 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "cli/commands.h"
+#include "core/error.h"
 #include "core/text.h"
 
 namespace graze::cli {
 
+namespace {
+
+// "1000000", "1_000_000", "1e6", "2.5e6", "10M".   Returns: the whole number; nothing when it is none, or too large.
+std::optional<std::uint64_t> parse_count(std::string_view text) {
+  std::string digits;
+  int power = 0;
+  bool fraction = false;
+  while (!text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '.' || text[0] == '_')) {
+    const char c = text[0];
+    text.remove_prefix(1);
+    if (c == '_' && (digits.empty() || fraction || text.empty() || !std::isdigit(static_cast<unsigned char>(text[0]))))
+      return std::nullopt;
+    if (c == '.' && (fraction || digits.empty() || text.empty())) return std::nullopt;
+    if (c == '.') fraction = true;
+    if (c == '_' || c == '.') continue;
+    digits += c;
+    power -= fraction;
+  }
+  if (digits.empty()) return std::nullopt;
+  if (text.size() == 1 && std::string_view("kMGT").find(text[0]) != text.npos) {
+    power += 3 * (1 + static_cast<int>(std::string_view("kMGT").find(text[0])));
+  } else if (text.starts_with('e') || text.starts_with('E')) {
+    const std::optional<std::uint64_t> exponent = parse_whole(text.substr(1));
+    if (!exponent || *exponent > 99) return std::nullopt;
+    power += static_cast<int>(*exponent);
+  } else if (!text.empty()) {
+    return std::nullopt;
+  }
+  for (; power < 0 && digits.ends_with('0'); ++power) digits.pop_back();
+  if (power < 0) return std::nullopt;
+  return parse_whole(digits + std::string(static_cast<std::size_t>(power), '0'));
+}
+
+}  // namespace
+
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description) {
-  return command.add_option(name, globs, description)->delimiter(',')->allow_extra_args(false)->option_text("GLOB,…");
+  const auto split = [name, &globs](const std::vector<std::string>& texts) {
+    for (const std::string& text : texts) {
+      for (std::size_t begin = 0, end; begin <= text.size(); begin = end + 1) {
+        end = std::min(text.find(',', begin), text.size());
+        if (begin == end)
+          throw UsageError(fmt::format("{}: expected patterns with commas between, found '{}'", name, text));
+        globs.push_back(text.substr(begin, end - begin));
+      }
+    }
+  };
+  return command.add_option_function<std::vector<std::string>>(name, split, description)
+      ->allow_extra_args(false)
+      ->option_text("GLOB,…");
 }
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   const auto check = [least, most](std::string& text) -> std::string {
-    const std::optional<std::uint64_t> value = parse_whole(text);
-    if (value && *value >= least && *value <= most) return {};
-    return fmt::format("expected a whole number from {} to {}, found '{}'", least, most, text);
+    const std::optional<std::uint64_t> value = parse_count(text);
+    if (!value || *value < least || *value > most)
+      return fmt::format("expected a whole number from {} to {}, found '{}'", least, most, printable(text));
+    text = std::to_string(*value);
+    return {};
+  };
+  return CLI::Validator(check, "");
+}
+
+CLI::Validator one_of(std::vector<std::string> words, Chosen chosen) {
+  const auto check = [words = std::move(words), chosen](std::string& text) -> std::string {
+    const auto found = std::find(words.begin(), words.end(), text);
+    if (found == words.end()) {
+      return fmt::format("expected {} or {}, found '{}'", fmt::join(words.begin(), words.end() - 1, ", "), words.back(),
+                         printable(text));
+    }
+    if (chosen == Chosen::place) text = std::to_string(found - words.begin());
+    return {};
   };
   return CLI::Validator(check, "");
 }
@@ -28,17 +92,15 @@ CLI::Validator not_empty() {
 }
 
 void add_lane_options(CLI::App& command, LaneOptions& options) {
-  static const std::map<std::string, fuzz::Executor> names{{"auto", fuzz::Executor::automatic},
-                                                           {"device", fuzz::Executor::device},
-                                                           {"twin", fuzz::Executor::twin},
-                                                           {"both", fuzz::Executor::both}};
   add_globs(command, "--lanes", options.globs, "Only lanes that match a pattern");
+  static_assert(static_cast<int>(fuzz::Executor::automatic) == 0 && static_cast<int>(fuzz::Executor::device) == 1 &&
+                static_cast<int>(fuzz::Executor::twin) == 2 && static_cast<int>(fuzz::Executor::both) == 3);
   command
       .add_option(
           "--executor", options.executor,
           "What runs the CUDA lanes: auto (the device where there is one, else its twin), device, twin, or both "
           "(compared)")
-      ->transform(CLI::CheckedTransformer(names))
+      ->transform(one_of({"auto", "device", "twin", "both"}, Chosen::place))
       ->option_text("auto|device|twin|both");
 }
 
@@ -47,6 +109,11 @@ std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& 
   std::vector<Verdict> verdicts = decide(under_test, pair, apart);
   for (const Lane* lane : apart) fmt::print(stderr, "graze: {}: device and twin differ\n", lane->id);
   return verdicts;
+}
+
+bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth) {
+  return truth != Verdict::declined &&
+         std::any_of(verdicts.begin(), verdicts.end(), [&](Verdict verdict) { return verdict != truth; });
 }
 
 std::string cuda_evidence(const fuzz::LanesUnderTest& under_test) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "reports/terminal.h"
@@ -16,16 +17,31 @@ std::string duration(double seconds) {
   return minutes < 120 ? fmt::format("{} min", minutes) : fmt::format("{} h {} min", minutes / 60, minutes % 60);
 }
 
-std::optional<std::string> Progress::line(std::size_t done, double seconds, std::optional<double> left) {
+std::string fitting(const std::vector<std::string>& parts, int columns) {
+  std::string line = parts.front().substr(0, static_cast<std::size_t>(std::max(columns - 1, 0)));
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    if (reports::width_of(line) + 2 + reports::width_of(parts[i]) >= columns) break;
+    line += "  " + parts[i];
+  }
+  return line;
+}
+
+std::optional<std::string> Progress::line(std::size_t done, double seconds, std::optional<double> left,
+                                          const std::vector<std::string>& more) {
   const std::size_t tenths = total_ == 0 ? 10 : 10 * done / total_;
-  const bool due = on_terminal_ ? seconds - printed_ >= 0.2 : tenths > tenths_ && seconds - printed_ >= 10;
+  const double since = seconds - printed_;
+  const bool due = on_terminal_ ? since >= 0.2 : (tenths > tenths_ && since >= 10) || since >= 30;
   if (!due) return {};
   printed_ = seconds;
   tenths_ = tenths;
-  const std::string text = fmt::format("{:3}%  {} of {} {}{}", total_ == 0 ? 100 : 100 * done / total_,
-                                       reports::grouped(done), reports::grouped(total_), things_,
-                                       left ? fmt::format(", {} left", duration(*left)) : "");
-  return on_terminal_ ? fmt::format("\r{}\033[K", text) : text + "\n";
+  const std::string time = left ? fmt::format(", {} left", duration(*left)) : "";
+  const std::string percent = fmt::format("{:3}%", total_ == 0 ? 100 : 100 * done / total_);
+  std::vector<std::string> parts{
+      fmt::format("{}  {} of {} {}{}", percent, reports::grouped(done), reports::grouped(total_), things_, time)};
+  if (!on_terminal_) return parts.front() + "\n";
+  if (reports::width_of(parts.front()) >= screen_.columns) parts.front() = percent + time;
+  parts.insert(parts.end(), more.begin(), more.end());
+  return fmt::format("\r{}\033[K", fitting(parts, screen_.columns));
 }
 
 }  // namespace graze::cli

@@ -33,10 +33,31 @@ TEST(Progress, OtherwiseIsALineForEveryTenth) {
   EXPECT_EQ(progress.end(), "");
 }
 
-TEST(Progress, FitsEightyColumns) {
+TEST(Progress, WithoutTerminalHalfAMinuteIsTheLongestSilence) {
+  Progress progress("signatures", 7512, false);
+  EXPECT_FALSE(progress.line(5, 29, {}));
+  EXPECT_EQ(progress.line(6, 30, 7200.0), "  0%  6 of 7,512 signatures, 2 h 0 min left\n");
+  EXPECT_FALSE(progress.line(7, 59, 7200.0));
+  EXPECT_TRUE(progress.line(8, 60, 7200.0));
+}
+
+TEST(Progress, NeverWraps) {
   const auto line = Progress("signatures", 999'999'999, false).line(999'999'998, 1e6, 3.6e6);
   ASSERT_TRUE(line);
   EXPECT_LE(line->size(), 80u);  // the end of the line included
+  const std::vector<std::string> more{"1,234,567,890 disagreements", "7,562 signatures", "123,456 pairs/s",
+                                      "most in near_vertex_vertex"};
+  std::size_t widest = 0;
+  for (int columns = 1; columns <= 200; ++columns) {
+    const auto shown =
+        Progress("pairs", 1'000'000'000, true, {columns, false}).line(999'999'999, 1e6, 3.6e6, more).value();
+    ASSERT_TRUE(shown.starts_with('\r') && shown.ends_with("\033[K"));
+    ASSERT_LT(shown.size() - 4, static_cast<std::size_t>(columns)) << shown;
+    ASSERT_GE(shown.size(), widest);  // more room, more said
+    widest = shown.size();
+  }
+  EXPECT_NE(fitting(more, 200).find("most in"), std::string::npos);
+  EXPECT_EQ(fitting(more, 80).find("most in"), std::string::npos);
 }
 
 }  // namespace

@@ -37,13 +37,13 @@ void add_prove_twin(CLI::App& app, int& status) {
   auto options = std::make_shared<cuda::ProofOptions>();
   auto out = std::make_shared<std::string>("proof.json");
   command->add_option("--pairs", options->pairs, "Pairs a lane, all strata together")
-      ->check(whole_number(1, kMostWhole))
+      ->transform(whole_number(1, kMostWhole))
       ->capture_default_str();
   command->add_option("--twin-pairs", options->twin_pairs, "Of them, by the twin too")
-      ->check(whole_number(1, kMostWhole))
+      ->transform(whole_number(1, kMostWhole))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of all strata")
-      ->check(whole_number(0, kMostWhole))
+      ->transform(whole_number(0, kMostWhole))
       ->capture_default_str();
   add_globs(*command, "--lanes", options->lanes, "Only lanes that match a pattern");
   command->add_flag("--wrong-rule", options->wrong_rule, "Contract the wrong product first: the proof must then fail");

@@ -8,7 +8,10 @@
 
 #include "cli/commands.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/minimise/kinds.h"
+#include "reports/comparison.h"
 #include "reports/csv.h"
 #include "reports/page.h"
 
@@ -29,11 +32,18 @@ void say_what_the_page_is() {
     fmt::print("The page is plain: this build had no Node, or no npm packages (see reports/README.md)\n");
 }
 
-// NAME.html, NAME.json and tables in the directory.
+// NAME.html, NAME.json, costs.json and tables in the directory.
 void write_report(const fs::path& directory, const Json& report, const char* name) {
+  const Json costs = reports::make_costs(directory);
   fuzz::write_whole(directory / fmt::format("{}.json", name), reports::report_text(report));
-  fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report));
+  fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report, costs));
   std::string tables;
+  if (costs.is_null()) {
+    fs::remove(directory / "costs.json");
+  } else {
+    fuzz::write_whole(directory / "costs.json", reports::report_text(costs));
+    tables = ", costs.json";
+  }
   for (const reports::CsvTable& table : reports::csv_tables(directory, report)) {
     fuzz::write_whole(directory / table.name, table.text);
     tables += fmt::format(", {}", table.name);
@@ -43,9 +53,11 @@ void write_report(const fs::path& directory, const Json& report, const char* nam
   say_what_the_page_is();
 }
 
+// With what lanes cost, if that lies beside the report.
 std::string page_of(const std::string& file) {
   try {
-    return reports::page(reports::read_report(file));
+    const Json costs = Json::parse(fuzz::read_whole(fs::path(file).replace_filename("costs.json")), nullptr, false);
+    return reports::page(reports::read_report(file), costs.is_object() ? costs : Json());
   } catch (const Json::exception&) {
     throw std::runtime_error(file + ": expected a report of `graze report`, found something else");
   }
@@ -62,12 +74,15 @@ void report(const ReportOptions& options) {
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
     Json after = reports::make_report(options.compare[1]);
-    reports::add_comparison(after, reports::make_report(options.compare[0]),
-                            reports::read_summary(options.compare[1])["signatures"],
-                            reports::read_summary(options.compare[0])["signatures"]);
+    reports::add_comparison(after, reports::make_report(options.compare[0]), fuzz::read_kinds(options.compare[1]),
+                            fuzz::read_kinds(options.compare[0]));
+    fmt::print("{}\n", after["compare"]["headline"].get<std::string>());
+    for (const Json& sentence : after["compare"]["differences"]) fmt::print("{}\n", sentence.get<std::string>());
     write_report(options.compare[1], after, "compare");
   } else {
-    write_report(options.directory, reports::make_report(options.directory), "report");
+    const Json made = reports::make_report(options.directory);
+    write_report(options.directory, made, "report");
+    if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", shell_word(options.directory));
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `graze report` as users meet it.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,16 +22,20 @@ class Report : public CommandTest {
 
 TEST_F(Report, SameBytesWhateverTheThreads) {
   expect_done(std::string(kFuzz) + "--threads 1 --out one > /dev/null && graze minimize one && graze report one");
-  expect_done(std::string(kFuzz) + "--threads 2 --out two > /dev/null && graze minimize two && graze report two");
+  // What lanes cost is of each run its own, and stands in costs.json and the page alone.
+  expect_done(std::string(kFuzz) +
+              "--threads 2 --out two > /dev/null && graze minimize two && cp one/timings.json two && graze report two");
   expect_done(
-      "for f in report.html report.json rates.csv margins.csv thresholds.csv extremes.csv signatures.csv; do "
+      "for f in report.html report.json costs.json rates.csv margins.csv thresholds.csv extremes.csv signatures.csv "
+      "kinds.json; do "
       "test -s one/$f && cmp one/$f two/$f || exit 1; done");
   const nlohmann::json report = json("one/report.json");
   ASSERT_GT(report["cards"].size(), 10u);
   for (const auto& card : report["cards"]) {
     EXPECT_EQ(card["minimised"], true);
-    EXPECT_EQ(card["sentences"].size(), 1u);
+    EXPECT_FALSE(card["sentences"].empty());
     EXPECT_EQ(card["verdicts"].size(), report["lanes"].size());
+    EXPECT_EQ(card["kind"]["settled"].size(), 2u);
     // Its commands run, and see what the card says.
     if (&card != &report["cards"][0]) continue;
     for (const auto& command : card["commands"]) {
@@ -50,14 +55,27 @@ TEST_F(Report, TheCommandItNamesRunsTheCampaignAgain) {
 }
 
 TEST_F(Report, ComparesTwoCampaigns) {
-  expect_done(std::string(kFuzz) + "--seed 1 --out one > /dev/null");
-  expect_done(std::string(kFuzz) + "--seed 2 --out two > /dev/null && graze report --compare one two");
-  EXPECT_FALSE(std::filesystem::exists(shell.folder / "two/report.json"));
-  const nlohmann::json report = json("two/compare.json");
+  for (const char* seed : {"1", "2"})
+    expect_done(
+        fmt::format("{0} --seed {1} --out seed{1} > /dev/null && graze minimize seed{1} > /dev/null", kFuzz, seed));
+  const Ran said = shell("graze report --compare seed1 seed2");
+  ASSERT_EQ(said.status, 0) << said.err;
+  const nlohmann::json report = json("seed2/compare.json");
+  EXPECT_TRUE(
+      said.out.starts_with(fmt::format("Nothing changed: none of {} rates, and no kind of failure came or went.\n"
+                                       "They differ in seed: 1 before, 2 after.\nWrote ",
+                                       report["rates"].size())))
+      << said.out;
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "seed2/report.json"));
   EXPECT_EQ(report["run"]["seed"], 2);
   EXPECT_EQ(report["compare"]["other"]["seed"], 1);
   EXPECT_EQ(report["compare"]["rates"].size(), report["rates"].size());
-  expect_done("test -s two/compare.html && test -s two/compare.csv");
+  EXPECT_EQ(report["compare"]["kinds_compared"], true);
+  expect_done("test -s seed2/compare.html && test -s seed2/compare.csv");
+  // A campaign without its kinds: what is not compared is said.
+  expect_done("rm seed1/kinds.json");
+  EXPECT_NE(shell("graze report --compare seed1 seed2").out.find("and kinds of failure are not compared.\n"),
+            std::string::npos);
 }
 
 TEST_F(Report, BadUseIsOneLine) {

@@ -9,6 +9,8 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/emit.h"
+#include "cli/screen.h"
+#include "core/text.h"
 #include "oracle/truth.h"
 #include "reports/terminal.h"
 
@@ -55,8 +57,9 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
     }
   });
   if (!text) return false;
-  if (compared == Compared::changed) std::cout << "  CHANGED, recorded: " << *text << '\n';
-  if (compared == Compared::nothing) std::cout << "  not compared, its lanes were not run: " << *text << '\n';
+  if (compared == Compared::changed) std::cout << "  CHANGED, recorded: " << printable(*text) << '\n';
+  if (compared == Compared::nothing)
+    std::cout << "  not compared, its lanes were not run: " << printable(*text) << '\n';
   return compared == Compared::changed;
 }
 
@@ -70,17 +73,19 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     return 0;
   }
   const std::string evidence = cuda_evidence(under_test);
-  bool changed = false;
+  bool changed = false, wrong = false;
   for (const corpus::Entry& entry : entries) {
     const oracle::Truth t = oracle::truth(entry.pair);
     const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
-    fmt::print("{}\n", corpus::numbers_of(entry).value_or(name));
+    fmt::print("{}\n", printable(corpus::numbers_of(entry).value_or(name)));
     std::fflush(stdout);
-    reports::print_pair(std::cout, entry.pair, t, under_test.lanes, verdicts);
-    if (!evidence.empty()) std::cout << "  CUDA lanes: " << evidence << '\n';
+    reports::print_pair(std::cout, entry.pair, t, under_test.lanes, verdicts, output_screen());
+    if (!evidence.empty()) std::cout << reports::wrapped("CUDA lanes: " + evidence, output_screen().columns, 2, 4);
     if (t.verdict != Verdict::declined) changed = compare_signatures(entry, t, under_test.lanes, verdicts) || changed;
+    wrong = wrong || some_is_wrong(verdicts, t.verdict);
     std::cout.flush();
   }
+  if (wrong) fmt::print("Next: graze minimize {}\n", shell_word(name));
   return changed ? 1 : 0;
 }
 
@@ -102,8 +107,8 @@ void add_repro(CLI::App& app, int& status) {
           "--emit", *emitted,
           "Print a self-contained program or file instead, of the first case with a wrong lane that it can "
           "show (choose by --lanes): cpp and gtest show a CPU lane, cuda a CUDA lane; python and cgal the truth")
-      ->check(
-          CLI::IsMember(std::vector<std::string>(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds))))
+      ->transform(one_of(std::vector<std::string>(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds)),
+                         Chosen::word))
       ->option_text("cpp|cuda|python|obj|cgal|gtest");
   command->callback([name, lanes, emitted, &status] { status = repro(*name, *lanes, *emitted); });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -71,6 +72,51 @@ std::string in_quotes(std::string_view text) {
 
 std::string shown(std::string_view text) {
   return text.size() <= kLongestQuote ? in_quotes(text) : in_quotes(text.substr(0, kLongestQuote)) + "...";
+}
+
+std::string shell_word(std::string_view word) {
+  const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           std::string_view("_-./:,+@%=").find(c) != std::string_view::npos;
+  });
+  if (plain) return std::string(word);
+  if (std::any_of(word.begin(), word.end(),
+                  [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; })) {
+    std::string text = "$'";  // so that no control character reaches a terminal
+    for (const char c : word) {
+      if (c == '\'' || c == '\\') text += '\\';
+      append_printable(text, c);
+    }
+    return text + "'";
+  }
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+std::string did_you_mean(std::string_view found, const std::vector<std::string>& candidates) {
+  const auto letters = found.size() - static_cast<std::size_t>(std::count(found.begin(), found.end(), '*'));
+  std::size_t least = letters / 3 + 1;
+  const std::string* nearest = nullptr;
+  for (const std::string& candidate : candidates) {
+    // Levenshtein's distance, one row for each character found; after a * the candidate's characters cost nothing.
+    std::vector<std::size_t> row(candidate.size() + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (const char c : found) {
+      std::size_t diagonal = row[0];
+      if (c != '*') ++row[0];
+      for (std::size_t j = 1; j < row.size(); ++j) {
+        const std::size_t above = row[j];
+        row[j] = c == '*' ? std::min(above, row[j - 1])
+                          : std::min({above + 1, row[j - 1] + 1, diagonal + (c == candidate[j - 1] ? 0 : 1)});
+        diagonal = above;
+      }
+    }
+    if (row.back() >= least) continue;
+    least = row.back();
+    nearest = &candidate;
+  }
+  return nearest ? "; did you mean '" + *nearest + "'?" : "";
 }
 
 }  // namespace graze

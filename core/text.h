@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace graze {
 
@@ -24,5 +25,12 @@ std::string in_quotes(std::string_view text);
 
 // in_quotes, cut short for a message.
 std::string shown(std::string_view text);
+
+// Returns: the word as a shell reads it back; quoted where it has to be.
+std::string shell_word(std::string_view word);
+
+// Returns: "; did you mean 'moller_1997/f32/cpu'?" of the candidate that is least edits away from what was found, in
+// which * stands for anything; empty when none is near.
+std::string did_you_mean(std::string_view found, const std::vector<std::string>& candidates);
 
 }  // namespace graze

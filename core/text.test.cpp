@@ -76,5 +76,23 @@ TEST(Printable, ShowsControlCharactersAndForeignBytes) {
   EXPECT_EQ(shown(std::string(41, 'x')), '"' + std::string(40, 'x') + "\"...");
 }
 
+TEST(ShellWord, QuotesWhereAShellWouldSplit) {
+  EXPECT_EQ(shell_word("a/b-1.pairs"), "a/b-1.pairs");
+  EXPECT_EQ(shell_word("my case's"), "'my case'\\''s'");
+  EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_word("$(x)"), "'$(x)'");
+  EXPECT_EQ(shell_word("a\x1b[1m'\\"), "$'a\\x1b[1m\\'\\\\'");
+}
+
+TEST(DidYouMean, NamesTheNearestOrNothing) {
+  const std::vector<std::string> words{"minimize", "explain", "moller_1997/f32/cpu", "map"};
+  EXPECT_EQ(did_you_mean("minimise", words), "; did you mean 'minimize'?");
+  EXPECT_EQ(did_you_mean("explian", words), "; did you mean 'explain'?");
+  EXPECT_EQ(did_you_mean("moler_*", words), "; did you mean 'moller_1997/f32/cpu'?");
+  EXPECT_EQ(did_you_mean("moller_1977/*/cpu", words), "; did you mean 'moller_1997/f32/cpu'?");
+  EXPECT_EQ(did_you_mean("nothing", words), "");
+  EXPECT_EQ(did_you_mean("", words), "");
+}
+
 }  // namespace
 }  // namespace graze

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "cuda/twin/twin.h"
 
 namespace graze::fuzz {
@@ -39,7 +40,10 @@ std::string status(const Lane& lane, const cuda::Device* device, const std::stri
 LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device) {
   for (const std::string& glob : globs) {
     if (std::none_of(lanes().begin(), lanes().end(), [&](const Lane& lane) { return matches_any({glob}, lane.id); })) {
-      throw UsageError("expected a lane (see `graze lanes`), found '" + glob + "'");
+      std::vector<std::string> ids;
+      for (const Lane& lane : lanes()) ids.push_back(lane.id);
+      throw UsageError("expected a lane (see `graze lanes`), found '" + printable(glob) + "'" +
+                       did_you_mean(glob, ids));
     }
   }
   LanesUnderTest under_test;

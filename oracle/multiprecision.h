@@ -59,6 +59,18 @@ class Multi {
     result.settle(mpfr_sqrt(result.m_, n.m_, MPFR_RNDN));
     return result;
   }
+  // l m + r, rounded once.
+  friend Multi fma(const Multi& l, const Multi& m, const Multi& r) {
+    Multi result;
+    const bool finite = mpfr_number_p(l.m_) && mpfr_number_p(m.m_) && mpfr_number_p(r.m_);
+    result.settle(mpfr_fma(result.m_, l.m_, m.m_, r.m_, MPFR_RNDN));
+    if (finite && mpfr_inf_p(result.m_) && first_event == 0) first_event = 1;
+    return result;
+  }
+  friend std::partial_ordering compare_numbers(const Multi& l, const Multi& r) {
+    if (mpfr_nan_p(l.m_) || mpfr_nan_p(r.m_)) return std::partial_ordering::unordered;
+    return mpfr_cmp(l.m_, r.m_) <=> 0;
+  }
   friend bool operator<(const Multi& l, const Multi& r) { return mpfr_less_p(l.m_, r.m_); }
   friend bool operator>(const Multi& l, const Multi& r) { return mpfr_greater_p(l.m_, r.m_); }
   friend bool operator<=(const Multi& l, const Multi& r) { return mpfr_lessequal_p(l.m_, r.m_); }

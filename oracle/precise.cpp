@@ -36,10 +36,17 @@ Verdict decide_in_multi(int algorithm, const Pair& pair, std::index_sequence<i..
   return kDecide[algorithm](pair);
 }
 
-Trace<Ball> run_exactly(int algorithm, const Pair& pair, int bits, const Path& lead = {}) {
+Trace<Ball> run_exactly(int algorithm, const Pair& pair, int bits, const Path& lead = {},
+                        const std::vector<Correction<Ball>>& corrections = {}) {
   Multi::precision = bits;
   Ball::untold = 0;
-  return run_traced<Ball>(algorithm, pair, lead);
+  return run_traced<Ball>(algorithm, pair, lead, corrections);
+}
+
+Trace<Multi> run_multi(int algorithm, const Pair& pair, Contraction rule, const Path& lead) {
+  if (rule == Contraction::nvcc) return run_traced<Multi, Contraction::nvcc>(algorithm, pair, lead);
+  if (rule == Contraction::left) return run_traced<Multi, Contraction::left>(algorithm, pair, lead);
+  return run_traced<Multi>(algorithm, pair, lead);
 }
 
 Beside beside(double lane, const Ball& exact, int bits) {
@@ -68,6 +75,19 @@ Limited decide_limited(int algorithm, Scalar scalar, const Pair& pair, Limits li
   return {verdict, first > 0 ? RangeEvent::overflow : first < 0 ? RangeEvent::underflow : RangeEvent::none};
 }
 
+Trace<double> run_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits, Contraction rule,
+                          const Path& lead) {
+  const ExponentRange range(scalar, limits);
+  Multi::precision = mantissa_bits(scalar);
+  const Trace<Multi> run = run_multi(algorithm, pair, rule, lead);
+  Trace<double> result{run.verdict, {}};
+  for (const Seen<Multi>& s : run.seen) {
+    result.seen.push_back({s.where, s.site, s.compared, s.relation, mpfr_get_d(s.left.get(), MPFR_RNDN),
+                           mpfr_get_d(s.right.get(), MPFR_RNDN), s.left_result, s.right_result, s.held, s.taken});
+  }
+  return result;
+}
+
 Verdict decide_with_bits(int algorithm, const Pair& pair, int bits) {
   Multi::precision = bits;
   return decide_in_multi(algorithm, pair, std::make_index_sequence<kAlgorithmCount>());
@@ -92,6 +112,16 @@ Exactly decide_exactly(int algorithm, const Pair& pair) {
     last = std::move(run);
     last_untold = untold;
   }
+}
+
+Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits, const Path& lead,
+                           std::span<const Correction<double>> corrections) {
+  const ExponentRange range(scalar, limits);
+  Multi::precision = bits;
+  std::vector<Correction<Ball>> balls;
+  for (const Correction<double>& c : corrections)
+    balls.push_back({c.left_result, c.right_result, Ball(c.left), Ball(c.right), c.relation, c.taken});
+  return run_exactly(algorithm, pair, bits, lead, balls).verdict;
 }
 
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run, int bits) {

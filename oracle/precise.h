@@ -3,6 +3,7 @@
 // Algorithms are named by their place in Algorithms (core/algorithms/algorithms.h).
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,11 @@ struct Limited {
 // The algorithm with the scalar's mantissa, round to nearest even. With both limits it is the scalar's cpu lane.
 Limited decide_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits);
 
+// The same, written down: contracted by that rule, and led down the path. Values beyond the doubles are rounded to
+// them.
+Trace<double> run_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits, Contraction rule,
+                          const Path& lead = {});
+
 // The algorithm with a mantissa of that many bits, and exponents without limits.
 Verdict decide_with_bits(int algorithm, const Pair& pair, int bits);
 
@@ -44,6 +50,12 @@ struct Exactly {
   bool settled;  // certain, or as said
 };
 Exactly decide_exactly(int algorithm, const Pair& pair);
+
+// The algorithm in exact arithmetic, but for one end of the scalar's exponents, or for results that are corrected to
+// what a lane made of them, and along a given path.
+// Requires: bits as decide_exactly found them.
+Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits,
+                           const Path& lead = {}, std::span<const Correction<double>> corrections = {});
 
 // A number of a lane beside what it should be.
 struct Beside {

@@ -32,8 +32,8 @@ std::string campaign_command(const Json& summary) {
   std::uint64_t pairs = spec.at("pairs");
   if (spec.contains("mesh")) {
     command += " --mesh";
-    for (const Json& file : spec["mesh"]["files"]) command += " " + quoted(file.get<std::string>());
-    pairs -= summary["strata"]["mesh"]["pairs"].get<std::uint64_t>();
+    for (const Json& file : spec.at("mesh").at("files")) command += " " + quoted(file.get<std::string>());
+    pairs -= summary.at("strata").at("mesh").at("pairs").get<std::uint64_t>();
     std::erase(strata, "mesh");
   }
   if (!strata.empty()) command += fmt::format(" --pairs {} --seed {}", pairs, spec.at("seed").dump());

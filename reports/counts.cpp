@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "strata/groups.h"
+
 namespace graze::reports {
 namespace {
 
@@ -34,8 +36,9 @@ void add(StratumCounts& counts, const Json& row, const std::map<std::string, std
   counts.pairs += row.at("pairs").get<std::uint64_t>();
   counts.intersects += row.at("intersects").get<std::uint64_t>();
   for (const auto& [lane, found] : row.at("lanes").items()) {
-    counts.lanes[place.at(lane)] +=
-        {found.at("false_positive"), found.at("false_negative"), found.at("declined"), found.at("differs_from_cpu")};
+    const Json& differs = found.at("differs_from_cpu");  // null where nothing was compared
+    counts.lanes[place.at(lane)] += {found.at("false_positive"), found.at("false_negative"), found.at("declined"),
+                                     differs.is_null() ? 0 : differs.get<std::uint64_t>()};
   }
   for (const auto& [bucket, found] : row.at("margins").items()) add(counts.margins[buckets.at(bucket)], found, place);
   if (!row.contains("extremes")) return;
@@ -64,6 +67,19 @@ const StratumCounts* CampaignCounts::stratum(std::string_view id) const {
   return found == strata.end() ? nullptr : &*found;
 }
 
+const GroupCounts* CampaignCounts::group(std::string_view id) const {
+  const auto found = std::find_if(groups.begin(), groups.end(), [&](const GroupCounts& g) { return g.id == id; });
+  return found == groups.end() ? nullptr : &*found;
+}
+
+std::vector<std::size_t> CampaignCounts::drawn() const {
+  std::vector<std::size_t> places;
+  for (std::size_t s = 0; s < strata.size(); ++s) {
+    if (strata[s].pairs != 0) places.push_back(s);
+  }
+  return places;
+}
+
 CampaignCounts counts_of(const Json& summary) {
   CampaignCounts counts;
   counts.seed = summary.at("spec").at("seed");
@@ -84,6 +100,16 @@ CampaignCounts counts_of(const Json& summary) {
     stratum.id = id;
     add(stratum, row, place);
     add(counts.total, row, place);
+  }
+  for (const strata::GroupInfo& info : strata::kGroups) {
+    GroupCounts group{std::string(info.id), std::string(info.what), {}, {}};
+    for (std::size_t s = 0; s < counts.strata.size(); ++s) {
+      const std::string& id = counts.strata[s].id;
+      if (strata::group_of_name(id) != info.group || counts.strata[s].pairs == 0) continue;
+      group.strata.push_back(s);
+      add(group.counts, summary["strata"][id], place);
+    }
+    if (!group.strata.empty()) counts.groups.push_back(std::move(group));
   }
   return counts;
 }

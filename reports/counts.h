@@ -38,17 +38,27 @@ struct StratumCounts {
   }
 };
 
+// Strata that are asked after together (strata/groups.h).
+struct GroupCounts {
+  std::string id, describes;
+  std::vector<std::size_t> strata;  // their places, of those that have pairs
+  StratumCounts counts;             // of all of them; id empty
+};
+
 struct CampaignCounts {
   std::uint64_t seed = 0, pairs = 0;  // pairs as asked for
   bool complete = false;
   std::vector<ReportLane> lanes;
   std::vector<StratumCounts> strata;
-  StratumCounts total;  // id empty
+  std::vector<GroupCounts> groups;  // those that have pairs
+  StratumCounts total;              // id empty
 
   // Place of a lane; -1 for none. counterpart: of the same lane in another variant.
   int find(const LaneName& name) const;
   int counterpart(std::size_t lane, std::string_view variant) const;
   const StratumCounts* stratum(std::string_view id) const;
+  const GroupCounts* group(std::string_view id) const;
+  std::vector<std::size_t> drawn() const;  // places of the strata that have pairs
 };
 
 // Requires: what summary.json holds.   Throws: Json::exception otherwise.

@@ -69,10 +69,15 @@ std::string margins_csv(const CampaignCounts& counts) {
 }
 
 std::string thresholds_csv(const Json& report) {
-  Table table("lane,side,exponent,above,bound");
+  Table table("lane,group,stratum,side,exponent,above,bound");  // group and stratum empty: all of them together
+  const auto id_in = [&](const char* list, const Json& place) {
+    return place.is_null() ? place : report[list][place.get<std::size_t>()]["id"];
+  };
   for (const Json& row : report["thresholds"]) {
-    for (const char* side : {"disjoint", "intersects"})
-      table.row({lane_id(report, row), side, row[side]["exponent"], row[side]["above"], row[side]["bound"]});
+    for (const char* side : {"disjoint", "intersects"}) {
+      table.row({lane_id(report, row), id_in("groups", row["group"]), id_in("strata", row["stratum"]), side,
+                 row[side]["exponent"], row[side]["above"], row[side]["bound"]});
+    }
   }
   return table.text;
 }
@@ -108,8 +113,8 @@ std::string compare_csv(const Json& compare) {
   const auto add = [&](const char* what) {
     for (const Json& row : compare[what]) {
       const bool gained = what == std::string_view("gained");
-      table.row({what, nullptr, nullptr, row["key"], gained ? Json() : row["count"], nullptr, nullptr,
-                 gained ? row["count"] : Json(), nullptr, nullptr, nullptr});
+      table.row({std::string("kind ") + what, nullptr, nullptr, row["key"], gained ? Json() : row["count"], nullptr,
+                 nullptr, gained ? row["count"] : Json(), nullptr, nullptr, nullptr});
     }
   };
   add("gained");

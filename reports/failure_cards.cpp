@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "analysis/signature.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
-#include "fuzz/minimise/carded_signatures.h"
-#include "fuzz/minimise/case_facts.h"
+#include "fuzz/minimise/kinds.h"
 #include "oracle/common_set.h"
 #include "reports/snippet.h"
 #include "reports/ulp_map_picture.h"
@@ -20,31 +20,31 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// Throws: FormatError.
+// Throws: std::invalid_argument.
 analysis::Signature signature_of(const std::string& key) {
   const std::optional<analysis::Signature> signature = analysis::parse_signature(key);
-  if (!signature) throw corpus::FormatError("expected the key of a signature, found '" + key + "'");
+  if (!signature) throw std::invalid_argument("expected the key of a signature, found '" + key + "'");
   return *signature;
 }
 
 Json signature_row(const CampaignCounts& counts, const Json& found) {
-  const std::string key = found["key"];
+  const std::string key = found.at("key");
   const analysis::Signature signature = signature_of(key);
   std::string marks;
   for (const ReportLane& lane : counts.lanes) {
     if (lane.name.subject == signature.subject) marks += signature.mark_of(lane.name.within_subject());
   }
-  const double share = found["count"].get<double>() / static_cast<double>(counts.total.pairs);
+  const double share = found.at("count").get<double>() / static_cast<double>(counts.total.pairs);
   return {{"key", key},
           {"algorithm", signature.subject},
-          {"count", found["count"]},
+          {"count", found.at("count")},
           {"share", std::stod(fmt::format("{:.5g}", share))},
           {"contact", name(signature.contact)},
           {"dimensions", fmt::format("{}{}", signature.shape.dimension_a, signature.shape.dimension_b)},
           {"coplanar", signature.shape.coplanar},
           {"margin", name_of_bucket(signature.bucket)},
           {"marks", marks},
-          {"card", nullptr}};
+          {"cards", Json::array()}};
 }
 
 std::string text_of(const corpus::Entry& entry, std::string_view key) {
@@ -74,11 +74,16 @@ Json drawing_of(const Pair& pair) {
   return {{"contact", points(oracle::common_set(pair))}, {"planes_line", points(oracle::planes_line(pair))}};
 }
 
-// What is stored beside the case, if it is of this pair.
-std::optional<Json> stored(const std::filesystem::path& file, const Pair& pair) {
-  Json found = Json::parse(fuzz::read_whole(file), nullptr, false);
-  if (!found.is_object() || found.value("pair", "") != fuzz::pair_text(pair)) return std::nullopt;
-  return found;
+double number_in(const std::filesystem::path& file, const corpus::Entry& entry, std::string_view key) {
+  const std::string text = text_of(entry, key);
+  std::size_t used = 0;
+  try {
+    const double value = std::stod(text, &used);
+    if (used == text.size()) return value;
+  } catch (const std::logic_error&) {
+  }
+  throw corpus::FormatError(
+      fmt::format("{}:{}: expected a number as {}, found '{}'", file.string(), entry.line, key, text));
 }
 
 Verdict verdict_of(std::string_view word) {
@@ -87,29 +92,19 @@ Verdict verdict_of(std::string_view word) {
                                              : Verdict::declined;
 }
 
-Verdict marked(char mark, Verdict truth) {
-  return mark == '+' ? Verdict::intersects : mark == '-' ? Verdict::disjoint : mark == '?' ? Verdict::declined : truth;
-}
-
-// Of the lanes that the minimiser ran on the pair; without its record, of those that the signature tells of.
-Json verdicts_of(const CampaignCounts& counts, const analysis::Signature& signature, Verdict truth,
-                 const std::optional<Json>& facts) {
+// Of the lanes that the minimiser ran on the pair.
+Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored) {
   Json rows = Json::array();
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
-    const ReportLane& lane = counts.lanes[l];
-    std::optional<Verdict> verdict;
-    if (facts && facts->at("verdicts").contains(lane.id)) {
-      verdict = verdict_of(facts->at("verdicts")[lane.id].get<std::string>());
-    } else if (lane.name.subject == signature.subject) {
-      verdict = marked(signature.mark_of(lane.name.within_subject()), truth);
-    }
-    if (verdict) rows.push_back({{"lane", l}, {"verdict", name(*verdict)}, {"wrong", *verdict != truth}});
+    if (!stored.contains(counts.lanes[l].id)) continue;
+    const Verdict verdict = verdict_of(stored[counts.lanes[l].id].get<std::string>());
+    rows.push_back({{"lane", l}, {"verdict", name(verdict)}, {"wrong", verdict != truth}});
   }
   return rows;
 }
 
-Json commands_of(const corpus::Entry& entry, const analysis::Signature& signature, const std::string& from) {
-  const std::string lanes = fmt::format("--lanes '{}/*'", signature.subject);
+Json commands_of(const corpus::Entry& entry, const std::string& subject, const std::string& from) {
+  const std::string lanes = fmt::format("--lanes '{}/*'", subject);
   const std::string file = fmt::format("echo '{}' > case.pairs", fuzz::pair_text(entry.pair));
   Json rows = Json::array();
   const auto add = [&](const char* label, const std::string& text) {
@@ -122,35 +117,41 @@ Json commands_of(const corpus::Entry& entry, const analysis::Signature& signatur
   return rows;
 }
 
-// A program that shows the first wrong lane, on the host if one of its lanes is; and the truth, by a few lines.
-Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const analysis::Signature& signature,
-                 Verdict truth, const Json& verdicts, const std::string& from) {
+// Programs that show the first lane of the kind on the host and on the device; and the truth, by a few lines.
+Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const Json& kind, Verdict truth,
+                 const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
   const std::string name =
       fmt::format("Case {}{}: contact {}, margin {} ({} ulps)", corpus::field(entry, "kind") ? "minimised from " : "",
                   from, text_of(entry, "contact"), text_of(entry, "margin"), text_of(entry, "margin_ulps"));
-  const auto add_lane = [&](SnippetKind kind) {
+  const auto is_of_kind = [&](const std::string& id) {
+    const Json& lanes = kind.at("simplest").at("lanes");
+    return std::find(lanes.begin(), lanes.end(), id) != lanes.end();
+  };
+  const auto add_lane = [&](SnippetKind language) {
     for (const Json& row : verdicts) {
       const ReportLane& lane = counts.lanes[row["lane"].get<std::size_t>()];
-      if (!row["wrong"].get<bool>() || !lane.row || lane.name.subject != signature.subject || !shows(kind, *lane.row))
-        continue;
+      if (!is_of_kind(lane.id) || !lane.row || !shows(language, *lane.row)) continue;
       const SnippetCase found{name, entry.pair, truth, lane.row, verdict_of(row["verdict"].get<std::string>())};
-      rows.push_back({{"label", kSnippetKinds[static_cast<int>(kind)]}, {"text", snippet(kind, found)}});
-      return true;
+      std::string text = snippet(language, found);
+      const std::string source = amalgamated_source(kind.at("subject").get<std::string>());
+      if (const std::size_t at = text.find(source); at != text.npos) text.replace(at, source.size(), kSourceMark);
+      rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", text}});
+      return;
     }
-    return false;
   };
-  if (!add_lane(SnippetKind::cpp)) add_lane(SnippetKind::cuda);
-  for (const SnippetKind kind : {SnippetKind::python, SnippetKind::obj}) {
-    rows.push_back({{"label", kSnippetKinds[static_cast<int>(kind)]},
-                    {"text", snippet(kind, {name, entry.pair, truth, nullptr, truth})}});
+  add_lane(SnippetKind::cpp);
+  add_lane(SnippetKind::cuda);
+  for (const SnippetKind language : {SnippetKind::python, SnippetKind::obj}) {
+    rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]},
+                    {"text", snippet(language, {name, entry.pair, truth, nullptr, truth})}});
   }
   return rows;
 }
 
 // Cards that lack something.
 struct Lacking {
-  std::size_t minimised = 0, explained = 0, mapped = 0, room = 0;
+  std::size_t minimised = 0, mapped = 0, room = 0;
 };
 
 // The maps stored with a case, as far as there is room for them; null without.
@@ -171,36 +172,48 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
   return maps;
 }
 
-Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& found, std::size_t& room,
+// The names of the pairs that the campaign kept of a signature: "near_edge_edge:1:42".
+Json kept_pairs(const std::filesystem::path& case_file) {
+  Json names = Json::array();
+  for (const corpus::Entry& entry : corpus::read_pairs(case_file)) {
+    if (!corpus::field(entry, "kind")) names.push_back(origin(entry));
+  }
+  return names;
+}
+
+Json card_of(const std::filesystem::path& directory, const CampaignCounts& counts, const Json& kind, std::size_t& room,
              Lacking& lacking) {
-  const std::string file = found["case"];
-  const std::vector<corpus::Entry> entries = corpus::read_pairs(directory / file);
-  if (entries.empty()) throw corpus::FormatError(file + ": expected at least one case, found none");
-  const corpus::Entry& entry = fuzz::shown_case(entries);
-  const analysis::Signature signature = signature_of(found["key"]);
+  const Json& simplest = kind.at("simplest");
+  const std::string subject = kind.at("subject");
+  const std::filesystem::path file = fuzz::case_file(directory, simplest);
+  const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
+  if (entries.empty() || fuzz::pair_text(entries.front().pair) != simplest.at("pair").get<std::string>())
+    throw corpus::FormatError(file.string() + ": expected the pair of kinds.json first, found another");
+  const corpus::Entry& entry = entries.front();
   const Verdict truth = verdict_of(text_of(entry, "truth"));
-  const std::optional<Json> facts = stored(fuzz::facts_file(directory / file), entry.pair);
   const bool minimised = corpus::field(entry, "kind") != nullptr;
   lacking.minimised += !minimised;
-  lacking.explained += !facts;
   const std::string from = origin(entry);
-  const Json verdicts = verdicts_of(counts, signature, truth, facts);
-  return {{"signature", nullptr},
-          {"file", file},
-          {"minimised", minimised},
-          {"from", from},
-          {"pair", coordinates_of(entry.pair)},
-          {"truth",
-           {{"verdict", name(truth)},
-            {"contact", text_of(entry, "contact")},
-            {"margin", std::stod(text_of(entry, "margin"))},
-            {"margin_ulps", std::stod(text_of(entry, "margin_ulps"))}}},
-          {"drawing", drawing_of(entry.pair)},
-          {"verdicts", verdicts},
-          {"sentences", facts ? facts->at("sentences") : Json::array()},
-          {"maps", maps_of(directory / file, entry.pair, room, lacking)},
-          {"commands", commands_of(entry, signature, from)},
-          {"snippets", snippets_of(counts, entry, signature, truth, verdicts, from)}};
+  const Json verdicts = verdicts_of(counts, truth, simplest.at("verdicts"));
+  Json card = {{"file", simplest.at("case")}};
+  for (const char* field : {"key", "subject", "cause", "line", "shape", "pairs", "signatures", "lanes", "settled",
+                            "strata", "margins", "worst"})
+    card["kind"][field] = kind.at(field);
+  card.update({{"minimised", minimised},
+               {"from", from},
+               {"pair", coordinates_of(entry.pair)},
+               {"truth",
+                {{"verdict", name(truth)},
+                 {"contact", text_of(entry, "contact")},
+                 {"margin", number_in(file, entry, "margin")},
+                 {"margin_ulps", number_in(file, entry, "margin_ulps")}}},
+               {"drawing", drawing_of(entry.pair)},
+               {"verdicts", verdicts},
+               {"sentences", simplest.at("sentences")},
+               {"maps", maps_of(file, entry.pair, room, lacking)},
+               {"commands", commands_of(entry, subject, from)},
+               {"snippets", snippets_of(counts, entry, kind, truth, verdicts, from)}});
+  return card;
 }
 
 void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t cards) {
@@ -209,12 +222,6 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
         fmt::format("{} of {} cards show a pair as it was found: `graze minimize DIR` makes it simple, and "
                     "`graze report DIR` shows that.",
                     lacking.minimised, cards));
-  }
-  if (lacking.explained != 0) {
-    missing.push_back(
-        fmt::format("{} of {} cards have no explanation, and verdicts only of the algorithm that fails: "
-                    "`graze minimize DIR` stores both.",
-                    lacking.explained, cards));
   }
   if (lacking.mapped != 0) {
     missing.push_back(
@@ -230,7 +237,7 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
 
 Json signature_rows(const CampaignCounts& counts, const Json& summary) {
   Json rows = Json::array();
-  for (const Json& found : summary["signatures"]) {
+  for (const Json& found : summary.at("signatures")) {
     rows.push_back(signature_row(counts, found));
   }
   return rows;
@@ -243,26 +250,46 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
         fmt::format("On {} pairs {} gave another verdict on the device than by its twin: one of the two is wrong.",
                     found.at("count").dump(), found.at("lane").get<std::string>()));
   }
-  const std::vector<std::size_t> carded = fuzz::carded_signatures(summary);
+  const Json kinds = fuzz::read_kinds(directory);
+  if (kinds.is_null() && !summary["signatures"].empty())
+    report["missing"].push_back(
+        "The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
   Json rows = Json::array(), cards = Json::array();
-  std::size_t count = 0, room = kMostMapBytes;
+  std::size_t room = kMostMapBytes;
   Lacking lacking;
-  for (std::size_t place = 0; place < summary["signatures"].size(); ++place) {
-    const Json& found = summary["signatures"][place];
-    ++count;
-    const bool has_card = std::binary_search(carded.begin(), carded.end(), place);
-    if (count > kMostSignatures && !has_card) continue;
-    rows.push_back(signature_row(counts, found));
-    if (!has_card) continue;
-    rows.back()["card"] = cards.size();
-    cards.push_back(card_of(directory, counts, found, room, lacking));
-    cards.back()["signature"] = rows.size() - 1;
+  std::map<std::size_t, std::vector<std::size_t>> cards_of;  // of each signature, the commonest kind first
+  try {
+    for (const Json& kind : kinds) {
+      if (cards.size() == fuzz::kMostShown) break;
+      for (const Json& place : kind.at("places")) cards_of[place.get<std::size_t>()].push_back(cards.size());
+      cards.push_back(card_of(directory, counts, kind, room, lacking));
+    }
+  } catch (const Json::exception&) {
+    throw corpus::FormatError((directory / "kinds.json").string() +
+                              ": expected what `graze minimize` writes, found something else");
+  }
+  if (kinds.size() > cards.size())
+    report["missing"].push_back(
+        fmt::format("Cards show the commonest {} of {} kinds; `graze kinds` lists all.", cards.size(), kinds.size()));
+  const std::size_t count = summary.at("signatures").size();
+  for (std::size_t place = 0; place < std::min(count, kMostSignatures); ++place) {
+    rows.push_back(signature_row(counts, summary.at("signatures")[place]));
+    rows.back()["pairs"] = kept_pairs(fuzz::case_file(directory, summary.at("signatures")[place]));
+    rows.back()["cards"] = cards_of[place];
   }
   if (rows.size() < count) {
     report["missing"].push_back(
         fmt::format("The table shows the commonest {} of {} signatures; signatures.csv has all.", rows.size(), count));
   }
   say_what_is_missing(report["missing"], lacking, cards.size());
+  report["sources"] = Json::object();
+  for (const Json& card : cards) {
+    const std::string algorithm = card["kind"]["subject"];
+    for (const Json& row : card["snippets"]) {
+      if (row["text"].get<std::string>().find(kSourceMark) != std::string::npos)
+        report["sources"][algorithm] = amalgamated_source(algorithm);
+    }
+  }
   report["signature_count"] = count;
   report["signatures"] = std::move(rows);
   report["cards"] = std::move(cards);

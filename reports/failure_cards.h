@@ -4,22 +4,25 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "reports/counts.h"
 
 namespace graze::reports {
 
-// What keeps the page's size: rows in its table (besides those of cards), and bytes of all its maps.
+// What keeps the page's size: rows in its table, and bytes of all its maps.
 inline constexpr std::size_t kMostSignatures = 5'000;
 inline constexpr std::size_t kMostMapBytes = 7 << 18;
+
+// Stands in a card's program for the source of its algorithm, which the report holds once, in `sources`.
+inline constexpr std::string_view kSourceMark = "@SOURCE@";
 
 // One row for each signature, the commonest first.
 nlohmann::ordered_json signature_rows(const CampaignCounts& counts, const nlohmann::ordered_json& summary);
 
-// The signatures' rows, the commonest first, and the cards of those that have one (fuzz/minimise/carded_signatures.h),
-// from the case files and what the minimiser stored beside them. What they lack is said in `missing`. Throws:
-// FormatError; std::runtime_error for a case file without a case.
+// The signatures' rows, the commonest first, and a card for each kind of failure (fuzz/minimise/kinds.h), from the case
+// files and what the minimiser stored beside them. What they lack is said in `missing`.   Throws: FormatError.
 void add_signatures(nlohmann::ordered_json& report, const std::filesystem::path& directory,
                     const nlohmann::ordered_json& summary, const CampaignCounts& counts);
 

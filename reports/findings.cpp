@@ -6,99 +6,12 @@
 #include <algorithm>
 #include <optional>
 
+#include "reports/lane_words.h"
+#include "reports/recommendations.h"
 #include "reports/tables.h"
-#include "reports/terminal.h"
-#include "reports/wilson.h"
 
 namespace graze::reports {
 namespace {
-
-using Places = std::vector<std::size_t>;
-
-Places published(const CampaignCounts& counts) {
-  Places places;
-  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
-    if (!counts.lanes[l].exact) places.push_back(l);
-  }
-  return places;
-}
-
-std::string with_interval(const Share& s, const char* what = "") {
-  return fmt::format("{}{} ({}, 95 % interval {} to {})", grouped(s.count), what, rate_words(s.share),
-                     rate_words(s.low), rate_words(s.high));
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 3;
-  const std::size_t named = names.size() <= kMost + 1 ? names.size() : kMost;
-  std::string text;
-  for (std::size_t i = 0; i < named; ++i) {
-    const bool last = i + 1 == named && named == names.size();
-    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
-  }
-  return named < names.size() ? fmt::format("{} and {} more", text, names.size() - named) : text;
-}
-
-std::string ids(const CampaignCounts& counts, const Places& places) {
-  std::vector<std::string> names;
-  for (const std::size_t l : places) names.push_back(counts.lanes[l].id);
-  return list_of(names);
-}
-
-Places those_wrong(const CampaignCounts& counts, const Places& among, std::uint64_t wrong) {
-  Places places;
-  std::copy_if(among.begin(), among.end(), std::back_inserter(places),
-               [&](std::size_t l) { return counts.total.wrong(l) == wrong; });
-  return places;
-}
-
-std::string of_exact_lanes(const CampaignCounts& counts) {
-  Places exact;
-  std::uint64_t wrong = 0;
-  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
-    if (!counts.lanes[l].exact) continue;
-    exact.push_back(l);
-    wrong += counts.total.wrong(l);
-  }
-  if (exact.empty()) return "";
-  return fmt::format("; {} {} wrong on {}", ids(counts, exact), exact.size() == 1 ? "is" : "are",
-                     wrong == 0 ? "none" : grouped(wrong) + ", which must not be");
-}
-
-std::string safest(const CampaignCounts& counts, const Places& lanes, std::uint64_t least, std::uint64_t most) {
-  const StratumCounts& total = counts.total;
-  const std::string bound = rate_words(bound_of_none(total.pairs));
-  const std::string exact = of_exact_lanes(counts);
-  if (most == 0) {
-    return fmt::format("{} wrong on none of {} pairs, so with 95 % confidence {} on fewer than {} of such pairs{}.",
-                       lanes.size() == 1 ? fmt::format("The only published lane, {}, is", counts.lanes[lanes[0]].id)
-                                         : fmt::format("All {} published lanes are", lanes.size()),
-                       grouped(total.pairs), lanes.size() == 1 ? "it errs" : "each errs", bound, exact);
-  }
-  const Places best = those_wrong(counts, lanes, least);
-  const std::string found =
-      least == 0 ? fmt::format("none of {} pairs (with 95 % confidence fewer than {})", grouped(total.pairs), bound)
-                 : fmt::format("{} of {} pairs", with_interval(share_of(least, total.pairs)), grouped(total.pairs));
-  if (lanes.size() == 1)
-    return fmt::format("The only published lane, {}, is wrong on {}{}.", counts.lanes[lanes[0]].id, found, exact);
-  return fmt::format("The safest of {} published lanes {} {}: wrong on {}{}.", lanes.size(),
-                     best.size() == 1 ? "is" : "are", ids(counts, best), found, exact);
-}
-
-std::string worst(const CampaignCounts& counts, const Places& lanes, std::uint64_t least, std::uint64_t most) {
-  if (lanes.size() == 1) return "No other published lane ran, so there is none to be worse.";
-  if (least == most) return fmt::format("No lane is worse than another: all {} are wrong equally often.", lanes.size());
-  const Places found = those_wrong(counts, lanes, most);
-  const analysis::LaneCounts& lane = counts.total.lanes[found[0]];
-  const std::string kinds = found.size() > 1 ? ""
-                                             : fmt::format(", {} of them false positives and {} false negatives",
-                                                           grouped(lane.false_positive), grouped(lane.false_negative));
-  const std::string times = least == 0 ? ""
-                                       : fmt::format("; {:.3g} times as many as the safest",
-                                                     static_cast<double>(most) / static_cast<double>(least));
-  return fmt::format("The worst {} {}: wrong on {}{}{}.", found.size() == 1 ? "is" : "are", ids(counts, found),
-                     with_interval(share_of(most, counts.total.pairs), " pairs"), kinds, times);
-}
 
 // A lane with contraction, and the same without.
 struct Contracted {
@@ -247,7 +160,7 @@ std::string rate_words(double rate) {
   return fmt::format("1 in {}", grouped(static_cast<std::uint64_t>(std::stod(fmt::format("{:.3g}", 1 / rate)))));
 }
 
-std::vector<std::string> answer(const CampaignCounts& counts) {
+std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs) {
   if (counts.total.pairs == 0) return {"No pair has been decided yet."};
   const Places lanes = published(counts);
   if (lanes.empty()) {
@@ -256,11 +169,19 @@ std::vector<std::string> answer(const CampaignCounts& counts) {
     return {fmt::format("Only exact lanes ran, and {} of their verdicts on {} pairs {} wrong.",
                         wrong == 0 ? "none" : grouped(wrong), grouped(counts.total.pairs), wrong == 1 ? "is" : "are")};
   }
-  const auto less = [&](std::size_t l, std::size_t r) { return counts.total.wrong(l) < counts.total.wrong(r); };
-  const auto [least, most] = std::minmax_element(lanes.begin(), lanes.end(), less);
-  const std::uint64_t fewest = counts.total.wrong(*least), largest = counts.total.wrong(*most);
-  return {safest(counts, lanes, fewest, largest), worst(counts, lanes, fewest, largest), contraction(counts, lanes),
-          thesis(counts, lanes), dangerous(counts, lanes)};
+  std::vector<std::string> said, not_known;
+  const auto add = [&](Sentence sentence) {
+    (sentence.known ? said : not_known).push_back(std::move(sentence.text));
+  };
+  add(lane_to_use(counts, costs));
+  add(lane_to_avoid(counts, costs));
+  add(least_wrong_lane(counts, costs));
+  add({dangerous(counts, lanes)});
+  add({contraction(counts, lanes), !contracted(counts, lanes).empty()});
+  const StratumCounts* drawn = counts.stratum("thesis");
+  add({thesis(counts, lanes), drawn && drawn->pairs != 0});
+  said.insert(said.end(), not_known.begin(), not_known.end());
+  return said;
 }
 
 }  // namespace graze::reports

@@ -1,39 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "reports/page.h"
 
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 namespace graze::reports {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr char kText[] =
 #include "page_template.inc"
     ;
 constexpr std::string_view kPageTemplate(kText, sizeof kText - 1);
 
+// The text with data in place of what stands in its element of that id.
+std::string with_data(std::string_view text, const char* id, const Json& data) {
+  const std::string start = fmt::format("<script type=\"application/json\" id=\"{}\">", id);
+  const std::size_t element = text.find(start);
+  const std::size_t begin = element + start.size(), end = text.find("</script>", begin);
+  if (element == text.npos || end == text.npos)
+    throw std::logic_error(fmt::format("expected a page with an element for the {}, found none", id));
+  std::string filled(text.substr(0, begin));
+  for (const char c : data.dump()) {  // no "</script>" or "<!--" inside
+    if (c == '<') {
+      filled += "\\u003c";
+    } else {
+      filled += c;
+    }
+  }
+  return filled.append(text.substr(end));
+}
+
 }  // namespace
 
 bool has_interactive_page() { return !kPageTemplate.empty(); }
 
-std::string page(const nlohmann::ordered_json& report) {
-  return has_interactive_page() ? filled(kPageTemplate, report) : plain_page(report);
+std::string page(const Json& report, const Json& costs) {
+  return has_interactive_page() ? filled(kPageTemplate, report, costs) : plain_page(report, costs);
 }
 
-std::string filled(std::string_view page_template, const nlohmann::ordered_json& report) {
-  constexpr std::string_view kElement = "<script type=\"application/json\" id=\"report\">";
-  const std::size_t element = page_template.find(kElement);
-  const std::size_t begin = element + kElement.size(), end = page_template.find("</script>", begin);
-  if (element == page_template.npos || end == page_template.npos)
-    throw std::logic_error("expected a page with an element for the report, found none");
-  std::string text(page_template.substr(0, begin));
-  for (const char c : report.dump()) {  // no "</script>" or "<!--" inside
-    if (c == '<') {
-      text += "\\u003c";
-    } else {
-      text += c;
-    }
-  }
-  return text.append(page_template.substr(end));
+std::string filled(std::string_view page_template, const Json& report, const Json& costs) {
+  return with_data(with_data(page_template, "costs", costs), "report", report);
 }
 
 }  // namespace graze::reports

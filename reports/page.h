@@ -10,14 +10,15 @@ namespace graze::reports {
 // Whether this build has the page of reports/web, which takes Node to build.
 bool has_interactive_page();
 
-// The report in the page of reports/web if this build has that, else in a plain one.
-std::string page(const nlohmann::ordered_json& report);
+// The report in the page of reports/web if this build has that, else in a plain one. costs: what make_costs returns.
+std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs);
 
 // Tables and drawings without any script; says what it lacks.
-std::string plain_page(const nlohmann::ordered_json& report);
+std::string plain_page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs);
 
-// The report inside a template, in its <script type="application/json" id="report">.
-// Throws: std::logic_error for a text without that element.
-std::string filled(std::string_view page_template, const nlohmann::ordered_json& report);
+// Both inside a template, in its elements <script type="application/json" id="report"> and id="costs".
+// Throws: std::logic_error for a text without them.
+std::string filled(std::string_view page_template, const nlohmann::ordered_json& report,
+                   const nlohmann::ordered_json& costs);
 
 }  // namespace graze::reports

@@ -83,18 +83,19 @@ std::string margin_chart(const Json& row) {
   constexpr int kMost = 1 - kBucketLowest;  // exponents, away from zero on both sides
   static_assert(kBucketHighest < kMost);
   const auto x_of = [](const Json& point) {
-    if (point["side"] == "zero") return kWidth / 2;
-    const double from_zero = (point["exponent"].get<double>() + kMost) / (2 * kMost) * (kWidth / 2 - 14) + 6;
-    return kWidth / 2 + (point["side"] == "disjoint" ? from_zero : -from_zero);
+    if (point.at("side") == "zero") return kWidth / 2;
+    const double from_zero = (point.at("exponent").get<double>() + kMost) / (2 * kMost) * (kWidth / 2 - 14) + 6;
+    return kWidth / 2 + (point.at("side") == "disjoint" ? from_zero : -from_zero);
   };
   std::string svg = fmt::format(
       "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" aria-label=\"share wrong against the "
       "margin\"><path d=\"M0 {2}H{0}M{3} {4}V{2}\" stroke=\"currentColor\" stroke-opacity=\"0.4\"/>",
       kWidth, kHeight, kBase, kWidth / 2, kTop);
-  for (const Json& point : row["points"]) {
-    const double share = point["wrong"]["share"], x = x_of(point), y = kBase - (kBase - kTop) * share;
-    svg += fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"{3}\" stroke-width=\"1.8\"/>", x, kBase,
-                       share > 0 ? std::min(y, kBase - 1) : kBase, point["side"] == "disjoint" ? "#0072b2" : "#d55e00");
+  for (const Json& point : row.at("points")) {
+    const double share = point.at("wrong").at("share"), x = x_of(point), y = kBase - (kBase - kTop) * share;
+    svg +=
+        fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"{3}\" stroke-width=\"1.8\"/>", x, kBase,
+                    share > 0 ? std::min(y, kBase - 1) : kBase, point.at("side") == "disjoint" ? "#0072b2" : "#d55e00");
   }
   return svg + fmt::format(
                    "<text x=\"2\" y=\"104\">intersects, 2^{0}…2^{1} ulps</text><text x=\"{2}\" y=\"104\" "
@@ -104,7 +105,7 @@ std::string margin_chart(const Json& row) {
 
 std::string pair_drawing(const Json& card) {
   constexpr double kSize = 220;
-  const Json &values = card["pair"]["value"], &contact = card["drawing"]["contact"];
+  const Json &values = card.at("pair").at("value"), &contact = card.at("drawing").at("contact");
   std::vector<std::array<double, 3>> vertices;
   for (std::size_t i = 0; i < 18; i += 3) vertices.push_back(point_of(values, i));
   const Isometric view(vertices, kSize);
@@ -116,10 +117,10 @@ std::string pair_drawing(const Json& card) {
   std::string svg = fmt::format(
       "<svg viewBox=\"0 0 {0} {0}\" width=\"{0}\" height=\"{0}\" role=\"img\" aria-label=\"both triangles\">{1}{2}",
       kSize, triangle(0, "#0072b2"), triangle(3, "#e69f00"));
-  const Json& line = card["drawing"]["planes_line"];
+  const Json& line = card.at("drawing").at("planes_line");
   if (!line.empty()) {
     svg += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-dasharray=\"4 3\"/>",
-                       joined({view(point_of(line[0], 0)), view(point_of(line[1], 0))}));
+                       joined({view(point_of(line.at(0), 0)), view(point_of(line.at(1), 0))}));
   }
   std::vector<Point2> points;
   for (const Json& p : contact) points.push_back(view(point_of(p, 0)));

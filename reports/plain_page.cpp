@@ -40,147 +40,165 @@ std::string paragraph(const std::string& text) { return "<p>" + html(text) + "</
 
 // A cell whose ground is the darker the larger the share; readable on light and dark.
 std::string share_cell(const Json& share) {
-  const double value = share["share"];
+  const double value = share.at("share");
   return fmt::format(
       "<td class=\"number\" style=\"background: rgba(213, 94, 0, {:.3f})\" title=\"{} of {}, 95 % interval "
       "{} to {}\">{}</td>",
-      0.75 * value, grouped(share["count"]), grouped(share["of"]), rate_words(share["low"]), rate_words(share["high"]),
-      rate_words(value));
+      0.75 * value, grouped(share.at("count")), grouped(share.at("of")), rate_words(share.at("low")),
+      rate_words(share.at("high")), rate_words(value));
 }
 
-std::string run_section(const Json& report) {
-  const Json& run = report["run"];
-  std::string text = "<h1>Graze: discrepancy report</h1>\n";
-  text += paragraph(
-      fmt::format("{} pairs, seed {}{}. Version {}, commit {}, {}; {}; {}.", grouped(run["pairs"]), run["seed"].dump(),
-                  run["complete"] ? "" : ", not finished", run["build"]["version"].get<std::string>(),
-                  run["build"]["commit"].get<std::string>(), run["build"]["compiler"].get<std::string>(),
-                  run["build"]["cuda"].is_null() ? "no nvcc" : run["build"]["cuda"].get<std::string>(),
-                  run["build"]["device"].is_null() ? "no device" : run["build"]["device"].get<std::string>()));
-  if (!run["machine"].is_null()) text += paragraph("Machine: " + run["machine"].get<std::string>());
-  text += "<pre>" + html(run["command"]) + "</pre>\n";
+std::string answer_section(const Json& report, const Json& costs) {
+  std::string text = "<h1>Graze: discrepancy report</h1>\n<h2>The answer</h2>\n<ol>\n";
+  for (const Json& sentence : costs.is_null() ? report.at("answer") : costs.at("answer"))
+    text += "<li>" + html(sentence) + "</li>\n";
+  text += "</ol>\n";
+  if (!costs.is_null()) text += paragraph("Costs were measured on " + costs.at("machine").get<std::string>() + ".");
   text += paragraph(
       "This build had no Node, or no npm packages, so the page lacks its interactive parts: sorting, filters, views "
       "that turn, "
       "ulp maps and copy buttons. The same data is in the JSON file and the CSV tables beside it.");
-  for (const Json& sentence : report["missing"]) text += paragraph(sentence);
-  text += "<h2>The answer</h2>\n<ol>\n";
-  for (const Json& sentence : report["answer"]) text += "<li>" + html(sentence) + "</li>\n";
-  return text + "</ol>\n";
+  for (const Json& sentence : report.at("missing")) text += paragraph(sentence);
+  return text;
+}
+
+std::string run_section(const Json& report) {
+  const Json& run = report.at("run");
+  std::string text = "<h2>What was run</h2>\n";
+  text += paragraph(fmt::format(
+      "{} pairs, seed {}{}. Version {}, commit {}, {}; {}; {}.", grouped(run.at("pairs")), run.at("seed").dump(),
+      run.at("complete") ? "" : ", not finished", run.at("build").at("version").get<std::string>(),
+      run.at("build").at("commit").get<std::string>(), run.at("build").at("compiler").get<std::string>(),
+      run.at("build").at("cuda").is_null() ? "no nvcc" : run.at("build").at("cuda").get<std::string>(),
+      run.at("build").at("device").is_null() ? "no device" : run.at("build").at("device").get<std::string>()));
+  if (!run.at("machine").is_null()) text += paragraph("Machine: " + run.at("machine").get<std::string>());
+  return text + "<pre>" + html(run.at("command")) + "</pre>\n";
 }
 
 std::string league(const Json& report) {
   std::string text = "<h2>Wrong verdicts by lane and stratum</h2>\n<div class=\"wide\"><table>\n<tr><th>lane</th>";
   std::vector<Json> columns{nullptr};
   text += "<th>all</th>";
-  for (std::size_t s = 0; s < report["strata"].size(); ++s) {
-    if (report["strata"][s]["pairs"] == 0) continue;
+  for (std::size_t s = 0; s < report.at("strata").size(); ++s) {
+    if (report.at("strata").at(s).at("pairs") == 0) continue;
     columns.push_back(s);
-    text += "<th>" + html(report["strata"][s]["id"]) + "</th>";
+    text += "<th>" + html(report.at("strata").at(s).at("id")) + "</th>";
   }
   text += "</tr>\n";
-  for (std::size_t l = 0; l < report["lanes"].size(); ++l) {
-    text += "<tr><th>" + html(report["lanes"][l]["id"]) + "</th>";
+  for (std::size_t l = 0; l < report.at("lanes").size(); ++l) {
+    text += "<tr><th>" + html(report.at("lanes").at(l).at("id")) + "</th>";
     for (const Json& column : columns) {
-      const auto row = std::find_if(report["rates"].begin(), report["rates"].end(),
-                                    [&](const Json& r) { return r["lane"] == l && r["stratum"] == column; });
-      text += row == report["rates"].end() ? "<td></td>" : share_cell((*row)["wrong"]);
+      const auto row = std::find_if(report.at("rates").begin(), report.at("rates").end(),
+                                    [&](const Json& r) { return r.at("lane") == l && r.at("stratum") == column; });
+      text += row == report.at("rates").end() ? "<td></td>" : share_cell((*row).at("wrong"));
     }
     text += "</tr>\n";
   }
   return text + "</table></div>\n";
 }
 
+// "general: from 2^3 ulps (rate below 0.1 %)", of each group of strata.
+std::string threshold_words(const Json& report, std::size_t lane, const char* side) {
+  std::string text;
+  for (const Json& row : report.at("thresholds")) {
+    if (row.at("lane") != lane || row.at("group").is_null()) continue;
+    const Json& t = row.at(side);
+    text += (text.empty() ? "" : "; ") +
+            report.at("groups")[row.at("group").get<std::size_t>()].at("id").get<std::string>() + ": " +
+            (!t.at("exponent").is_null()
+                 ? fmt::format("from 2^{} ulps (rate below {})", t.at("exponent").dump(), rate_words(t.at("bound")))
+             : t.at("largest").is_null() ? std::string("no pairs")
+                                         : fmt::format("errors up to 2^{} ulps", t.at("largest").dump()));
+  }
+  return text;
+}
+
 std::string margin_section(const Json& report) {
   std::string text = "<h2>Share wrong against the exact margin</h2>\n";
-  for (const Json& row : report["margins"]) {
-    const auto lane = row["lane"].get<std::size_t>();
-    const Json& threshold = report["thresholds"][lane];
-    const auto from = [&](const char* side) {
-      const Json& t = threshold[side];
-      return t["exponent"].is_null()
-                 ? std::string("never")
-                 : fmt::format("from 2^{} ulps (rate below {})", t["exponent"].dump(), rate_words(t["bound"]));
-    };
+  for (const Json& row : report.at("margins")) {
+    const auto lane = row.at("lane").get<std::size_t>();
     text += fmt::format(
-        "<figure>{}<figcaption>{}<br/>no error seen, disjoint: {}; intersecting: {}</figcaption></figure>\n",
-        margin_chart(row), html(report["lanes"][lane]["id"]), from("disjoint"), from("intersects"));
+        "<figure>{}<figcaption>{}<br/>no error seen, disjoint: {}<br/>intersecting: {}</figcaption></figure>\n",
+        margin_chart(row), html(report.at("lanes").at(lane).at("id")), threshold_words(report, lane, "disjoint"),
+        threshold_words(report, lane, "intersects"));
   }
   return text;
 }
 
 std::string extremes_section(const Json& report) {
   std::string text;
-  for (const Json& row : report["extremes"]) {
-    const std::string kind = row["kind"];
+  for (const Json& row : report.at("extremes")) {
+    const std::string kind = row.at("kind");
     if (text.find("<h2>Wrong verdicts over " + kind) == std::string::npos) {
       text += (text.empty() ? "" : "</table></div>\n") + fmt::format("<h2>Wrong verdicts over {}</h2>\n", kind) +
               "<div class=\"wide\"><table>\n<tr><th>lane</th>";
-      for (const Json& cell : row["cells"]) text += "<th>2^" + cell["exponent"].dump() + "</th>";
+      for (const Json& cell : row.at("cells")) text += "<th>2^" + cell.at("exponent").dump() + "</th>";
       text += "</tr>\n";
     }
-    text += "<tr><th>" + html(report["lanes"][row["lane"].get<std::size_t>()]["id"]) + "</th>";
-    for (const Json& cell : row["cells"]) text += share_cell(cell["wrong"]);
+    text += "<tr><th>" + html(report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id")) + "</th>";
+    for (const Json& cell : row.at("cells")) text += share_cell(cell.at("wrong"));
     text += "</tr>\n";
   }
   return text.empty() ? "" : text + "</table></div>\n";
 }
 
 std::string card(const Json& report, const Json& found) {
-  const Json& signature = report["signatures"][found["signature"].get<std::size_t>()];
-  std::string text =
-      fmt::format("<h3>{}</h3>\n<figure>{}</figure>\n<pre>", html(signature["key"]), pair_drawing(found));
+  const Json& kind = found.at("kind");
+  std::string text = fmt::format("<h3>{}</h3>\n<figure>{}</figure>\n<pre>", html(kind.at("key")), pair_drawing(found));
   for (std::size_t i = 0; i < 18; ++i) {
-    const auto coordinate = [&](const char* kind) { return found["pair"][kind][i].get<std::string>(); };
+    const auto coordinate = [&](const char* form) { return found.at("pair").at(form).at(i).get<std::string>(); };
     if (i % 3 == 0) text += fmt::format("{}[{}]", i < 9 ? 'a' : 'b', i / 3 % 3);
     text += fmt::format(" {} ({}){}", coordinate("decimal"), coordinate("hex"), i % 3 == 2 ? "\n" : "");
   }
-  text += "</pre>\n" +
-          paragraph(fmt::format("{} pairs; truth: {}, contact {}, margin {} ulps.", grouped(signature["count"]),
-                                found["truth"]["verdict"].get<std::string>(),
-                                found["truth"]["contact"].get<std::string>(), found["truth"]["margin_ulps"].dump()));
+  text +=
+      "</pre>\n" + paragraph(fmt::format("{} pairs; truth: {}, contact {}, margin {} ulps.", grouped(kind.at("pairs")),
+                                         found.at("truth").at("verdict").get<std::string>(),
+                                         found.at("truth").at("contact").get<std::string>(),
+                                         found.at("truth").at("margin_ulps").dump()));
   std::string wrong;
-  for (const Json& row : found["verdicts"]) {
-    if (row["wrong"])
-      wrong += (wrong.empty() ? "" : ", ") + report["lanes"][row["lane"].get<std::size_t>()]["id"].get<std::string>();
+  for (const Json& row : found.at("verdicts")) {
+    if (row.at("wrong"))
+      wrong += (wrong.empty() ? "" : ", ") +
+               report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id").get<std::string>();
   }
   text += paragraph("Wrong: " + wrong);
-  for (const Json& sentence : found["sentences"]) text += paragraph(sentence);
-  for (const Json& command : found["commands"]) text += "<pre>" + html(command["text"]) + "</pre>\n";
+  for (const Json& sentence : found.at("sentences")) text += paragraph(sentence);
+  for (const Json& command : found.at("commands")) text += "<pre>" + html(command.at("text")) + "</pre>\n";
   return text;
 }
 
 std::string signature_section(const Json& report) {
-  const std::size_t rows = std::min(report["signatures"].size(), kMostRows);
+  const std::size_t rows = std::min(report.at("signatures").size(), kMostRows);
   std::string text = fmt::format(
       "<h2>Signatures</h2>\n<p>{} in all, the commonest {} here.</p>\n<div class=\"wide\"><table>\n"
       "<tr><th>signature</th><th>pairs</th></tr>\n",
-      grouped(report["signature_count"]), grouped(rows));
+      grouped(report.at("signature_count")), grouped(rows));
   for (std::size_t i = 0; i < rows; ++i) {
-    text += fmt::format("<tr><td>{}</td><td class=\"number\">{}</td></tr>\n", html(report["signatures"][i]["key"]),
-                        grouped(report["signatures"][i]["count"]));
+    text +=
+        fmt::format("<tr><td>{}</td><td class=\"number\">{}</td></tr>\n", html(report.at("signatures").at(i).at("key")),
+                    grouped(report.at("signatures").at(i).at("count")));
   }
   text += "</table></div>\n<h2>Cases</h2>\n";
-  for (const Json& found : report["cards"]) text += card(report, found);
+  for (const Json& found : report.at("cards")) text += card(report, found);
   return text;
 }
 
 std::string compare_section(const Json& compare) {
   if (compare.is_null()) return "";
   std::string text =
-      "<h2>What has changed</h2>\n<p>Since commit " + html(compare["other"]["build"]["commit"]) +
-      ": rates whose 95 % intervals are apart.</p>\n" +
+      "<h2>What has changed</h2>\n<p>Since commit " + html(compare.at("other").at("build").at("commit")) + ": " +
+      html(compare.at("headline")) + " Rates whose intervals are apart:</p>\n" +
       "<div class=\"wide\"><table>\n<tr><th>lane</th><th>stratum</th><th>before</th><th>after</th></tr>\n";
-  for (const Json& row : compare["rates"]) {
-    if (!row["changed"]) continue;
-    text += "<tr><td>" + html(row["lane"]) + "</td><td>" + html(row["stratum"]) + "</td>" + share_cell(row["before"]) +
-            share_cell(row["after"]) + "</tr>\n";
+  for (const Json& row : compare.at("rates")) {
+    if (!row.at("changed")) continue;
+    text += "<tr><td>" + html(row.at("lane")) + "</td><td>" + html(row.at("stratum")) + "</td>" +
+            share_cell(row.at("before")) + share_cell(row.at("after")) + "</tr>\n";
   }
   text += "</table></div>\n";
   for (const char* what : {"gained", "lost"}) {
-    text += fmt::format("<p>Signatures {}: {}</p>\n<ul>\n", what, grouped(compare[what].size()));
-    for (std::size_t i = 0; i < std::min(compare[what].size(), kMostRows); ++i)
-      text += "<li>" + html(compare[what][i]["key"]) + "</li>\n";
+    text += fmt::format("<p>Kinds of failure {}: {}</p>\n<ul>\n", what, grouped(compare.at(what).size()));
+    for (std::size_t i = 0; i < std::min(compare.at(what).size(), kMostRows); ++i)
+      text += "<li>" + html(compare.at(what).at(i).at("key")) + "</li>\n";
     text += "</ul>\n";
   }
   return text;
@@ -197,9 +215,10 @@ coplanar, margin, algorithm, and a mark for each of its lanes: + false positive,
 
 }  // namespace
 
-std::string plain_page(const Json& report) {
-  return kHead + run_section(report) + compare_section(report["compare"]) + league(report) + margin_section(report) +
-         extremes_section(report) + signature_section(report) + kDefinitions + "</body>\n</html>\n";
+std::string plain_page(const Json& report, const Json& costs) {
+  return kHead + answer_section(report, costs) + compare_section(report.at("compare")) + league(report) +
+         margin_section(report) + extremes_section(report) + signature_section(report) + kDefinitions +
+         run_section(report) + "</body>\n</html>\n";
 }
 
 }  // namespace graze::reports

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
+#include "reports/costs.h"
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/tables.h"
@@ -24,10 +26,11 @@ namespace {
 // The machines that the campaign ran on, as far as their names are known.
 Json machines(const std::filesystem::path& directory) {
   const Json timings = Json::parse(fuzz::read_whole(directory / "timings.json"), nullptr, false);
-  if (!timings.is_object() || !timings.contains("runs")) return nullptr;
+  if (!timings.is_object() || !timings.value("runs", Json()).is_array()) return nullptr;
   std::set<std::string> names;
   for (const Json& run : timings["runs"]) {
-    if (run.contains("machine") && run.value("pairs", 0.0) > 0) names.insert(run["machine"].get<std::string>());
+    const Json machine = run.is_object() ? run.value("machine", Json()) : Json();
+    if (machine.is_string() && run.value("pairs", Json()) > Json(0)) names.insert(machine.get<std::string>());
   }
   return names.empty() ? Json() : Json(fmt::format("{}", fmt::join(names, "; ")));
 }
@@ -91,33 +94,6 @@ Json missing_of(const CampaignCounts& counts) {
   return missing;
 }
 
-Share share_in(const Json& row) { return share_of(row.at("count"), row.at("of")); }
-
-// A report's rates of wrong verdicts by names, in its order.
-std::vector<std::pair<std::pair<std::string, std::string>, Share>> wrong_by_name(const Json& report) {
-  std::vector<std::pair<std::pair<std::string, std::string>, Share>> rates;
-  for (const Json& row : report.at("rates")) {
-    const Json& stratum = row.at("stratum");
-    const std::string name =
-        stratum.is_null() ? "all strata" : report.at("strata").at(stratum.get<std::size_t>()).at("id");
-    rates.push_back(
-        {{report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id"), name}, share_in(row.at("wrong"))});
-  }
-  return rates;
-}
-
-// Signatures that the others do not hold.
-Json only_in(const Json& signatures, const Json& others) {
-  std::set<std::string> known;
-  for (const Json& row : others) known.insert(row.at("key"));
-  Json rows = Json::array();
-  for (const Json& row : signatures) {
-    const std::string key = row.at("key");
-    if (!known.contains(key)) rows.push_back({{"key", key}, {"count", row.at("count")}});
-  }
-  return rows;
-}
-
 }  // namespace
 
 Json read_summary(const std::filesystem::path& directory) {
@@ -131,18 +107,21 @@ Json make_report(const std::filesystem::path& directory) {
   const Json summary = read_summary(directory);
   try {
     const CampaignCounts counts = counts_of(summary);
-    Json report = {{"format", 1},
+    Json report = {{"format", 2},
                    {"run", run_of(directory, summary, counts)},
                    {"strata", strata_of(counts)},
                    {"lanes", lanes_of(summary, counts)},
-                   {"answer", answer(counts)},
+                   {"answer", answer(counts, nullptr)},
+                   {"groups", groups(counts)},
                    {"rates", rates(counts)},
+                   {"group_rates", group_rates(counts)},
                    {"side_by_side", side_by_side(counts)},
                    {"margins", margins(counts)},
                    {"thresholds", thresholds(counts)},
                    {"extremes", extremes(counts)},
                    {"signature_count", 0},
                    {"signatures", nullptr},
+                   {"sources", nullptr},
                    {"cards", nullptr},
                    {"missing", missing_of(counts)},
                    {"compare", nullptr}};
@@ -151,29 +130,21 @@ Json make_report(const std::filesystem::path& directory) {
   } catch (const Json::exception&) {
     throw corpus::FormatError((directory / "summary.json").string() +
                               ": expected a campaign's summary, found something else");
-  } catch (const std::out_of_range&) {
+  } catch (const std::logic_error&) {  // a text that is no number, or no signature
     throw corpus::FormatError((directory / "summary.json").string() +
                               ": expected a campaign's summary, found something else");
   }
 }
 
-void add_comparison(Json& report, const Json& before, const Json& signatures, const Json& signatures_before) {
-  const auto then = wrong_by_name(before);
-  const std::map<std::pair<std::string, std::string>, Share> by_name(then.begin(), then.end());
-  Json rows = Json::array();
-  for (const auto& [name, now] : wrong_by_name(report)) {
-    const auto old = by_name.find(name);
-    if (old == by_name.end()) continue;
-    rows.push_back({{"lane", name.first},
-                    {"stratum", name.second},
-                    {"before", to_json(old->second)},
-                    {"after", to_json(now)},
-                    {"changed", now.apart(old->second)}});
+Json make_costs(const std::filesystem::path& directory) {
+  const CampaignCounts counts = counts_of(read_summary(directory));
+  try {
+    const std::optional<Costs> costs = read_costs(directory, counts);
+    return costs ? to_json(*costs, counts) : Json();
+  } catch (const Json::exception&) {
+    throw corpus::FormatError((directory / "timings.json").string() +
+                              ": expected a campaign's timings, found something else");
   }
-  report["compare"] = {{"other", before.at("run")},
-                       {"rates", rows},
-                       {"gained", only_in(signatures, signatures_before)},
-                       {"lost", only_in(signatures_before, signatures)}};
 }
 
 std::string report_text(const Json& report) {
@@ -193,7 +164,7 @@ std::string report_text(const Json& report) {
 Json read_report(const std::filesystem::path& file) {
   Json report = Json::parse(fuzz::read_whole(file), nullptr, false);
   const auto is_list = [&](const char* part) { return report.value(part, Json()).is_array(); };
-  if (!report.is_object() || report.value("format", Json()) != 1 || !is_list("rates") || !is_list("lanes") ||
+  if (!report.is_object() || report.value("format", Json()) != 2 || !is_list("rates") || !is_list("lanes") ||
       !is_list("strata"))
     throw corpus::FormatError(file.string() + ": expected a report of `graze report`, found something else");
   return report;

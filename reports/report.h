@@ -9,19 +9,18 @@
 
 namespace graze::reports {
 
-// summary.json of a campaign's directory.   Throws: UsageError where there is none.
+// summary.json of a campaign's directory.   Throws: std::runtime_error where there is none.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
 
-// Throws: UsageError for a directory without a campaign; FormatError, std::runtime_error for damaged files.
+// Throws: std::runtime_error for a directory without a campaign, FormatError too for damaged files.
 nlohmann::ordered_json make_report(const std::filesystem::path& directory);
+
+// What the campaign's lanes cost, and the answer with it (costs.h): apart from the report, because it depends on the
+// machine. null where the campaign has no timings of its lanes.   Throws: as make_report.
+nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
 // The command that runs the whole campaign again.   Requires: what summary.json holds.
 std::string campaign_command(const nlohmann::ordered_json& summary);
-
-// Fills `compare`: what has changed since another campaign. Rates are compared by the names of lane and stratum;
-// signatures are all that the two campaigns found (`signatures` of summary.json), of which a report may show a part.
-void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json& before,
-                    const nlohmann::ordered_json& signatures, const nlohmann::ordered_json& signatures_before);
 
 // The report as text: each row on a line of its own, so that two can be compared.
 std::string report_text(const nlohmann::ordered_json& report);

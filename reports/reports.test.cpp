@@ -22,10 +22,35 @@ nlohmann::ordered_json example() {
 TEST(Terminal, SummaryShowsSharesAndCounts) {
   std::ostringstream out;
   print_summary(out, example(), {{"cgal", 1234567}, {"gmp", 2451}, {"device", 0}, {"apart", 0}});
-  EXPECT_NE(out.str().find("1,234,567"), std::string::npos);
-  EXPECT_NE(out.str().find("50 %"), std::string::npos);
-  EXPECT_NE(out.str().find("0.101 %"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("in % of its pairs"), std::string::npos);
+  EXPECT_NE(out.str().find("uniform  1,234,567       50.0        0.101\n"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("moller_1997/f32/cpu            12     1,234"), std::string::npos) << out.str();
   EXPECT_NE(out.str().find("some lane is wrong on 1,246, in 1 signatures"), std::string::npos);
+}
+
+// GMP sees every disagreement and a sample of the other pairs; on a device, what comes back from there.
+TEST(Terminal, SummarySaysWhatEachExactDecisionSaw) {
+  std::ostringstream cpu, gpu;
+  print_summary(cpu, example(), {{"cgal", 1234567}, {"gmp", 2451}, {"device", 0}, {"apart", 0}}, {200, false});
+  EXPECT_NE(cpu.str().find("\nCGAL decided all of them. GMP decided 2,451 once more, the 1,246 and a sample of 1,205 "
+                           "others: they agree on all.\n"),
+            std::string::npos)
+      << cpu.str();
+  print_summary(gpu, example(), {{"cgal", 1500}, {"gmp", 1200}, {"device", 1233567}, {"apart", 0}}, {200, false});
+  EXPECT_NE(gpu.str().find("\nThe exact lane on the device decided 1,233,567 pairs; CGAL decided 1,500, those that it "
+                           "left open and the cases kept, and GMP 1,200 of these once more: they agree on all.\n"),
+            std::string::npos)
+      << gpu.str();
+}
+
+TEST(Terminal, SharesHaveOneForm) {
+  EXPECT_EQ(bare_percent(0, 7), "0");
+  EXPECT_EQ(bare_percent(7, 7), "100");
+  EXPECT_EQ(bare_percent(478, 1000), "47.8");
+  EXPECT_EQ(bare_percent(956, 10000), "9.56");
+  EXPECT_EQ(bare_percent(2, 180506), "0.001");
+  EXPECT_EQ(bare_percent(1, 1'000'000), "<0.001");
+  EXPECT_EQ(bare_percent(999'999, 1'000'000), ">99.9");
 }
 
 TEST(Terminal, NumbersAreGrouped) {
@@ -42,7 +67,22 @@ TEST(Terminal, PairMarksWrongLanes) {
   print_pair(out, pair, {Verdict::disjoint, Contact::none, 1, 8388608}, run,
              std::vector{Verdict::disjoint, Verdict::intersects});
   EXPECT_NE(out.str().find("margin 1 (8388608 ulps)"), std::string::npos);
-  EXPECT_NE(out.str().find("disjoint      intersects !"), std::string::npos) << out.str();
+  EXPECT_NE(out.str().find("\n  projected_sat/f32  disjoint  intersects !\n"), std::string::npos) << out.str();
+}
+
+// Each hex float below its decimal, where a row of both is too long.
+TEST(Terminal, PairFitsItsScreen) {
+  const Pair pair{{{0.1f, -1.23456e-30f, 3}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
+  const auto first_lines = [&](int columns) {
+    std::ostringstream out;
+    print_pair(out, pair, {Verdict::disjoint, Contact::none, 0.1234567891, 1}, {}, {}, {columns, false});
+    const std::string text = out.str();
+    return text.substr(0, text.find("a[1]"));
+  };
+  EXPECT_EQ(first_lines(80), "  a[0]  0.1  -1.23456e-30  3  0x1.99999ap-4  -0x1.90a33cp-100  0x1.8p+1\n  ");
+  EXPECT_EQ(first_lines(60),
+            "  a[0]            0.1      -1.23456e-30         3\n"
+            "        0x1.99999ap-4  -0x1.90a33cp-100  0x1.8p+1\n  ");
 }
 
 TEST(MarginFigure, DrawsALineForEachCpuLane) {

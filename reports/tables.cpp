@@ -27,6 +27,8 @@ Json wrong_of(const StratumCounts& stratum, std::size_t lane) {
 }  // namespace
 
 Json to_json(const Share& share) {
+  // Of nothing there is no share.
+  if (share.of == 0) return {{"count", 0}, {"of", 0}, {"share", nullptr}, {"low", nullptr}, {"high", nullptr}};
   return {{"count", share.count},
           {"of", share.of},
           {"share", rounded(share.share)},
@@ -108,23 +110,45 @@ Threshold threshold(const StratumCounts& counts, std::size_t lane, int side) {
   for (int b = kBucketMost; b > 0; --b) {
     const auto found = counts.margins.find(static_cast<Bucket>(side * b));
     if (found == counts.margins.end() || found->second.pairs == 0) continue;
+    if (!result.largest) result.largest = exponent_of(found->first);
     if (found->second.wrong[lane] != 0) break;
-    result = {true, exponent_of(found->first), result.above + found->second.pairs};
+    result = {true, exponent_of(found->first), result.above + found->second.pairs, result.largest};
   }
   return result;
 }
 
 Json thresholds(const CampaignCounts& counts) {
   Json rows = Json::array();
-  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
-    Json row = {{"lane", l}};
-    for (const auto& [name, side] : {std::pair("disjoint", 1), std::pair("intersects", -1)}) {
-      const Threshold t = threshold(counts.total, l, side);
-      row[name] = {{"exponent", t.found ? Json(t.exponent) : Json()},
-                   {"above", t.above},
-                   {"bound", rounded(bound_of_none(t.above))}};
+  const auto add = [&](const Json& group, const Json& stratum, const StratumCounts& of) {
+    for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+      Json row = {{"lane", l}, {"group", group}, {"stratum", stratum}};
+      for (const auto& [name, side] : {std::pair("disjoint", 1), std::pair("intersects", -1)}) {
+        const Threshold t = threshold(of, l, side);
+        row[name] = {{"exponent", t.found ? Json(t.exponent) : Json()},
+                     {"above", t.above},
+                     {"bound", rounded(bound_of_none(t.above))},
+                     {"largest", t.largest ? Json(*t.largest) : Json()}};
+      }
+      rows.push_back(std::move(row));
     }
-    rows.push_back(std::move(row));
+  };
+  for (std::size_t g = 0; g < counts.groups.size(); ++g) add(g, nullptr, counts.groups[g].counts);
+  for_each_stratum(counts, [&](const Json& place, const StratumCounts& stratum) { add(nullptr, place, stratum); });
+  return rows;
+}
+
+Json groups(const CampaignCounts& counts) {
+  Json rows = Json::array();
+  for (const GroupCounts& group : counts.groups)
+    rows.push_back({{"id", group.id}, {"describes", group.describes}, {"strata", group.strata}});
+  return rows;
+}
+
+Json group_rates(const CampaignCounts& counts) {
+  Json rows = Json::array();
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    for (std::size_t g = 0; g < counts.groups.size(); ++g)
+      rows.push_back({{"lane", l}, {"group", g}, {"wrong", wrong_of(counts.groups[g].counts, l)}});
   }
   return rows;
 }

@@ -29,11 +29,16 @@ nlohmann::ordered_json margins(const CampaignCounts& counts);
 struct Threshold {
   bool found = false;  // false: wrong at the largest margins seen, or none were seen
   int exponent = 0;
-  std::uint64_t above = 0;  // pairs from there on
+  std::uint64_t above = 0;     // pairs from there on
+  std::optional<int> largest;  // exponent of the largest margins seen; nothing where no pair lies on that side
 };
 Threshold threshold(const StratumCounts& counts, std::size_t lane, int side);
 
+// Of each group of strata, each stratum, and all of them together: the strata differ too much for one threshold.
 nlohmann::ordered_json thresholds(const CampaignCounts& counts);
+
+nlohmann::ordered_json groups(const CampaignCounts& counts);
+nlohmann::ordered_json group_rates(const CampaignCounts& counts);
 nlohmann::ordered_json extremes(const CampaignCounts& counts);
 
 // Whether the pairs of a bucket intersect, are disjoint, or have no margin.

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <ostream>
 #include <vector>
 
 #include "corpus/pair_format.h"
+#include "reports/text_table.h"
 
 namespace graze::reports {
 namespace {
@@ -19,45 +21,62 @@ std::uint64_t errors(const Json& counts) {
          counts["declined"].get<std::uint64_t>();
 }
 
-// A share for a narrow column: "0", "12 %", "3.1e-05".
-std::string share(std::uint64_t part, std::uint64_t whole) {
-  if (part == 0 || whole == 0) return "0";
-  const double x = static_cast<double>(part) / static_cast<double>(whole);
-  return x >= 0.001 ? fmt::format("{:.3g} %", 100 * x) : fmt::format("{:.1e}", x);
-}
-
-void print_strata(std::ostream& out, const Json& summary) {
-  std::vector<std::string> columns;
+void print_strata(std::ostream& out, const Json& summary, const Screen& screen) {
+  std::vector<std::string> lanes;
   for (const auto& lane : summary["spec"]["lanes"]) {
     const std::string id = lane;
-    if (id.ends_with("/f32/cpu")) columns.push_back(id);
+    if (id.ends_with("/f32/cpu")) lanes.push_back(id);
   }
-  if (columns.empty()) columns = summary["spec"]["lanes"].get<std::vector<std::string>>();
-  out << "Share of wrong verdicts by stratum, the f32/cpu lanes (all lanes below):\n";
-  out << fmt::format("{:<20}{:>12}{:>12}", "stratum", "pairs", "intersect");
-  for (const std::string& id : columns) out << fmt::format("{:>24}", id.substr(0, id.find('/')));
-  out << '\n';
+  const bool all = lanes.empty();
+  if (all) lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
+  out << wrapped(fmt::format("By stratum, in % of its pairs: those that intersect, and those on which {} is wrong{}.",
+                             all ? "a lane" : "an f32/cpu lane", all ? "" : " (all lanes below)"),
+                 screen.columns);
+  std::vector<Column> columns{{"stratum", Align::left}, {"pairs"}, {"intersect", Align::point}};
+  for (const std::string& id : lanes) columns.push_back({all ? id : id.substr(0, id.find('/')), Align::point});
+  TextTable table(columns);
   for (const auto& [stratum, row] : summary["strata"].items()) {
     const std::uint64_t pairs = row["pairs"];
-    out << fmt::format("{:<20}{:>12}{:>12}", stratum, grouped(pairs), share(row["intersects"], pairs));
-    for (const std::string& id : columns) out << fmt::format("{:>24}", share(errors(row["lanes"][id]), pairs));
-    out << '\n';
+    std::vector<Cell> cells{stratum, grouped(pairs), bare_percent(row["intersects"], pairs)};
+    for (const std::string& id : lanes) cells.push_back(bare_percent(errors(row["lanes"][id]), pairs));
+    table.add(std::move(cells));
   }
+  out << table.text(screen);
 }
 
-void print_lanes(std::ostream& out, const Json& summary) {
-  out << fmt::format("\n{:<36}{:>16}{:>16}{:>10}{:>18}\n", "lane, over all strata", "false positive", "false negative",
-                     "declined", "differs from cpu");
+void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
+  TextTable table({{"lane, over all strata", Align::left},
+                   {"false positive"},
+                   {"false negative"},
+                   {"declined"},
+                   {"differs from cpu"}});
   for (const auto& lane : summary["spec"]["lanes"]) {
     const std::string id = lane;
     std::uint64_t sums[4] = {};
+    bool compared = false;  // with the cpu lane
     for (const auto& [stratum, row] : summary["strata"].items()) {
       int i = 0;
-      for (const auto& [kind, count] : row["lanes"][id].items()) sums[i++] += count.get<std::uint64_t>();
+      for (const auto& [kind, count] : row["lanes"][id].items())
+        sums[i++] += count.is_null() ? 0 : count.get<std::uint64_t>();
+      compared = compared || !row["lanes"][id]["differs_from_cpu"].is_null();
     }
-    out << fmt::format("{:<36}{:>16}{:>16}{:>10}{:>18}\n", id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]),
-                       grouped(sums[3]));
+    table.add({id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]), compared ? grouped(sums[3]) : "-"});
   }
+  out << '\n' << table.text(screen);
+}
+
+// Which exact decisions stand behind the counts. A campaign that finds two of them apart stops, so they agree here.
+std::string decided_by(std::uint64_t disagreements, const Json& oracle) {
+  const std::uint64_t device = oracle["device"], gmp = oracle["gmp"];
+  if (device > 0) {
+    return fmt::format(
+        "The exact lane on the device decided {} pairs; CGAL decided {}, those that it left open and the cases kept, "
+        "and GMP {} of these once more: they agree on all.",
+        grouped(device), grouped(oracle["cgal"]), grouped(gmp));
+  }
+  return fmt::format(
+      "CGAL decided all of them. GMP decided {} once more, the {} and a sample of {} others: they agree on all.",
+      grouped(gmp), grouped(disagreements), grouped(gmp - disagreements));
 }
 
 }  // namespace
@@ -68,18 +87,25 @@ std::string grouped(std::uint64_t number) {
   return digits;
 }
 
-void print_summary(std::ostream& out, const Json& summary, const Json& oracle) {
-  print_strata(out, summary);
-  print_lanes(out, summary);
+std::string bare_percent(std::uint64_t part, std::uint64_t whole) {
+  if (whole == 0) return "-";
+  if (part == 0) return "0";
+  if (part == whole) return "100";
+  const double percent = 100 * static_cast<double>(part) / static_cast<double>(whole);
+  if (percent < 0.001) return "<0.001";
+  if (percent > 99.9) return ">99.9";
+  return fmt::format("{:.{}f}", percent, percent >= 10 ? 1 : percent >= 1 ? 2 : 3);
+}
+
+void print_summary(std::ostream& out, const Json& summary, const Json& oracle, const Screen& screen) {
+  print_strata(out, summary, screen);
+  print_lanes(out, summary, screen);
   std::uint64_t pairs = 0;
   for (const auto& [stratum, row] : summary["strata"].items()) pairs += row["pairs"].get<std::uint64_t>();
-  const std::uint64_t on_device = oracle["device"];
-  const std::string judged = on_device == 0 ? "CGAL decided all of them"
-                                            : fmt::format("the exact lane on the device decided {}, CGAL {}",
-                                                          grouped(on_device), grouped(oracle["cgal"]));
-  out << fmt::format("\n{} pairs: some lane is wrong on {}, in {} signatures. {}, GMP confirmed {}; apart: {}.\n",
-                     grouped(pairs), grouped(summary["disagreements"]), grouped(summary["signatures"].size()), judged,
-                     grouped(oracle["gmp"]), oracle["apart"].dump());
+  const std::uint64_t disagreements = summary["disagreements"];
+  const std::string found = fmt::format("{} pairs: some lane is wrong on {}, in {} signatures.", grouped(pairs),
+                                        grouped(disagreements), grouped(summary["signatures"].size()));
+  out << '\n' << bold(screen, found) << '\n' << wrapped(decided_by(disagreements, oracle), screen.columns);
 }
 
 namespace {
@@ -87,50 +113,79 @@ namespace {
 // One row for each subject and scalar, one column for each variant among the lanes; '-' where a lane did not run, '!'
 // where it is wrong. The exact CUDA lane stands in the columns of all device variants: it is the same in each.
 void print_verdicts(std::ostream& out, Verdict truth, std::span<const Lane* const> lanes,
-                    std::span<const Verdict> verdicts) {
+                    std::span<const Verdict> verdicts, const Screen& screen) {
   const auto belongs = [](const Lane& lane, const VariantInfo& column) {
     return lane.exact && lane.is_cuda() ? column.runs_on == RunsOn::device : lane.variant == column.variant;
   };
-  std::vector<const VariantInfo*> columns;
+  std::vector<const VariantInfo*> variants;
   for (const VariantInfo& row : kVariants) {
     const bool shown =
         std::any_of(lanes.begin(), lanes.end(), [&](const Lane* l) { return l->variant == row.variant; });
     const bool for_exact_alone =
-        row.arithmetic == Arithmetic::exact && !columns.empty() && columns.back()->runs_on == RunsOn::device;
-    if (shown && !for_exact_alone) columns.push_back(&row);
+        row.arithmetic == Arithmetic::exact && !variants.empty() && variants.back()->runs_on == RunsOn::device;
+    if (shown && !for_exact_alone) variants.push_back(&row);
   }
-  const auto print_row = [&](const std::string& title, const auto& cell) {
-    std::string line = fmt::format("  {:<28}", title);
-    for (const VariantInfo* column : columns) line += fmt::format("{:<14}", cell(*column));
-    out << line.substr(0, line.find_last_not_of(' ') + 1) << '\n';
-  };
-  print_row("", [](const VariantInfo& column) { return std::string(column.id); });
+  if (variants.empty()) return;
+  std::vector<Column> columns{{"", Align::left}};
+  for (const VariantInfo* variant : variants) columns.push_back({std::string(variant->id), Align::left});
+  TextTable table(columns);
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
     const Lane& lane = *lanes[first];
     for (end = first; end < lanes.size() && lanes[end]->info == lane.info && lanes[end]->scalar == lane.scalar;) ++end;
-    print_row(fmt::format("{}/{}", lane.info->id, name(lane.scalar)), [&](const VariantInfo& column) {
-      for (std::size_t l = first; l < end; ++l) {
-        if (!belongs(*lanes[l], column)) continue;
+    std::vector<Cell> cells{fmt::format("{}/{}", lane.info->id, name(lane.scalar))};
+    for (const VariantInfo* variant : variants) {
+      Cell& cell = cells.emplace_back("-");
+      for (std::size_t l = first; l < end && cell.text == "-"; ++l) {
+        if (!belongs(*lanes[l], *variant)) continue;
         const bool wrong = truth != Verdict::declined && verdicts[l] != truth;
-        return fmt::format("{}{}", name(verdicts[l]), wrong ? " !" : "");
+        cell = {fmt::format("{}{}", name(verdicts[l]), wrong ? " !" : ""), wrong};
       }
-      return std::string("-");
-    });
+    }
+    table.add(std::move(cells));
+  }
+  out << table.text(screen, 2);
+}
+
+// Decimals and hex floats in one row, or, where the screen is too narrow, each hex float below its decimal.
+void print_coordinates(std::ostream& out, const Pair& pair, const Screen& screen) {
+  std::string cells[6][6];  // of each vertex, x, y, z in decimals and the same as hex floats
+  int widths[6] = {};
+  for (int v = 0; v < 6; ++v) {
+    const Vec3<float>& p = v < 3 ? pair.a[v] : pair.b[v - 3];
+    int c = 0;
+    for (const float x : {p.x, p.y, p.z}) {
+      cells[v][c] = fmt::format("{}", x);
+      cells[v][c + 3] = corpus::hex_float(x);
+      ++c;
+    }
+    for (c = 0; c < 6; ++c) widths[c] = std::max(widths[c], width_of(cells[v][c]));
+  }
+  const int total = 6 + std::accumulate(widths, widths + 6, 6 * 2);
+  for (int v = 0; v < 6; ++v) {
+    std::string line = fmt::format("  {}[{}]", v < 3 ? 'a' : 'b', v % 3), below = "      ";
+    for (int c = 0; c < 3; ++c) {
+      const int width = total <= screen.columns ? widths[c] : std::max(widths[c], widths[c + 3]);
+      line += fmt::format("  {:>{}}", cells[v][c], width);
+      below += fmt::format("  {:>{}}", cells[v][c + 3], width);
+    }
+    if (total <= screen.columns) {
+      for (int c = 3; c < 6; ++c) line += fmt::format("  {:>{}}", cells[v][c], widths[c]);
+    }
+    out << line << '\n';
+    if (total > screen.columns) out << below << '\n';
   }
 }
 
 }  // namespace
 
 void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth, std::span<const Lane* const> lanes,
-                std::span<const Verdict> verdicts) {
-  for (int v = 0; v < 6; ++v) {
-    const Vec3<float>& p = v < 3 ? pair.a[v] : pair.b[v - 3];
-    out << fmt::format("  {}[{}]  {:>15} {:>15} {:>15}   {} {} {}\n", v < 3 ? 'a' : 'b', v % 3, p.x, p.y, p.z,
-                       corpus::hex_float(p.x), corpus::hex_float(p.y), corpus::hex_float(p.z));
-  }
-  out << fmt::format("  truth: {}, contact {}, margin {} ({} ulps)\n", name(truth.verdict), name(truth.contact),
-                     truth.margin, truth.margin_ulps);
-  print_verdicts(out, truth.verdict, lanes, verdicts);
+                std::span<const Verdict> verdicts, const Screen& screen) {
+  print_coordinates(out, pair, screen);
+  out << "  "
+      << bold(screen, fmt::format("truth: {}, contact {}, margin {:.7g} ({:.7g} ulps)", name(truth.verdict),
+                                  name(truth.contact), truth.margin, truth.margin_ulps))
+      << '\n';
+  print_verdicts(out, truth.verdict, lanes, verdicts, screen);
 }
 
 }  // namespace graze::reports

@@ -165,7 +165,7 @@ nlohmann::ordered_json to_json(const analysis::UlpMap& map) {
   const std::string x = analysis::name_of_coordinate(map.moved.x), y = analysis::name_of_coordinate(map.moved.y);
   nlohmann::ordered_json panels = nlohmann::ordered_json::array();
   for (const analysis::UlpPanel& panel : map.panels)
-    panels.push_back({{"name", panel.name()}, {"png", base64(panel_png(panel))}});
+    panels.push_back({{"name", panel.name()}, {"shows", counts_of(panel)}, {"png", base64(panel_png(panel))}});
   nlohmann::ordered_json legend = nlohmann::ordered_json::array();
   const std::array<bool, analysis::kCellKinds> found = kinds_in(map);
   for (std::size_t kind = 0; kind < analysis::kCellKinds; ++kind) {

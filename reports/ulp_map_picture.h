@@ -17,8 +17,8 @@ std::string panel_png(const analysis::UlpPanel& panel);
 // lanes in each row; below what the coordinates and colours are.
 std::string sheet_png(const analysis::UlpMap& map);
 
-// {"title", "x", "y", "size", "legend": [{"colour", "means"}], "panels": [{"name", "png"}]} as a report's page wants
-// it, PNGs in base64; and "pair", its 18 coordinates in hex.
+// {"title", "x", "y", "size", "legend": [{"colour", "means"}], "panels": [{"name", "shows", "png"}]} as a report's
+// page wants it, counts in words, PNGs in base64; and "pair", its 18 coordinates in hex.
 nlohmann::ordered_json to_json(const analysis::UlpMap& map);
 
 // Whether that is of this pair.

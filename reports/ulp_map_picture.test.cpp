@@ -91,6 +91,7 @@ TEST(UlpMapPicture, JsonIsThePairsOwn) {
   ASSERT_EQ(json["panels"].size(), 3u);
   EXPECT_EQ(json["panels"][0]["name"], "truth");
   EXPECT_EQ(json["panels"][1]["name"], lanes()[0].id);
+  EXPECT_EQ(json["panels"][0]["shows"], "32,768 disjoint, 32,768 intersects");
   const std::string png = json["panels"][0]["png"];
   EXPECT_EQ(png.substr(0, 11), "iVBORw0KGgo");  // "\x89PNG\r\n\x1a\n"
   EXPECT_EQ(png.size() % 4, 0u);

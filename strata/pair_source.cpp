@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/lanes.h"
+#include "core/text.h"
 #include "strata/strata.h"
 
 namespace graze::strata {
@@ -14,7 +15,10 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
   for (const std::string& glob : globs) {
     if (std::none_of(std::begin(kStrata), std::end(kStrata),
                      [&](const StratumInfo& row) { return matches_any({glob}, row.id); })) {
-      throw UsageError("expected a stratum (see `graze strata`), found '" + glob + "'");
+      std::vector<std::string> ids;
+      for (const StratumInfo& row : kStrata) ids.emplace_back(row.id);
+      throw UsageError("expected a stratum (see `graze strata`), found '" + printable(glob) + "'" +
+                       did_you_mean(glob, ids));
     }
   }
   std::vector<PairSource> sources;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers and a policy that write down what an algorithm does with them: every comparison and every value asked of the
-// policy, with its source line. They can also lead it: down a given path, whatever the values say.
+// policy, with its source line. They can also lead it: down a given path, whatever the values say, or with some of its
+// results corrected.
 #pragma once
 
 #include <cmath>
@@ -43,8 +44,18 @@ struct Seen {
   bool compared;
   Relation relation;
   Number left, right;
-  bool held;   // by the values
-  bool taken;  // what the algorithm was told: the same, unless it was led
+  int left_result, right_result;  // which results of the run they are, counted from 0; -1: a coordinate or a constant
+  bool held;                      // by the values
+  bool taken;                     // what the algorithm was told: the same, unless it was led or corrected
+};
+
+// Both sides of a comparison, replaced where they were computed, so that all that uses them later uses these values.
+template <class Number>
+struct Correction {
+  int left_result, right_result;  // as in Seen
+  Number left, right;
+  Relation relation;
+  bool taken;  // what the algorithm is told when it compares these two by that relation
 };
 
 // Outcomes of a run's comparisons, in order.
@@ -72,22 +83,42 @@ struct Recorder {
 
   Trace<Kept> run;
   Path lead;  // what to say of the first comparisons; those beyond go by their values
+  std::vector<Correction<Kept>> corrections;
   std::size_t comparisons = 0;
+  int results = 0;
   std::vector<int> uses;        // of each product, by additions
   std::vector<int> known_uses;  // the same, from an earlier run
 
   static inline thread_local Recorder* current = nullptr;
 
-  bool compare(Relation relation, const Number& l, const Number& r, std::optional<Site> site,
+  // Numbers the result and corrects it where it is to be. Returns whether it was.
+  bool add_result(Number& value, int& result) {
+    result = results++;
+    bool corrected = false;
+    for (const Correction<Kept>& correction : corrections) {
+      if (correction.left_result != result && correction.right_result != result) continue;
+      value = Number(correction.left_result == result ? correction.left : correction.right);
+      corrected = true;
+    }
+    return corrected;
+  }
+  template <class Operand>  // a value and which result it is
+  bool compare(Relation relation, const Operand& l, const Operand& r, std::optional<Site> site,
                const std::source_location& where) {
-    const bool held = holds(relation, order(l, r));
-    const bool taken = comparisons < lead.size() ? lead[comparisons] : held;
+    const bool held = holds(relation, order(l.value, r.value));
+    bool taken = held;
+    for (const Correction<Kept>& correction : corrections) {
+      if (correction.left_result == l.result && correction.right_result == r.result && correction.relation == relation)
+        taken = correction.taken;
+    }
+    if (comparisons < lead.size()) taken = lead[comparisons];
     ++comparisons;
-    run.seen.push_back({where, site, true, relation, Kept(l), Kept(r), held, taken});
+    run.seen.push_back({where, site, true, relation, Kept(l.value), Kept(r.value), l.result, r.result, held, taken});
     return taken;
   }
-  void ask(Site site, const Number& x, const std::source_location& where) {
-    run.seen.push_back({where, site, false, Relation::equal, Kept(x), Kept(0), true, true});
+  template <class Operand>
+  void ask(Site site, const Operand& x, const std::source_location& where) {
+    run.seen.push_back({where, site, false, Relation::equal, Kept(x.value), Kept(0), x.result, -1, true, true});
   }
 
  private:
@@ -110,6 +141,7 @@ inline namespace GRAZE_FP {
 template <class Number, Contraction contraction = Contraction::none>
 struct Traced {
   Number value;
+  int result = -1;                        // which of the run's results it is
   Number x{0}, y{0};                      // the factors, of a product
   int product = -1;                       // its place among the run's products
   bool quotient = false, scaled = false;  // it is a quotient or a constant; a product whose right factor is
@@ -129,40 +161,43 @@ struct Traced {
 
   friend Traced operator+(const Traced& l, const Traced& r) {
     if constexpr (contraction != Contraction::none) {
+      using std::fma;
       const int fused = choose(l, r);
-      if (fused < 0) return Traced(std::fma(l.x, l.y, r.value));
-      if (fused > 0) return Traced(std::fma(r.x, r.y, l.value));
+      if (fused < 0) return computed(fma(l.x, l.y, r.value));
+      if (fused > 0) return computed(fma(r.x, r.y, l.value));
     }
-    return Traced(Number(l.value + r.value));
+    return computed(l.value + r.value);
   }
   friend Traced operator-(const Traced& l, const Traced& r) {
     if constexpr (contraction != Contraction::none) {
+      using std::fma;
       const int fused = choose(l, r);
-      if (fused < 0) return Traced(std::fma(l.x, l.y, -r.value));
-      if (fused > 0) return Traced(std::fma(-r.x, r.y, l.value));
+      if (fused < 0) return computed(fma(l.x, l.y, -r.value));
+      if (fused > 0) return computed(fma(-r.x, r.y, l.value));
     }
-    return Traced(Number(l.value - r.value));
+    return computed(l.value - r.value);
   }
   friend Traced operator*(const Traced& l, const Traced& r) {
-    Traced result(Number(l.value * r.value));
+    bool corrected = false;
+    Traced product = computed(l.value * r.value, &corrected);
     if constexpr (contraction != Contraction::none) {
-      result.x = l.value;
-      result.y = r.value;
-      result.scaled = r.quotient;
-      result.product = static_cast<int>(Recorder<Number>::current->uses.size());
+      product.x = l.value;
+      product.y = r.value;
+      product.scaled = r.quotient;
+      if (!corrected) product.product = static_cast<int>(Recorder<Number>::current->uses.size());
       Recorder<Number>::current->uses.push_back(0);
     }
-    return result;
+    return product;
   }
   friend Traced operator/(const Traced& l, const Traced& r) {
-    Traced result(Number(l.value / r.value));
-    result.quotient = true;
-    return result;
+    Traced ratio = computed(l.value / r.value);
+    ratio.quotient = true;
+    return ratio;
   }
-  friend Traced operator-(const Traced& n) { return Traced(Number(-n.value)); }
+  friend Traced operator-(const Traced& n) { return computed(-n.value); }
   friend Traced sqrt(const Traced& n) {
     using std::sqrt;
-    return Traced(Number(sqrt(n.value)));
+    return computed(sqrt(n.value));
   }
 
   friend bool operator<(Operand l, Operand r) { return compare(Relation::less, l, r); }
@@ -172,6 +207,12 @@ struct Traced {
   friend bool operator>=(Operand l, Operand r) { return compare(Relation::at_least, l, r); }
 
  private:
+  static Traced computed(Number value, bool* corrected = nullptr) {
+    Traced number(std::move(value));
+    const bool was = Recorder<Number>::current->add_result(number.value, number.result);
+    if (corrected) *corrected = was;
+    return number;
+  }
   // Which operand of an addition is contracted: -1 the left, 1 the right, 0 neither.
   static int choose(const Traced& l, const Traced& r) {
     Recorder<Number>& recorder = *Recorder<Number>::current;
@@ -187,7 +228,7 @@ struct Traced {
     return l.scaled && r.scaled ? 0 : right < left ? 1 : -1;
   }
   static bool compare(Relation relation, const Operand& l, const Operand& r) {
-    return Recorder<Number>::current->compare(relation, l.number.value, r.number.value, std::nullopt, l.where);
+    return Recorder<Number>::current->compare(relation, l.number, r.number, std::nullopt, l.where);
   }
 };
 
@@ -196,27 +237,32 @@ struct TracingPolicy {
   template <class Number, Contraction contraction>
   Traced<Number, contraction> snap(Site site, const Traced<Number, contraction>& n,
                                    std::source_location where = std::source_location::current()) const {
-    Recorder<Number>::current->ask(site, n.value, where);
-    return Traced<Number, contraction>(n.value);
+    Recorder<Number>::current->ask(site, n, where);
+    Traced<Number, contraction> snapped(n.value);
+    snapped.result = n.result;
+    return snapped;
   }
   template <class Number, Contraction contraction>
   bool less(Site site, const Traced<Number, contraction>& l, const Traced<Number, contraction>& r,
             std::source_location where = std::source_location::current()) const {
-    return Recorder<Number>::current->compare(Relation::less, l.value, r.value, site, where);
+    return Recorder<Number>::current->compare(Relation::less, l, r, site, where);
   }
   template <class Number, Contraction contraction>
   bool at_most(Site site, const Traced<Number, contraction>& l, const Traced<Number, contraction>& r,
                std::source_location where = std::source_location::current()) const {
-    return Recorder<Number>::current->compare(Relation::at_most, l.value, r.value, site, where);
+    return Recorder<Number>::current->compare(Relation::at_most, l, r, site, where);
   }
 };
 
-// The algorithm (its place in Algorithms) on the pair in these numbers, led down the path.
+// The algorithm (its place in Algorithms) on the pair in these numbers, led down the path, with these corrections.
 template <class Number, Contraction contraction = Contraction::none>
-Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const Pair& pair, const Path& lead = {}) {
+Trace<typename Recorder<Number>::Kept> run_traced(
+    int algorithm, const Pair& pair, const Path& lead = {},
+    const std::vector<Correction<typename Recorder<Number>::Kept>>& corrections = {}) {
   using Real = Traced<Number, contraction>;
   const auto run = [&]<std::size_t... i>(Recorder<Number> & recorder, std::index_sequence<i...>) {
     recorder.lead = lead;
+    recorder.corrections = corrections;
     Recorder<Number>::current = &recorder;
     Vec3<Real> a[3], b[3];
     for (int v = 0; v < 3; ++v) {

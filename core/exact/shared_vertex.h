@@ -41,7 +41,7 @@ GRAZE_HD inline bool relate_at_vertex(const float* a, const float* b, int shared
   unsigned above = 0;
   for (unsigned k = 0; k < 4; ++k) {
     if (!(heights[k] > error || heights[k] < -error)) return false;
-    above |= unsigned{heights[k] > 0} << k;
+    if (heights[k] > 0) above |= 1u << k;  // `(heights[k] > 0) << k` GCC 12 compiles wrongly with sanitizers
   }
   const bool p1 = above & 1, p2 = above >> 1 & 1, q1 = above >> 2 & 1, q2 = above >> 3 & 1;
   const bool parted = p1 == p2 || q1 == q2 || p1 == q1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for device.cu where there is no nvcc: the CUDA lanes are listed, and unavailable.
+// Stands in for device.cu where there is no nvcc: there is no device, and the CUDA lanes run by their twins.
 #include "cuda/lanes/device.h"
 
 #include <stdexcept>

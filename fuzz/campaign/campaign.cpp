@@ -15,7 +15,9 @@
 #include "core/error.h"
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/gpu_engine.h"
+#include "fuzz/campaign/lane_costs.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/cost_estimate.h"
 
 namespace graze::fuzz {
 namespace {
@@ -36,13 +38,25 @@ std::string machine_name() {
 }
 
 // The next batch: of the source of which the least is done, so that a campaign that is cut short has seen all of them.
+// Of a large source whose cost is not known, first a few pairs, so that the time left is known early. Not before a
+// whole batch where all sources have been seen: else one that is always cut short would never end.
 std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store,
-                                    const std::vector<std::uint64_t>& done) {
-  std::optional<std::size_t> next;
+                                    const std::vector<std::uint64_t>& done, const CostEstimate& costs,
+                                    std::uint64_t done_here, int threads) {
+  constexpr std::uint64_t kLarge = 8192;
+  std::optional<std::size_t> next, unknown;
   for (std::size_t s = 0; s < done.size(); ++s) {
-    if (done[s] < campaign.sources[s].pairs && (!next || done[s] < done[*next])) next = s;
+    const std::uint64_t pairs = campaign.sources[s].pairs;
+    if (done[s] >= pairs) continue;
+    if (!next || done[s] < done[*next]) next = s;
+    const bool measure = campaign.engines.empty() && pairs - done[s] >= kLarge && !costs.measured(s);
+    if (measure && (done[s] == 0 || done_here >= kBatchPairs) && !unknown) unknown = s;
   }
   if (!next) return {};
+  if (unknown) {
+    const std::uint64_t few = std::uint64_t{256} * static_cast<unsigned>(threads);
+    return store.missing(static_cast<int>(*unknown), std::min(few, kLarge / 4));
+  }
   const std::uint64_t most = campaign.engines.empty() ? kBatchPairs : campaign.engine_batch * campaign.engines.size();
   return store.missing(static_cast<int>(*next), most);
 }
@@ -105,37 +119,43 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
   GpuEngine device(campaign);
   Progress progress;
   progress.disagreements_of_source.resize(campaign.sources.size());
-  std::vector<std::uint64_t> done;
+  std::vector<std::uint64_t> done, left;
   for (const strata::PairSource& source : campaign.sources) {
     done.push_back(store.done(static_cast<int>(done.size())));
+    left.push_back(source.pairs - done.back());
     progress.total += source.pairs;
     progress.done += done.back();
   }
+  CostEstimate costs(left);
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   while (!stop) {
-    const std::optional<PairRange> batch = next_batch(campaign, store, done);
+    const std::optional<PairRange> batch = next_batch(campaign, store, done, costs, progress.done_here, threads);
     if (!batch) break;
+    const double before = seconds();
     const BatchResult result = campaign.engines.empty() ? judge(campaign, batch->source, batch->pairs,
                                                                 [&](std::size_t i) { return batch->first + i; })
                                                         : device.judge(batch->source, batch->first, batch->pairs);
+    costs.add(static_cast<std::size_t>(batch->source), batch->pairs, seconds() - before);
     store.commit(*batch, result);
     done[static_cast<std::size_t>(batch->source)] += batch->pairs;
     progress.done += batch->pairs;
     progress.done_here += batch->pairs;
     progress.seconds = seconds();
+    progress.seconds_left = costs.seconds_left();
     progress.signatures = store.signatures().size();
     progress.disagreements += result.disagreements;
     progress.disagreements_of_source[static_cast<std::size_t>(batch->source)] += result.disagreements;
     report(progress);
   }
-  Outcome outcome{write_summary(campaign, store, progress.done == progress.total), store.oracle()};
-  append_timing(campaign.directory,
-                {{"pairs", progress.done_here},
-                 {"seconds", seconds()},
-                 {"threads", threads},
-                 {"machine", machine_name()},
-                 {"engine", campaign.engines.empty() ? "cpu" : "gpu"}},
-                outcome.oracle);
+  const bool complete = progress.done == progress.total;
+  Outcome outcome{write_summary(campaign, store, complete), store.oracle()};
+  Json run = {{"pairs", progress.done_here},
+              {"seconds", seconds()},
+              {"threads", threads},
+              {"machine", machine_name()},
+              {"engine", campaign.engines.empty() ? "cpu" : "gpu"}};
+  if (complete) run["costs"] = measure_costs(campaign);
+  append_timing(campaign.directory, run, outcome.oracle);
   return outcome;
 }
 

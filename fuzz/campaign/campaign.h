@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,7 @@ struct Progress {
   std::uint64_t done = 0, total = 0;                // pairs
   std::uint64_t done_here = 0;                      // by this process
   double seconds = 0;                               // of this process
+  std::optional<double> seconds_left;               // by what the pairs of each source cost; see CostEstimate
   std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements by this process only
   std::vector<std::uint64_t> disagreements_of_source;
 };

@@ -38,10 +38,8 @@ TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
 }
 
 TEST_F(CampaignTest, SameBytesWhenInterruptedAfterEveryBatch) {
-  const Json whole = run(campaign("whole", 2));
-  Json part;
-  for (int i = 0; i < 6; ++i) part = run(campaign("parts", 2), 1);
-  EXPECT_EQ(part.dump(), whole.dump());
+  run(campaign("whole", 2));
+  EXPECT_EQ(run_in_parts(campaign("parts", 2)), 3 * 3);  // of each source a few pairs, a batch, and the rest
   EXPECT_EQ(lasting_files(root_ / "parts"), lasting_files(root_ / "whole"));
 }
 

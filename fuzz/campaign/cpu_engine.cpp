@@ -13,7 +13,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kBlockPairs = 1024;   // a task; a multiple of 64
+constexpr std::size_t kBlockPairs = 1024;   // a task, or less where there are few pairs; a multiple of 64
 constexpr std::uint64_t kGmpSample = 1024;  // GMP confirms one pair in so many, besides every disagreement
 
 // Judges one block of pairs: host lanes, twins and oracle here, device lanes from their bits.
@@ -121,9 +121,10 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
   const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(source_number)];
   std::vector<Pair> pairs(count);
   std::vector<std::uint64_t> indices(count);
-  const std::size_t blocks = (count + kBlockPairs - 1) / kBlockPairs;
+  const std::size_t block_pairs = std::clamp(count / 16 / 64 * 64, std::size_t{64}, kBlockPairs);
+  const std::size_t blocks = (count + block_pairs - 1) / block_pairs;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-    for (std::size_t i = block * kBlockPairs; i < std::min(count, (block + 1) * kBlockPairs); ++i) {
+    for (std::size_t i = block * block_pairs; i < std::min(count, (block + 1) * block_pairs); ++i) {
       indices[i] = index_of(i);
       pairs[i] = source.pair(indices[i]);
     }
@@ -137,7 +138,7 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
   tbb::enumerable_thread_specific<BatchResult> results(empty);
   tbb::enumerable_thread_specific<BlockJudge> judges([&] { return BlockJudge(campaign, source_number, device_bits); });
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-    const std::size_t begin = block * kBlockPairs, size = std::min(count - begin, kBlockPairs);
+    const std::size_t begin = block * block_pairs, size = std::min(count - begin, block_pairs);
     judges.local().judge(std::span(pairs).subspan(begin, size), std::span(indices).subspan(begin, size), begin,
                          results.local());
   });

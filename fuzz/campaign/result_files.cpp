@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "analysis/signature.h"
+#include "analysis/tally.h"
 #include "core/fnv1a.h"
 #include "corpus/pair_format.h"
 #include "fuzz/minimise/minimised_cases.h"
@@ -33,6 +34,15 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
   return out.str();
 }
 
+// differs_from_cpu is null for the cpu lanes, and for lanes that ran without theirs.
+void leave_out_what_was_not_compared(Json& strata, const std::vector<const Lane*>& lanes) {
+  const std::vector<int> cpu = analysis::cpu_twins(lanes);
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    if (cpu[l] >= 0 && cpu[l] != static_cast<int>(l)) continue;
+    for (Json& row : strata) row["lanes"][lanes[l]->id]["differs_from_cpu"] = nullptr;
+  }
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& t) {
@@ -43,7 +53,8 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Trut
 }
 
 Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
-  const Json results = store.results();
+  Json results = store.results();
+  leave_out_what_was_not_compared(results["strata"], campaign.under_test->lanes);
   const auto row_of = [&](const std::string& key, const SignatureCount& found) {
     const std::string file = case_name(key), text = case_text(campaign, key, found);
     if (!is_minimised_from(read_whole(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
@@ -71,10 +82,18 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
   return summary;
 }
 
+std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row) {
+  const std::filesystem::path file = row.at("case").get<std::string>();
+  if (file.parent_path() != "cases" || file.extension() != ".pairs")
+    throw std::runtime_error(fmt::format("{}: expected cases of the form cases/NAME.pairs, found '{}'",
+                                         (directory / "summary.json").string(), file.string()));
+  return directory / file;
+}
+
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle) {
   const std::filesystem::path file = directory / "timings.json";
   Json timings = Json::parse(read_whole(file), nullptr, false);
-  if (!timings.is_object() || !timings.contains("runs")) timings = {{"runs", Json::array()}};
+  if (!timings.is_object() || !timings["runs"].is_array()) timings = {{"runs", Json::array()}};
   timings["runs"].push_back(run);
   if (!oracle.is_null()) timings["oracle"] = oracle;
   write_whole(file, timings.dump(1) + "\n");

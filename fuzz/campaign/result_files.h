@@ -17,6 +17,10 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Trut
 // put into it.   Returns: the summary.
 Json write_summary(const Campaign& campaign, const Store& store, bool complete);
 
+// The file of a signature's cases, by its row in the summary.
+// Throws: std::runtime_error where that is not within cases/: what reads a summary also writes these files.
+std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row);
+
 // Adds a run to timings.json, the only file that depends on when, where and by which engine the campaign ran.
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle = {});
 

@@ -146,9 +146,14 @@ TEST_F(StoreTest, DamageOfAnotherCampaignIsNoReasonToDiscardIt) {
 
 TEST_F(StoreTest, OtherBuildsFormatsAndProcessesAreRefused) {
   Campaign c = in_seven_rows("mine");
+  const std::string refused = "wrong use: " + c.directory.string() + ": ";
+  const std::string flags = c.build["flags"].dump();
   c.build["flags"] = "-g";
-  EXPECT_EQ(refusal(c), "wrong use: " + c.directory.string() +
-                            ": was begun by another build (expected the same flags); choose another --out");
+  EXPECT_EQ(refusal(c),
+            refused + "was begun by another build: expected flags \"-g\", found " + flags + "; choose another --out");
+  c.spec["seed"] = 9;
+  c.spec["strata"] = {"lattice"};
+  EXPECT_EQ(refusal(c), refused + "holds another campaign: expected seed 9, found 3; choose another --out");
   c = campaign("mine");
   {
     const Store held(store_spec(c));

@@ -98,23 +98,30 @@ std::string recorded_text(SQLite::Database& database) {
   return text;
 }
 
-// Names the first field in which two specs differ.
+// The first place in which two specs differ, with both values: `seed 2, found 1`.
 std::string first_difference(const Json& expected, const Json& found) {
-  for (const auto& [key, value] : expected.items()) {
-    if (!found.contains(key) || found[key] != value) return key;
+  const Json ours = expected.flatten(), theirs = found.flatten();  // "/lanes/0": "exact/f32/cpu"
+  const auto value = [](const Json& of, const std::string& place) {
+    return of.contains(place) ? of[place].dump(-1, ' ', false, Json::error_handler_t::replace) : "none";
+  };
+  for (const Json& side : {ours, theirs}) {
+    for (const auto& [place, unused] : side.items()) {
+      if (ours.contains(place) && theirs.contains(place) && ours[place] == theirs[place]) continue;
+      return fmt::format("{} {}, found {}", place.substr(1), value(ours, place), value(theirs, place));
+    }
   }
-  return "fields";
+  return "the same, found another order";
 }
 
 // Throws: UsageError when the text, which checks, is of another campaign.
 void compare(const StoreSpec& spec, const std::string& text) {
   if (text == text_of(spec)) return;
   const Json found = Json::parse(text);
-  if (found["spec"] != spec.spec)
-    throw UsageError(fmt::format("{}: holds another campaign (expected the same {}); choose another --out",
-                                 spec.directory.string(), first_difference(spec.spec, found["spec"])));
-  throw UsageError(fmt::format("{}: was begun by another build (expected the same {}); choose another --out",
-                               spec.directory.string(), first_difference(spec.build, found["build"])));
+  const bool another = found["spec"] != spec.spec;
+  throw UsageError(
+      fmt::format("{}: {}: expected {}; choose another --out", spec.directory.string(),
+                  another ? "holds another campaign" : "was begun by another build",
+                  another ? first_difference(spec.spec, found["spec"]) : first_difference(spec.build, found["build"])));
 }
 
 // The ranges seen so far, of each source by their first pair.

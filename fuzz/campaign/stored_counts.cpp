@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analysis/signature.h"
 #include "core/fnv1a.h"
+#include "core/lanes.h"
 
 namespace graze::fuzz {
 namespace {
@@ -84,13 +86,14 @@ std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally&
   return pairs - left;
 }
 
-std::map<std::string, SignatureCount> read_signatures(const Json& rows, const PairRange& range) {
+std::map<std::string, SignatureCount> read_signatures(const Json& rows, const PairRange& range,
+                                                      bool (*is_key)(const std::string&)) {
   constexpr const char* kWhat = "the signatures and the batch's pairs";
   constexpr std::size_t kMost = ~std::size_t{0};
   std::map<std::string, SignatureCount> signatures;
   for (const Json& row : list(rows, 0, kMost, kWhat)) {
     list(row, 3, 3, kWhat);
-    expect(row[0].is_string(), kWhat);
+    expect(row[0].is_string() && is_key(row[0].get_ref<const std::string&>()), kWhat);
     SignatureCount found;
     found.count = whole(row[1], range.pairs, kWhat);
     for (const Json& index : list(row[2], 1, kKeptCases, kWhat)) {
@@ -102,6 +105,15 @@ std::map<std::string, SignatureCount> read_signatures(const Json& rows, const Pa
     expect(signatures.emplace(row[0].get<std::string>(), std::move(found)).second, kWhat);
   }
   return signatures;
+}
+
+// Null for what is no CBOR.
+Json parsed(const std::string& bytes) {
+  try {
+    return Json::from_cbor(bytes, true, false);
+  } catch (const Json::exception&) {  // of sizes beyond the memory's, in spite of what was asked
+    return nullptr;
+  }
 }
 
 }  // namespace
@@ -140,7 +152,7 @@ std::string to_bytes(const StoredCounts& counts) {
 }
 
 StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes) {
-  const Json all = Json::from_cbor(bytes, true, false);
+  const Json all = parsed(bytes);
   constexpr std::uint64_t kMost = ~std::uint64_t{0};
   list(all, 8, 8, "a batch's parts");
   StoredCounts counts(lanes);
@@ -148,8 +160,10 @@ StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis a
          "the margins and the batch's pairs");
   expect(read_tally(all[1], range.pairs, counts.extremes, "the extremes") == (axis == Axis::none ? 0 : range.pairs),
          "the extremes and the batch's pairs");
-  counts.signatures = read_signatures(all[2], range);
-  counts.executors_apart = read_signatures(all[3], range);
+  counts.signatures =
+      read_signatures(all[2], range, [](const std::string& key) { return analysis::parse_signature(key).has_value(); });
+  counts.executors_apart =
+      read_signatures(all[3], range, [](const std::string& lane) { return parse_lane_name(lane).has_value(); });
   counts.disagreements = whole(all[4], range.pairs, "the disagreements and the batch's pairs");
   counts.cgal = whole(all[5], kMost, "the pairs that CGAL decided");
   counts.gmp = whole(all[6], kMost, "the pairs that GMP confirmed");

@@ -12,7 +12,9 @@
 #include "analysis/signature.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
+#include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 
 namespace graze::fuzz {
@@ -37,6 +39,14 @@ std::optional<analysis::Signature> without_lanes(const std::string& key) {
   return signature;
 }
 
+constexpr const char* kKindField = "failure";
+
+std::string kind_of(const RegressionCase& c) {
+  const auto field =
+      std::find_if(c.other.begin(), c.other.end(), [](const auto& other) { return other.first == kKindField; });
+  return field == c.other.end() ? "" : field->second;
+}
+
 // The pair's signatures, one for each subject, right or wrong.
 std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& seen) {
   const analysis::Signature blank{
@@ -55,27 +65,21 @@ std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& s
   return result;
 }
 
-// Requires: the summary is whole; a missing part throws Json::exception.
-std::vector<FoundFailure> found_in_summary(const std::filesystem::path& directory, const Json& summary,
-                                           const std::vector<std::string>& globs, std::size_t most) {
+// Requires: the summary and the kinds are whole; a missing part throws Json::exception.
+std::vector<FoundFailure> found_in_kinds(const std::filesystem::path& directory, const Json& summary, const Json& kinds,
+                                         const std::vector<std::string>& globs, std::size_t most) {
   const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
   std::vector<FoundFailure> failures;
-  std::map<std::string, std::size_t> place, taken;    // of a signature in the list; signatures of an algorithm
-  for (const Json& row : summary.at("signatures")) {  // the commonest first
-    const std::string recorded = row.at("key");
-    if (!matches_any(globs, recorded)) continue;
-    const std::filesystem::path file = directory / row.at("case").get<std::string>();
+  std::map<std::string, std::size_t> taken;  // kinds of a subject
+  for (const Json& kind : kinds) {           // the commonest first
+    const std::filesystem::path file = case_file(directory, kind.at("simplest"));
     const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
-    if (entries.empty()) throw corpus::FormatError(file.string() + ": expected at least one case, found none");
-    const std::string* own = corpus::field(entries.front(), "signature");
-    const std::string& signature = own ? *own : recorded;
-    const std::uint64_t count = row.at("count");
-    if (const auto known = place.find(signature); known != place.end()) {
-      failures[known->second].count += count;
-    } else if (taken[analysis::subject_of(signature)]++ < most) {
-      place.emplace(signature, failures.size());
-      failures.push_back({signature, entries.front(), count, seen});
-    }
+    const std::string* signature = entries.empty() ? nullptr : corpus::field(entries.front(), "signature");
+    if (!signature) throw corpus::FormatError(file.string() + ": expected a case with a signature, found none");
+    const std::string key = kind.at("key");
+    if (!matches_any(globs, *signature) && !matches_any(globs, key)) continue;
+    if (taken[kind.at("subject")]++ >= most) continue;
+    failures.push_back({*signature, entries.front(), kind.at("pairs"), seen, key, file.string()});
   }
   return failures;
 }
@@ -88,13 +92,20 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
   const std::string text = read_whole(file);
   if (text.empty())
     throw std::runtime_error(directory.string() + ": expected a campaign's directory, found no summary.json in it");
+  Json summary, kinds;
   try {
-    const Json summary = Json::parse(text);
+    summary = Json::parse(text);
     if (!summary.at("complete").get<bool>())
       throw UsageError(directory.string() + ": expected a finished campaign, found one that was interrupted");
-    return found_in_summary(directory, summary, globs, most);
+    kinds = kinds_of(directory, summary);
   } catch (const Json::exception&) {
     throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
+  }
+  try {
+    return found_in_kinds(directory, summary, kinds, globs, most);
+  } catch (const Json::exception&) {
+    throw corpus::FormatError((directory / "kinds.json").string() +
+                              ": expected what `graze minimize` writes, found something else");
   }
 }
 
@@ -126,7 +137,10 @@ std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entri
 
 Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> run,
           const DecideLanes& decide) {
-  const auto known = corpus.find(failure.signature);
+  auto known = corpus.find(failure.signature);
+  if (known == corpus.end() && !failure.kind.empty())
+    known =
+        std::find_if(corpus.begin(), corpus.end(), [&](const auto& c) { return kind_of(c.second) == failure.kind; });
   if (known != corpus.end() && known->second.last == failure.seen) return Added::known;
 
   const Replay now = replay(failure.entry.pair, run, decide);
@@ -158,6 +172,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
                    failure.seen,
                    failure.seen};
   c.other = other_fields(failure.entry);
+  if (!failure.kind.empty()) c.other.emplace_back(kKindField, failure.kind);
   if (known == corpus.end()) {
     corpus.emplace(failure.signature, std::move(c));
     return Added::as_new;

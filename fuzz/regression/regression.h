@@ -80,7 +80,8 @@ struct Verified {
 };
 
 // Replays every case and notes in the corpus what was found: verdicts, and states.
-// Returns: what differs from the record; lanes without a record, or that did not run, differ from nothing.
+// Returns: what differs from the record, which of an exact lane is the truth; other lanes without a record, or that did
+// not run, differ from nothing.
 Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 }  // namespace graze::fuzz

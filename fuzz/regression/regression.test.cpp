@@ -207,5 +207,18 @@ TEST(Failures, OfACaseAreAllItsWrongAlgorithms) {
   EXPECT_NE(found[0].seen, found_in_cases({{kShifted}}, build, liars.lanes, liars.decide())[0].seen);
 }
 
+// An exact lane has no marks in the file; its record is the truth.
+TEST_F(Regression, AnExactLaneThatIsWrongIsAChange) {
+  for (const Lane& lane : lanes()) {
+    if (lane.id == "exact/f32/cpu") liars.lanes.push_back(&lane);
+  }
+  EXPECT_EQ(verify(corpus, liars.lanes, liars.decide()).compared, published_lanes().size() + 1);
+  EXPECT_TRUE(changes().empty());
+  liars.wrong.insert("exact/f32/cpu");
+  const Verified found = verify(corpus, liars.lanes, liars.decide());
+  ASSERT_EQ(found.changes.size(), 1u);
+  EXPECT_EQ(found.changes[0].what, "exact/f32/cpu: expected the truth, intersects, found disjoint (wrong)");
+}
+
 }  // namespace
 }  // namespace graze::fuzz

@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// One signature's card: the pair, what every lane says of it, why, and how to have it again.
+// The card of a kind of failure: its simplest case, what every lane says of it, why, and how to have it again.
 import { breakable, code_block, copy_button, h, lazy_details } from './dom';
-import { count, figure, percent, power_of_two } from './format';
+import { counted, figure } from './format';
+import { kind_facts, kind_lanes, kind_title } from './kind';
 import type { Report } from './report';
 import { stage } from './stage';
 
 type Card = Report['cards'][number];
-type Signature = Report['signatures'][number];
-
-const kHulls = ['point', 'segment', 'triangle'];
-export function hulls(dimensions: string, how = '') {
-  const [a, b] = [...dimensions].map((d) => kHulls[Number(d)] ?? d);
-  return a === b ? `two ${how}${a}s` : `a ${how}${a} and a ${b}`;
-}
-const kContacts: Record<string, string> = { none: 'apart', point: 'meeting in a point', segment: 'meeting in a segment', area: 'meeting in an area' };
-
-export function signature_words(signature: Signature): string {
-  const { contact, dimensions, coplanar, margin } = signature;
-  return `${hulls(dimensions, coplanar ? 'coplanar ' : '')} ${kContacts[contact] ?? contact}, margin ${margin_words(margin)}`;
-}
-
-// "-2^-3" as "2⁻³ ulps deep", "2^4" as "2⁴ ulps"
-export function margin_words(margin: string): string {
-  const found = /^([-+]?)2\^(-?\d+)$/.exec(margin);
-  if (!found) return margin;
-  return `${power_of_two(Number(found[2]))} ulps${found[1] === '-' ? ' deep' : ''}`;
-}
 
 function coordinates({ pair }: Card) {
   const row = (name: string, first: number) => h('tr', {}, h('th', { scope: 'row' }, name),
@@ -61,15 +42,19 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
   return h('div', { class: 'maps' }, h('h4', {}, 'Ulp map'),
     h('p', {}, `${maps.title}: ${maps.x} to the right, ${maps.y} upwards; the case is in the middle. `,
       h('span', { class: 'map-key' }, maps.legend.map(({ colour, means }) => h('span', {}, h('i', { style: `background:${colour}` }), means)))),
-    h('div', { class: 'panels' }, maps.panels.map(({ name, png }) => h('figure', { class: name === 'truth' ? 'panel truth' : 'panel' },
-      h('div', {}, h('img', { src: `data:image/png;base64,${png}`, width: maps.size, height: maps.size, decoding: 'async', alt: `Ulp map of ${name}` })),
+    h('div', { class: 'panels' }, maps.panels.map(({ name, shows, png }) => h('figure', { class: name === 'truth' ? 'panel truth' : 'panel' },
+      h('div', {}, h('img', { src: `data:image/png;base64,${png}`, width: maps.size, height: maps.size, decoding: 'async', alt: `${name}: ${shows ?? 'counts of the map are not stored'}` })),
       h('figcaption', {}, name === 'truth' ? 'truth' : breakable(name.split('/').slice(1).join('/')))))));
 }
 
+// The programs of a card, with the source that the report holds once for all of them.
+export const snippet_texts = (report: Report, card: Card) => card.snippets.map(({ label, text }) =>
+  ({ label, text: text.replace('@SOURCE@', () => report.sources[card.kind.subject]) }));
+
 // One text at a time, chosen by its button.
-function snippets(card: Card) {
+function snippets(report: Report, card: Card) {
   const shown = h('div', {});
-  const buttons = card.snippets.map(({ label, text }) => {
+  const buttons = snippet_texts(report, card).map(({ label, text }) => {
     const button = h('button', { type: 'button', 'aria-pressed': 'false', onclick: () => {
       const open = button.getAttribute('aria-pressed') === 'true';
       buttons.forEach((other) => other.setAttribute('aria-pressed', 'false'));
@@ -81,32 +66,39 @@ function snippets(card: Card) {
   return h('div', { class: 'snippets' }, h('h4', {}, 'For a bug report'), h('div', { class: 'chips' }, buttons), shown);
 }
 
-// The inside of a card, made when it is opened.
-export function card_body(report: Report, card: Card, signature: Signature) {
-  const { truth } = card;
+// "intersects, contact: point, margin 0"
+function truth_words({ truth }: Card) {
   const where = truth.contact === 'none' ? `${figure(truth.margin)} apart` : truth.margin === 0 ? `contact: ${truth.contact}, margin 0`
     : `contact: ${truth.contact}, ${figure(Math.abs(truth.margin))} deep`;
-  const ulps = truth.margin === 0 ? '' : ` (${figure(Math.abs(truth.margin_ulps))} ulps)`;
-  return h('div', { class: 'card-body' },
-    h('div', { class: 'card-top' }, stage(card),
+  return `${truth.verdict}, ${where}${truth.margin === 0 ? '' : ` (${figure(Math.abs(truth.margin_ulps))} ulps)`}`;
+}
+
+// The inside of a card, made when it is opened.
+export function card_body(report: Report, card: Card) {
+  const truth = truth_words(card), [verdict] = truth.split(',');
+  return h('div', { class: 'card-body' }, kind_lanes(report, card),
+    h('div', { class: 'card-top' }, stage(card, truth),
       h('div', { class: 'card-facts' },
-        h('p', { class: 'truth' }, h('b', {}, `Truth: ${truth.verdict}`), `, ${where}${ulps}`),
+        h('p', { class: 'truth' }, h('b', {}, `Truth: ${verdict}`), truth.slice(verdict.length)),
         h('ul', { class: 'sentences' }, card.sentences.map((sentence) => h('li', {}, sentence))),
         coordinates(card))),
+    kind_facts(card),
     h('div', { class: card.maps ? 'card-low' : '' }, h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)), card.maps && ulp_maps(card.maps)),
     h('h4', {}, 'Again'),
     h('div', { class: 'commands' }, card.commands.map(({ label, text }) => [h('span', { class: 'label' }, label), code_block(text, `the ${label} command`)])),
-    card.snippets.length > 0 && snippets(card),
+    card.snippets.length > 0 && snippets(report, card),
     h('p', { class: 'small' }, card.minimised ? `Minimised from ${card.from}; ` : `Not minimised, as drawn: ${card.from}; `, 'stored in ', h('code', {}, card.file),
-      '; signature ', h('code', {}, ...breakable(signature.key))));
+      '; the kind ', h('code', {}, ...breakable(card.kind.key))));
 }
 
-export function card_element(report: Report, card: Card, number: number) {
-  const signature = report.signatures[card.signature];
+// Of the card at that place.
+export const kind_id = (place: number) => `kind-${place + 1}`;
+
+export function card_element(report: Report, card: Card, place: number) {
   const { details, open } = lazy_details([
-    h('span', { class: 'card-number' }, String(number)),
-    h('span', { class: 'card-title' }, h('b', {}, signature.algorithm), ` wrong on ${signature_words(signature)}`),
-    h('span', { class: 'card-count' }, `${count(signature.count)} pairs, ${percent(signature.share)}`),
-  ], () => card_body(report, card, signature), { class: 'card', id: `card-${number}` });
+    h('span', { class: 'card-number' }, String(place + 1)),
+    h('span', { class: 'card-title' }, kind_title(card.kind)),
+    h('span', { class: 'card-count' }, `${counted(card.kind.pairs, 'pair')}, ${counted(card.kind.signatures, 'signature')}`),
+  ], () => card_body(report, card), { class: 'card', id: kind_id(place) });
   return { details, open };
 }

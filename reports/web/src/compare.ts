@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What changed between two campaigns.
-import { breakable, h, section } from './dom';
+import { breakable, h, section, sentence } from './dom';
 import { count, in_full, percent } from './format';
 import type { Compare, Report, Share } from './report';
 import { build_words } from './run';
@@ -18,18 +18,19 @@ function rates_table(compare: Compare) {
     { label: 'Before', numeric: true, cell: (c) => cell(c.before), order: (c) => c.before.share },
     { label: 'After', numeric: true, cell: (c) => cell(c.after), order: (c) => c.after.share },
     { label: 'Change', numeric: true, cell: (c) => (c.after.share === c.before.share ? '0' : `${c.after.share > c.before.share ? '+' : '−'}${percent(Math.abs(c.after.share - c.before.share)).replace('%', 'points')}`), order: (c) => c.after.share - c.before.share },
-    { label: 'Intervals', cell: (c) => (c.changed ? h('b', {}, 'apart') : 'overlap'), order: (c) => Number(c.changed), descending_first: true },
+    { label: 'Changed', title: 'More than chance would explain', cell: (c) => (c.changed ? h('b', {}, 'yes') : 'no'), order: (c) => Number(c.changed), descending_first: true },
   ], { caption: 'Share wrong before and after', class: 'plain', page: 60 });
   const all = h('input', { type: 'checkbox', onchange: () => update() });
   const update = () => table.show(all.checked ? compare.rates : compare.rates.filter((c) => c.changed));
   update();
-  return [h('label', { class: 'check' }, all, ` also the ${count(compare.rates.filter((c) => !c.changed).length)} rates whose intervals overlap`), table.element];
+  return [h('label', { class: 'check' }, all, ` also the ${count(compare.rates.filter((c) => !c.changed).length)} rates that did not change`), table.element];
 }
 
-function signatures_table(caption: string, seen: Seen[]) {
+function kinds_table(caption: string, seen: Seen[]) {
   if (!seen.length) return h('div', {}, h('h3', {}, `${caption}: none`));
   const table = sortable_table<Seen>([
-    { label: 'Signature', cell: (s) => h('code', {}, ...breakable(s.key)), order: (s) => s.key },
+    { label: 'Kind', cell: (s) => h('code', {}, ...breakable(s.key)), order: (s) => s.key },
+    { label: 'Signatures', numeric: true, cell: (s) => count(s.signatures), order: (s) => s.signatures },
     { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },
   ], { caption, class: 'plain', page: 30 });
   table.show(seen);
@@ -42,7 +43,9 @@ export function compare_section(report: Report) {
   const side = (name: string, run: Report['run']) =>
     h('div', {}, h('dt', {}, name), h('dd', {}, `${count(run.pairs)} pairs, seed ${run.seed}; ${build_words(run).join(', ')}`));
   return section('compare', 'Compared with another campaign',
+    h('p', { class: 'headline' }, h('b', {}, compare.headline)),
+    compare.differences.length > 0 && h('ul', { class: 'differences' }, compare.differences.map((text) => h('li', {}, sentence(text)))),
     h('dl', { class: 'facts both' }, side('Before', compare.other), side('After', report.run)),
     h('h3', {}, 'Rates'), rates_table(compare),
-    h('div', { class: 'two' }, signatures_table('Signatures gained', compare.gained), signatures_table('Signatures lost', compare.lost)));
+    compare.kinds_compared && h('div', { class: 'two' }, kinds_table('Kinds of failure gained', compare.gained), kinds_table('Kinds of failure lost', compare.lost)));
 }

@@ -5,12 +5,16 @@ import { kChartStyle, named } from './chart';
 import { h, lazy_details, on_width, section } from './dom';
 import { in_full, percent, power_of_two } from './format';
 import { heat_fill, heat_legend } from './heat';
-import { lane_picker } from './lane_picker';
+import { lane_picker, type Picker } from './lane_picker';
 import type { Report, Share } from './report';
 import { sortable_table } from './sortable_table';
 
 type Kind = Report['extremes'][number]['kind'];
 interface Cell { lane: number; name: string; from: number; to: number; wrong: Share; words: string }
+
+// A cell of fewer pairs is drawn as a line: what it shows may be chance.
+const kFew = 100;
+const few = ({ wrong }: Cell) => wrong.of < kFew;
 
 const kKinds: { kind: Kind; title: string; says: string; axis: string; short: string; what: string }[] = [
   { kind: 'scale', title: 'Size of the coordinates', axis: 'largest coordinate', short: 'largest coordinate', what: 'largest coordinate',
@@ -47,20 +51,25 @@ export function extremes_section(report: Report) {
       x: { domain: [from, to], ticks, tickFormat: power_of_two, label: small ? short : axis, labelAnchor: 'center', labelArrow: 'none', labelOffset: 40 },
       y: { domain: lanes, label: null, padding: 0.12, axis: small ? null : 'left', tickSize: 0 },
       marks: [
-        Plot.rect(cells, { x1: 'from', x2: 'to', y: 'name', fill: (c: Cell) => heat_fill(c.wrong.share), insetTop: small ? 15 : 0, shapeRendering: 'crispEdges' }),
+        ...[false, true].map((thin) => Plot.rect(cells.filter((c) => few(c) === thin), { x1: 'from', x2: 'to', y: 'name', fill: (c: Cell) => heat_fill(c.wrong.share),
+          insetTop: (small ? 15 : 0) + (thin ? 8 : 0), insetBottom: thin ? (small ? 2 : 8) : 0, shapeRendering: 'crispEdges', className: thin ? 'few' : 'many' })),
         ...(small ? [Plot.text(lanes, { y: (name: string) => name, x: from, text: (name: string) => name, textAnchor: 'start', dy: -8, fontSize: 11 })] : []),
         Plot.tip(cells, Plot.pointer({ x: (c: Cell) => (c.from + c.to) / 2, y: 'name', title: 'words', maxRadius: 30 })),
       ],
     });
-    const label = `${title}: heat map of the share of wrong verdicts, ${lanes.length} lanes; as a table below`;
+    const lane_words = (name: string) => {
+      const worst = cells.filter((c) => c.name === name && !few(c)).reduce<Cell | null>((most, c) => (c.wrong.share > (most?.wrong.share ?? 0) ? c : most), null);
+      return worst ? `${name}: at most ${percent(worst.wrong.share)}, from ${power_of_two(worst.from)} on` : `${name}: none wrong`;
+    };
+    const label = `${title}: heat map of the share of wrong verdicts, cells of ${kFew} pairs and more. ${lanes.map(lane_words).join('. ')}. As a table below`;
     element.replaceChildren(cells.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen.'));
   }
 
   const redraw = () => figures.forEach((one) => one.element.clientWidth && draw(one, one.element.clientWidth));
-  const picker = lane_picker(report, { target: ['cpu'] }, redraw);
+  const picker: Picker = lane_picker(report, 'extremes', { target: ['cpu'] }, redraw);
   figures.forEach((one) => on_width(one.element, (width) => draw(one, width)));
   return section('extremes', 'Extremes',
-    h('p', {}, 'Where numbers are very large, very small, or far from the origin. Blank: no pair of the campaign lies there.'),
+    h('p', {}, 'Where numbers are very large, very small, or far from the origin. Blank: no pair of the campaign lies there. ', h('b', {}, 'A thin cell'), ` has fewer than ${kFew} pairs, so chance may have coloured it.`),
     picker.element, heat_legend(),
     figures.map(({ kind, title, says, element }) => [
       h('div', { class: 'kept' }, h('h3', {}, title), h('p', {}, says), element),

@@ -11,6 +11,22 @@ const raised = (n: number) => [...String(n)].map((c) => kSuperscripts[c]).join('
 // 2⁻¹²
 export const power_of_two = (exponent: number) => `2${raised(exponent)}`;
 
+// "1 pair", "2,048 pairs"
+export const counted = (n: number, what: string) => `${count(n)} ${what}${n === 1 ? '' : 's'}`;
+
+// A bucket of margins: "-2^-3" as "2⁻³ ulps deep", "2^4" as "2⁴ ulps".
+export function margin_words(margin: string): string {
+  const found = /^([-+]?)2\^(-?\d+)$/.exec(margin);
+  if (!found) return margin;
+  return `${power_of_two(Number(found[2]))} ulps${found[1] === '-' ? ' deep' : ''}`;
+}
+
+// "-2^-3" before "0" before "2^4", by size.
+export function margin_order(margin: string) {
+  const found = /^([-+]?)2\^(-?\d+)$/.exec(margin);
+  return found ? (found[1] === '-' ? -1 : 1) * (Number(found[2]) + 200) : 0;
+}
+
 // Three significant digits; powers of ten where there would be more than three zeros.
 export function figure(value: number): string {
   if (value === 0 || !Number.isFinite(value)) return String(value);
@@ -19,6 +35,9 @@ export function figure(value: number): string {
   const [digits, power] = value.toExponential(2).split('e');
   return `${Number(digits)}·10${raised(Number(power))}`;
 }
+
+// "42 ns", "8.5 ns"
+export const nanoseconds = (value: number) => `${value.toFixed(value < 10 ? 1 : 0)} ns`;
 
 // A share in per cent, without the sign: 47.8, 0.156, <0.001.
 export function bare_percent(share: number): string {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses lanes by algorithm, scalar and target: those are shown that all three rows of buttons allow.
+// Chooses lanes by algorithm, scalar and target: those are shown that all three rows of buttons allow. What is chosen
+// is kept in the URL under `key`, "league-target=cpu,cpu-fma", where it is not what the picker begins with.
 import { h } from './dom';
 import type { Report } from './report';
+import { choose, chosen, when_chosen } from './state';
 
 type Part = 'algorithm' | 'scalar' | 'target';
 const kParts: Part[] = ['algorithm', 'scalar', 'target'];
@@ -11,25 +13,37 @@ export interface Picker {
   lanes: () => number[];
 }
 
-export function lane_picker(report: Report, initial: Partial<Record<Part, string[]>>, change: () => void,
+export function lane_picker(report: Report, key: string, initial: Partial<Record<Part, string[]>>, change: () => void,
                             swatch?: (algorithm: string) => string): Picker {
-  const chosen = {} as Record<Part, Set<string>>;
+  const picked = {} as Record<Part, Set<string>>;
+  const rereads: (() => void)[] = [];
   const rows = kParts.map((part) => {
     const values = [...new Set(report.lanes.map((lane) => lane[part]))];
     const wanted = initial[part]?.filter((value) => values.includes(value));
-    chosen[part] = new Set(wanted?.length ? wanted : values);
-    const buttons = values.map((value) => {
-      const button = h('button', { type: 'button', 'aria-pressed': String(chosen[part].has(value)), onclick: () => {
-        if (!chosen[part].delete(value)) chosen[part].add(value);
-        button.setAttribute('aria-pressed', String(chosen[part].has(value)));
-        change();
-      } }, part === 'algorithm' && swatch ? h('i', { class: 'swatch', style: `background:${swatch(value)}` }) : null, value);
-      return button;
-    });
+    const first = wanted?.length ? wanted : values;
+    const listed = () => values.filter((value) => picked[part].has(value)).join(',');
+    const buttons = values.map((value) => h('button', { type: 'button', onclick: () => {
+      if (!picked[part].delete(value)) picked[part].add(value);
+      choose(`${key}-${part}`, listed() === values.filter((one) => first.includes(one)).join(',') ? '' : listed() || 'none');
+      show();
+      change();
+    } }, part === 'algorithm' && swatch ? h('i', { class: 'swatch', style: `background:${swatch(value)}` }) : null, value));
+    const show = () => buttons.forEach((button, i) => button.setAttribute('aria-pressed', String(picked[part].has(values[i]))));
+    const reread = () => {
+      const kept = chosen(`${key}-${part}`);
+      picked[part] = new Set(kept ? kept.split(',').filter((value) => values.includes(value)) : first);
+      show();
+    };
+    reread();
+    rereads.push(reread);
     return h('div', { class: 'chips', role: 'group', 'aria-label': part }, h('span', {}, part), buttons);
+  });
+  when_chosen(() => {
+    rereads.forEach((reread) => reread());
+    change();
   });
   return {
     element: h('div', { class: 'picker' }, rows),
-    lanes: () => report.lanes.flatMap((lane, i) => (kParts.every((part) => chosen[part].has(lane[part])) ? [i] : [])),
+    lanes: () => report.lanes.flatMap((lane, i) => (kParts.every((part) => picked[part].has(lane[part])) ? [i] : [])),
   };
 }

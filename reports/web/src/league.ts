@@ -4,11 +4,14 @@ import { breakable, choice, h, section } from './dom';
 import { bare_percent, in_full } from './format';
 import { heat_class, heat_legend } from './heat';
 import { lane_picker } from './lane_picker';
+import { cell_text, cell_words, kErrors, type Kind } from './pairs_of_cell';
 import type { Report, Share } from './report';
+import { matcher } from './search';
 import { sortable_table, type Column } from './sortable_table';
+import { choose, chosen, go_to, when_chosen } from './state';
 
 type Rate = Report['rates'][number];
-type Show = 'both' | 'false_positive' | 'false_negative' | 'wrong' | 'differs_from_cpu';
+type Show = 'both' | Kind;
 
 const kShow: [Show, string][] = [
   ['both', 'false positives over false negatives'],
@@ -33,23 +36,36 @@ function words(report: Report, rate: Rate): string {
 export function league_section(report: Report) {
   const rates = new Map(report.rates.map((rate) => [`${rate.lane}/${rate.stratum}`, rate]));
   const find = (lane: number, stratum: number | null) => rates.get(`${lane}/${stratum}`);
-  let show: Show = 'both', only = 'all', text = '';
+  let show: Show = 'both', only = 'all';
 
   const readout = h('p', { class: 'readout', 'aria-live': 'polite' });
-  const kHint = 'Point at a cell, or walk through them with the arrow keys, for counts and intervals.';
+  const kHint = 'Point at a cell, or walk through them with the arrow keys, for counts and intervals; press it, or Enter, for the pairs behind it.';
   readout.textContent = kHint;
 
-  const part = (share: Share | null, sign: string) =>
-    share === null ? h('span', { class: 'none' }, '–')
-      : h('span', { class: heat_class(share.share), 'data-sign': sign }, bare_percent(share.share));
+  const part = (share: Share | null, kind: Kind) =>
+    share === null || share.of === 0 ? h('span', { class: 'none' }, '–')
+      : h('span', { class: heat_class(share.share), 'data-kind': kind }, bare_percent(share.share));
+
+  // Leads from a cell to the pairs that show it; says so where there is none.
+  function press(event: Event, rate: Rate) {
+    const pressed = (event.target as Element).closest<HTMLElement>('[data-kind]')?.dataset.kind;
+    const kind = (pressed ?? (show === 'both' ? 'wrong' : show)) as Kind;
+    const cell = { lane: rate.lane, stratum: rate.stratum, kind };
+    if (!rate[kind]?.count) {
+      readout.textContent = `${cell_words(report, cell)}: ${rate[kind] ? `none in ${in_full(rate[kind])}` : 'not counted'}, so no pair shows one.`;
+      return;
+    }
+    go_to('kinds', { cell: cell_text(report, cell) });
+  }
 
   function cell(lane: number, stratum: number | null) {
     const rate = find(lane, stratum);
     if (!rate) return h('td', { class: 'rate' }, '–');
     const title = words(report, rate);
     const tell = () => (readout.textContent = title);
-    return h('td', { class: 'rate', title, onfocus: tell, onmouseenter: tell },
-      show === 'both' ? [part(rate.false_positive, '+'), part(rate.false_negative, '−')] : part(rate[show], ''));
+    const enter = (event: KeyboardEvent) => { if (event.key === 'Enter') press(event, rate); };
+    return h('td', { class: 'rate', title, onfocus: tell, onmouseenter: tell, onclick: (event: Event) => press(event, rate), onkeydown: enter },
+      show === 'both' ? [part(rate.false_positive, 'false_positive'), part(rate.false_negative, 'false_negative')] : part(rate[show], show));
   }
 
   function order(lane: number, stratum: number | null) {
@@ -73,27 +89,38 @@ export function league_section(report: Report) {
 
   const table = sortable_table<number>(columns(), { caption: 'Share of wrong verdicts in per cent, lanes by strata', class: 'league', walk: true });
   const update = () => {
-    table.show(picker.lanes().filter((lane) => report.lanes[lane].id.includes(text)));
+    const matches = matcher(chosen('lane'));
+    table.show(picker.lanes().filter((lane) => matches([report.lanes[lane].id])));
     readout.textContent = kHint;
   };
-  const picker = lane_picker(report, {}, update);
-  update();
+  const picker = lane_picker(report, 'league', {}, () => update());
 
-  const search = h('input', { type: 'search', placeholder: 'such as moller or f64/cuda', oninput: () => {
-    text = search.value.trim().toLowerCase();
+  const search = h('input', { type: 'search', placeholder: 'such as moller f64, or */f64/*', oninput: () => {
+    choose('lane', search.value.trim());
     update();
   } });
-  const strata = report.strata.map((stratum, i): [string, string] => [String(i), stratum.id]);
+  const shows = choice('Show', kShow, show, (value) => { choose('show', value === 'both' ? '' : value); redraw(); });
+  const strata = choice('Stratum', [['all', 'all'], ...report.strata.map((stratum, i): [string, string] => [String(i), stratum.id])], only,
+    (value) => { choose('stratum', value === 'all' ? '' : report.strata[Number(value)].id); redraw(); });
   const redraw = () => {
+    const place = report.strata.findIndex((stratum) => stratum.id === chosen('stratum'));
+    only = place < 0 ? 'all' : String(place);
+    show = chosen('show') in kErrors ? (chosen('show') as Kind) : 'both';
+    shows.querySelector('select')!.value = show;
+    strata.querySelector('select')!.value = only;
+    search.value = chosen('lane');
     table.columns(columns());
     table.element.classList.toggle('single', show !== 'both');
+    update();
   };
+  redraw();
+  when_chosen(redraw);
+  table.element.classList.add('league-table');
   return section('league', 'League table',
     h('p', {}, 'In per cent. A ', h('b', {}, 'false positive'), ' says “intersects” of triangles that are apart, and is counted against the pairs that are apart; a ',
       h('b', {}, 'false negative'), ' misses a contact, and is counted against the pairs that intersect. In each cell false positives stand above false negatives; every head sorts.'),
     h('div', { class: 'controls' },
       h('label', { class: 'field' }, h('span', {}, 'Find a lane'), search),
-      choice('Show', kShow, show, (value) => { show = value as Show; redraw(); }),
-      choice('Stratum', [['all', 'all'], ...strata], only, (value) => { only = value; redraw(); })),
+      shows, strata),
     picker.element, h('div', { class: 'between' }, heat_legend(), readout), table.element);
 }

@@ -3,37 +3,48 @@
 import './style.css';
 import { compare_section } from './compare';
 import { h } from './dom';
+import { count } from './format';
 import { extremes_section } from './extremes';
+import { failure_sections } from './failures';
 import { heat_styles } from './heat';
 import { league_section } from './league';
 import { margins_section } from './margins';
 import { method_section } from './method';
-import type { Report } from './report';
+import type { Costs, Report } from './report';
 import { answer_section, run_section } from './run';
 import { side_by_side_section } from './side_by_side';
-import { signatures_section } from './signatures';
+import { follow_fragment } from './state';
 
-function build(report: Report) {
+function build(report: Report, costs: Costs | null) {
   document.head.append(heat_styles());
+  const failures = failure_sections(report);
   const sections = [
-    run_section(report), answer_section(report), compare_section(report), league_section(report), side_by_side_section(report),
-    margins_section(report), extremes_section(report), signatures_section(report), method_section(),
+    answer_section(report, costs), compare_section(report), league_section(report), ...failures.sections, margins_section(report),
+    extremes_section(report), side_by_side_section(report), method_section(), run_section(report, costs),
   ].filter((one) => one !== null);
   const contents = sections.map((one) => h('a', { href: `#${one.id}` }, one.querySelector('h2')!.textContent));
+  const { pairs, seed } = report.run;
   document.getElementById('page')!.replaceChildren(
     h('a', { class: 'skip', href: '#answer' }, 'To the answer'),
-    h('header', {}, h('h1', {}, 'Graze: discrepancy report'), h('p', {}, 'Where triangle-triangle intersection tests stop being right, and how often')),
+    h('header', {}, h('h1', {}, 'Graze: discrepancy report'),
+      h('p', {}, `Where triangle-triangle tests stop being right: ${count(pairs)} pairs of ${report.strata.length} ${report.strata.length === 1 ? 'stratum' : 'strata'}, ${report.lanes.length} lanes, seed ${seed}`)),
     h('nav', { 'aria-label': 'Contents' }, contents), h('main', {}, sections));
+  follow_fragment((id) => {
+    failures.open(id);
+    document.getElementById(id)?.scrollIntoView({ block: 'start' });
+  });
 }
+
+const data = (id: string) => document.getElementById(id)?.textContent?.trim() ?? '';
 
 function start() {
   const page = document.getElementById('page')!;
-  const text = document.getElementById('report')!.textContent!.trim();
+  const text = data('report');
   if (!text || text.startsWith('<!--')) page.textContent = 'This is the empty page: graze report DIR writes one with data.';
   else {
     const report = JSON.parse(text) as Report;
-    if (report.format === 1) build(report);
-    else page.textContent = `This page reads reports of format 1, and its data is of format ${report.format}.`;
+    if (report.format === 2) build(report, JSON.parse(data('costs') || 'null') as Costs | null);
+    else page.textContent = `This page reads reports of format 2, and its data is of format ${report.format}.`;
   }
 }
 

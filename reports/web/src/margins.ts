@@ -5,13 +5,14 @@ import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, choice, h, lazy_details, on_width, section } from './dom';
 import { count, figure, in_full, percent, power_of_two } from './format';
-import { lane_picker } from './lane_picker';
-import type { Report, Share } from './report';
+import { lane_picker, type Picker } from './lane_picker';
+import type { Report, Share, Threshold } from './report';
 import { series_colour, series_dash, series_width } from './series';
 import { sortable_table } from './sortable_table';
+import { choose, chosen, when_chosen } from './state';
 
 type Point = Report['margins'][number]['points'][number];
-type Threshold = Report['thresholds'][number];
+type Row = Report['thresholds'][number];
 interface Dot { lane: number; x: number; share: Share; side: string; words: string }
 
 const kNearest = -33;        // below every exponent: the place of zero next to it
@@ -29,8 +30,12 @@ function side_words({ side, exponent }: Point) {
   return side === 'disjoint' ? `${bucket(exponent)} apart` : `${bucket(exponent)} deep`;
 }
 
+// "2³", or why there is none.
+const from_words = ({ exponent, largest }: Threshold) =>
+  exponent !== null ? power_of_two(exponent) : largest === null ? 'no such pairs' : `wrong at ${power_of_two(largest)}`;
+
 export function margins_section(report: Report) {
-  let log = true;
+  let log = chosen('share') !== 'linear';
   const exponents = report.margins.flatMap((row) => row.points.flatMap((p) => (p.exponent === null || !p.wrong.of ? [] : [p.exponent])));
   const some = exponents.length > 0 ? exponents : [0];  // where all pairs touch
   const lowest = Math.max(kNearest + 1, Math.min(...some)), highest = Math.max(...some);
@@ -42,17 +47,37 @@ export function margins_section(report: Report) {
   const floor = Math.floor(Math.log10(Math.min(0.01, ...counted)));
 
   const figure_element = h('figure', { class: 'chart', id: 'margin-chart' });
-  const thresholds = sortable_table<Threshold>([
+  const thresholds = sortable_table<Row>([
     { label: 'Lane', cell: (t) => breakable(report.lanes[t.lane].id), order: (t) => t.lane },
     ...(['disjoint', 'intersects'] as const).flatMap((side) => {
       const name = side === 'disjoint' ? 'apart' : 'deep';
       return [
-        { label: `No error from (ulps ${name})`, numeric: true, cell: (t: Threshold) => (t[side].exponent === null ? 'never' : power_of_two(t[side].exponent)), order: (t: Threshold) => t[side].exponent ?? 999 },
-        { label: 'Pairs beyond', numeric: true, cell: (t: Threshold) => count(t[side].above), order: (t: Threshold) => t[side].above },
-        { label: 'Rate below (95 %)', numeric: true, cell: (t: Threshold) => (t[side].above ? percent(t[side].bound) : '–'), order: (t: Threshold) => t[side].bound },
+        { label: `No error from (ulps ${name})`, numeric: true, cell: (t: Row) => from_words(t[side]), order: (t: Row) => t[side].exponent ?? 999 },
+        { label: 'Pairs beyond', numeric: true, cell: (t: Row) => count(t[side].above), order: (t: Row) => t[side].above },
+        { label: 'Rate below (95 %)', numeric: true, cell: (t: Row) => (t[side].above ? percent(t[side].bound) : '–'), order: (t: Row) => t[side].bound },
       ];
     }),
   ], { caption: 'Thresholds of the lanes chosen', class: 'plain thresholds' });
+
+  // The strata that thresholds are of: a group, one stratum, or all.
+  const kinds: { id: string; label: string; is: (t: Row) => boolean }[] = [
+    ...report.groups.map(({ id }, g) => ({ id, label: `${id} pairs`, is: (t: Row) => t.group === g })),
+    { id: 'all', label: 'all strata together', is: (t: Row) => t.group === null && t.stratum === null },
+    ...report.strata.map(({ id }, s) => ({ id: `stratum ${id}`, label: id, is: (t: Row) => t.stratum === s })),
+  ];
+  const kind = () => kinds.find(({ id }) => id === chosen('trust')) ?? kinds[0];
+  const trust = choice('Pairs', kinds.map(({ id, label }): [string, string] => [id, label]), kind().id, (value) => {
+    choose('trust', value === kinds[0].id ? '' : value);
+    show_thresholds();
+  });
+  const describes = h('p', { class: 'key' });
+  function show_thresholds() {
+    trust.querySelector('select')!.value = kind().id;
+    const group = report.groups.find(({ id }) => id === kind().id);
+    describes.textContent = group ? `${group.id}: ${group.describes} (${group.strata.map((s) => report.strata[s].id).join(', ')}).` : '';
+    thresholds.show(report.thresholds.filter((t) => kind().is(t) && picker.lanes().includes(t.lane)));
+  }
+  when_chosen(() => show_thresholds());
 
   function dots(): Dot[] {
     return picker.lanes().flatMap((lane) => {
@@ -64,6 +89,7 @@ export function margins_section(report: Report) {
     }).sort((a, b) => a.x - b.x);
   }
 
+  const pooled = (lane: number) => report.thresholds.find((t) => t.lane === lane && t.group === null && t.stratum === null);
   const none = floor - 0.6;                       // where a share of zero stands on the log axis
   const y = (share: number) => (!log ? 100 * share : share > 0 ? Math.max(none, Math.log10(share)) : none);
 
@@ -93,7 +119,7 @@ export function margins_section(report: Report) {
       marks.push(
         Plot.ruleX(zero, { x: 'x', y1: (d: Dot) => y(d.share.low), y2: (d: Dot) => y(d.share.high), stroke, strokeWidth }),
         Plot.dot(zero, { x: 'x', y: (d: Dot) => y(d.share.share), fill: stroke, r: scalar === 'f64' ? 2.5 : 4 }));
-      const own = report.thresholds.find((t) => t.lane === lane);
+      const own = pooled(lane);
       const seen = (['disjoint', 'intersects'] as const).flatMap((side) => {
         const t = own?.[side];
         return t && t.exponent !== null && t.above ? [{ x: place(side, t.exponent), words: `${report.lanes[lane].id}\nno error in ${count(t.above)} pairs from ${power_of_two(t.exponent)} ulps on\nrate below ${percent(t.bound)} (95 %)` }] : [];
@@ -110,25 +136,36 @@ export function margins_section(report: Report) {
         : { domain: [0, 100], grid: true, tickFormat: (v: number) => `${v} %`, label: 'share wrong', labelArrow: 'none' },
       marks,
     });
-    const label = `Share of wrong verdicts against the exact margin, of ${lanes.length} lanes; the table below has the thresholds`;
+    const label = `Share of wrong verdicts against the exact margin, all strata. ${lanes.map(lane_words).join('. ')}`;
     figure_element.replaceChildren(all.length ? named(plot, label) : h('p', { class: 'empty' }, 'No lane is chosen, or it has no figures here.'));
-    thresholds.show(report.thresholds.filter((t) => picker.lanes().includes(t.lane)));
+    show_thresholds();
+  }
+
+  // What the chart shows of a lane: where it is worst, at margin 0, and from where on it was right.
+  function lane_words(lane: number) {
+    const points = (report.margins.find((row) => row.lane === lane)?.points ?? []).filter((p) => p.wrong.of > 0);
+    const zero = points.find((p) => p.side === 'zero'), own = pooled(lane);
+    const worst = points.filter((p) => p.side !== 'zero').reduce<Point | null>((most, p) => (p.wrong.share > (most?.wrong.share ?? 0) ? p : most), null);
+    const right = (['disjoint', 'intersects'] as const).map((side) => own && own[side].exponent !== null
+      ? `no error from ${power_of_two(own[side].exponent)} ulps ${side === 'disjoint' ? 'apart' : 'deep'}` : '');
+    return `${report.lanes[lane].id}: ${[zero && `wrong on ${percent(zero.wrong.share)} at margin 0`,
+      worst ? `elsewhere at most ${percent(worst.wrong.share)}, ${side_words(worst)}` : 'elsewhere none wrong', ...right].filter(Boolean).join('; ')}`;
   }
 
   const redraw = () => figure_element.clientWidth && draw(figure_element.clientWidth);
   const published = [...new Set(report.lanes.filter((lane) => !lane.exact).map((lane) => lane.algorithm))];
-  const picker = lane_picker(report, { algorithm: published, scalar: ['f32'], target: ['cpu'] }, redraw, (algorithm) => series_colour(report, algorithm));
+  const picker: Picker = lane_picker(report, 'margins', { algorithm: published, scalar: ['f32'], target: ['cpu'] }, redraw, (algorithm) => series_colour(report, algorithm));
   on_width(figure_element, draw);
 
   const key = h('p', { class: 'key' }, 'Colour: algorithm. Thick: f32, thin: f64. Full line: cpu; dashes: cpu-fma; dots: cuda-nofma; dash and dot: cuda-fma. Band: 95 % interval. ', h('b', {}, '▲'), ' no error was seen from here on.');
   return section('margins', 'Error rate against margin',
     h('p', {}, 'How often a lane is wrong, against how close the call was. To the right pairs that are apart (errors are false positives), to the left pairs that intersect (errors are false negatives), by the exact distance or depth in ulps; in the middle pairs that touch.'),
     h('div', { class: 'controls' },
-      choice('Share', [['log', 'logarithmic'], ['linear', 'linear']], 'log', (value) => { log = value === 'log'; redraw(); })),
+      choice('Share', [['log', 'logarithmic'], ['linear', 'linear']], log ? 'log' : 'linear', (value) => { log = value === 'log'; choose('share', log ? '' : value); redraw(); })),
     picker.element, figure_element, key,
     h('h3', {}, 'From which margin on may a lane be trusted?'),
-    h('p', {}, 'The smallest margin, a power of two, from which on no error was seen; how many pairs lie beyond it; and below which rate errors there are, with 95 % confidence for a threshold fixed before the campaign: the same data chose this one, so run another seed to confirm it.'),
-    thresholds.element,
+    h('p', {}, 'That depends on the pairs: of those chosen, the smallest margin, a power of two, from which on no error was seen; how many pairs lie beyond it; and below which rate errors there are, with 95 % confidence for a threshold fixed before the campaign: the same data chose this one, so run another seed to confirm it.'),
+    h('div', { class: 'controls' }, trust), describes, thresholds.element,
     lazy_details(['The chart’s numbers as a table'], () => {
       const table = sortable_table<Dot>([
         { label: 'Lane', cell: (d) => report.lanes[d.lane].id, order: (d) => d.lane },

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was run, and the answer in sentences.
 import { breakable, code_block, h, lazy_details, section, sentence, type Child } from './dom';
-import { count, percent } from './format';
-import type { Report } from './report';
+import { count, nanoseconds, percent } from './format';
+import { glance } from './glance';
+import type { Costs, Report } from './report';
 import { sortable_table } from './sortable_table';
 
 // "20 lanes: twin, verified on …", one line an evidence word.
@@ -36,11 +37,26 @@ function lanes_table(report: Report) {
   return table.element;
 }
 
+// A row of a lane, a column of a group of strata.
+function costs_table(report: Report, costs: Costs) {
+  const lanes = [...new Set(costs.rows.map((row) => row.lane))];
+  const of = (lane: number, group: number | null) => costs.rows.find((row) => row.lane === lane && row.group === group);
+  const column = (label: string, group: number | null) => ({ label, numeric: true,
+    cell: (lane: number) => { const cost = of(lane, group); return cost ? h('td', { class: 'number', title: `quartiles ${cost.low} to ${cost.high}, of ${count(cost.pairs)} pairs` }, nanoseconds(cost.middle)) : '–'; },
+    order: (lane: number) => of(lane, group)?.middle ?? Infinity });
+  const table = sortable_table<number>([
+    { label: 'Lane', cell: (lane) => breakable(report.lanes[lane].id), order: (lane) => lane },
+    column('all strata', null), ...report.groups.map(({ id }, group) => column(id, group)),
+  ], { caption: 'Cost of a pair, in nanoseconds on one core', class: 'plain costs' });
+  table.show(lanes);
+  return table.element;
+}
+
 export function build_words({ build }: Report['run']) {
   return [`graze ${build.version}, commit ${build.commit}`, build.compiler, build.cuda ?? 'built without CUDA', build.device ?? 'no CUDA device'];
 }
 
-export function run_section(report: Report) {
+export function run_section(report: Report, costs: Costs | null) {
   const { run } = report;
   const [graze, compiler, toolkit, device] = build_words(run);
   const facts: [string, Child][] = [
@@ -51,6 +67,7 @@ export function run_section(report: Report) {
     ['Toolkit', toolkit],
     ['Device', device],
     ['Machine', run.machine],
+    ['Costs measured on', costs?.machine ?? 'not measured'],
     ['Executors', executors(report)],
   ];
   return section('run', 'What was run',
@@ -59,9 +76,23 @@ export function run_section(report: Report) {
     h('p', { class: 'label' }, 'This page again, from the stored results'), code_block(run.map_command, 'the report’s command'),
     lazy_details([`${report.strata.length} strata`], () => strata_table(report), { class: 'more-facts' }).details,
     lazy_details([`${report.lanes.length} lanes`], () => lanes_table(report), { class: 'more-facts' }).details,
+    costs && lazy_details([`What ${new Set(costs.rows.map((row) => row.lane)).size} lanes cost`], () => costs_table(report, costs), { class: 'more-facts' }).details,
     report.missing.length > 0 && h('div', { class: 'notice' }, h('strong', {}, 'What this report lacks'), h('ul', {}, report.missing.map((text) => h('li', {}, sentence(text))))));
 }
 
-export function answer_section(report: Report) {
-  return section('answer', 'The answer', h('ol', { class: 'answer' }, report.answer.map((text) => h('li', {}, sentence(text)))));
+// What is said first stands out: "Use exact/f32/cpu: …".
+function advice(text: string): Child[] {
+  const found = /^(Use|Avoid) [^:]*:/.exec(text);
+  return found ? [h('b', {}, ...breakable(found[0])), text.slice(found[0].length)] : sentence(text);
+}
+
+const kFirst = 2, kBeside = 4;  // sentences above the picture on a phone, and beside it where there is room
+
+export function answer_section(report: Report, costs: Costs | null) {
+  const said = (costs?.answer ?? report.answer).map((text) => h('li', {}, advice(text)));
+  const list = (items: HTMLElement[], start: number) => items.length > 0 && h('ol', { class: 'answer', start }, items);
+  return section('answer', 'The answer',
+    !report.run.complete && h('p', { class: 'notice' }, 'The campaign is not finished: these are its figures so far.'),
+    h('div', { class: 'opening' }, list(said.slice(0, kFirst), 1), glance(report, costs), list(said.slice(kFirst, kBeside), kFirst + 1)),
+    list(said.slice(kBeside), kBeside + 1));
 }

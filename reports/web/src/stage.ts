@@ -10,14 +10,15 @@ import { has_webgl, picture, type Picture } from './view3d';
 const kTurn = Math.PI / 18;
 const kZoom = 1.25;
 
-export function stage(card: Report['cards'][number]): HTMLElement {
+// truth: what there is to see, in words.
+export function stage(card: Report['cards'][number], truth: string): HTMLElement {
   const frame = good_frame(card);
   let shape = shape_of(card, frame), visible = false;
   let drawn: Picture | null = null;
   const canvas = h('canvas', {}), paper = h('div', { class: 'paper' });
   const note = h('span', { class: 'scale-note' });
   const board = h('div', { class: 'board', tabindex: 0, role: 'application', 'aria-roledescription': 'turnable drawing',
-    'aria-label': 'The two triangles. Arrow keys turn the drawing, plus and minus zoom, 0 resets it.' }, canvas, paper);
+    'aria-label': `Two triangles: ${truth}. Arrow keys turn the drawing, plus and minus zoom, 0 resets it.` }, canvas, paper);
 
   const { camera, set } = orbit(board, good_view(shape), draw, draw_paper);
 

@@ -30,7 +30,7 @@ test('the drawing turns by dragging and by keys, and comes back', async ({ page 
 test('every card draws, with one WebGL context for all', async ({ page, report }) => {
   await page.locator('button', { hasText: 'Open all' }).click();
   for (let number = 1; number <= report.cards.length; ++number) {
-    const board = page.locator(`#card-${number} .board`);
+    const board = page.locator(`#kind-${number} .board`);
     await board.scrollIntoViewIfNeeded();
     await expect(async () => {
       const painted = await board.locator('canvas').evaluate((canvas: HTMLCanvasElement) => {
@@ -72,7 +72,7 @@ test('commands, coordinates and snippets are copied', async ({ page, report }) =
   for (const { label, text } of data.snippets) {
     await card.locator('.snippets button', { hasText: new RegExp(`^${label}$`) }).click();
     await card.locator(`[aria-label="Copy the ${label} snippet"]`).click();
-    expect(await clipboard()).toBe(text);
+    expect(await clipboard()).toBe(text.replace('@SOURCE@', () => report.sources[data.kind.subject]));
   }
 });
 

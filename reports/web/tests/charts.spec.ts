@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Report } from '../src/report';
+import { power_of_two } from '../src/format';
+import type { Report, Threshold } from '../src/report';
 import { expect, pixels, test } from './page';
 
 const kLines = '#margin-chart svg g[data-mark="line"] path';
@@ -16,7 +17,7 @@ test('errors against margin: one line for each lane, thresholds with their bound
   for (const d of await page.locator(kLines).evaluateAll((paths) => paths.map((path) => path.getAttribute('d')))) expect(d).not.toContain('NaN');
   await expect(page.locator('.thresholds tbody tr')).toHaveCount(published.length);
   const certified = published.flatMap((lane) => {
-    const t = report.thresholds.find((one) => report.lanes[one.lane] === lane)!;
+    const t = report.thresholds.find((one) => report.lanes[one.lane] === lane && one.group === null && one.stratum === null)!;
     return [t.disjoint, t.intersects].filter((side) => side.exponent !== null && side.above > 0);
   });
   const titles = await page.locator('#margin-chart title').allTextContents();
@@ -30,7 +31,7 @@ test('lanes are picked, and the share is drawn on either axis', async ({ page, r
   await expect(page.locator(kLines)).toHaveCount(lines_of(report, (lane) => !lane.exact && lane.target === 'cpu'));
   expect(await pixels(page.locator('#margin-chart'))).not.toBe(drawn);
   await page.locator('#margins .chips button', { hasText: /^f64$/ }).click();
-  await page.locator('#margins select').selectOption('linear');
+  await page.locator('#margins select').first().selectOption('linear');
   await expect(page.locator('#margin-chart')).toContainText('50 %');
 });
 
@@ -41,13 +42,39 @@ test('pointing at the chart tells the lane, the margin and the interval', async 
   await expect(page.locator('#margin-chart g[aria-label="tip"]')).toContainText('95 %');
 });
 
-test('extremes: a cell for every exponent that has pairs', async ({ page, report }) => {
+test('trust is asked for a group of strata or a stratum', async ({ page, report }) => {
+  const shown = async () => (await page.locator('.thresholds tbody tr').allInnerTexts()).map((row) => row.split(/\t/));
+  const words = (t: Threshold) => (t.exponent !== null ? power_of_two(t.exponent) : t.largest === null ? 'no such pairs' : `wrong at ${power_of_two(t.largest)}`);
+  const expected = (is: (t: Report['thresholds'][number]) => boolean) => report.thresholds.filter((t) => {
+    const lane = report.lanes[t.lane];
+    return is(t) && !lane.exact && lane.scalar === 'f32' && lane.target === 'cpu';
+  }).map((t) => [words(t.disjoint), words(t.intersects)]);
+  const trust = page.locator('#margins select').nth(1);
+  const found: string[] = [];
+  for (const [value, is] of [
+    [report.groups[0].id, (t) => t.group === 0], ['all', (t) => t.group === null && t.stratum === null], [`stratum ${report.strata[1].id}`, (t) => t.stratum === 1],
+  ] as [string, (t: Report['thresholds'][number]) => boolean][]) {
+    await trust.selectOption(value);
+    expect((await shown()).map((row) => [row[1], row[4]])).toEqual(expected(is));
+    found.push(JSON.stringify(expected(is)));
+  }
+  expect(new Set(found).size).toBe(3);
+  await page.reload();
+  await expect(trust).toHaveValue(`stratum ${report.strata[1].id}`);
+});
+
+test('extremes: a cell for every exponent that has pairs, thin where they are few', async ({ page, report }) => {
   for (const kind of ['scale', 'offset'] as const) {
     const rows = report.extremes.filter((row) => row.kind === kind && report.lanes[row.lane].target === 'cpu');
     const cells = rows.reduce((sum, row) => sum + row.cells.length, 0);
     if (!cells) continue;
     await page.locator(`#extremes-${kind}`).scrollIntoViewIfNeeded();
     await expect(page.locator(`#extremes-${kind} g[data-mark="rect"] rect`)).toHaveCount(cells);
+    const few = rows.reduce((sum, row) => sum + row.cells.filter((cell) => cell.wrong.of < 100).length, 0);
+    expect(few).toBeGreaterThan(0);
+    const heights = await page.locator(`#extremes-${kind} g[data-mark="rect"] rect`).evaluateAll((rects) => rects.map((rect) => rect.getBoundingClientRect().height));
+    expect(heights.filter((height) => height < 8)).toHaveLength(few);
+    await expect(page.locator(`#extremes-${kind} svg`).first()).toHaveAttribute('aria-label', /(at most [0-9.]+ %|none wrong)/);
     const fills = await page.locator(`#extremes-${kind} g[data-mark="rect"] rect`).evaluateAll((rects) => [...new Set(rects.map((rect) => getComputedStyle(rect).fill))]);
     expect(fills.length).toBeGreaterThan(3);
   }

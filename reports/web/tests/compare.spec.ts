@@ -3,7 +3,7 @@ import { pathToFileURL } from 'node:url';
 import { expect, test } from '@playwright/test';
 import type { Report } from '../src/report';
 
-test('two campaigns compared: rates that changed, signatures gained and lost', async ({ page }) => {
+test('two campaigns compared: what changed on top, rates, kinds gained and lost', async ({ page }) => {
   test.skip(!process.env.GRAZE_COMPARE, 'GRAZE_REPORT names a single report');
   const said: string[] = [];
   page.on('console', (message) => said.push(message.text()));
@@ -12,14 +12,21 @@ test('two campaigns compared: rates that changed, signatures gained and lost', a
   const { compare } = JSON.parse((await page.locator('#report').textContent())!) as Report;
   const section = page.locator('#compare');
   await expect(section).toContainText(`seed ${compare!.other.seed}`);
+  await expect(section.locator('.headline')).toHaveText(compare!.headline);
+  expect(compare!.differences[0]).toContain('They differ in seed');
+  await expect(section.locator('.differences li')).toHaveText(compare!.differences);
+  const tops = await section.locator('.headline, .differences, h3').evaluateAll((all) => all.map((one) => one.className || one.localName));
+  expect(tops.slice(0, 3)).toEqual(['headline', 'differences', 'h3']);
   const changed = compare!.rates.filter((rate) => rate.changed).length;
   const rows = section.locator('table').first().locator('tbody tr');
   await expect(rows).toHaveCount(Math.max(1, Math.min(60, changed)));  // one that says so, where there is none
   await section.locator('input[type=checkbox]').check();
   await expect(rows).toHaveCount(Math.min(60, compare!.rates.length));
-  expect(compare!.gained.length + compare!.lost.length).toBeGreaterThan(0);
-  await expect(section).toContainText(`Signatures gained: ${compare!.gained.length.toLocaleString('en-US')}`);
-  await expect(section).toContainText(`Signatures lost: ${compare!.lost.length.toLocaleString('en-US')}`);
+  expect(compare!.kinds_compared).toBe(true);
+  for (const [what, kinds] of [['gained', compare!.gained], ['lost', compare!.lost]] as const) {
+    await expect(section).toContainText(`Kinds of failure ${what}: ${kinds.length ? kinds.length.toLocaleString('en-US') : 'none'}`);
+    for (const { key } of kinds.slice(0, 5)) await expect(section).toContainText(key);
+  }
   await page.setViewportSize({ width: 375, height: 740 });
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(375);
   expect(said).toEqual([]);

@@ -22,6 +22,7 @@ export default function make_report() {
   run('minimize', 'campaign', '--executor', 'twin');
   run('report', 'campaign');
   fuzz('2', 'other');
+  run('minimize', 'other', '--executor', 'twin');
   run('report', '--compare', 'other', 'campaign');
   process.env.GRAZE_REPORT = join(folder, 'campaign', 'report.html');
   process.env.GRAZE_COMPARE = join(folder, 'campaign', 'compare.html');

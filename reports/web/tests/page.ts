@@ -2,11 +2,11 @@
 // The page under test, watched: it must fetch nothing and leave the console clean, whatever a test does with it.
 import { pathToFileURL } from 'node:url';
 import { expect, test as base, type Locator, type Page } from '@playwright/test';
-import type { Report } from '../src/report';
+import type { Costs, Report } from '../src/report';
 
 export const url = () => pathToFileURL(process.env.GRAZE_REPORT!).href;
 
-export const test = base.extend<{ report: Report; watched: void }>({
+export const test = base.extend<{ report: Report; costs: Costs | null; watched: void }>({
   watched: [async ({ page }, use) => {
     const fetched: string[] = [], said: string[] = [];
     page.on('request', (request) => {
@@ -24,6 +24,9 @@ export const test = base.extend<{ report: Report; watched: void }>({
   report: async ({ page, watched: _ }, use) => {
     await use(JSON.parse((await page.locator('#report').textContent())!) as Report);
   },
+  costs: async ({ page, watched: _ }, use) => {
+    await use(JSON.parse((await page.locator('#costs').textContent())!) as Costs | null);
+  },
 });
 
 export { expect };
@@ -34,7 +37,7 @@ export async function pixels(element: Locator): Promise<string> {
 }
 
 export async function open_card(page: Page, number: number): Promise<Locator> {
-  const card = page.locator(`#card-${number}`);
+  const card = page.locator(`#kind-${number}`);
   if ((await card.getAttribute('open')) === null) await card.locator('summary').first().click();
   await card.locator('.board').scrollIntoViewIfNeeded();
   return card;

@@ -84,15 +84,15 @@ test('the CPU and CUDA without contraction are shown as equal where they are', a
   await expect(table.locator('td.bad')).toHaveCount(differ.length);
 });
 
-test('signatures sort and filter, and lead to their card', async ({ page, report }) => {
+test('signatures sort and filter, and lead to their kinds', async ({ page, report }) => {
   const rows = page.locator('.signatures tbody tr');
-  await page.locator('#signatures select').first().selectOption('moller_1997');
+  await page.locator('#kinds select').first().selectOption('moller_1997');
   for (const text of await rows.locator('td:nth-child(4)').allTextContents()) expect(text).toBe('moller_1997');
-  await page.locator('#signatures select').first().selectOption('');
-  await page.locator('#signatures input[type=search]').fill('coplanar');
+  await page.locator('#kinds select').first().selectOption('');
+  await page.locator('#kinds input[type=search]').fill('coplanar');
   expect(await rows.count()).toBeGreaterThan(0);
   for (const text of await rows.locator('td:nth-child(7)').allTextContents()) expect(text).toBe('coplanar');
-  await page.locator('#signatures input[type=search]').fill('');
+  await page.locator('#kinds input[type=search]').fill('');
   const pairs = page.locator('.signatures thead button', { hasText: 'Pairs' });
   await pairs.click();
   await expect(rows.first().locator('td:nth-child(2)')).toHaveText(report.signatures[0].count.toLocaleString('en-US'));
@@ -102,9 +102,11 @@ test('signatures sort and filter, and lead to their card', async ({ page, report
   await pairs.click();
   const last = report.cards.length;
   const more = page.locator('#signatures .more');
-  const link = page.locator('.signatures .link', { hasText: new RegExp(`^card ${last}$`) });
+  const link = page.locator('.signatures .link', { hasText: new RegExp(`^kind ${last}$`) }).first();
   while (!(await link.count()) && (await more.isVisible())) await more.click();
+  const row = report.signatures.find(({ cards }) => cards.includes(last - 1))!;
+  await expect(rows.filter({ has: page.locator('.link', { hasText: new RegExp(`^kind ${last}$`) }) }).first().locator('.link')).toHaveText(row.cards.map((card) => `kind ${card + 1}`));
   await link.click();
-  await expect(page.locator(`#card-${last}`)).toHaveAttribute('open', '');
-  await expect(page.locator(`#card-${last} .truth`).first()).toBeInViewport();
+  await expect(page.locator(`#kind-${last}`)).toHaveAttribute('open', '');
+  await expect(page.locator(`#kind-${last} .truth`).first()).toBeInViewport();
 });

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/audit.h"
+
+#include <algorithm>
+
+namespace graze::analysis {
+namespace {
+
+Settled both(bool right_without, bool wrong_alone) {
+  return !right_without ? Settled::not_without : wrong_alone ? Settled::yes : Settled::not_alone;
+}
+
+// Where the sites are not known, as those of the host's compiler are not: all of them.
+Settled of_all_contraction(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
+  const Lane& row = *lane.lane;
+  if (lane.evidence == Evidence::none) return Settled::unknown;
+  return both(run_led(row, pair, Contraction::none, {}).verdict == truth,
+              oracle::run_limited(row.algorithm, row.scalar, pair, {}, lane.rule).verdict != truth);
+}
+
+Settled of_contraction(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
+  if (lane.contractions.sites.empty()) return of_all_contraction(lane, pair, truth);
+  const std::span<const cuda::ContractionSite> all = cuda::contraction_sites(*lane.lane);
+  std::vector<std::uint64_t> named(all.size() / 64 + 1), others(all.size() / 64 + 1);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool is_named =
+        std::any_of(lane.contractions.sites.begin(), lane.contractions.sites.end(),
+                    [&](const cuda::ContractionSite& site) { return site.ptx_line == all[i].ptx_line; });
+    (is_named ? named : others)[i / 64] |= std::uint64_t{1} << (i % 64);
+  }
+  return both(cuda::decide_fusing(*lane.lane, pair, others) == truth,
+              cuda::decide_fusing(*lane.lane, pair, named) != truth);
+}
+
+Settled of_range(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
+  const Lane& row = *lane.lane;
+  const auto right_with = [&](oracle::Limits limits) {
+    return oracle::run_limited(row.algorithm, row.scalar, pair, limits, lane.rule).verdict == truth;
+  };
+  const oracle::Limits alone{lane.cause == Cause::overflow, lane.cause == Cause::underflow};
+  const oracle::Limits other{lane.cause == Cause::underflow, lane.cause == Cause::overflow};
+  return both(right_with({}) && right_with(other),
+              oracle::decide_exactly_but(row.algorithm, row.scalar, pair, lane.exactly.bits, alone) != truth);
+}
+
+Settled of_rounding(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
+  if (lane.deciding.comparisons.empty()) return Settled::unknown;
+  const Lane& row = *lane.lane;
+  std::vector<Correction<double>> corrections;
+  for (const Decider& decider : lane.deciding.comparisons) corrections.push_back(decider.to_exact);
+  const Verdict alone = oracle::run_limited(row.algorithm, row.scalar, pair, {}, Contraction::none).verdict;
+  return both(run_led(row, pair, lane.rule, {}, corrections).verdict == truth, alone != truth);
+}
+
+}  // namespace
+
+Settled audit(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
+  if (lane.cause == Cause::logic)
+    return both(true, lane.exactly.settled && oracle::decide_exactly(lane.lane->algorithm, pair).verdict != truth);
+  if (lane.cause == Cause::contraction) return of_contraction(lane, pair, truth);
+  if (lane.cause == Cause::fast_math || lane.evidence == Evidence::none) return Settled::unknown;
+  return lane.cause == Cause::rounding ? of_rounding(lane, pair, truth) : of_range(lane, pair, truth);
+}
+
+}  // namespace graze::analysis

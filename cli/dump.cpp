@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze dump`: the pairs of a stratum or a campaign with their truth, as a file of pairs or a table.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <iostream>
+
+#include "cli/commands.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "corpus/pair_format.h"
+#include "fuzz/campaign/result_files.h"
+#include "strata/mesh.h"
+#include "strata/pair_source.h"
+
+namespace graze::cli {
+
+using fuzz::Json;
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Format { pairs, csv };
+
+struct DumpOptions {
+  std::string name;
+  Format format = Format::csv;
+  std::uint64_t pairs = 0;  // 0: 1000 of a stratum, all of a campaign
+  LaneOptions lanes;
+};
+
+struct Dumped {
+  std::uint64_t seed = 1;
+  std::vector<strata::PairSource> sources;
+};
+
+// STRATUM or STRATUM:SEED; the stratum may be a pattern.
+Dumped of_stratum(const DumpOptions& options) {
+  const std::size_t colon = std::min(options.name.find(':'), options.name.size());
+  Dumped dumped;
+  if (colon < options.name.size()) {
+    const std::string seed = options.name.substr(colon + 1);
+    const std::optional<std::uint64_t> value = parse_whole(seed);
+    if (!value || *value > kMostWhole)
+      throw UsageError(fmt::format("expected STRATUM:SEED, found '{}' as the seed", printable(seed)));
+    dumped.seed = *value;
+  }
+  dumped.sources =
+      strata::stratum_sources(dumped.seed, options.pairs > 0 ? options.pairs : 1000, {options.name.substr(0, colon)});
+  return dumped;
+}
+
+// The campaign's pairs, drawn or read again; of an unfinished one also those that are not judged yet.
+Dumped of_campaign(const DumpOptions& options) {
+  const fs::path file = fs::path(options.name) / "summary.json";
+  const Json summary = Json::parse(fuzz::read_whole(file), nullptr, false);
+  if (!summary.is_object())
+    throw std::runtime_error(options.name + ": expected a campaign's directory with summary.json, found none");
+  Dumped dumped;
+  try {
+    const Json& spec = summary.at("spec");
+    dumped.seed = spec.at("seed");
+    std::uint64_t pairs = spec.at("pairs");
+    std::optional<strata::PairSource> of_mesh;
+    if (spec.contains("mesh")) {
+      const std::vector<std::string> files = spec.at("mesh").at("files");
+      const auto mesh = std::make_shared<strata::MeshPairs>(
+          strata::read_mesh_pairs(files.at(0), files.size() > 1 ? std::optional<fs::path>(files[1]) : std::nullopt));
+      if (fmt::format("{:016x}", mesh->content_hash) != spec.at("mesh").at("content").get<std::string>())
+        throw std::runtime_error(files[0] + ": expected the mesh of the campaign, found another");
+      of_mesh = {"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }};
+      pairs -= std::min(pairs, of_mesh->pairs);
+    }
+    std::vector<std::string> strata = spec.at("strata");
+    std::erase(strata, "mesh");
+    if (!strata.empty()) dumped.sources = strata::stratum_sources(dumped.seed, pairs, strata);
+    if (of_mesh) dumped.sources.push_back(*of_mesh);
+  } catch (const Json::exception&) {
+    throw std::runtime_error(file.string() + ": expected a campaign's summary, found something else");
+  }
+  if (options.pairs > 0) {  // the same share of every source, the first ones taking the rest
+    for (std::size_t s = 0; s < dumped.sources.size(); ++s) {
+      const std::uint64_t share = options.pairs / dumped.sources.size() + (s < options.pairs % dumped.sources.size());
+      dumped.sources[s].pairs = std::min(dumped.sources[s].pairs, share);
+    }
+  }
+  return dumped;
+}
+
+// The lane's name as a field's key: moller_1997.f32.cpu.
+std::string key_of(const Lane& lane) {
+  std::string key = lane.id;
+  for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ? c : '.';
+  return key;
+}
+
+void print_header(Format format, const std::vector<const Lane*>& lanes) {
+  if (format == Format::pairs) return corpus::write_header(std::cout);
+  std::cout << "stratum,seed,index";
+  for (int i = 0; i < kCoordinates; ++i) std::cout << ',' << (i < 9 ? 'a' : 'b') << i / 3 % 3 << "xyz"[i % 3];
+  std::cout << ",truth,contact,margin,margin_ulps";
+  for (const Lane* lane : lanes) std::cout << ',' << lane->id;
+  std::cout << '\n';
+}
+
+void print_row(Format format, const corpus::Entry& entry) {
+  if (format == Format::pairs) return corpus::write_entry(std::cout, entry);
+  for (int i = 0; i < 3; ++i) std::cout << (i > 0 ? "," : "") << entry.fields[static_cast<std::size_t>(i)].second;
+  // The shortest decimals whose nearest double, as their nearest float32, is the very number.
+  for (int i = 0; i < kCoordinates; ++i) std::cout << ',' << fmt::format("{}", double{coordinates(entry.pair)[i]});
+  for (std::size_t i = 3; i < entry.fields.size(); ++i) std::cout << ',' << entry.fields[i].second;
+  std::cout << '\n';
+}
+
+void dump(const DumpOptions& options) {
+  fuzz::LanesUnderTest under_test;
+  if (!options.lanes.globs.empty()) under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
+  const bool is_path = fs::is_directory(options.name) || options.name.find('/') != std::string::npos;
+  const Dumped dumped = is_path ? of_campaign(options) : of_stratum(options);
+  print_header(options.format, under_test.lanes);
+  for (const strata::PairSource& source : dumped.sources) {
+    for (std::uint64_t index = 0; index < source.pairs && std::cout; ++index) {
+      corpus::Entry entry{
+          source.pair(index),
+          {{"stratum", source.id}, {"seed", std::to_string(dumped.seed)}, {"index", std::to_string(index)}}};
+      for (auto& field : fuzz::truth_fields(oracle::truth(entry.pair))) entry.fields.push_back(std::move(field));
+      if (!under_test.lanes.empty()) {
+        const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
+        for (std::size_t l = 0; l < verdicts.size(); ++l)
+          entry.fields.emplace_back(key_of(*under_test.lanes[l]), name(verdicts[l]));
+      }
+      print_row(options.format, entry);
+    }
+  }
+}
+
+}  // namespace
+
+void add_dump(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand(
+      "dump", "Write the pairs of a stratum or a campaign with truth, contact and margin, for other programs");
+  command->footer("Example: graze dump near_edge_edge:1 --pairs 100 --lanes '*/f32/cpu'");
+  auto options = std::make_shared<DumpOptions>();
+  command->add_option("source", options->name, "A stratum, STRATUM:SEED (seed 1 without it), or a campaign's directory")
+      ->required();
+  static_assert(static_cast<int>(Format::pairs) == 0 && static_cast<int>(Format::csv) == 1);
+  command
+      ->add_option("--format", options->format,
+                   "csv: a table with a header line; pairs: what `graze check` reads, bit for bit")
+      ->transform(one_of({"pairs", "csv"}, Chosen::place))
+      ->option_text("pairs|csv");
+  command->add_option("--pairs", options->pairs, "How many, in all; by default 1000 of a stratum, all of a campaign")
+      ->transform(whole_number(1, kMostWhole));
+  add_lane_options(*command, options->lanes);
+  command->callback([options] { dump(*options); });
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// What people type: wrong words, counts, pairs as they are pasted, files that are missing, and the commands they are
+// given back.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kTouching = "0 0 0 4 0 0 0 4 0  1 1 0 1 2 4 2 1 4";
+
+class Inputs : public CommandTest {};
+
+TEST_F(Inputs, WrongUseExitsWithTwo) {
+  expect_error("graze", 2, "expected a verb (see `graze --help`), found none");
+  expect_error("graze fuzz --pairs many", 2, "--pairs");
+  expect_error("graze nosuch", 2, "found 'nosuch'");
+  expect_error("graze fuzz --pairs 0", 2, "found '0'");
+  expect_error("graze fuzz --pairs -5", 2, "found '-5'");
+  expect_error("graze fuzz --seed 99999999999999999999999", 2, "expected a whole number");
+  expect_error("graze fuzz --threads -1", 2, "from 0 to 4096");
+  expect_error("graze fuzz --executor gpu", 2, "gpu");
+  expect_error("graze repro 'near_*:1:0'", 2, "expected one stratum");
+  expect_error("graze fuzz --lanes 'moler_*'", 2, "found 'moler_*'");
+  expect_error("graze fuzz --strata 'uniform,nowhere'", 2, "found 'nowhere'");
+  expect_error("echo | graze check - --lanes nothing", 2, "found 'nothing'");
+  expect_error("graze repro uniform:x:3", 2, "found 'x'");
+  expect_error("graze repro nowhere:1:3", 2, "found 'nowhere'");
+  expect_error("graze fuzz --pairs 100 --out here > /dev/null && graze fuzz --pairs 200 --out here", 2,
+               "here: holds another campaign: expected pairs 200, found 100; choose another --out\n");
+}
+
+// A file or a folder that is missing is a failed run, whatever the verb; wrong use is what the command line gets wrong.
+TEST_F(Inputs, MissingFilesAndFoldersAreTheSameFailure) {
+  for (const char* verb : {"check", "repro", "explain", "map", "minimize", "report", "corpus add", "dump",
+                           "report --out r.html --from", "fuzz --mesh", "corpus list --corpus"}) {
+    for (const char* name : {"no/where", "no/where.pairs"})
+      expect_error(std::string("graze ") + verb + ' ' + name, 1, std::string(name));
+    expect_error("mkdir -p empty; graze " + std::string(verb) + " empty", 1, "empty");
+  }
+}
+
+// What cannot be read: never a library's words for it.
+TEST_F(Inputs, FoldersAndDevicesInAFilesPlaceAreNamed) {
+  expect_error("mkdir d; graze check d", 1, "d: expected a file of pairs, found a folder");
+  expect_error("graze fuzz --mesh d", 1, "d: expected");
+  expect_error("graze report --from d --out r.html", 1, "d: expected");
+  for (const char* verb : {"check", "explain", "fuzz --mesh", "report --out r.html --from"}) {
+    const Ran ran = shell(std::string("graze ") + verb + " /proc/self/mem");  // opens, but cannot be read
+    EXPECT_EQ(ran.status, 1) << verb;
+    EXPECT_NE(ran.err.find("/proc/self/mem"), std::string::npos) << verb << ran.err;
+    EXPECT_EQ(ran.err.find("basic_filebuf"), std::string::npos) << verb << ran.err;
+    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+  }
+}
+
+TEST_F(Inputs, WrongWordsAreNamedWithWhatIsNearest) {
+  expect_error("graze --bogus", 2, "expected a verb (see `graze --help`), found '--bogus'\n");
+  expect_error("graze minimise x", 2, "found 'minimise'; did you mean 'minimize'?");
+  expect_error("graze fuzz --lanes 'moler_*'", 2, "found 'moler_*'; did you mean 'moller_1997/f32/cpu'?");
+  expect_error("graze fuzz --strata near_edge_egde", 2, "found 'near_edge_egde'; did you mean 'near_edge_edge'?");
+  expect_error("graze fuzz --lanes ,", 2, "--lanes: expected patterns with commas between, found ','");
+  expect_error("graze fuzz --strata 'uniform,,thesis'", 2, "expected patterns with commas between");
+  expect_error("graze fuzz --executor nope", 2, "expected auto, device, twin or both, found 'nope'");
+  expect_error("graze fuzz --engine 1", 2, "expected auto, cpu or gpu, found '1'");
+  expect_error("graze repro uniform:1:1 --emit nope", 2, "obj, cgal or gtest, found 'nope'");
+  expect_error("echo | graze check - --truth-only --lanes '*'", 2, "--lanes");
+}
+
+TEST_F(Inputs, CountsAreWhatPeopleWrite) {
+  for (const char* count : {"2000", "2_000", "2e3", "2k", "0.2e4", "0.002M"}) {
+    const Ran ran =
+        shell(std::string("graze fuzz --strata uniform --lanes exact/f32/cpu --json --out c --pairs ") + count);
+    ASSERT_EQ(ran.status, 0) << count << ran.err;
+    EXPECT_EQ(Json::parse(ran.out)["spec"]["pairs"], 2000) << count;
+  }
+  for (const char* count : {"1.5", "1e", "_1", "1__0", "1_", "1e99", "1x", "kM", "1e-1", ".5M"})
+    expect_error(std::string("graze fuzz --pairs ") + count, 2, std::string("found '") + count + "'");
+}
+
+TEST_F(Inputs, ForeignTextDoesNotReachTheTerminal) {
+  std::ofstream(shell.folder / "a:b:c")
+      << kTouching << R"( | name="a\x1b[31mb" stratum="\x1b]0;t" seed=1 index=2 signature="\x07/x:")";
+  for (const char* verb : {"check", "repro", "explain", "repro --emit obj", "repro --emit python"}) {
+    const Ran ran = shell(std::string("graze ") + verb + " a:b:c");  // the file, for there is one
+    EXPECT_LE(ran.status, 1) << verb << ran.err;
+    EXPECT_EQ((ran.out + ran.err).find_first_of("\x1b\x07"), std::string::npos) << verb << ran.out;
+  }
+  EXPECT_NE(shell("graze check a:b:c").out.find("a\\x1b[31mb"), std::string::npos);
+}
+
+// Decimals that float32 rounds to another pair: both truths are told.
+TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
+  std::ofstream(shell.folder / "near.pairs")
+      << "0 0 1 1 0 1 0 1 1  0 0 1.00000000001 1 0 1.00000000001 0 1 1.00000000001\n";
+  const std::string note = "as written: disjoint, 1e-11 apart; as stored in float32: they share an area";
+  for (const std::string command :
+       {"graze check near.pairs", "graze check near.pairs --json", "graze explain near.pairs",
+        "graze minimize near.pairs", "graze corpus add near.pairs"}) {
+    const Ran ran = shell(command);
+    EXPECT_NE((ran.out + ran.err).find(note), std::string::npos) << command << ran.out << ran.err;
+    expect_error(command + " --exact-input", 2,
+                 "near.pairs:1: expected numbers that float32 holds as written (--exact-input), found "
+                 "\"1.00000000001\" as number 12");
+  }
+  // A double in hex that float32 cannot hold.
+  const Ran hex = shell(
+      "echo '0 0 1 1 0 1 0 1 1  0 0 0x1.0000000000001p0 1 0 0x1.0000000000001p0 0 1 "
+      "0x1.0000000000001p0' | graze check -");
+  EXPECT_NE(hex.out.find("as written: disjoint, 2.22e-16 apart; as stored in float32: they share an area"),
+            std::string::npos)
+      << hex.out;
+  // Rounding that changes nothing is not worth a word.
+  expect_done("echo '0.1 0 0 4 0 0 0 4 0  1 1 0.3 1 2 4 2 1 4' > p; graze check p > out; ! grep -q written out");
+  expect_done(std::string("echo '") + kTouching + "' | graze check - --exact-input");
+}
+
+// As people paste it, in every verb that takes a pair: here two segments that meet in a point.
+TEST_F(Inputs, PastedPairsAreReadByEveryVerb) {
+  const std::pair<const char*, const char*> pasted[] = {
+      {"commas", "0, 0, 0, 4, 0, 0, 2, 0, 0, 1, 0, 0, 1, 0, 4, 1, 0, 2\n"},
+      {"c",
+       "float t[2][3][3] = {{{0.f, 0.f, 0.f}, {4.f, 0.f, 0.f}, {2.f, 0.f, 0.f}},\n"
+       "                    {{1.f, 0.f, 0.f}, {1.f, 0.f, 4.f}, {1.f, 0.f, 2.f}}};\n"},
+      {"lines", "0 0 0\n4 0 0\n2 0 0\n1 0 0\n1 0 4\n1 0 2\n"},
+      {"obj", "v 0 0 0\nv 4 0 0\nv 2 0 0\nv 1 0 0\nv 1 0 4\nv 1 0 2\nf 1 2 3\nf 4 5 6\n"},
+      {"python", "[[(0, 0, 0), (4, 0, 0), (2, 0, 0)], [(1, 0, 0), (1, 0, 4), (1, 0, 2)]]\n"}};
+  for (const auto& [name, text] : pasted) {
+    std::ofstream(shell.folder / name) << text;
+    for (const std::string verb : {"check", "repro", "explain"}) {
+      const Ran ran = shell("graze " + verb + ' ' + name);
+      EXPECT_NE(ran.out.find("truth: intersects, contact point"), std::string::npos) << verb << name << ran.err;
+    }
+    const std::string file = name;
+    expect_done("graze repro " + file + " --emit obj && graze minimize " + file + " --out m && graze explain m && " +
+                "graze map " + file + " --lanes 'moller_1997/f32/cpu' --out m.png");
+    const Ran added = shell("graze corpus add " + file);
+    EXPECT_TRUE(added.out.find(name == std::string("commas") ? " new, 0 seen" : "0 new, ") != std::string::npos)
+        << added.out << added.err;
+  }
+}
+
+TEST_F(Inputs, AByteOrderMarkIsSkipped) {
+  std::ofstream(shell.folder / "bom.pairs") << "\xef\xbb\xbf" << kTouching << '\n';
+  expect_done("graze check bom.pairs");
+}
+
+TEST_F(Inputs, PrintedCommandsRunAsTheyStand) {
+  const Ran ran = shell("graze fuzz --pairs 300 --strata lattice --lanes '*/f32/cpu' --out 'my campaign'");
+  const std::size_t at = ran.out.find("again: ");
+  ASSERT_NE(at, std::string::npos) << ran.out;
+  expect_done(ran.out.substr(at + 7, ran.out.find('\n', at) - at - 7));
+  EXPECT_TRUE(ran.out.ends_with("\nNext: graze minimize 'my campaign'\n")) << ran.out;
+  // Each ends with the next one.
+  const Ran minimized = shell("graze minimize 'my campaign'");
+  EXPECT_TRUE(minimized.out.ends_with("\nNext: graze report 'my campaign'\n")) << minimized.out << minimized.err;
+  EXPECT_TRUE(shell("graze repro exact_contact:1:1").out.ends_with("\nNext: graze minimize exact_contact:1:1\n"));
+  EXPECT_TRUE(shell("graze repro uniform:1:1 --lanes 'exact/*'").out.find("Next:") == std::string::npos);
+  EXPECT_TRUE(shell("graze minimize exact_contact:1:1 --lanes 'guigue_*/f32/cpu' --out 'a b'")
+                  .out.ends_with("\nNext: graze explain 'a b'\n"));
+  EXPECT_TRUE(shell("graze explain 'a b' --lanes 'guigue_*/f32/cpu'").out.ends_with("\nNext: graze map 'a b'\n"));
+  EXPECT_TRUE(shell("graze check 'a b' --lanes 'guigue_*/f32/cpu'").out.ends_with("\nNext: graze explain 'a b'\n"));
+  EXPECT_EQ(shell("graze check 'a b' --lanes 'exact/*'").out.find("Next:"), std::string::npos);
+  EXPECT_TRUE(shell("graze map 'a b' --lanes 'guigue_*/f32/cpu' --out m.png")
+                  .out.ends_with("\nNext: graze repro 'a b' --emit cpp\n"));
+  expect_done("graze repro 'a b' --emit cpp > bug.cpp");
+  EXPECT_TRUE(shell("graze report 'my campaign'").out.ends_with("\nNext: graze corpus add 'my campaign'\n"));
+  EXPECT_TRUE(shell("graze corpus add 'my campaign' --top 1 --corpus 'its corpus'")
+                  .out.ends_with("\nNext: graze corpus verify --corpus 'its corpus'\n"));
+  EXPECT_TRUE(shell("graze corpus list --corpus 'its corpus'")
+                  .out.ends_with("\nNext: graze corpus verify --corpus 'its corpus'\n"));
+  expect_done("graze corpus verify --corpus 'its corpus'");
+  for (const char* verb : {"lanes", "strata"}) {  // what they print runs
+    const std::string table = shell(std::string("graze ") + verb).out;
+    expect_done(table.substr(table.find("Next: ") + 6, table.size() - table.find("Next: ") - 7) + " --pairs 50 --out " +
+                verb);
+  }
+  // What another program reads has no such line.
+  EXPECT_EQ(shell("graze check 'a b' --json; graze explain 'a b' --json; graze lanes --json; graze dump lattice")
+                .out.find("Next"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace graze::cli

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze kinds`: what a campaign's failures have in common, a kind at a time.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/screen.h"
+#include "fuzz/files.h"
+#include "fuzz/minimise/kinds.h"
+#include "reports/report.h"
+#include "reports/terminal.h"
+#include "reports/text_table.h"
+
+namespace graze::cli {
+namespace {
+
+using fuzz::Json;
+
+// "f32/cpu f32/cpu-fma" of lanes' ids.
+std::string lanes_within(const Json& lanes, const std::string& subject) {
+  std::string names;
+  for (const Json& id : lanes) names += (names.empty() ? "" : " ") + id.get<std::string>().substr(subject.size() + 1);
+  return names;
+}
+
+// "near_edge_edge 70 %, uniform 30 %", the commonest first.
+std::string shares(const Json& counts, std::size_t most) {
+  std::vector<std::pair<std::string, std::uint64_t>> rows;
+  double sum = 0;
+  for (const auto& [name, count] : counts.items()) {
+    rows.emplace_back(name, count.get<std::uint64_t>());
+    sum += static_cast<double>(rows.back().second);
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& l, const auto& r) { return l.second > r.second; });
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, rows.size()); ++i)
+    text += fmt::format("{}{} {:.0f} %", i == 0 ? "" : ", ", rows[i].first,
+                        100 * static_cast<double>(rows[i].second) / sum);
+  return text + (rows.size() > most ? fmt::format(", {} more", rows.size() - most) : "");
+}
+
+void print(const Json& kind, std::size_t number, const reports::Screen& screen) {
+  const auto line = [&](int indent, const std::string& text) {
+    return reports::wrapped(text, screen.columns, indent, indent + 2);
+  };
+  const std::string subject = kind["subject"], where = kind["line"], file = kind["simplest"]["case"];
+  const std::string title =
+      fmt::format("kind-{}  {}: {}{}, {} pairs", number, subject, kind["cause"].get<std::string>(),
+                  where.empty() ? "" : " at " + where, kind["shape"].get<std::string>());
+  fmt::print("{}", reports::bold(screen, line(0, title)));
+  fmt::print("{}", line(2, fmt::format("{} pairs of {} signatures; wrong: {}",
+                                       reports::grouped(kind["pairs"].get<std::uint64_t>()),
+                                       reports::grouped(kind["signatures"].get<std::uint64_t>()),
+                                       lanes_within(kind["lanes"], subject))));
+  const std::uint64_t settled = kind["settled"][0], of = kind["settled"][1];
+  if (settled < of)
+    fmt::print("{}", line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of)));
+  fmt::print("{}", line(2, "margins: " + shares(kind["margins"], 4)));
+  if (!kind["strata"].empty()) fmt::print("{}", line(2, "strata of the kept pairs: " + shares(kind["strata"], 4)));
+  fmt::print(
+      "{}", line(2, fmt::format("simplest: {}, worst: {} ({:.4g} ulps)", file, kind["worst"]["from"].get<std::string>(),
+                                kind["worst"]["margin_ulps"].get<double>())));
+  for (const Json& text : kind["simplest"]["sentences"]) {
+    fmt::print("{}", line(2, text.get<std::string>()));
+    break;
+  }
+}
+
+// Of each cause, how many of the lanes looked at stood up to the audit (analysis/audit.h).
+void print_audit(const Json& kinds, const reports::Screen& screen) {
+  std::map<std::string, std::array<std::uint64_t, 2>> of_cause;
+  for (const Json& kind : kinds) {
+    auto& sum = of_cause[kind.at("cause")];
+    for (std::size_t i = 0; i < 2; ++i) sum[i] += kind.at("settled").at(i).get<std::uint64_t>();
+  }
+  reports::TextTable table({{"cause", reports::Align::left}, {"lanes audited"}, {"settled"}, {"not settled"}});
+  for (const auto& [cause, sum] : of_cause) {
+    if (sum[1] > 0)
+      table.add({cause, reports::grouped(sum[1]), reports::grouped(sum[0]), reports::grouped(sum[1] - sum[0])});
+  }
+  fmt::print("{}", table.text(screen));
+}
+
+void kinds_of(const std::string& directory, bool json, bool all) {
+  const Json summary = reports::read_summary(directory);
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  const Json kinds = fuzz::kinds_of(directory, summary, [&] { return interrupted.load(); });
+  if (interrupted) throw std::runtime_error(directory + ": interrupted, nothing was written");
+  const reports::Screen screen = output_screen();
+  if (json) {
+    for (const Json& kind : kinds) fmt::print("{}\n", kind.dump());
+    return;
+  }
+  if (kinds.empty()) fmt::print("no failures\n");
+  const std::size_t shown = all ? kinds.size() : std::min(kinds.size(), fuzz::kMostShown);
+  double told = 0, sum = 0;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    if (i < shown) print(kinds.at(i), i + 1, screen);
+    sum += kinds.at(i).at("pairs").get<double>();
+    told += i < shown ? kinds.at(i).at("pairs").get<double>() : 0;
+  }
+  if (shown < kinds.size())
+    fmt::print("{}", reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the pairs; --all lists them",
+                                                  kinds.size() - shown, 100 * (1 - told / sum)),
+                                      screen.columns));
+  if (!kinds.empty()) fmt::print("\n");
+  print_audit(kinds, screen);
+}
+
+}  // namespace
+
+void add_kinds(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("kinds", "Say what kinds of failure a campaign found");
+  command->footer("Example: graze kinds campaign");
+  auto directory = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false), all = std::make_shared<bool>(false);
+  command->add_option("directory", *directory, "A campaign's directory; rather one that `graze minimize` went through")
+      ->required();
+  command->add_flag("--json", *json, "One object a line, as docs/formats.md describes it");
+  command->add_flag("--all", *all, "Also the rare ones");
+  command->callback([directory, json, all, &status] {
+    kinds_of(*directory, *json, *all);
+    status = 0;
+  });
+}
+
+}  // namespace graze::cli

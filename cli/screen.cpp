@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/screen.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "core/text.h"
+
+namespace graze::cli {
+namespace {
+
+std::string_view environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+reports::Screen screen_of(int file_descriptor) {
+  reports::Screen screen;
+  if (!isatty(file_descriptor)) return screen;
+  constexpr std::uint64_t kMost = 1000;
+  winsize size{};
+  if (ioctl(file_descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+    screen.columns = static_cast<int>(std::min<std::uint64_t>(size.ws_col, kMost));
+  } else if (const auto columns = parse_whole(environment("COLUMNS")); columns && *columns > 0) {
+    screen.columns = static_cast<int>(std::min(*columns, kMost));
+  }
+  // Set and not empty, as no-color.org has it.
+  screen.colour = environment("NO_COLOR").empty() && environment("TERM") != "dumb";
+  return screen;
+}
+
+}  // namespace
+
+reports::Screen output_screen() { return screen_of(STDOUT_FILENO); }
+reports::Screen error_screen() { return screen_of(STDERR_FILENO); }
+
+}  // namespace graze::cli

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// What people see on a terminal, played by a pseudo-terminal: it fits, and it has colour where it may.
+#include <fcntl.h>
+#include <pty.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "cli/progress.h"
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+constexpr const char* kColour = "\033[1m";
+
+// Runs a command on a pseudo-terminal of so many columns.   Returns: all that it wrote there, without carriage
+// returns at the ends of lines.
+std::string on_terminal(const Shell& shell, const std::string& command, unsigned short columns,
+                        const std::string& environment = "unset NO_COLOR COLUMNS; export TERM=xterm") {
+  const winsize size{50, columns, 0, 0};
+  int terminal = -1;
+  const pid_t child = forkpty(&terminal, nullptr, nullptr, &size);
+  if (child == 0) {
+    const std::string line =
+        environment + "; cd '" + shell.folder.string() + "'; PATH='" + GRAZE_BINARY_DIR + "':$PATH; " + command;
+    execl("/bin/bash", "bash", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  EXPECT_GT(child, 0);
+  std::string text;
+  char buffer[4096];
+  for (ssize_t got; (got = read(terminal, buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<size_t>(got));
+  close(terminal);
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0) << command << '\n' << text;
+  for (std::size_t at; (at = text.find("\r\n")) != text.npos;) text.erase(at, 1);
+  return text;
+}
+
+std::string without_colour(std::string text) {
+  for (std::size_t at; (at = text.find("\033[")) != text.npos;) text.erase(at, text.find_first_of("mK", at) - at + 1);
+  return text;
+}
+
+// The widest line; what a carriage return starts anew counts by itself.
+int widest(const std::string& text) {
+  int most = 0;
+  std::string line;
+  std::istringstream in(without_colour(text));
+  while (std::getline(in, line)) {
+    std::istringstream parts(line);
+    for (std::string part; std::getline(parts, part, '\r');) most = std::max(most, reports::width_of(part));
+  }
+  return most;
+}
+
+class ScreenTest : public CommandTest {};
+
+TEST_F(ScreenTest, ColourIsForTerminalsThatWantIt) {
+  const std::string explain = "graze explain exact_contact:1:10 --lanes '*/f32/cpu'";
+  const std::string piped = shell(explain).out;
+  EXPECT_EQ(piped.find('\033'), std::string::npos) << piped;
+  const std::string shown = on_terminal(shell, explain, 80);
+  EXPECT_NE(shown.find(kColour), std::string::npos) << shown;
+  EXPECT_NE(shown.find("\033[31mdisjoint !\033[0m"), std::string::npos) << shown;
+  EXPECT_EQ(without_colour(shown), piped);  // nothing is said by colour alone
+  for (const char* without : {"export TERM=xterm NO_COLOR=1", "unset NO_COLOR; export TERM=dumb"})
+    EXPECT_EQ(on_terminal(shell, explain, 80, without), piped) << without;
+  EXPECT_NE(on_terminal(shell, explain, 80, "export TERM=xterm NO_COLOR=").find(kColour), std::string::npos);
+  EXPECT_EQ(on_terminal(shell, explain + " | cat", 80), piped);
+}
+
+TEST_F(ScreenTest, ErrorsAreColouredWhereTheyAreRead) {
+  EXPECT_NE(on_terminal(shell, "graze check missing > /dev/null || true", 80).find(kColour), std::string::npos);
+  EXPECT_EQ(on_terminal(shell, "graze check missing 2> error || cat error", 80).find('\033'), std::string::npos);
+  EXPECT_EQ(on_terminal(shell, "graze check missing || true", 80, "export NO_COLOR=1").find('\033'), std::string::npos);
+}
+
+TEST_F(ScreenTest, WhatIsPrintedFitsEightyColumnsAndUsesMore) {
+  ASSERT_EQ(shell("graze fuzz --pairs 3000 --executor twin --out c > /dev/null && "
+                  "graze minimize lattice:1:1 --lanes 'projected*/f32/cpu' --out m.pairs > /dev/null")
+                .status,
+            0);
+  std::map<std::string, int> wide;
+  for (const std::string command :
+       {"graze fuzz --pairs 3000 --executor twin --out c | grep -v '^Wrote '", "graze lanes", "graze check m.pairs",
+        "graze repro extreme_scale:1:5 --lanes '*/f32/*' --executor twin | grep -v signature",
+        "graze explain coplanar_rounded:1:10", "graze explain mixed_scale:1:3 --lanes '*/f32/*'",
+        "graze explain extreme_scale:1:5", "graze map mixed_scale:1:3 --lanes 'guigue*/f32/*' --out m.png"}) {
+    const Ran piped = shell(command);
+    ASSERT_EQ(piped.status, 0) << command << piped.err;
+    EXPECT_LE(widest(piped.out), 80) << command << '\n' << piped.out;
+    const std::string narrow = on_terminal(shell, command.substr(0, command.find(" | ")), 80);
+    EXPECT_EQ(without_colour(narrow).find(piped.out.substr(0, piped.out.find('\n'))), 0u) << command;
+    wide[command] = widest(on_terminal(shell, command.substr(0, command.find(" | ")), 200));
+    EXPECT_LE(wide[command], 200) << command;
+  }
+  EXPECT_GT(wide["graze explain coplanar_rounded:1:10"], 100);
+  EXPECT_GT(wide["graze lanes"], 80);
+}
+
+TEST_F(ScreenTest, TheLiveLineNeverWraps) {
+  for (const unsigned short columns : std::initializer_list<unsigned short>{30, 80, 140}) {
+    const std::string out = "c" + std::to_string(columns);
+    const std::string fuzz =
+        "graze fuzz --pairs 100000 --threads 1 --strata 'near_*' --lanes '*/cpu' --out " + out + " > /dev/null";
+    const std::string text = on_terminal(shell, fuzz, columns);
+    EXPECT_NE(text.find('%'), std::string::npos) << text;
+    EXPECT_LT(widest(text), columns) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  }
+  ASSERT_EQ(shell("graze fuzz --pairs 1000 --strata 'near_*' --lanes '*/f32/cpu' --out m > /dev/null").status, 0);
+  const std::string text = on_terminal(shell, "graze minimize m > /dev/null", 40);
+  EXPECT_NE(text.find(" left"), std::string::npos) << text;
+  EXPECT_LT(widest(text), 40) << text;
+}
+
+TEST_F(ScreenTest, StrataAreOneLineEachForProgramsAndWrappedForPeople) {
+  const std::string piped = shell("graze strata").out, shown = on_terminal(shell, "graze strata", 80);
+  EXPECT_LE(widest(shown), 80);
+  EXPECT_LT(std::count(piped.begin(), piped.end(), '\n'), std::count(shown.begin(), shown.end(), '\n'));
+  EXPECT_EQ(shell("graze strata | cut -c1-20 | grep -c '^[a-z]'").out,
+            std::to_string(std::count(piped.begin(), piped.end(), '\n')) + "\n");
+}
+
+nlohmann::json lane_rows(const Shell& shell) { return nlohmann::json::parse(shell("graze lanes --json").out); }
+
+TEST_F(ScreenTest, LanesSayOnceWhatTheirTwinsAreTrustedFor) {
+  std::map<std::string, std::string> status;
+  for (const auto& row : lane_rows(shell)) status[row["lane"]] = row["status"];
+  if (status.at("moller_1997/f32/cuda-fma") == "available (device)") GTEST_SKIP() << "there is a device";
+  const std::string out = shell("graze lanes").out;
+  EXPECT_NE(out.find("  moller_1997/f32/cuda-fma             available (twin)\n"), std::string::npos) << out;
+  EXPECT_NE(out.find("CUDA lanes run by their twins, on the CPU"), std::string::npos) << out;
+}
+
+// What is said without nvcc is so: a variant is called unavailable when its lanes have no twin, and none else.
+TEST_F(ScreenTest, TheBuildSaysWhatRunsWithoutNvcc) {
+  const std::string text = contents(std::filesystem::path(GRAZE_SOURCE_DIR) / "CMakeLists.txt");
+  const std::size_t at = text.find("CUDA lanes: run by their twins, on the CPU (no nvcc found); ");
+  ASSERT_NE(at, std::string::npos);
+  const std::string message = text.substr(at, text.find('\n', at) - at);
+  EXPECT_NE(message.find("is unavailable"), std::string::npos);
+  int variants = 0;
+  for (const auto& row : lane_rows(shell)) {
+    const std::string target = row["target"], status = row["status"];
+    if (!target.starts_with("cuda") || status == "available (device)") continue;
+    ++variants;
+    EXPECT_EQ(message.find(" " + target + ",") != std::string::npos, status.starts_with("unavailable")) << row;
+  }
+  if (variants == 0) GTEST_SKIP() << "there is a device";
+}
+
+}  // namespace
+}  // namespace graze::cli

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a lane costs on a campaign's own pairs, in nanoseconds a pair on one core: for timings.json, since it depends on
+// the machine and on the moment.
+#pragma once
+
+#include "fuzz/campaign/campaign.h"
+
+namespace graze::fuzz {
+
+inline constexpr std::uint64_t kPairsTimed = 1024;  // of each source, its first ones
+inline constexpr int kPassesTimed = 9;
+
+// Times the lanes of the host; those of a device and their twins have no cost here. All lanes take turns on all pairs,
+// so many passes over: what else the machine does then falls on all of them, and no lane finds its branches remembered.
+// Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, of the passes the quartiles.
+Json measure_costs(const Campaign& campaign);
+
+}  // namespace graze::fuzz

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/lane_costs.h"
+
+#include "fuzz/campaign/campaign_testing.h"
+
+namespace graze::fuzz {
+namespace {
+
+TEST_F(CampaignFiles, CostsAreOfHostLanesOnTheCampaignsOwnPairs) {
+  const LanesUnderTest lanes =
+      select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma", "exact/f32/cpu"}, Executor::twin);
+  const Campaign campaign = campaign_of(lanes, strata::stratum_sources(1, 4000, {"uniform", "degenerate"}), 1, "timed");
+  const Json costs = measure_costs(campaign)["lanes"];
+  ASSERT_EQ(costs.size(), 2u);  // the twin's time is not the lane's
+  for (const auto& [lane, strata] : costs.items()) {
+    ASSERT_EQ(strata.size(), 2u) << lane;
+    for (const auto& [stratum, cost] : strata.items()) {
+      EXPECT_EQ(cost["pairs"], kPairsTimed);
+      EXPECT_GT(cost["low"], 0) << lane << ' ' << stratum;
+      EXPECT_LE(cost["low"], cost["middle"]);
+      EXPECT_LE(cost["middle"], cost["high"]);
+      EXPECT_LT(cost["middle"], 1e6);
+    }
+  }
+}
+
+TEST_F(CampaignFiles, CostsStandInTimingsOnceTheCampaignIsComplete) {
+  const LanesUnderTest lanes = select_lanes({"moller_1997/f32/cpu"});
+  const Campaign campaign = campaign_of(lanes, strata::stratum_sources(1, 140'000, {"thesis"}), 1, "parts");
+  const auto runs = [&] { return Json::parse(read_whole(campaign.directory / "timings.json"))["runs"]; };
+  run(campaign, 1);
+  EXPECT_FALSE(runs().back().contains("costs"));
+  const Json summary = run(campaign);
+  EXPECT_EQ(runs().back()["costs"]["lanes"]["moller_1997/f32/cpu"]["thesis"]["pairs"], kPairsTimed);
+  EXPECT_EQ(summary.dump().find("costs"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace graze::fuzz

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/minimise/kinds.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <tuple>
+
+#include "analysis/explain.h"
+#include "analysis/signature.h"
+#include "corpus/pair_format.h"
+#include "fuzz/campaign/result_files.h"
+#include "fuzz/files.h"
+#include "fuzz/minimise/minimised_cases.h"
+#include "fuzz/minimise/simplicity.h"
+
+namespace graze::fuzz {
+namespace {
+
+std::string text_of(const corpus::Entry& entry, std::string_view key) {
+  const std::string* value = corpus::field(entry, key);
+  return value ? *value : "";
+}
+
+// A signature's case file: its pairs, and why lanes are wrong on the one that is shown.
+struct Case {
+  analysis::Signature signature;
+  std::string file;
+  std::uint64_t pairs;
+  std::vector<corpus::Entry> entries;
+  std::vector<LaneReason> reasons;
+
+  const corpus::Entry& shown() const { return entries.front(); }
+};
+
+Verdict truth_of(const corpus::Entry& entry) {
+  return text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
+}
+
+Case read_case(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& row) {
+  const auto signature = analysis::parse_signature(row.at("key").get<std::string>());
+  if (!signature)
+    throw corpus::FormatError((directory / "summary.json").string() + ": expected the key of a signature, found " +
+                              row.at("key").dump());
+  Case c{*signature, row.at("case"), row.at("count"), {}, {}};
+  c.entries = corpus::read_pairs(case_file(directory, row));
+  if (c.entries.empty())
+    throw corpus::FormatError((directory / c.file).string() + ": expected at least one case, found none");
+  for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
+  c.reasons = reasons_of(under_test, c.signature.subject, c.shown().pair, truth_of(c.shown()));
+  return c;
+}
+
+struct Kind {
+  std::string key, subject, cause, line;
+  std::string_view shape;
+  std::uint64_t pairs = 0;
+  std::array<std::uint64_t, 2> settled{};  // yes, of
+  std::vector<std::size_t> places;
+};
+
+std::vector<Kind> grouped(const std::vector<Case>& cases) {
+  std::map<std::string, Kind> kinds;
+  for (std::size_t place = 0; place < cases.size(); ++place) {
+    const Case& c = cases[place];
+    for (const LaneReason& reason : c.reasons) {
+      const std::string key = kind_key(c.signature.subject, reason, c.signature.shape);
+      Kind& kind =
+          kinds
+              .try_emplace(
+                  key,
+                  Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature.shape), 0, {}, {}})
+              .first->second;
+      kind.settled[0] += reason.audited && reason.settled;
+      kind.settled[1] += reason.audited;
+      if (!kind.places.empty() && kind.places.back() == place) continue;
+      kind.places.push_back(place);
+      kind.pairs += c.pairs;
+    }
+  }
+  std::vector<Kind> result;
+  for (auto& [key, kind] : kinds) result.push_back(std::move(kind));
+  std::stable_sort(result.begin(), result.end(), [](const Kind& l, const Kind& r) { return l.pairs > r.pairs; });
+  return result;
+}
+
+bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
+  return kind_key(c.signature.subject, reason, c.signature.shape) == kind.key;
+}
+
+// The place of the case whose pair shows the kind best: rather one on which no lane is wrong for another reason, then
+// one whose reasons are settled, then one that no kind before shows; of these the simplest.
+std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::set<std::string>& shown) {
+  const auto rank = [&](std::size_t place) {
+    const Case& c = cases[place];
+    const bool mixed = !std::all_of(c.reasons.begin(), c.reasons.end(),
+                                    [&](const LaneReason& reason) { return is_of(kind, c, reason); });
+    const bool open = std::any_of(c.reasons.begin(), c.reasons.end(),
+                                  [&](const LaneReason& reason) { return is_of(kind, c, reason) && !reason.settled; });
+    return std::tuple(mixed, open, shown.contains(pair_text(c.shown().pair)), simplicity(c.shown().pair));
+  };
+  const std::size_t best = *std::min_element(kind.places.begin(), kind.places.end(),
+                                             [&](std::size_t l, std::size_t r) { return rank(l) < rank(r); });
+  shown.insert(pair_text(cases[best].shown().pair));
+  return best;
+}
+
+std::string origin(const corpus::Entry& entry) { return corpus::numbers_of(entry).value_or(text_of(entry, "from")); }
+
+double ulps_of(const corpus::Entry& entry) {
+  const std::string text = text_of(entry, "margin_ulps");
+  return text.empty() ? 0 : std::abs(std::strtod(text.c_str(), nullptr));
+}
+
+// The pair as a person is shown it, with all lanes' verdicts, and why those of the kind are wrong.
+Json simplest_pair(const LanesUnderTest& under_test, const Kind& kind, const Case& c) {
+  std::vector<const Lane*> apart;
+  const std::vector<Verdict> verdicts = decide(under_test, c.shown().pair, apart);
+  if (!apart.empty())
+    throw std::runtime_error(apart.front()->id + ": expected one verdict of device and twin, found two");
+  Json result = {{"case", c.file},         {"pair", pair_text(c.shown().pair)}, {"from", origin(c.shown())},
+                 {"lanes", Json::array()}, {"verdicts", Json::object()},        {"sentences", Json::array()}};
+  std::vector<const Lane*> own, others;
+  for (const LaneReason& reason : c.reasons) {
+    const bool is_own = is_of(kind, c, reason);
+    (is_own ? own : others).push_back(reason.lane);
+    if (is_own) result["lanes"].push_back(reason.lane->id);
+  }
+  for (std::size_t l = 0; l < under_test.lanes.size(); ++l)
+    result["verdicts"][under_test.lanes[l]->id] = name(verdicts[l]);
+  for (const std::vector<const Lane*>& some : {own, others}) {
+    for (const std::string& text : analysis::sentences(analysis::explain(c.shown().pair, some)))
+      result["sentences"].push_back(text);
+  }
+  return result;
+}
+
+Json worst_pair(const LanesUnderTest& under_test, const Kind& kind, const std::vector<Case>& cases,
+                const Case& simplest) {
+  struct Candidate {
+    const Case* of;
+    const corpus::Entry* entry;
+    double ulps;
+  };
+  std::vector<Candidate> candidates;
+  for (const std::size_t place : kind.places) {
+    for (const corpus::Entry& entry : cases[place].entries)
+      candidates.push_back({&cases[place], &entry, ulps_of(entry)});
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& l, const Candidate& r) { return l.ulps > r.ulps; });
+  candidates.resize(std::min(candidates.size(), kMostLookedAt));
+  candidates.push_back({&simplest, &simplest.shown(), ulps_of(simplest.shown())});
+  for (const Candidate& candidate : candidates) {
+    const std::vector<LaneReason> reasons =
+        reasons_of(under_test, kind.subject, candidate.entry->pair, truth_of(*candidate.entry));
+    if (std::none_of(reasons.begin(), reasons.end(), [&](const auto& r) { return is_of(kind, *candidate.of, r); }))
+      continue;
+    return {{"case", candidate.of->file},
+            {"pair", pair_text(candidate.entry->pair)},
+            {"from", origin(*candidate.entry)},
+            {"margin_ulps", std::strtod(text_of(*candidate.entry, "margin_ulps").c_str(), nullptr)}};
+  }
+  return nullptr;
+}
+
+Json row_of(const LanesUnderTest& under_test, const Kind& kind, const std::vector<Case>& cases, std::size_t simplest) {
+  std::set<const Lane*> lanes;
+  std::map<std::string, std::uint64_t> strata;
+  std::map<Bucket, std::uint64_t> margins;
+  for (const std::size_t place : kind.places) {
+    const Case& c = cases[place];
+    margins[c.signature.bucket] += c.pairs;
+    for (const LaneReason& reason : c.reasons) {
+      if (is_of(kind, c, reason)) lanes.insert(reason.lane);
+    }
+    for (const corpus::Entry& entry : c.entries) {
+      if (const std::string* stratum = corpus::field(entry, "stratum")) ++strata[*stratum];
+    }
+  }
+  Json ids = Json::array(), margin_rows = Json::object();
+  for (const Lane* lane : under_test.lanes) {
+    if (lanes.contains(lane)) ids.push_back(lane->id);
+  }
+  for (const auto& [bucket, pairs] : margins) margin_rows[name_of_bucket(bucket)] = pairs;
+  return {{"key", kind.key},
+          {"subject", kind.subject},
+          {"cause", kind.cause},
+          {"line", kind.line},
+          {"shape", kind.shape},
+          {"pairs", kind.pairs},
+          {"signatures", kind.places.size()},
+          {"lanes", ids},
+          {"settled", kind.settled},
+          {"strata", strata},
+          {"margins", margin_rows},
+          {"places", kind.places},
+          {"simplest", simplest_pair(under_test, kind, cases[simplest])},
+          {"worst", worst_pair(under_test, kind, cases, cases[simplest])}};
+}
+
+std::string hash_of_summary(const std::filesystem::path& directory) {
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
+  for (const char c : read_whole(directory / "summary.json"))
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace
+
+std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string_view subject, const Pair& pair,
+                                   Verdict truth) {
+  std::vector<const Lane*> lanes;
+  std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
+               [&](const Lane* lane) { return lane->info->id == subject && cuda::block_on_host(*lane); });
+  const std::vector<analysis::LaneExplanation> accounts = analysis::accounts(pair, truth, lanes);
+  std::vector<LaneReason> result;
+  for (const analysis::LaneExplanation& account : accounts) {
+    const analysis::LaneExplanation* told = &account;
+    if (account.evidence == analysis::Evidence::none && account.cause != analysis::Cause::fast_math) {
+      const Lane* source = counterpart(*account.lane, rounded_variant(account.lane->variant));
+      const auto found = std::find_if(accounts.begin(), accounts.end(), [&](const auto& other) {
+        return other.lane == source && other.verdict == account.verdict;
+      });
+      if (found != accounts.end()) told = &*found;
+    }
+    result.push_back({account.lane, std::string(analysis::name(told->cause)), told->told() ? told->told()->line : "",
+                      account.settled == analysis::Settled::yes, account.lane->explainable});
+  }
+  return result;
+}
+
+std::string pair_text(const Pair& pair) {
+  std::ostringstream out;
+  corpus::write_entry(out, {pair});
+  const std::string line = out.str();
+  return line.substr(0, line.find('\n'));
+}
+
+std::string_view shape_name(const oracle::Shape& shape) {
+  return shape.dimension_a < 2 || shape.dimension_b < 2 ? "degenerate" : shape.coplanar ? "coplanar" : "general";
+}
+
+std::string kind_key(std::string_view subject, const LaneReason& reason, const oracle::Shape& shape) {
+  std::string cause = reason.cause;
+  std::replace(cause.begin(), cause.end(), ' ', '_');
+  const std::string file = reason.line.substr(reason.line.rfind('/') + 1);
+  return fmt::format("{}/{}/{}/{}", subject, cause, file.empty() ? "-" : file, shape_name(shape));
+}
+
+Json find_kinds(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,
+                const std::function<bool()>& stop) {
+  const Json& rows = summary.at("signatures");
+  std::vector<Case> cases(rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+    if (!stop()) cases[i] = read_case(under_test, directory, rows[i]);
+  });
+  if (stop()) return nullptr;
+  const std::vector<Kind> kinds = grouped(cases);
+  std::set<std::string> shown;
+  std::vector<std::size_t> simplest;
+  for (const Kind& kind : kinds) simplest.push_back(simplest_of(kind, cases, shown));
+  std::vector<Json> found(kinds.size());
+  tbb::parallel_for(std::size_t{0}, kinds.size(), [&](std::size_t i) {
+    if (!stop()) found[i] = row_of(under_test, kinds[i], cases, simplest[i]);
+  });
+  if (stop()) return nullptr;
+  return Json(std::move(found));
+}
+
+Json read_kinds(const std::filesystem::path& directory) {
+  const Json stored = Json::parse(read_whole(directory / "kinds.json"), nullptr, false);
+  const bool current = stored.is_object() && stored.contains("kinds") && stored["kinds"].is_array() &&
+                       stored.value("summary", "") == hash_of_summary(directory);
+  return current ? stored["kinds"] : Json();
+}
+
+Json kinds_of(const std::filesystem::path& directory, const Json& summary, const std::function<bool()>& stop) {
+  Json kinds = read_kinds(directory);
+  if (!kinds.is_null()) return kinds;
+  const auto lanes = summary.at("spec").at("lanes").get<std::vector<std::string>>();
+  kinds = find_kinds(select_lanes(lanes, Executor::twin), directory, summary, stop);
+  try {
+    if (!kinds.is_null()) write_kinds(directory, kinds);
+  } catch (const std::runtime_error&) {  // in a folder that cannot be written to they are found anew each time
+  }
+  return kinds;
+}
+
+void write_kinds(const std::filesystem::path& directory, const Json& kinds) {
+  write_whole(directory / "kinds.json", Json{{"summary", hash_of_summary(directory)}, {"kinds", kinds}}.dump(1) + "\n");
+}
+
+}  // namespace graze::fuzz

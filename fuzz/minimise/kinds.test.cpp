@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/minimise/kinds.h"
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <map>
+#include <set>
+
+#include "analysis/explain.h"
+#include "corpus/pair_format.h"
+#include "fuzz/campaign/campaign.h"
+#include "fuzz/files.h"
+#include "strata/strata.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A small campaign of all strata, and its kinds.
+class Kinds : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    directory_ = fs::temp_directory_path() / ("graze_kinds_" + std::to_string(getpid()));
+    fs::remove_all(directory_);
+    under_test_ = select_lanes({}, Executor::twin);
+    Campaign campaign;
+    campaign.seed = 5;
+    campaign.sources = strata::stratum_sources(campaign.seed, std::size(strata::kStrata) * 60, {"*"});
+    campaign.under_test = &under_test_;
+    campaign.threads = 2;
+    campaign.directory = directory_;
+    campaign.spec = campaign_spec(campaign);
+    campaign.build = build_info(under_test_);
+    run_campaign(campaign, std::atomic<bool>{false}, [](const Progress&) {});
+    summary_ = Json::parse(read_whole(directory_ / "summary.json"));
+    kinds_ = find_kinds(under_test_, directory_, summary_);
+  }
+  static void TearDownTestSuite() { fs::remove_all(directory_); }
+
+  static Pair pair_of(const Json& row) {
+    std::istringstream in("graze-pairs 1\n" + row["pair"].get<std::string>() + "\n");
+    return corpus::PairReader(in, "pair").next()->pair;
+  }
+
+  static inline fs::path directory_;
+  static inline Json summary_, kinds_;
+  static inline LanesUnderTest under_test_;
+};
+
+TEST_F(Kinds, EverySignatureHasOneAndPairsAddUp) {
+  ASSERT_GT(kinds_.size(), 15u);
+  EXPECT_LT(kinds_.size(), summary_["signatures"].size() / 2);
+  std::set<std::size_t> places;
+  std::set<std::string> keys;
+  for (const Json& kind : kinds_) {
+    EXPECT_TRUE(keys.insert(kind["key"]).second) << kind["key"];
+    std::uint64_t pairs = 0, margins = 0;
+    for (const Json& place : kind["places"]) {
+      const Json& row = summary_["signatures"].at(place.get<std::size_t>());
+      places.insert(place.get<std::size_t>());
+      pairs += row["count"].get<std::uint64_t>();
+      EXPECT_NE(row["key"].get<std::string>().find("/" + kind["subject"].get<std::string>() + ":"), std::string::npos);
+    }
+    for (const auto& [bucket, count] : kind["margins"].items()) margins += count.get<std::uint64_t>();
+    EXPECT_EQ(kind["pairs"], pairs);
+    EXPECT_EQ(margins, pairs);
+    EXPECT_EQ(kind["signatures"], kind["places"].size());
+  }
+  EXPECT_EQ(places.size(), summary_["signatures"].size());
+}
+
+// What the title says is true of the pairs that are shown: each lane named is wrong on it for that cause, at that line.
+TEST_F(Kinds, TheirPairsAreOfTheKind) {
+  for (const Json& kind : kinds_) {
+    for (const char* which : {"simplest", "worst"}) {
+      const Pair pair = pair_of(kind[which]);
+      const Verdict truth = oracle::cgal_verdict(pair);
+      const oracle::Shape shape = oracle::shape(pair);
+      EXPECT_EQ(shape_name(shape), kind["shape"]) << kind["key"];
+      std::set<std::string> lanes;
+      for (const LaneReason& reason : reasons_of(under_test_, kind["subject"].get<std::string>(), pair, truth)) {
+        if (kind_key(kind["subject"].get<std::string>(), reason, shape) == kind["key"]) lanes.insert(reason.lane->id);
+      }
+      EXPECT_FALSE(lanes.empty()) << kind["key"] << ' ' << which;
+      for (const std::string& lane : lanes)
+        EXPECT_NE(std::find(kind["lanes"].begin(), kind["lanes"].end(), lane), kind["lanes"].end()) << lane;
+      if (which == std::string("simplest")) {
+        EXPECT_EQ(lanes, kind["simplest"]["lanes"].get<std::set<std::string>>()) << kind["key"];
+      }
+    }
+    ASSERT_FALSE(kind["simplest"]["sentences"].empty());
+    const std::string first = kind["simplest"]["sentences"][0];
+    const std::string line = kind["line"];
+    if (kind["cause"] != "logic" && !line.empty()) {
+      EXPECT_NE(first.find(line), std::string::npos) << kind["key"] << first;
+    }
+    EXPECT_TRUE(first.starts_with(kind["subject"].get<std::string>()));
+  }
+}
+
+TEST_F(Kinds, AreTheSameWithOneThreadAndAfterStoring) {
+  EXPECT_EQ(find_kinds(under_test_, directory_, summary_).dump(), kinds_.dump());
+  write_kinds(directory_, kinds_);
+  EXPECT_EQ(read_kinds(directory_).dump(), kinds_.dump());
+  const std::string text = read_whole(directory_ / "summary.json");
+  write_whole(directory_ / "summary.json", text + "\n");
+  EXPECT_TRUE(read_kinds(directory_).is_null());
+  write_whole(directory_ / "summary.json", text);
+}
+
+TEST_F(Kinds, StopWhenAsked) {
+  EXPECT_TRUE(find_kinds(under_test_, directory_, summary_, [] { return true; }).is_null());
+}
+
+TEST_F(Kinds, ShapesHaveNames) {
+  EXPECT_EQ(shape_name({2, 2, false}), "general");
+  EXPECT_EQ(shape_name({2, 2, true}), "coplanar");
+  EXPECT_EQ(shape_name({1, 2, true}), "degenerate");
+}
+
+}  // namespace
+}  // namespace graze::fuzz

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "reports/tables.h"
+#include "reports/terminal.h"
+
+namespace graze::reports {
+
+using Json = nlohmann::ordered_json;
+namespace {
+
+using Name = std::pair<std::string, std::string>;  // of a lane and a stratum
+
+// A report's shares of wrong verdicts by names, in its order.
+std::vector<std::pair<Name, Json>> wrong_by_name(const Json& report) {
+  std::vector<std::pair<Name, Json>> rates;
+  for (const Json& row : report.at("rates")) {
+    const Json& stratum = row.at("stratum");
+    const std::string name =
+        stratum.is_null() ? "all strata" : report.at("strata").at(stratum.get<std::size_t>()).at("id");
+    rates.push_back({{report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id"), name}, row.at("wrong")});
+  }
+  return rates;
+}
+
+// Of all errors of both, or of all right verdicts where these are fewer, each is the first campaign's with a chance of its
+// share of the pairs, if the rates are the same: a binomial distribution, a little wider than the true one.
+// Reference: Przyborowski and Wilenski 1940, the conditional test of two rates.
+bool apart(const Json& l, const Json& r) {
+  double count[2], of[2];
+  for (const int i : {0, 1}) {
+    count[i] = (i == 0 ? l : r).at("count");
+    of[i] = (i == 0 ? l : r).at("of");
+  }
+  if (of[0] == 0 || of[1] == 0) return false;
+  if (count[0] + count[1] > (of[0] + of[1]) / 2) {
+    for (const int i : {0, 1}) count[i] = of[i] - count[i];
+  }
+  if (count[0] + count[1] == 0) return false;
+  const boost::math::binomial_distribution<double> first(count[0] + count[1], of[0] / (of[0] + of[1]));
+  const double most = cdf(first, count[0]), least = count[0] == 0 ? 1 : cdf(complement(first, count[0] - 1));
+  return 2 * std::min(most, least) < kLeastChance;
+}
+
+// Kinds that the others lack, though so many of their signatures were to be expected there.
+Json only_in(const Json& kinds, const Json& others, double pairs, double pairs_of_others) {
+  std::set<std::string> known;
+  for (const Json& kind : others) known.insert(kind.at("key"));
+  Json rows = Json::array();
+  for (const Json& kind : kinds) {
+    const double expected = kind.at("signatures").get<double>() * std::min(1.0, pairs_of_others / pairs);
+    if (known.contains(kind.at("key")) || expected < kLeastSignatures) continue;
+    rows.push_back({{"key", kind.at("key")}, {"signatures", kind.at("signatures")}, {"count", kind.at("pairs")}});
+  }
+  return rows;
+}
+
+std::set<std::string> ids_of(const Json& rows) {
+  std::set<std::string> ids;
+  for (const Json& row : rows) ids.insert(row.at("id"));
+  return ids;
+}
+
+std::string list(const std::set<std::string>& l, const std::set<std::string>& r) {
+  std::vector<std::string> only;
+  std::set_difference(l.begin(), l.end(), r.begin(), r.end(), std::back_inserter(only));
+  if (only.size() > 3) return fmt::format("{}, {} and {} more", only[0], only[1], only.size() - 2);
+  return only.empty() ? "none" : fmt::format("{}", fmt::join(only, ", "));
+}
+
+// How the campaigns differ, one sentence for each thing.
+Json differences_of(const Json& after, const Json& before) {
+  Json rows = Json::array();
+  const Json &now = after.at("run"), &then = before.at("run");
+  for (const char* what : {"seed", "pairs"}) {
+    if (now.at(what) != then.at(what))
+      rows.push_back(
+          fmt::format("They differ in {}: {} before, {} after.", what, grouped(then.at(what)), grouped(now.at(what))));
+  }
+  for (const char* what : {"strata", "lanes"}) {
+    const std::set<std::string> l = ids_of(before.at(what)), r = ids_of(after.at(what));
+    if (l != r)
+      rows.push_back(
+          fmt::format("They differ in {}, and only what both have is compared. Only before: {}; only after: {}.", what,
+                      list(l, r), list(r, l)));
+  }
+  const auto commit = [](const Json& run) { return run.at("build").at("commit").get<std::string>(); };
+  if (commit(now) != commit(then))
+    rows.push_back(fmt::format("They differ in build: {} before, {} after.", commit(then), commit(now)));
+  return rows;
+}
+
+}  // namespace
+
+void add_comparison(Json& report, const Json& before, const Json& kinds, const Json& kinds_before) {
+  const auto then = wrong_by_name(before);
+  const std::map<Name, Json> by_name(then.begin(), then.end());
+  Json rows = Json::array();
+  std::size_t changed = 0;
+  for (const auto& [name, now] : wrong_by_name(report)) {
+    const auto old = by_name.find(name);
+    if (old == by_name.end()) continue;
+    const bool is_apart = apart(now, old->second);
+    changed += is_apart;
+    rows.push_back({{"lane", name.first},
+                    {"stratum", name.second},
+                    {"before", old->second},
+                    {"after", now},
+                    {"changed", is_apart}});
+  }
+  const bool kinds_compared = !kinds.is_null() && !kinds_before.is_null();
+  const double pairs = report.at("run").at("pairs"), pairs_before = before.at("run").at("pairs");
+  const Json gained = kinds_compared ? only_in(kinds, kinds_before, pairs, pairs_before) : Json::array();
+  const Json lost = kinds_compared ? only_in(kinds_before, kinds, pairs_before, pairs) : Json::array();
+  std::string headline;
+  if (rows.empty()) {
+    headline = "Nothing to compare: no lane and stratum are in both.";
+  } else if (changed == 0 && gained.empty() && lost.empty()) {
+    headline = fmt::format("Nothing changed: none of {} rates, and {}.", grouped(rows.size()),
+                           kinds_compared ? "no kind of failure came or went" : "kinds of failure are not compared");
+  } else {
+    headline = fmt::format("Changed: {} of {} rates; {} kinds of failure came, {} went{}.", grouped(changed),
+                           grouped(rows.size()), gained.size(), lost.size(), kinds_compared ? "" : " (not compared)");
+  }
+  Json differences = differences_of(report, before);
+  if (!kinds_compared)
+    differences.push_back(
+        "Kinds of failure are not compared: `graze minimize` has to go through both campaigns first.");
+  report["compare"] = {
+      {"other", before.at("run")}, {"headline", headline}, {"differences", differences},      {"rates", rows},
+      {"gained", gained},          {"lost", lost},         {"kinds_compared", kinds_compared}};
+}
+
+}  // namespace graze::reports

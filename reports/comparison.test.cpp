@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "reports/tables.h"
+
+namespace graze::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A report of so many rates, each of n pairs, wrong with a chance of its own; the numbers drawn by the seed.
+Json report_of(std::uint64_t seed, std::uint64_t n, int rates = 1000) {
+  Json report{{"run", {{"seed", seed}, {"pairs", n * 19}, {"build", {{"commit", "c"}}}}},
+              {"lanes", Json::array()},
+              {"strata", {{{"id", "uniform"}}}},
+              {"rates", Json::array()}};
+  std::mt19937_64 random(seed);
+  for (int i = 0; i < rates; ++i) {
+    const double chance = i % 7 == 0 ? 0 : i % 5 == 0 ? 1e-4 : 0.6 * i / rates;
+    const std::uint64_t wrong = std::binomial_distribution<std::uint64_t>(n, chance)(random);
+    report["lanes"].push_back({{"id", "lane/" + std::to_string(i)}});
+    report["rates"].push_back({{"lane", i}, {"stratum", 0}, {"wrong", to_json(share_of(wrong, n))}});
+  }
+  return report;
+}
+
+Json kind(const std::string& key, int signatures) {
+  return {{"key", key}, {"signatures", signatures}, {"pairs", 10 * signatures}};
+}
+
+std::string headline(Json after, const Json& before, const Json& kinds, const Json& kinds_before) {
+  add_comparison(after, before, kinds, kinds_before);
+  return after["compare"]["headline"];
+}
+
+TEST(Comparison, SeedAndSizeAloneChangeNothing) {
+  const Json kinds = {kind("a/rounding/x.h:1/general", 300), kind("a/logic/-/general", 3)};
+  const Json fewer = {kind("a/rounding/x.h:1/general", 80)};
+  const Json before = report_of(1, 50'000);
+  for (std::uint64_t seed = 2; seed < 40; ++seed) {
+    const std::string text = headline(report_of(seed, seed % 2 == 0 ? 50'000 : 5'000), before, fewer, kinds);
+    EXPECT_EQ(text, "Nothing changed: none of 1,000 rates, and no kind of failure came or went.") << seed;
+  }
+}
+
+TEST(Comparison, WhatIsSmallButSureIsAChange) {
+  const Json before = report_of(1, 1'000'000);
+  Json after = report_of(2, 1'000'000);
+  after["rates"][0]["wrong"] = to_json(share_of(40, 1'000'000));  // never wrong before
+  EXPECT_EQ(headline(after, before, Json::array(), Json::array()),
+            "Changed: 1 of 1,000 rates; 0 kinds of failure came, 0 went.");
+}
+
+TEST(Comparison, AKindThatWasToBeExpectedHasGone) {
+  const Json many = {kind("a", 100), kind("b", 100), kind("c", 4)}, some = {kind("a", 90)};
+  const Json before = report_of(1, 50'000);
+  Json after = report_of(2, 50'000);
+  add_comparison(after, before, some, many);
+  ASSERT_EQ(after["compare"]["lost"].size(), 1u);
+  EXPECT_EQ(after["compare"]["lost"][0]["key"], "b");
+  add_comparison(after, before, many, some);
+  EXPECT_EQ(after["compare"]["gained"].size(), 1u);
+  // In a tenth of the pairs ten of its signatures were to be expected: too few to say that it has gone.
+  Json smaller = report_of(2, 5'000);
+  add_comparison(smaller, before, some, many);
+  EXPECT_TRUE(smaller["compare"]["lost"].empty());
+}
+
+TEST(Comparison, HowTheyDifferIsSaid) {
+  const Json before = report_of(1, 50'000, 10);
+  Json after = report_of(2, 5'000, 8);
+  add_comparison(after, before, nullptr, Json::array());
+  const Json& said = after["compare"]["differences"];
+  ASSERT_EQ(said.size(), 4u);
+  EXPECT_EQ(said[0], "They differ in seed: 1 before, 2 after.");
+  EXPECT_EQ(said[1], "They differ in pairs: 950,000 before, 95,000 after.");
+  EXPECT_EQ(
+      said[2],
+      "They differ in lanes, and only what both have is compared. Only before: lane/8, lane/9; only after: none.");
+  EXPECT_NE(said[3].get<std::string>().find("not compared"), std::string::npos);
+  EXPECT_FALSE(after["compare"]["kinds_compared"]);
+  Json same = before;
+  add_comparison(same, before, Json::array(), Json::array());
+  EXPECT_TRUE(same["compare"]["differences"].empty());
+}
+
+}  // namespace
+}  // namespace graze::reports

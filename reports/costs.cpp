@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/costs.h"
+
+#include <fmt/format.h>
+
+#include "fuzz/files.h"
+#include "reports/findings.h"
+
+namespace graze::reports {
+
+using Json = nlohmann::ordered_json;
+
+std::optional<Cost> Costs::of(std::size_t lane, const std::vector<std::size_t>& strata) const {
+  Cost sum;
+  for (const std::size_t s : strata) {
+    const std::optional<Cost>& one = of_stratum[lane][s];
+    if (!one) return std::nullopt;
+    const auto pairs = static_cast<double>(one->pairs);
+    sum = {sum.pairs + one->pairs, sum.low + pairs * one->low, sum.middle + pairs * one->middle,
+           sum.high + pairs * one->high};
+  }
+  if (sum.pairs == 0) return std::nullopt;
+  const auto pairs = static_cast<double>(sum.pairs);
+  return Cost{sum.pairs, sum.low / pairs, sum.middle / pairs, sum.high / pairs};
+}
+
+std::optional<Costs> costs_of(const Json& timings, const CampaignCounts& counts) {
+  if (!timings.is_object()) return std::nullopt;
+  std::optional<Costs> costs;
+  for (const Json& run : timings.value("runs", Json::array())) {
+    if (!run.contains("costs")) continue;
+    const Json& found = run["costs"];
+    costs = Costs{run.value("machine", "an unknown machine"), found.at("passes"), {}};
+    for (const ReportLane& lane : counts.lanes) {
+      auto& row = costs->of_stratum.emplace_back(counts.strata.size());
+      const Json strata = found.at("lanes").value(lane.id, Json::object());
+      for (std::size_t s = 0; s < counts.strata.size(); ++s) {
+        if (!strata.contains(counts.strata[s].id)) continue;
+        const Json& cost = strata[counts.strata[s].id];
+        row[s] = Cost{cost.at("pairs"), cost.at("low"), cost.at("middle"), cost.at("high")};
+      }
+    }
+  }
+  return costs;
+}
+
+std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts) {
+  return costs_of(Json::parse(fuzz::read_whole(directory / "timings.json"), nullptr, false), counts);
+}
+
+Json to_json(const Costs& costs, const CampaignCounts& counts) {
+  const auto rounded = [](double value) { return std::stod(fmt::format("{:.4g}", value)); };
+  Json rows = Json::array();
+  const auto add = [&](std::size_t l, const Json& group, const std::vector<std::size_t>& strata) {
+    if (const std::optional<Cost> cost = costs.of(l, strata)) {
+      rows.push_back({{"lane", l},
+                      {"group", group},
+                      {"pairs", cost->pairs},
+                      {"low", rounded(cost->low)},
+                      {"middle", rounded(cost->middle)},
+                      {"high", rounded(cost->high)}});
+    }
+  };
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    add(l, nullptr, counts.drawn());
+    for (std::size_t g = 0; g < counts.groups.size(); ++g) add(l, g, counts.groups[g].strata);
+  }
+  return {{"machine", costs.machine}, {"passes", costs.passes}, {"rows", rows}, {"answer", answer(counts, &costs)}};
+}
+
+}  // namespace graze::reports

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lanes cost, from a campaign's timings.json (fuzz/campaign/lane_costs.h). Kept apart from the report's data, which
+// is the same whoever ran the campaign.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "reports/counts.h"
+
+namespace graze::reports {
+
+// Nanoseconds a pair on one core: the median of the passes, and the quartiles as its spread.
+struct Cost {
+  std::uint64_t pairs = 0;
+  double low = 0, middle = 0, high = 0;
+  bool below(const Cost& other) const { return high < other.low; }  // cheaper, whatever the spread
+};
+
+struct Costs {
+  std::string machine;
+  int passes = 0;
+  std::vector<std::vector<std::optional<Cost>>> of_stratum;  // [lane][stratum]
+
+  // Of a lane on some strata, each counted by its pairs; nothing unless it was timed on all of them.
+  std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
+};
+
+// Nothing where the campaign has no timings of its lanes.
+std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts);
+
+// Requires: what timings.json holds.
+std::optional<Costs> costs_of(const nlohmann::ordered_json& timings, const CampaignCounts& counts);
+
+// What costs.json holds: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}], "answer"},
+// as reports/web/src/report.ts describes it; group null: all strata together.
+nlohmann::ordered_json to_json(const Costs& costs, const CampaignCounts& counts);
+
+}  // namespace graze::reports

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The answer's sentences, of made-up summaries.
+#include "reports/findings.h"
+
+#include "reports/test_campaign.h"
+
+namespace graze::reports {
+namespace {
+
+std::vector<std::string> answer_of(const Json& summary) { return answer(counts_of(summary), nullptr); }
+
+TEST(Answer, OfOneLaneComparesNothing) {
+  const auto said = answer_of(summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {3, 2, 0, 0}));
+  ASSERT_EQ(said.size(), 6u);
+  EXPECT_EQ(said[0],
+            "The only published lane, moller_1997/f32/cpu, is wrong on 5 (0.5 %, 95 % interval 0.214 % to 1.17 %) of "
+            "1,000 pairs.");
+  EXPECT_EQ(said[1], "The only stratum is uniform (0.5 % of all verdicts wrong).");
+  // What the campaign cannot tell comes last.
+  EXPECT_EQ(said[2], "No exact lane ran, so there is none to recommend for every pair.");
+  EXPECT_EQ(said[3],
+            "Of the published lanes only those of moller_1997/f32 ran, so the campaign does not say which to avoid.");
+  EXPECT_TRUE(contains(said[4], "No lane with contraction ran"));
+  EXPECT_TRUE(contains(said[5], "were not drawn"));
+}
+
+TEST(Answer, WithoutErrorsSaysHowMuchThatProves) {
+  const auto said = answer_of(summary_of(
+      {"moller_1997/f32/cpu", "moller_1997/f32/cuda-nofma", "moller_1997/f32/cuda-fma"}, {"thesis", "uniform"}, {}));
+  EXPECT_EQ(said[0], "No lane need be avoided: none is wrong on any pair of this campaign.");
+  EXPECT_EQ(said[1],
+            "All 3 published lanes are wrong on none of 2,000 pairs, so with 95 % confidence each errs on fewer than "
+            "0.15 % of such pairs.");
+  EXPECT_EQ(said[2], "None of the 2 strata shows a wrong verdict.");
+  EXPECT_EQ(said[3], "Contraction changes no verdict of the one lane that ran with and without it.");
+  EXPECT_TRUE(contains(said[4], "none of 2 CUDA lanes differs from its cpu lane on any of 1,000 pairs")) << said[4];
+}
+
+TEST(Answer, TellsWhatContractionChanges) {
+  Json summary = summary_of(
+      {"interval_overlap/f32/cpu", "interval_overlap/f32/cuda-nofma", "interval_overlap/f32/cuda-fma", "exact/f32/cpu"},
+      {"thesis"}, {});
+  summary["strata"]["thesis"]["lanes"]["interval_overlap/f32/cuda-fma"] = {
+      {"false_positive", 7}, {"false_negative", 3}, {"declined", 0}, {"differs_from_cpu", 10}};
+  const auto said = answer_of(summary);
+  EXPECT_EQ(said[0],
+            "Use exact/f32/cpu: right on all 1,000 pairs. What it costs is not settled: the campaign has no timings of "
+            "it.");
+  EXPECT_EQ(
+      said[1],
+      "Of the 3 published lanes the least wrong are interval_overlap/f32/cpu and interval_overlap/f32/cuda-nofma: on "
+      "none of 1,000 pairs (with 95 % confidence fewer than 0.299 %).");
+  EXPECT_TRUE(contains(said[3], "another verdict than interval_overlap/f32/cuda-nofma on 10 pairs (1 %")) << said[3];
+  EXPECT_TRUE(contains(said[3], "its wrong verdicts go from 0 to 10; 1 of 1 lanes")) << said[3];
+  EXPECT_TRUE(contains(said[4], "in interval_overlap/f32/cuda-fma: on 10 (1 %")) << said[4];
+  EXPECT_TRUE(contains(said[4], "of 1,000 pairs; without contraction on none.")) << said[4];
+}
+
+TEST(Answer, WithoutCpuLanesCountsWrongVerdicts) {
+  Json summary = summary_of({"interval_overlap/f32/cuda-nofma", "interval_overlap/f32/cuda-fma"}, {"thesis", "sliver"},
+                            {1, 0, 0, 0});
+  summary["strata"]["sliver"]["lanes"]["interval_overlap/f32/cuda-fma"]["false_positive"] = 5;
+  const auto said = answer_of(summary);
+  EXPECT_TRUE(contains(said[1], "The most dangerous stratum is sliver (0.3 % of all verdicts wrong")) << said[1];
+  EXPECT_TRUE(contains(said[2], "its wrong verdicts go from 2 to 6 of 2,000 pairs")) << said[2];
+  EXPECT_TRUE(contains(said[2], "without a cpu lane beside them")) << said[2];
+  EXPECT_TRUE(contains(said[3], "no CUDA lane ran beside its cpu lane")) << said[3];
+}
+
+TEST(Answer, OfExactLanesOnlyAndOfNothing) {
+  EXPECT_EQ(answer_of(summary_of({"exact/f32/cpu"}, {"uniform"}, {})),
+            std::vector<std::string>{"Only exact lanes ran, and none of their verdicts on 1,000 pairs are wrong."});
+  Json begun = summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {});
+  begun["strata"]["uniform"]["pairs"] = begun["strata"]["uniform"]["intersects"] = 0;
+  EXPECT_EQ(answer_of(begun), std::vector<std::string>{"No pair has been decided yet."});
+}
+
+}  // namespace
+}  // namespace graze::reports

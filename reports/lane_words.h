@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lanes and their rates in words, as the sentences of a report's answer share them.
+#pragma once
+
+#include <fmt/format.h>
+
+#include "reports/counts.h"
+#include "reports/findings.h"
+#include "reports/terminal.h"
+#include "reports/wilson.h"
+
+namespace graze::reports {
+
+using Places = std::vector<std::size_t>;
+
+// Lanes that are not exact.
+inline Places published(const CampaignCounts& counts) {
+  Places places;
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    if (!counts.lanes[l].exact) places.push_back(l);
+  }
+  return places;
+}
+
+// "12 pairs (1.2 %, 95 % interval 0.7 % to 2.1 %)"
+inline std::string with_interval(const Share& s, const char* what = "") {
+  return fmt::format("{}{} ({}, 95 % interval {} to {})", grouped(s.count), what, rate_words(s.share),
+                     rate_words(s.low), rate_words(s.high));
+}
+
+// "a, b and c"; of more than four the first three and how many more.
+inline std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 3;
+  const std::size_t named = names.size() <= kMost + 1 ? names.size() : kMost;
+  std::string text;
+  for (std::size_t i = 0; i < named; ++i) {
+    const bool last = i + 1 == named && named == names.size();
+    text += (i == 0 ? "" : last ? " and " : ", ") + names[i];
+  }
+  return named < names.size() ? fmt::format("{} and {} more", text, names.size() - named) : text;
+}
+
+inline std::string ids(const CampaignCounts& counts, const Places& places) {
+  std::vector<std::string> names;
+  for (const std::size_t l : places) names.push_back(counts.lanes[l].id);
+  return list_of(names);
+}
+
+}  // namespace graze::reports

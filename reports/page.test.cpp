@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages, the interactive one and the plain one.
+#include "reports/page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/margin/bucket.h"
+#include "reports/comparison.h"
+#include "reports/failure_cards.h"
+#include "reports/report.h"
+#include "reports/test_campaign.h"
+
+namespace graze::reports {
+namespace {
+
+class PageTest : public CampaignTest {};
+
+TEST(Page, KnowsTheOutermostBuckets) {
+  const std::string page = fuzz::read_whole(fs::path(GRAZE_SOURCE_DIR) / "reports/web/src/margins.ts");
+  EXPECT_TRUE(contains(page, fmt::format("kOutermost = [{}, {}];", kBucketLowest, kBucketHighest)));
+  EXPECT_TRUE(contains(page, fmt::format("kNearest = {};", kBucketLowest - 1)));
+}
+
+TEST(Page, HoldsTheReportInItsElement) {
+  const Json report = {{"text", "</script><!--"}};
+  const std::string text = filled(
+      "<p><script type=\"application/json\" id=\"costs\">null</script>"
+      "<script type=\"application/json\" id=\"report\">old</script><script>code</script>",
+      report, {{"passes", 9}});
+  EXPECT_EQ(text,
+            "<p><script type=\"application/json\" id=\"costs\">{\"passes\":9}</script>"
+            "<script type=\"application/json\" id=\"report\">{\"text\":\"\\u003c/script>\\u003c!--\"}</script>"
+            "<script>code</script>");
+  EXPECT_THROW(filled("<p>", report, nullptr), std::logic_error);
+}
+
+// A report comes from anywhere (`graze report --from`): one that lacks something is refused, whatever it lacks.
+TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
+  const Json report = make_report(root_ / "one");
+  std::vector<std::string> places;
+  const Json flat = report.flatten();
+  for (const auto& [place, value] : flat.items()) places.push_back(place);
+  std::size_t refused = 0;
+  for (std::size_t i = 0; i < places.size(); i += 1 + places.size() / 150) {
+    Json rest = report;
+    for (Json::json_pointer place(places[i]); !place.empty(); place.pop_back()) {
+      Json& parent = rest[place.parent_pointer()];
+      if (parent.is_array())
+        parent.erase(std::min<std::size_t>(std::stoul(place.back()), parent.size() - 1));
+      else
+        parent.erase(place.back());
+      try {
+        plain_page(rest, nullptr);
+      } catch (const Json::exception&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 100u);
+}
+
+// Elements that are opened are closed, in order; enough for what plain_page writes.
+void expect_well_formed(const std::string& text) {
+  const std::set<std::string> empty{"meta", "!DOCTYPE"};
+  std::vector<std::string> open;
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
+    const std::size_t end = text.find('>', at);
+    ASSERT_NE(end, std::string::npos);
+    const std::string tag = text.substr(at + 1, end - at - 1);
+    const std::string name = tag.substr(tag[0] == '/', tag.find_first_of(" /\n", 1) - (tag[0] == '/'));
+    if (tag[0] == '/') {
+      ASSERT_FALSE(open.empty());
+      ASSERT_EQ(open.back(), tag.substr(1)) << "at byte " << at;
+      open.pop_back();
+    } else if (!tag.ends_with('/') && !empty.contains(name)) {
+      open.push_back(name);
+    }
+  }
+  EXPECT_TRUE(open.empty());
+}
+
+TEST_F(PageTest, PlainPageIsWellFormedAndShowsEverything) {
+  Json report = make_report(root_ / "one");
+  add_comparison(report, report, Json::array(), Json::array());
+  report["missing"].push_back("a <b> & \"c\"");
+  const std::string text = plain_page(report, make_costs(root_ / "one"));
+  expect_well_formed(text);
+  EXPECT_TRUE(contains(text, "a &lt;b&gt; &amp; &quot;c&quot;"));
+  EXPECT_TRUE(contains(text, "had no Node"));
+  EXPECT_LT(text.find(" ns a general pair"), text.find("<h2>What was run"));
+  EXPECT_EQ(text.find("<script"), std::string::npos);
+  EXPECT_EQ(text.find("http"), std::string::npos);
+  std::size_t drawings = 0;
+  for (std::size_t at = text.find("<polygon"); at != std::string::npos; at = text.find("<polygon", at + 1)) ++drawings;
+  EXPECT_GE(drawings, 2 * report["cards"].size());
+}
+
+TEST(Page, OfManySignaturesIsUnderEightMebibytes) {
+  Json summary = summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {1, 1, 0, 0});
+  summary["spec"]["lanes"] = Json::array();
+  for (const Lane& lane : lanes()) summary["spec"]["lanes"].push_back(lane.id);
+  Json stratum = summary["strata"]["uniform"];
+  for (const Lane& lane : lanes()) stratum["lanes"][lane.id] = stratum["lanes"]["moller_1997/f32/cpu"];
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    stratum["margins"][name_of_bucket(static_cast<Bucket>(b))] = {{"pairs", 99'999'999'999}, {"wrong", Json::object()}};
+    for (const Lane& lane : lanes())
+      stratum["margins"][name_of_bucket(static_cast<Bucket>(b))]["wrong"][lane.id] = 12'345'678'901;
+  }
+  for (int e = -152; e <= 124; e += 4) {
+    stratum["extremes"]["scale"][std::to_string(e)] = {{"pairs", 99'999'999'999}, {"wrong", Json::object()}};
+    stratum["extremes"]["offset"][std::to_string(e / 4)] = {{"pairs", 99'999'999'999}, {"wrong", Json::object()}};
+  }
+  summary["strata"] = Json::object();
+  for (int s = 0; s < 19; ++s) summary["strata"]["a_stratum_with_a_name_" + std::to_string(s)] = stratum;
+  const fs::path directory = fs::temp_directory_path() / ("graze_size_" + std::to_string(getpid()));
+  fs::create_directories(directory / "cases");
+  const Pair pair{{{0.1f, 0.2f, 0.3f}, {1.7f, 0.3f, 0.7f}, {0.3f, 1.9f, 1e-30f}},
+                  {{0.11f, 1e30f, 3.7e-9f}, {1.3f, 0.19f, 0.123456f}, {0.7f, 1.1f, 2.3f}}};
+  for (int i = 0; i < 12'000; ++i) {
+    const std::string key =
+        "segment/22/skew/+2^-1/guigue_devillers_2003:+f32/cpu;+f32/cpu-fma;+f32/cpu-fast;-f32/cuda-nofma;"
+        "-f32/cuda-fma;-f32/cuda-fast;+f64/cpu;+f64/cpu-fma;+f64/cpu-fast;+f64/cuda-nofma;+f64/cuda-fma/abs:" +
+        std::to_string(i);
+    summary["signatures"].push_back({{"key", key}, {"count", 99'999'999'999}, {"case", "cases/1.pairs"}});
+  }
+  fuzz::write_whole(directory / "cases/1.pairs", "graze-pairs 1\n" + fuzz::pair_text(pair) +
+                                                     " | stratum=s seed=1 index=1 truth=disjoint contact=none "
+                                                     "margin=1e-30 margin_ulps=1.25\n");
+  Json pair_hex = Json::array(), kinds = Json::array();
+  for (int i = 0; i < kCoordinates; ++i) pair_hex.push_back(fmt::format("{:a}", coordinates(pair)[i]));
+  fuzz::write_whole(directory / "cases/1.maps.json",
+                    Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump());
+  fuzz::write_whole(directory / "summary.json", summary.dump());
+  Json kind = {
+      {"subject", "guigue_devillers_2003"},
+      {"cause", "rounding"},
+      {"line", "core/algorithms/range.h:31"},
+      {"shape", "general"},
+      {"pairs", 99'999'999'999},
+      {"signatures", 12'000},
+      {"lanes", Json::array()},
+      {"settled", {1, 2}},
+      {"strata", Json::object()},
+      {"margins", Json::object()},
+      {"places", Json::array()},
+      {"simplest",
+       {{"case", "cases/1.pairs"},
+        {"pair", fuzz::pair_text(pair)},
+        {"from", "s:1:1"},
+        {"lanes", Json::array()},
+        {"verdicts", Json::object()},
+        {"sentences", {std::string(400, 's')}}}},
+      {"worst",
+       {{"case", "cases/1.pairs"}, {"pair", fuzz::pair_text(pair)}, {"from", "s:1:1"}, {"margin_ulps", 1.25}}}};
+  for (const Lane& lane : lanes()) {
+    if (lane.info->id == std::string_view("guigue_devillers_2003")) {
+      kind["lanes"].push_back(lane.id);
+      kind["simplest"]["lanes"].push_back(lane.id);
+    }
+    kind["simplest"]["verdicts"][lane.id] = "intersects";
+  }
+  for (int s = 0; s < 19; ++s) kind["strata"]["a_stratum_with_a_name_" + std::to_string(s)] = 4 * 12'000;
+  for (int b = -kBucketMost; b <= kBucketMost; ++b)
+    kind["margins"][name_of_bucket(static_cast<Bucket>(b))] = 99'999'999'999;
+  for (int k = 0; k < 100; ++k) {
+    kind["key"] = "guigue_devillers_2003/rounding/range.h:31/" + std::to_string(k);
+    kind["places"] = Json::array();  // as if each of its eleven lanes were wrong for another reason
+    for (int i = k % 9; i < 12'000; i += 9) kind["places"].push_back(i);
+    kinds.push_back(kind);
+  }
+  fuzz::write_kinds(directory, kinds);
+  const Json report = make_report(directory);
+  const std::string html = page(report, nullptr);
+  EXPECT_EQ(report["cards"].size(), fuzz::kMostShown);
+  EXPECT_EQ(report["signatures"].size(), kMostSignatures);
+  EXPECT_EQ(report["signature_count"], 12'000);
+  EXPECT_LT(html.size(), 8u << 20);
+  EXPECT_GT(html.size(), 5u << 20);
+  fs::remove_all(directory);
+}
+
+}  // namespace
+}  // namespace graze::reports

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/recommendations.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace graze::reports {
+namespace {
+
+Share wrong_share(const CampaignCounts& counts, std::size_t lane) {
+  return share_of(counts.total.wrong(lane), counts.total.pairs);
+}
+
+Places those_wrong(const CampaignCounts& counts, const Places& among, std::uint64_t wrong) {
+  Places places;
+  std::copy_if(among.begin(), among.end(), std::back_inserter(places),
+               [&](std::size_t l) { return counts.total.wrong(l) == wrong; });
+  return places;
+}
+
+// Where costs are compared: general pairs if there are any, for on the others an exact decision is known to be slow.
+struct Ground {
+  std::vector<std::size_t> strata;
+  std::string pair;  // "a general pair"
+};
+
+Ground ground_of(const CampaignCounts& counts) {
+  const GroupCounts* general = counts.group("general");
+  return general ? Ground{general->strata, "a general pair"} : Ground{counts.drawn(), "a pair"};
+}
+
+std::optional<Cost> cost_of(const Costs* costs, std::size_t lane, const std::vector<std::size_t>& strata) {
+  return costs ? costs->of(lane, strata) : std::nullopt;
+}
+
+std::string nanoseconds(double value) { return fmt::format("{:.{}f}", value, value < 10 ? 1 : 0); }
+
+std::string with_spread(const Cost& cost) {
+  return fmt::format("{} ns ({} to {})", nanoseconds(cost.middle), nanoseconds(cost.low), nanoseconds(cost.high));
+}
+
+// The lane of least cost there; -1 where none was timed.
+int cheapest(const Costs* costs, const Places& among, const std::vector<std::size_t>& strata) {
+  int best = -1;
+  for (const std::size_t l : among) {
+    const std::optional<Cost> cost = cost_of(costs, l, strata);
+    if (cost && (best < 0 || cost->middle < costs->of(static_cast<std::size_t>(best), strata)->middle))
+      best = static_cast<int>(l);
+  }
+  return best;
+}
+
+Places exact_lanes(const CampaignCounts& counts) {
+  Places places;
+  for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
+    if (counts.lanes[l].exact) places.push_back(l);
+  }
+  return places;
+}
+
+// "; over all strata 210 ns against 61", where that is another comparison.
+std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, const Ground& ground, std::size_t exact,
+                            std::size_t other) {
+  const std::vector<std::size_t> all = counts.drawn();
+  const std::optional<Cost> own = cost_of(costs, exact, all), others = cost_of(costs, other, all);
+  if (ground.strata == all || !own || !others) return "";
+  return fmt::format("; over all strata {} ns against {}", nanoseconds(own->middle), nanoseconds(others->middle));
+}
+
+// What exactness costs, as the end of a sentence.
+std::string price(const CampaignCounts& counts, const Costs* costs, const Places& exact) {
+  const Ground ground = ground_of(counts);
+  const int own = cheapest(costs, exact, ground.strata);
+  if (own < 0) return ". What it costs is not settled: the campaign has no timings of it.";
+  const auto lane = static_cast<std::size_t>(own);
+  const Cost cost = *costs->of(lane, ground.strata);
+  const int fastest = cheapest(costs, published(counts), ground.strata);
+  const std::string which = exact.size() > 1 ? counts.lanes[lane].id + " at" : "at";
+  if (fastest < 0) return fmt::format(", {} {} {}.", which, with_spread(cost), ground.pair);
+  const auto other = static_cast<std::size_t>(fastest);
+  const Cost others = *costs->of(other, ground.strata);
+  const std::string& id = counts.lanes[other].id;
+  const std::string everywhere = over_all_strata(counts, costs, ground, lane, other);
+  if (cost.below(others)) {
+    return fmt::format(", {} {} ns {} against {} for the fastest published lane, {}{}.", which,
+                       nanoseconds(cost.middle), ground.pair, nanoseconds(others.middle), id, everywhere);
+  }
+  if (!others.below(cost)) {
+    return fmt::format(
+        ", {} {} {}. Whether the fastest published lane, {} at {}, is cheaper is not settled: their spreads "
+        "overlap{}.",
+        which, with_spread(cost), ground.pair, id, with_spread(others), everywhere);
+  }
+  return fmt::format(
+      ", {} {} ns {}. The fastest published lane, {}, takes {}{}; it is wrong on {} of all pairs.", which,
+      nanoseconds(cost.middle), ground.pair, id, nanoseconds(others.middle), everywhere,
+      rate_words(wrong_share(counts, other).share));
+}
+
+// Of what a lane is part: variants of one algorithm in one precision are not told apart here.
+bool same_family(const CampaignCounts& counts, std::size_t l, std::size_t r) {
+  return counts.lanes[l].name.subject == counts.lanes[r].name.subject &&
+         counts.lanes[l].name.scalar == counts.lanes[r].name.scalar;
+}
+
+// Of the lanes of other families the one that `better` puts first; -1 for none.
+template <class Better>
+int first_of_others(const CampaignCounts& counts, const Places& lanes, std::size_t than, Better better) {
+  int best = -1;
+  for (const std::size_t l : lanes) {
+    if (same_family(counts, l, than)) continue;
+    if (best < 0 || better(counts.total.wrong(l), counts.total.wrong(static_cast<std::size_t>(best))))
+      best = static_cast<int>(l);
+  }
+  return best;
+}
+
+std::string not_settled(const CampaignCounts& counts, const char* which, std::size_t l, std::size_t r) {
+  const auto interval = [&](std::size_t lane) {
+    const Share share = wrong_share(counts, lane);
+    return fmt::format("{} to {}", rate_words(share.low), rate_words(share.high));
+  };
+  return fmt::format(
+      "Which published lane is {} is not settled: the 95 % intervals of {}, wrong on {} of all pairs, and {}, on {}, "
+      "overlap.",
+      which, counts.lanes[l].id, interval(l), counts.lanes[r].id, interval(r));
+}
+
+// ", at 82 ns a general pair": of the cheapest of them.
+std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Places& lanes) {
+  const Ground ground = ground_of(counts);
+  const int lane = cheapest(costs, lanes, ground.strata);
+  if (lane < 0) return "";
+  const auto place = static_cast<std::size_t>(lane);
+  return fmt::format(", {}at {} ns {}", lanes.size() == 1 ? "" : counts.lanes[place].id + " ",
+                     nanoseconds(costs->of(place, ground.strata)->middle), ground.pair);
+}
+
+}  // namespace
+
+Sentence lane_to_use(const CampaignCounts& counts, const Costs* costs) {
+  const Places exact = exact_lanes(counts);
+  if (exact.empty()) return {"No exact lane ran, so there is none to recommend for every pair.", false};
+  for (const std::size_t l : exact) {
+    if (counts.total.wrong(l) == 0) continue;
+    return {fmt::format(
+        "{} is wrong on {} of {} pairs, which must not be: trust no exact lane before that is explained.",
+        counts.lanes[l].id, grouped(counts.total.wrong(l)), grouped(counts.total.pairs))};
+  }
+  return {fmt::format("Use {}: right on all {} pairs{}", ids(counts, exact), grouped(counts.total.pairs),
+                      price(counts, costs, exact))};
+}
+
+Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
+  const Places lanes = published(counts);
+  const auto wrong = [&](std::size_t l) { return counts.total.wrong(l); };
+  const std::size_t worst =
+      *std::max_element(lanes.begin(), lanes.end(), [&](auto l, auto r) { return wrong(l) < wrong(r); });
+  if (wrong(worst) == 0) return {"No lane need be avoided: none is wrong on any pair of this campaign."};
+  const int next = first_of_others(counts, lanes, worst, std::greater<>());
+  if (next < 0) {
+    const LaneName& name = counts.lanes[worst].name;
+    return {fmt::format("Of the published lanes only those of {}/{} ran, so the campaign does not say which to avoid.",
+                        name.subject, name.scalar),
+            false};
+  }
+  if (!wrong_share(counts, worst).apart(wrong_share(counts, static_cast<std::size_t>(next))))
+    return {not_settled(counts, "worst", worst, static_cast<std::size_t>(next))};
+  const Places equals = those_wrong(counts, lanes, wrong(worst));
+  const analysis::LaneCounts& found = counts.total.lanes[worst];
+  std::string text = fmt::format("Avoid {}: wrong on {}, {} false positives and {} false negatives", ids(counts, equals),
+                                 with_interval(wrong_share(counts, worst), " pairs"), grouped(found.false_positive),
+                                 grouped(found.false_negative));
+  if (const GroupCounts* general = counts.group("general"); general && general->counts.pairs != counts.total.pairs) {
+    text += fmt::format("; of general pairs on {}",
+                        rate_words(share_of(general->counts.wrong(worst), general->counts.pairs).share));
+  }
+  const Ground ground = ground_of(counts);
+  const std::optional<Cost> own = cost_of(costs, worst, ground.strata);
+  const std::size_t least =
+      *std::min_element(lanes.begin(), lanes.end(), [&](auto l, auto r) { return wrong(l) < wrong(r); });
+  const std::optional<Cost> better = cost_of(costs, least, ground.strata);
+  if (own && better && better->below(*own)) {
+    text += fmt::format(". Nothing is won by it: {} is less often wrong and cheaper, {} ns {} against {}",
+                        counts.lanes[least].id, nanoseconds(better->middle), ground.pair, nanoseconds(own->middle));
+  }
+  return {text + "."};
+}
+
+Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
+  const Places lanes = published(counts);
+  const StratumCounts& total = counts.total;
+  const auto less = [&](std::size_t l, std::size_t r) { return total.wrong(l) < total.wrong(r); };
+  const std::size_t least = *std::min_element(lanes.begin(), lanes.end(), less);
+  const std::size_t most = *std::max_element(lanes.begin(), lanes.end(), less);
+  const std::string bound = rate_words(bound_of_none(total.pairs));
+  if (total.wrong(most) == 0) {
+    return {fmt::format("{} wrong on none of {} pairs, so with 95 % confidence {} on fewer than {} of such pairs.",
+                        lanes.size() == 1 ? fmt::format("The only published lane, {}, is", counts.lanes[least].id)
+                                          : fmt::format("All {} published lanes are", lanes.size()),
+                        grouped(total.pairs), lanes.size() == 1 ? "it errs" : "each errs", bound)};
+  }
+  const int next = first_of_others(counts, lanes, least, std::less<>());
+  if (next >= 0 && !wrong_share(counts, least).apart(wrong_share(counts, static_cast<std::size_t>(next))))
+    return {not_settled(counts, "least wrong", least, static_cast<std::size_t>(next))};
+  const std::string found =
+      total.wrong(least) == 0
+          ? fmt::format("none of {} pairs (with 95 % confidence fewer than {})", grouped(total.pairs), bound)
+          : fmt::format("{} of {} pairs", with_interval(wrong_share(counts, least)), grouped(total.pairs));
+  const Places best = those_wrong(counts, lanes, total.wrong(least));
+  const std::string cost = at_cost(counts, costs, best);
+  if (lanes.size() == 1)
+    return {fmt::format("The only published lane, {}, is wrong on {}{}.", counts.lanes[least].id, found, cost)};
+  return {fmt::format("Of the {} published lanes the least wrong {} {}: on {}{}.", lanes.size(),
+                      best.size() == 1 ? "is" : "are", ids(counts, best), found, cost)};
+}
+
+}  // namespace graze::reports

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Recommendations on made data, of which each could be wrong.
+#include "reports/recommendations.h"
+
+#include <gtest/gtest.h>
+
+namespace graze::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MadeLane {
+  std::string id;
+  std::uint64_t wrong;  // of 10,000 pairs of uniform, and of as many of degenerate; false negatives
+};
+
+CampaignCounts counts_with(const std::vector<MadeLane>& lanes) {
+  Json summary = {{"spec", {{"seed", 1}, {"pairs", 20'000}, {"lanes", Json::array()}}}, {"complete", true}};
+  for (const char* stratum : {"uniform", "degenerate"}) {
+    Json& row = summary["strata"][stratum] = {
+        {"pairs", 10'000}, {"intersects", 5'000}, {"lanes", Json::object()}, {"margins", Json::object()}};
+    for (const MadeLane& lane : lanes) {
+      row["lanes"][lane.id] = {
+          {"false_positive", 0}, {"false_negative", lane.wrong}, {"declined", 0}, {"differs_from_cpu", 0}};
+    }
+  }
+  for (const MadeLane& lane : lanes) summary["spec"]["lanes"].push_back(lane.id);
+  return counts_of(summary);
+}
+
+// Of each lane, on uniform and on degenerate: so many nanoseconds, give or take one; 0 for none.
+Costs costs_with(const std::vector<std::pair<double, double>>& of_lanes) {
+  Costs costs{"a machine", 9, {}};
+  for (const auto& [uniform, degenerate] : of_lanes) {
+    auto& row = costs.of_stratum.emplace_back();
+    for (const double ns : {uniform, degenerate})
+      row.push_back(ns == 0 ? std::nullopt : std::optional(Cost{100, ns - 1, ns, ns + 1}));
+  }
+  return costs;
+}
+
+const std::vector<MadeLane> kThree{{"exact/f32/cpu", 0}, {"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 100}};
+
+TEST(Recommendations, TheExactLaneIsCheaperOnlyWhereSpreadsAreApart) {
+  const CampaignCounts counts = counts_with(kThree);
+  const Costs cheaper = costs_with({{38, 300}, {60, 62}, {80, 82}});
+  EXPECT_EQ(lane_to_use(counts, &cheaper).text,
+            "Use exact/f32/cpu: right on all 20,000 pairs, at 38 ns a general pair against 60 for the fastest published "
+            "lane, moller_1997/f32/cpu; over all strata 169 ns against 61.");
+  const Costs dearer = costs_with({{100, 300}, {60, 62}, {80, 82}});
+  EXPECT_EQ(lane_to_use(counts, &dearer).text,
+            "Use exact/f32/cpu: right on all 20,000 pairs, at 100 ns a general pair. The fastest published lane, "
+            "moller_1997/f32/cpu, takes 60; over all strata 200 ns against 61; it is wrong on 9 % of all pairs.");
+  const Costs near = costs_with({{59, 300}, {60, 62}, {80, 82}});
+  EXPECT_EQ(lane_to_use(counts, &near).text,
+            "Use exact/f32/cpu: right on all 20,000 pairs, at 59 ns (58 to 60) a general pair. Whether the fastest "
+            "published lane, moller_1997/f32/cpu at 60 ns (59 to 61), is cheaper is not settled: their spreads overlap; "
+            "over all strata 180 ns against 61.");
+}
+
+TEST(Recommendations, CostsThatAreNotMeasuredAreNotSettled) {
+  const CampaignCounts counts = counts_with(kThree);
+  const std::string expected =
+      "Use exact/f32/cpu: right on all 20,000 pairs. What it costs is not settled: the campaign has no timings of it.";
+  EXPECT_EQ(lane_to_use(counts, nullptr).text, expected);
+  const Costs of_others = costs_with({{0, 0}, {60, 62}, {80, 82}});
+  EXPECT_EQ(lane_to_use(counts, &of_others).text, expected);
+  const Costs of_exact = costs_with({{38, 300}, {0, 0}, {0, 0}});
+  EXPECT_EQ(lane_to_use(counts, &of_exact).text,
+            "Use exact/f32/cpu: right on all 20,000 pairs, at 38 ns (37 to 39) a general pair.");
+}
+
+TEST(Recommendations, AnExactLaneThatErrsIsNotRecommended) {
+  const CampaignCounts counts = counts_with({{"exact/f32/cpu", 1}, {"moller_1997/f32/cpu", 900}});
+  EXPECT_EQ(lane_to_use(counts, nullptr).text,
+            "exact/f32/cpu is wrong on 2 of 20,000 pairs, which must not be: trust no exact lane before that is "
+            "explained.");
+  const CampaignCounts none = counts_with({{"moller_1997/f32/cpu", 900}});
+  EXPECT_FALSE(lane_to_use(none, nullptr).known);
+}
+
+TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
+  const CampaignCounts counts = counts_with(kThree);
+  const std::string avoid =
+      "Avoid moller_1997/f32/cpu: wrong on 1,800 pairs (9 %, 95 % interval 8.61 % to 9.4 %), 0 false positives and 1,800 "
+      "false negatives; of general pairs on 9 %";
+  EXPECT_EQ(lane_to_avoid(counts, nullptr).text, avoid + ".");
+  const Costs dear = costs_with({{38, 300}, {90, 62}, {80, 82}});
+  EXPECT_EQ(lane_to_avoid(counts, &dear).text,
+            avoid + ". Nothing is won by it: separating_axes/f64/cpu is less often wrong and cheaper, 80 ns a general "
+                    "pair against 90.");
+  const Costs near = costs_with({{38, 300}, {81, 62}, {80, 82}});
+  EXPECT_EQ(lane_to_avoid(counts, &near).text, avoid + ".");
+  EXPECT_EQ(lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 890}}), nullptr).text,
+            "Which published lane is worst is not settled: the 95 % intervals of moller_1997/f32/cpu, wrong on 8.61 % to "
+            "9.4 % of all pairs, and separating_axes/f64/cpu, on 8.51 % to 9.3 %, overlap.");
+  // Variants of one lane need not be told apart.
+  EXPECT_TRUE(lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900},
+                                         {"moller_1997/f32/cpu-fma", 899},
+                                         {"separating_axes/f64/cpu", 100}}),
+                            nullptr)
+                  .text.starts_with("Avoid moller_1997/f32/cpu: "));
+}
+
+TEST(Recommendations, TheLeastWrongLaneIsNamedWithItsCost) {
+  const CampaignCounts counts = counts_with(kThree);
+  const Costs costs = costs_with({{38, 300}, {60, 62}, {80, 82}});
+  EXPECT_EQ(least_wrong_lane(counts, &costs).text,
+            "Of the 2 published lanes the least wrong is separating_axes/f64/cpu: on 200 (1 %, 95 % interval 0.871 % to "
+            "1.15 %) of 20,000 pairs, at 80 ns a general pair.");
+  EXPECT_TRUE(least_wrong_lane(counts_with({{"moller_1997/f32/cpu", 110}, {"separating_axes/f64/cpu", 100}}), nullptr)
+                  .text.starts_with("Which published lane is least wrong is not settled: the 95 % intervals of separating_axes/f64/cpu"));
+}
+
+TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {
+  const CampaignCounts counts = counts_with(kThree);
+  const auto cost = [](int pairs, double ns) {
+    return Json{{"pairs", pairs}, {"low", ns - 1}, {"middle", ns}, {"high", ns + 1}};
+  };
+  const Json lanes = {{"exact/f32/cpu", {{"uniform", cost(100, 40)}, {"degenerate", cost(300, 80)}}}};
+  const Json timings = {{"runs",
+                         {{{"machine", "old"}, {"costs", {{"passes", 9}, {"lanes", Json::object()}}}},
+                          {{"machine", "new"}, {"costs", {{"passes", 9}, {"lanes", lanes}}}},
+                          {{"machine", "untimed"}}}}};
+  const std::optional<Costs> costs = costs_of(timings, counts);
+  ASSERT_TRUE(costs);
+  EXPECT_EQ(costs->machine, "new");
+  EXPECT_EQ(costs->of(0, {0, 1})->middle, 70);  // (100 · 40 + 300 · 80) / 400
+  EXPECT_EQ(costs->of(0, {0})->high, 41);
+  EXPECT_FALSE(costs->of(1, {0}));
+  EXPECT_FALSE(costs_of({{"runs", {{{"machine", "untimed"}}}}}, counts));
+  EXPECT_FALSE(costs_of(nullptr, counts));
+}
+
+}  // namespace
+}  // namespace graze::reports

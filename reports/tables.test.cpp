@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Intervals, and the tables of made-up summaries.
+#include "reports/tables.h"
+
+#include <set>
+
+#include "reports/test_campaign.h"
+#include "reports/wilson.h"
+#include "strata/groups.h"
+
+namespace graze::reports {
+namespace {
+
+TEST(Wilson, GivesKnownIntervals) {
+  // Roots p of (p - count / of)² = z² p (1 - p) / of, found by bisection.
+  const Share one = share_of(1, 10), all = share_of(10, 10), half = share_of(500, 1000), none = share_of(0, 10);
+  EXPECT_NEAR(one.low, 0.0178762, 1e-6);
+  EXPECT_NEAR(one.high, 0.4041500, 1e-6);
+  EXPECT_NEAR(all.low, 0.7224672, 1e-6);
+  EXPECT_EQ(all.high, 1);
+  EXPECT_NEAR(half.low, 0.4690696, 1e-6);
+  EXPECT_NEAR(half.high, 0.5309304, 1e-6);
+  EXPECT_EQ(none.low, 0);
+  EXPECT_NEAR(none.high, 3.8414588 / 13.8414588, 1e-6);
+  EXPECT_EQ(share_of(0, 0).high, 1);
+  EXPECT_TRUE(one.apart(all));
+  EXPECT_FALSE(one.apart(none));
+}
+
+TEST(Wilson, BoundOfNoneIsTheRuleOfThree) {
+  EXPECT_EQ(bound_of_none(0), 1);
+  EXPECT_NEAR(bound_of_none(1), 0.95, 1e-12);
+  EXPECT_NEAR(bound_of_none(1'000'000'000), 2.9957e-9, 1e-12);
+}
+
+// What was not compared is null in a summary and in a report, and of no pairs there is no share.
+TEST(Tables, OfNothingThereIsNoShare) {
+  Json summary = summary_of({"moller_1997/f32/cuda-fma"}, {"uniform"}, {0, 3, 0, 0});
+  summary["strata"]["uniform"]["intersects"] = 1000;  // so that none can be a false positive
+  summary["strata"]["uniform"]["lanes"]["moller_1997/f32/cuda-fma"]["differs_from_cpu"] = nullptr;
+  const Json row = rates(counts_of(summary)).front();
+  EXPECT_TRUE(row["differs_from_cpu"].is_null());
+  EXPECT_EQ(row["false_positive"].dump(), R"({"count":0,"of":0,"share":null,"low":null,"high":null})");
+  EXPECT_EQ(row["false_negative"]["share"], 0.003);
+}
+
+// What stands in thresholds for a group or stratum, by id; for all of them for "".
+Json threshold_of(const CampaignCounts& counts, const std::string& group, const std::string& stratum = "") {
+  for (const Json& row : thresholds(counts)) {
+    const auto is = [&](const char* key, const std::string& id, const auto& list) {
+      return row[key].is_null() ? id.empty() : list[row[key].template get<std::size_t>()].id == id;
+    };
+    if (is("group", group, counts.groups) && is("stratum", stratum, counts.strata)) return row;
+  }
+  return nullptr;
+}
+
+TEST(Tables, ThresholdIsWhereErrorsEnd) {
+  Json summary = summary_of({"moller_1997/f32/cpu"}, {"uniform", "degenerate"}, {});
+  const auto bucket = [&](const char* stratum, const char* name, int pairs, int wrong) {
+    summary["strata"][stratum]["margins"][name] = {{"pairs", pairs}, {"wrong", Json::object()}};
+    if (wrong) summary["strata"][stratum]["margins"][name]["wrong"]["moller_1997/f32/cpu"] = wrong;
+  };
+  bucket("uniform", "+2^-3", 10, 0);
+  bucket("uniform", "+2^0", 10, 1);
+  bucket("uniform", "+2^2", 20, 0);
+  bucket("uniform", "+2^5", 30, 0);
+  bucket("uniform", "0", 5, 5);
+  bucket("uniform", "-2^1", 10, 0);
+  bucket("uniform", "-2^4", 10, 1);
+  bucket("degenerate", "+2^9", 4, 1);
+  const CampaignCounts counts = counts_of(summary);
+  for (const Json& row : {threshold_of(counts, "general"), threshold_of(counts, "", "uniform")}) {
+    EXPECT_EQ(row["disjoint"]["exponent"], 2);
+    EXPECT_EQ(row["disjoint"]["above"], 50);
+    EXPECT_NEAR(row["disjoint"]["bound"], 1 - std::pow(0.05, 1 / 50.0), 1e-6);
+    EXPECT_TRUE(row["intersects"]["exponent"].is_null());
+    EXPECT_EQ(row["intersects"]["bound"], 1);
+    EXPECT_EQ(row["intersects"]["largest"], 4);
+  }
+  const Json other = threshold_of(counts, "degenerate"), all = threshold_of(counts, "");
+  EXPECT_TRUE(other["disjoint"]["exponent"].is_null());
+  EXPECT_EQ(other["disjoint"]["largest"], 9);
+  EXPECT_TRUE(other["intersects"]["largest"].is_null());  // no such pairs
+  EXPECT_TRUE(all["disjoint"]["exponent"].is_null());     // what pooling makes of it
+}
+
+TEST(Tables, GroupsHoldEveryStratumOnceAndAddUp) {
+  std::vector<std::string> strata;
+  for (const strata::StratumInfo& info : strata::kStrata) strata.emplace_back(info.id);
+  const CampaignCounts counts = counts_of(summary_of({"moller_1997/f32/cpu"}, strata, {3, 2, 0, 0}));
+  std::set<std::size_t> seen;
+  std::uint64_t pairs = 0;
+  for (const GroupCounts& group : counts.groups) {
+    for (const std::size_t s : group.strata) EXPECT_TRUE(seen.insert(s).second) << counts.strata[s].id;
+    EXPECT_EQ(group.counts.wrong(0), 5 * group.strata.size());
+    pairs += group.counts.pairs;
+  }
+  EXPECT_EQ(counts.groups.size(), 4u);
+  EXPECT_EQ(seen.size(), strata.size());
+  EXPECT_EQ(pairs, counts.total.pairs);
+  EXPECT_EQ(group_rates(counts).size(), 4u);
+}
+
+TEST(Tables, ExtremesOfAllStrataAddUp) {
+  Json summary = summary_of({"moller_1997/f32/cpu"}, {"extreme_scale", "mixed_scale"}, {});
+  for (const char* stratum : {"extreme_scale", "mixed_scale"})
+    summary["strata"][stratum]["extremes"]["scale"]["-152"] = {{"pairs", 10}, {"wrong", {{"moller_1997/f32/cpu", 2}}}};
+  const Json rows = extremes(counts_of(summary));
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0]["cells"][0]["exponent"], -152);
+  EXPECT_EQ(rows[0]["cells"][0]["wrong"]["count"], 4);
+  EXPECT_EQ(rows[0]["cells"][0]["wrong"]["of"], 20);
+}
+
+}  // namespace
+}  // namespace graze::reports

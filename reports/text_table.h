@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// A table for a terminal. Its columns are as wide as their cells; where the headers make it too wide for the screen,
+// they break into lines, or stand above it in steps; where that is not enough, the table comes in several blocks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reports/screen.h"
+
+namespace graze::reports {
+
+enum class Align { left, right, point };  // point: decimal points stand below each other
+
+struct Column {
+  std::string header;
+  Align align = Align::right;
+};
+
+struct Cell {
+  Cell(std::string what, bool is_wrong = false) : text(std::move(what)), wrong(is_wrong) {}
+  std::string text;
+  bool wrong;  // shown in red
+};
+
+class TextTable {
+ public:
+  // The first column names the rows, and is repeated in each block.
+  explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+
+  // Requires: a cell for each column.
+  void add(std::vector<Cell> cells) { rows_.push_back(std::move(cells)); }
+
+  // Each line starts with `indent` spaces and ends with a newline, without spaces before it.
+  std::string text(const Screen& screen, int indent = 0) const;
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<std::vector<Cell>> rows_;
+};
+
+}  // namespace graze::reports

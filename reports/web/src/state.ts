@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is chosen on the page, kept in the URL's fragment, so that a link, a reload and Back have it again:
+// "#kind-7&find=moller+f64" is a place and the filters. A link to a place alone keeps the filters.
+
+let place = '';
+let values = new URLSearchParams();
+const listeners: (() => void)[] = [];
+
+// History entries of our own carry a state, which tells Back from a press on a link.
+const is_own = () => (history.state as { graze?: boolean } | null)?.graze === true;
+
+function read() {
+  const [first, ...rest] = location.hash.slice(1).split('&');
+  const has_place = !first.includes('=');
+  place = has_place ? first : '';
+  const filters = new URLSearchParams((has_place ? rest : [first, ...rest]).join('&'));
+  if (is_own() || filters.size > 0) values = filters;
+}
+
+function write(how: 'pushState' | 'replaceState') {
+  const text = [place, values.toString()].filter(Boolean).join('&');
+  history[how]({ graze: true }, '', text ? `#${text}` : location.href.split('#')[0]);
+}
+
+export const chosen = (key: string) => values.get(key) ?? '';
+
+// An empty value is no choice.
+export function choose(key: string, value: string) {
+  if (value) values.set(key, value);
+  else values.delete(key);
+  write('replaceState');
+}
+
+// Calls back after a link, or Back, has changed what is chosen.
+export const when_chosen = (changed: () => void) => listeners.push(changed);
+
+// Shows the element of that id, as a press on a link does, with some more chosen.
+export function go_to(id: string, more: Record<string, string> = {}) {
+  place = id;
+  Object.entries(more).forEach(([key, value]) => values.set(key, value));
+  write('pushState');
+  listeners.forEach((changed) => changed());
+  document.getElementById(id)?.scrollIntoView({ block: 'start' });
+}
+
+// Calls arrived(id) with the place that the fragment names, now and after every link.
+export function follow_fragment(arrived: (id: string) => void) {
+  write('replaceState');
+  if (place) arrived(place);
+  addEventListener('hashchange', () => {
+    read();
+    write('replaceState');
+    listeners.forEach((changed) => changed());
+    if (place) arrived(place);
+  });
+}
+
+read();

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What torture says of stand-ins for graze: nothing of one that does what it must, and of each that misbehaves what it did."""
+import contextlib
+import io
+import importlib.machinery
+import importlib.util
+import pathlib
+import subprocess
+import sys
+import tempfile
+import types
+import unittest
+
+SCRIPT = pathlib.Path(__file__).with_name("torture")
+sys.path.insert(0, str(SCRIPT.parent))
+loader = importlib.machinery.SourceFileLoader("torture", str(SCRIPT))
+torture = importlib.util.module_from_spec(importlib.util.spec_from_loader("torture", loader))
+loader.exec_module(torture)
+
+# A campaign of eight rows, 50 ms each. MODE says what it does wrong.
+GRAZE = r'''#!%(python)s -BS
+import fcntl, os, pathlib, shutil, signal, sqlite3, stat, sys, time
+MODE = "%(mode)s"
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+words = sys.argv[1:]
+option = lambda name: words[words.index(name) + 1] if name in words else None
+out = option("--out")
+
+
+def fail(line):
+    os.write(2, f"graze: {line}\n".encode(errors="surrogateescape"))
+    os._exit(1)
+
+
+def damaged(file):
+    if MODE == "hangs":
+        time.sleep(1000)
+    if MODE == "crashes":
+        os.kill(os.getpid(), signal.SIGSEGV)
+    if MODE == "babbles":
+        fail(f"{file}: expected a file\nfound damage")
+    fail("expected a file" if MODE == "mumbles" else f"{file}: expected a file, found damage")
+
+
+def write(file, text):
+    try:
+        there = os.stat(file).st_mode if os.path.exists(file) else 0
+        if stat.S_ISDIR(there):
+            fail(f"{file}: is a folder")
+        if MODE == "replaces" and os.path.lexists(file):
+            os.unlink(file)
+        with open(file, "w") as to:
+            to.write(text)
+        if MODE == "litters":
+            pathlib.Path(f"{file}.part").touch()
+    except OSError:
+        fail(f"{file}: no room")
+
+
+def lock(folder):
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        if MODE != "collides":
+            fail(f"{folder}: another process is at work in it")
+        fail(f"{folder}: two\nlines")
+
+
+def fuzz():
+    folder = pathlib.Path(out)
+    file = folder / "campaign.sqlite"
+    seed = option("--seed")
+    rows = [(k, 0, k, 1, (seed + str(k)).encode() * 300, k) for k in range(1, 9)]
+    text, resumed = seed + " near_edge_edge", 0
+    try:
+        (folder / "cases").mkdir(parents=True, exist_ok=True)
+        lock(folder)
+        new = not file.exists()
+        if new and (folder / "summary.json").exists():
+            fail(f"{folder}: holds results but not their database; choose another --out")
+        for again in range(2):
+            database = sqlite3.connect(file, isolation_level=None)
+            try:
+                if new:
+                    database.executescript("BEGIN; CREATE TABLE campaign(text, checksum);"
+                                           "CREATE TABLE batch(id INTEGER PRIMARY KEY, source, first, pairs, counts, checksum); COMMIT")
+                    database.execute("INSERT INTO campaign VALUES(?, 0)", [text])
+                found = database.execute("SELECT * FROM batch ORDER BY id").fetchall()
+                sound = (database.execute("PRAGMA quick_check").fetchall() == [("ok",)] and found == rows[:len(found)]
+                         and database.execute("SELECT * FROM campaign").fetchall() in ([(text, 0)], []) )
+            except (sqlite3.Error, UnicodeError):
+                sound = False
+            if sound:
+                break
+            if MODE == "believes":
+                found, resumed = rows, 1
+                break
+            if "--discard-damaged" not in words or MODE == "stuck":
+                damaged(file)
+            database.close()
+            file.unlink()
+            new = True
+        resumed |= MODE == "loses" and not new and 0 < len(found) < 8
+        for row in rows[len(found):]:
+            time.sleep(0.05)
+            database.execute("INSERT INTO batch VALUES(?, ?, ?, ?, ?, ?)", row)
+    except (OSError, sqlite3.Error):
+        fail(f"{file}: no room")
+    write(folder / "cases/1.pairs", "1 2 3\n")
+    write(folder / "margins.svg", "picture\n")
+    write(folder / "summary.json", '{"resumed": %%d, "signatures": [1, 2]}\n' %% resumed)
+
+
+if out == "":
+    print("graze: --out: expected a name, found ''", file=sys.stderr)
+    sys.exit(2)
+if words[0] == "fuzz" and "--mesh" not in words:
+    if MODE == "replaces" and os.path.islink(out):
+        os.unlink(out)
+    fuzz()
+elif words[0] == "minimize" and os.path.isdir(words[1]):
+    lock(words[1])
+    cases = pathlib.Path(words[1]) / "cases"
+    lost = MODE == "loses" and (cases / "1.json").exists() and not (cases / "1.maps.json").exists()
+    write(cases / "1.json", '{"lost": %%d}\n' %% lost)
+    time.sleep(0.4)
+    write(cases / "1.maps.json", "[]\n")
+elif words[0] == "report" and words[1] != "--from":
+    write(f"{words[1]}/report.json", '{"format": 1}\n')
+elif words[:2] == ["corpus", "add"] and os.path.isdir(words[2]) and MODE == "good":
+    pass
+elif out and "--mesh" not in words and (words[1] == "pair.txt" or words[0] == "report"):
+    write(out, "result\n")
+elif words[0] == "corpus" and words[1] != "add":
+    damaged(f"{option('--corpus')}/cases.pairs")
+else:
+    damaged(next(word for word in words if word.startswith("/")))
+'''
+
+
+class Torture(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def graze(self, mode):
+        file = self.folder / f"graze-{mode}"
+        file.write_text(GRAZE % {"mode": mode, "python": sys.executable})
+        file.chmod(0o755)
+        return file
+
+    def attack(self, mode, kind, rounds=1):
+        """Up to so many rounds, until one finds something. Returns: its counts, and what was said."""
+        graze = self.graze(mode)
+        bench = torture.Bench(graze, 1, self.folder / f"{mode}-{kind}")
+        said = io.StringIO()
+        for number in range(rounds):
+            with contextlib.redirect_stdout(said):
+                counts = torture.attack(bench, kind, number, types.SimpleNamespace(graze=graze, seed=1))
+            if said.getvalue():
+                break
+        return counts, said.getvalue()
+
+    def test_nothing_of_one_that_does_what_it_must(self):
+        for kind in torture.KINDS:
+            with self.subTest(kind):
+                counts, said = self.attack("good", kind)
+                self.assertEqual(said, "")
+                self.assertGreater(sum(counts.values()), 0)
+
+    def test_what_each_does_wrong(self):
+        for kind, mode, what in (
+                ("kill_fuzz", "loses", "found that 1 files differ, the first summary.json"),
+                ("kill_minimize", "loses", "found that 1 files differ, the first cases/1.json"),
+                ("full_disk", "litters", "expected nothing left behind"),
+                ("two_at_once", "collides", "expected one line on stderr"),
+                ("flips", "believes", "found that 1 files differ, the first summary.json"),
+                ("flips", "crashes", "expected exit status 0, 1 or 2, found -11"),
+                ("flips", "stuck", "expected success, found status 1"),
+                ("database_bytes", "babbles", "expected one line on stderr"),
+                ("sql", "mumbles", "expected a line that names campaign.sqlite"),
+                ("forged", "crashes", "expected exit status 0, 1 or 2, found -11"),
+                ("pairs", "crashes", "expected exit status 0, 1 or 2, found -11"),
+                ("meshes", "mumbles", "expected a line that names"),
+                ("json", "crashes", "expected exit status 0, 1 or 2, found -11"),
+                ("outputs", "replaces", "found otherwise")):
+            with self.subTest(f"{kind} {mode}"):
+                counts, said = self.attack(mode, kind, rounds=12 if mode in ("loses", "collides") else 1)  # depends on when
+                self.assertEqual(counts["violations"], 1)
+                self.assertRegex(said, f"^VIOLATION in {kind}:[0-9]+: ")
+                self.assertIn(what, said)
+                self.assertRegex(said, f"again: scripts/torture --graze {self.folder}/graze-{mode} --seed 1 --repeat {kind}:[0-9]+\n")
+                kept = pathlib.Path(said.rsplit("kept:  ", 1)[1].strip())
+                self.assertTrue((kept / ".commands").read_text())
+
+    def test_one_that_hangs(self):
+        bench = sys.modules["torture_attacks.bench"]
+        before, bench.SECONDS = bench.SECONDS, 2
+        try:
+            self.assertIn("expected an end within 2 s, and ", self.attack("hangs", "meshes")[1])
+        finally:
+            bench.SECONDS = before
+
+    def test_exit_status_and_table(self):
+        def run(mode):
+            out = self.folder / "table.md"
+            ran = subprocess.run([sys.executable, "-B", SCRIPT, "--graze", self.graze(mode), "--repeat", "meshes:3", "--out", out],
+                                 capture_output=True, text=True, env={"TMPDIR": str(self.folder)})
+            return ran.returncode, ran.stdout, out.read_text()
+
+        status, said, table = run("good")
+        self.assertEqual(status, 0)
+        self.assertEqual(said, table)
+        self.assertIn("| meshes | 1 | 12 | 0 | 0 | 12 | 0 |", table)
+        status, said, table = run("crashes")
+        self.assertEqual(status, 1)
+        self.assertIn("| meshes | 1 | 1 | 0 | 0 | 0 | 1 |", table)
+        self.assertEqual(list(self.folder.glob("graze-torture-*/meshes-3")), [pathlib.Path(said.split("kept:  ")[1].split("\n")[0])])
+
+    def test_nothing_attempted_is_a_failure(self):
+        kinds, torture.KINDS = torture.KINDS, {"idle": lambda turn: None}
+        arguments, sys.argv = sys.argv, ["torture", "--graze", str(self.graze("good")), "--minutes", "0"]
+        said = io.StringIO()
+        try:
+            with contextlib.redirect_stdout(said):
+                self.assertEqual(torture.main(), 1)
+        finally:
+            torture.KINDS, sys.argv = kinds, arguments
+        self.assertIn("expected at least one attempt of idle, found none", said.getvalue())
+
+
+if __name__ == "__main__":
+    unittest.main()

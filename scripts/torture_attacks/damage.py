@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A campaign's database is damaged: its results are those of an undisturbed run, or it is refused in one line, and
+--discard-damaged goes on to them."""
+import shutil
+import sqlite3
+
+from torture_attacks import mutate
+from torture_attacks.bench import Violation
+
+ATTEMPTS = 8
+DATABASE = "campaign.sqlite"
+NUMBERS = ["-1", "0", "1", "2000000", "9223372036854775807", "-9223372036854775808", "1.5", "NULL", "'x'", "x'00'", "{0} + 1", "{0} - 1", "-{0}"]
+ROW = "WHERE id = (SELECT id FROM batch ORDER BY random() LIMIT 1)"
+# Each leaves a database that SQLite itself finds nothing wrong with.
+STATEMENTS = [
+    "DELETE FROM batch " + ROW,
+    "DELETE FROM batch",
+    "DELETE FROM campaign",
+    "DROP TABLE batch",
+    "DROP TABLE campaign",
+    "INSERT INTO batch(source, first, pairs, counts, checksum) SELECT source, first, pairs, counts, checksum FROM batch LIMIT 1",
+    "INSERT INTO batch(source, first, pairs, counts, checksum) SELECT source + 1, first, pairs, counts, checksum FROM batch LIMIT 1",
+    "INSERT INTO campaign SELECT * FROM campaign",
+    "UPDATE campaign SET text = replace(text, '\"seed\":', '\"seed\":1')",
+    "UPDATE campaign SET text = replace(text, '\"pairs\":600', '\"pairs\":601')",
+    "UPDATE campaign SET text = substr(text, 2)",
+    "UPDATE campaign SET text = ''",
+    "UPDATE campaign SET text = x'ff'",
+    "UPDATE campaign SET checksum = checksum + 1",
+    "UPDATE campaign SET checksum = 'x'",
+    "UPDATE batch SET counts = x'' " + ROW,
+    "UPDATE batch SET counts = 'text' " + ROW,
+    "UPDATE batch SET counts = 0 " + ROW,
+    "UPDATE batch SET counts = randomblob(length(counts)) " + ROW,
+    "UPDATE batch SET counts = zeroblob(20000000) " + ROW,
+    "UPDATE batch SET counts = substr(counts, 1, length(counts) - 1) " + ROW,
+    "UPDATE batch SET counts = (SELECT counts FROM batch ORDER BY id DESC LIMIT 1)",
+    "UPDATE batch SET id = -id",
+    "UPDATE batch SET id = 9223372036854775807 " + ROW,
+    "ALTER TABLE batch ADD COLUMN more INTEGER",
+    "ALTER TABLE batch RENAME COLUMN pairs TO pears",
+    "CREATE TABLE more(x)",
+    "CREATE TRIGGER more AFTER INSERT ON batch BEGIN SELECT 1; END",
+    "PRAGMA user_version = 4",
+    "PRAGMA user_version = 0",
+    "PRAGMA application_id = 1",
+    "PRAGMA application_id = 0",
+    "PRAGMA journal_mode = WAL",
+    "VACUUM",
+]
+
+
+def statement(random):
+    if random.random() < 0.5:
+        column = random.choice(["source", "first", "pairs", "checksum"])
+        return f"UPDATE OR REPLACE batch SET {column} = {random.choice(NUMBERS).format(column)} {ROW if random.random() < 0.7 else ''}"
+    return random.choice(STATEMENTS)
+
+
+def copy(turn, attempt):
+    """A finished campaign, sometimes without its results, which the database must bring back."""
+    campaign = turn.folder / f"campaign-{attempt}"
+    shutil.copytree(turn.bench.reference("small"), campaign)
+    if turn.random.random() < 0.5:
+        shutil.rmtree(campaign / "cases")
+        (campaign / "summary.json").unlink()
+    return campaign
+
+
+def judge(turn, campaign):
+    """Goes on with the campaign whose database was damaged, and counts what came of it."""
+    command = [*turn.bench.campaign("small"), "--out", campaign]
+    if turn.random.random() < 0.25:
+        refuses_another_seed(turn, campaign, command)
+    refused = turn.run(*command)
+    if turn.is_refused(refused, DATABASE, campaign.name + ": holds results but not their database"):
+        went_on = turn.run(*command, "--discard-damaged")
+        # Another program's database, and results without one, are no damage; the line says what to do.
+        if not (turn.is_refused(went_on, campaign.name) and "choose another --out" in went_on.err):
+            turn.must_succeed(went_on)
+            turn.must_be_same(campaign, turn.bench.reference("small"))
+        turn.count("refused")
+    else:
+        turn.must_be_same(campaign, turn.bench.reference("small"))
+        turn.count("same")
+    shutil.rmtree(campaign)
+
+
+def refuses_another_seed(turn, campaign, command):
+    other = list(command)
+    other[other.index("--seed") + 1] += "1"
+    before = {file.relative_to(campaign): file.read_bytes() for file in campaign.rglob("*") if file.is_file()}
+    has_rows = b"near_edge_edge" in before[(campaign / DATABASE).relative_to(campaign)] if (campaign / DATABASE).is_file() else False
+    ran = turn.run(*other)
+    if ran.status == 0 and (has_rows or (campaign / "cases").exists() and "summary.json" in map(str, before)):
+        raise Violation("expected another seed to be refused, found that it went on")
+    if ran.status == 0:  # nothing was left of the campaign: it began anew; back to what there was
+        shutil.rmtree(campaign)
+        for name, data in before.items():
+            (campaign / name).parent.mkdir(parents=True, exist_ok=True)
+            (campaign / name).write_bytes(data)
+
+
+def flips(turn):
+    """Single bits."""
+    for attempt in range(ATTEMPTS):
+        campaign = copy(turn, attempt)
+        file = campaign / DATABASE
+        file.write_bytes(mutate.flip_bit(turn.random, file.read_bytes()))
+        judge(turn, campaign)
+
+
+def database_bytes(turn):
+    """Bytes, pieces, the end; or something else in the database's place."""
+    for attempt in range(ATTEMPTS):
+        campaign = copy(turn, attempt)
+        file = campaign / DATABASE
+        data = file.read_bytes()
+        file.unlink()
+        choice = turn.random.randrange(20)
+        if choice == 0:
+            file.mkdir()
+            ran = turn.run(*turn.bench.campaign("small"), "--out", campaign)
+            if not turn.is_refused(ran, DATABASE):
+                raise Violation("expected a folder in the database's place to be refused")
+            turn.count("refused")
+            continue
+        if choice == 1:
+            file.write_bytes(turn.random.randbytes(turn.random.choice([1, 100, 5000])))
+        elif choice == 2:
+            file.write_bytes(b"")
+        elif choice == 3:
+            (campaign / (DATABASE + "-wal")).write_bytes(turn.random.randbytes(5000))
+            file.write_bytes(data)
+        elif choice == 4:
+            (campaign / (DATABASE + "-journal")).write_bytes(turn.random.randbytes(5000))
+            file.write_bytes(data)
+        else:
+            file.write_bytes(mutate.any_of(turn.random, data, mutate.BINARY))
+        judge(turn, campaign)
+
+
+def fnv1a(data, start=0xcbf29ce484222325):
+    for byte in data:
+        start = (start ^ byte) * 0x100000001b3 & (1 << 64) - 1
+    return start
+
+
+def signed(number):
+    return number - (1 << 64) if number >> 63 else number
+
+
+def forged(turn):
+    """A row is changed and its checksum with it: what it says may be believed, but nothing may break."""
+    for attempt in range(ATTEMPTS):
+        campaign = copy(turn, attempt)
+        with sqlite3.connect(campaign / DATABASE, isolation_level=None) as database:
+            of_campaign, = database.execute("SELECT checksum FROM campaign").fetchone()
+            rows = database.execute("SELECT id, source, first, pairs, counts FROM batch").fetchall()
+            row, *place, counts = turn.random.choice(rows)
+            start = f"{of_campaign & (1 << 64) - 1:016x} {' '.join(map(str, place))} ".encode()
+            counts = mutate.any_of(turn.random, counts, mutate.BINARY)
+            database.execute("UPDATE batch SET counts = ?, checksum = ? WHERE id = ?", [counts, signed(fnv1a(counts, fnv1a(start))), row])
+        database.close()
+        command = [*turn.bench.campaign("small"), "--out", campaign]
+        refused = turn.is_refused(turn.run(*command), DATABASE)
+        if refused:
+            turn.must_succeed(turn.run(*command, "--discard-damaged"))
+            turn.must_be_same(campaign, turn.bench.reference("small"))
+        turn.count("refused" if refused else "read")
+        shutil.rmtree(campaign)
+
+
+def sql(turn):
+    """Through SQLite, which leaves a file that it finds nothing wrong with."""
+    for attempt in range(ATTEMPTS):
+        campaign = copy(turn, attempt)
+        chosen = [statement(turn.random) for _ in range(turn.random.choice([1, 1, 2]))]
+        with sqlite3.connect(campaign / DATABASE, isolation_level=None) as database:
+            for each in chosen:
+                turn.commands.append(f"sqlite3 {campaign / DATABASE} {each!r}")
+                try:
+                    database.execute(each).fetchall()
+                except (sqlite3.Error, OverflowError):
+                    pass  # the second may no longer fit; and what a column refuses is no damage
+        database.close()
+        judge(turn, campaign)

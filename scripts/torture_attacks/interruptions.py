@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Killed, without room on the disk, two at once: in the end the bytes of a run that nothing disturbed."""
+import contextlib
+import os
+import shutil
+import subprocess
+import time
+
+from torture_attacks import mutate
+from torture_attacks.bench import Violation
+
+
+def kill_repeatedly(turn, begin, arguments, seconds):
+    """Kills it one to three times, each time elsewhere on its way. `begin` makes it begin anew.
+    Returns: how often it was killed."""
+    kills = 0
+    for attempt in range(6):
+        # Much of what can go wrong is at the beginning and the end, so they have more than their share.
+        share = turn.random.choice([turn.random.random(), turn.random.random() * 0.1, 0.8 + turn.random.random() * 0.4])
+        if turn.run(*arguments, kill_after=seconds * share).killed:
+            kills += 1
+            if kills == 3 or turn.random.random() < 0.3:
+                break
+        elif kills:
+            break
+        else:
+            seconds /= 2
+            begin()
+    return kills
+
+
+def kill_fuzz(turn):
+    campaign, reference = turn.folder / "campaign", turn.bench.reference("large")
+    command = [*turn.bench.campaign("large"), "--out", campaign]
+    kills = kill_repeatedly(turn, lambda: shutil.rmtree(campaign), command, turn.bench.seconds["large", False, False])
+    written_ahead = campaign / "campaign.sqlite-wal"
+    if turn.random.random() < 0.3 and written_ahead.exists() and written_ahead.stat().st_size:
+        written_ahead.write_bytes(mutate.any_of(turn.random, written_ahead.read_bytes(), mutate.BINARY))
+        if turn.is_refused(turn.run(*command), "campaign.sqlite"):
+            turn.must_succeed(turn.run(*command, "--discard-damaged"))
+    turn.must_succeed(turn.run(*command))
+    turn.must_be_same(campaign, reference)
+    for _ in range(kills):
+        turn.count("same")
+
+
+def kill_minimize(turn):
+    campaign, reference = turn.folder / "campaign", turn.bench.reference("tiny", minimised=True)
+
+    def begin():
+        shutil.rmtree(campaign, ignore_errors=True)
+        shutil.copytree(turn.bench.reference("tiny"), campaign)
+
+    begin()
+    kills = kill_repeatedly(turn, begin, ["minimize", campaign], turn.bench.seconds["tiny", True, False])
+    turn.must_succeed(turn.run("minimize", campaign))
+    turn.must_be_same(campaign, reference)
+    for _ in range(kills):
+        turn.count("same")
+
+
+@contextlib.contextmanager
+def small_disk(folder, size):
+    """A file system of so many bytes. Yields: a function that makes it larger, or none where it cannot be had."""
+    folder.mkdir()
+    options = f"size={max(size, 4096)},mode=0700"
+    have = os.geteuid() == 0 and subprocess.run(["mount", "-t", "tmpfs", "-o", options, "graze-torture", folder], capture_output=True).returncode == 0
+    try:
+        yield (lambda: subprocess.run(["mount", "-o", "remount,size=256m", folder], check=True, capture_output=True)) if have else None
+    finally:
+        if have:
+            subprocess.run(["umount", folder], check=True)
+
+
+def full_disk(turn):
+    """First without room, on a small file system or by a limit on a file's size, then with room."""
+    minimises = turn.random.random() < 0.3
+    name = "tiny" if minimises else "small"
+    before, after = turn.bench.reference(name), turn.bench.reference(name, minimised=minimises)
+    needed = sum(file.stat().st_size for file in after.rglob("*") if file.is_file())
+    largest = max(file.stat().st_size for file in after.rglob("*") if file.is_file())
+    with small_disk(turn.folder / "disk", 1 << 20) as enlarge:
+        campaign = turn.folder / "disk" / "campaign"
+        if minimises:
+            shutil.copytree(before, campaign)
+            command = ["minimize", campaign]
+        else:
+            command = [*turn.bench.campaign(name), "--out", campaign]
+        limit = None
+        if enlarge and turn.random.random() < 0.5:
+            # A tmpfs gives whole pages, so there is more room than the sum of the sizes says; the filler takes the rest.
+            free = os.statvfs(turn.folder / "disk").f_bavail * 4096
+            room = turn.random.randrange(0, needed * 2)
+            with open(turn.folder / "disk" / "filler", "wb") as filler:
+                filler.write(bytes(max(0, free - room)))
+        else:
+            limit = turn.random.randrange(0, largest + 1)
+        ran = turn.run(*command, file_bytes=limit)
+        refused = turn.is_refused(ran, "campaign", "cases")
+        (turn.folder / "disk" / "filler").unlink(missing_ok=True)
+        if enlarge:
+            enlarge()
+        turn.must_succeed(turn.run(*command))
+        turn.must_be_same(campaign, after)
+        turn.count("refused" if refused else "same")
+        shutil.rmtree(campaign)
+
+
+def two_at_once(turn):
+    """On one campaign's folder: the second waits or is refused in one line; then all is as it should be."""
+    campaign = turn.folder / "campaign"
+    fuzz = [*turn.bench.campaign("tiny"), "--out", campaign]
+    large = [*turn.bench.campaign("large"), "--out", campaign]
+    minimize = ["minimize", campaign]
+    first, second, name, minimised = turn.random.choice([(large, large, "large", False), (minimize, minimize, "tiny", True),
+                                                         (fuzz, minimize, "tiny", True), (minimize, fuzz, "tiny", True)])
+    if minimised:
+        shutil.copytree(turn.bench.reference("tiny"), campaign)
+    started = turn.start(*first)
+    time.sleep(turn.random.choice([0, 0, 0.01, 0.1, 0.5]))
+    both = [turn.finish(other, judged=False) for other in (turn.start(*second), started)]
+    for ran in both:
+        turn.must_end(ran)
+    refused = [turn.is_refused(ran, "campaign") for ran in both]
+    if all(refused):
+        raise Violation(f"expected one of two at once to go on, found both refused: {both[0].err!r} {both[1].err!r}")
+    if minimised:
+        turn.must_succeed(turn.run(*minimize))
+    turn.must_be_same(campaign, turn.bench.reference(name, minimised=minimised))
+    turn.count("refused" if any(refused) else "same")

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What stands where --out points stays what it is: a device, a pipe, a link, a folder."""
+import os
+import pathlib
+import stat
+import subprocess
+
+from torture_attacks.bench import Violation
+
+PAIR = "0.1 0.2 0.3  0.4 0.9 0.2  0.7 0.1 0.6   0.1 0.2 0.3  0.5 0.5 0.9  -0.3 0.8 0.4\n"
+LANE = "guigue_devillers_2003/f32/cpu"
+
+
+def verbs(turn):
+    """Each: arguments that write the file that is named last."""
+    (turn.folder / "pair.txt").write_text(PAIR)
+    report = turn.bench.reference("tiny", reported=True) / "report.json"
+    return [["minimize", "pair.txt", "--lanes", LANE, "--out"], ["map", "pair.txt", "--lanes", LANE, "--out"], ["report", "--from", report, "--out"]]
+
+
+def device(folder, minor, name):
+    """A device of our own: a defect must not cost the machine its own. Returns: none where that is not permitted."""
+    node = folder / f"{name}.png"
+    try:
+        os.mknod(node, stat.S_IFCHR | 0o600, os.makedev(1, minor))
+        os.close(os.open(node, os.O_WRONLY))
+    except PermissionError:
+        node.unlink(missing_ok=True)
+        return None
+    return node
+
+
+def expect(condition, expected):
+    if not condition:
+        raise Violation(f"expected {expected}, found otherwise")
+
+
+def outputs(turn):
+    for place, verb in enumerate(verbs(turn)):
+        folder = turn.folder / str(place)
+        folder.mkdir()
+        plain = folder / "plain.png"
+        turn.must_succeed(turn.run(*verb, plain))
+        expected = plain.read_bytes()
+        turn.count("same")
+        for attack in (to_devices, to_a_pipe, to_links, to_folders, to_nothing):
+            attack(turn, verb, folder, expected)
+        left = [file.name for file in folder.rglob("*.part*")]
+        expect(not left, f"nothing left behind ({left})")
+    campaigns(turn)
+
+
+def to_devices(turn, verb, folder, _expected):
+    for minor, name in ((3, "null"), (7, "full")):
+        node = device(folder, minor, name)
+        if node is None:
+            continue
+        ran = turn.run(*verb, node)
+        expect(stat.S_ISCHR(os.lstat(node).st_mode), f"{name} to stay a device")
+        if name == "null":
+            turn.must_succeed(ran)
+            turn.count("same")
+        else:
+            expect(turn.is_refused(ran, node.name), "a full device to be refused")
+            turn.count("refused")
+
+
+def to_a_pipe(turn, verb, folder, expected):
+    pipe = folder / "pipe.png"
+    os.mkfifo(pipe)
+    with open(folder / "piped", "wb") as piped:
+        reader = subprocess.Popen(["cat", pipe], stdout=piped)
+    try:
+        turn.must_succeed(turn.run(*verb, pipe))
+        expect(stat.S_ISFIFO(os.lstat(pipe).st_mode), "the pipe to stay one")
+        reader.wait(30)
+        expect((folder / "piped").read_bytes() == expected, "the same bytes through a pipe")
+    finally:
+        reader.kill()
+        reader.wait()
+    turn.count("same")
+
+
+def to_links(turn, verb, folder, expected):
+    target, link, dangling, loop = (folder / name for name in ("target.png", "link.png", "dangling.png", "loop.png"))
+    target.write_text("before")
+    link.symlink_to(target.name)
+    dangling.symlink_to("made.png")
+    loop.symlink_to("loop.png")
+    for name, behind in ((link, target), (dangling, folder / "made.png")):
+        turn.must_succeed(turn.run(*verb, name))
+        expect(name.is_symlink() and behind.read_bytes() == expected, "the link to stay, and the bytes behind it")
+        turn.count("same")
+    expect(turn.is_refused(turn.run(*verb, loop), loop.name) and loop.is_symlink(), "a link to itself to be refused")
+    turn.count("refused")
+
+
+def to_folders(turn, verb, folder, _expected):
+    there = folder / "folder.png"
+    there.mkdir()
+    (there / "kept").write_text("kept")
+    expect(turn.is_refused(turn.run(*verb, there), there.name), "a folder to be refused")
+    expect([file.name for file in there.iterdir()] == ["kept"], "the folder to stay as it is")
+    missing = folder / "missing" / "file.png"
+    expect(turn.is_refused(turn.run(*verb, missing), missing.name), "a file in no folder to be refused")
+    turn.count("refused")
+    turn.count("refused")
+
+
+def to_nothing(turn, verb, _folder, _expected):
+    ran = turn.run(*verb, "")
+    expect(turn.is_refused(ran, "--out") and ran.status == 2, "--out '' to be wrong use")
+    turn.count("refused")
+
+
+def campaigns(turn):
+    """`fuzz --out`."""
+    command, reference = [*turn.bench.campaign("tiny"), "--out"], turn.bench.reference("tiny")
+    folder = turn.folder / "campaigns"
+    (folder / "behind").mkdir(parents=True)
+    (folder / "link").symlink_to("behind")
+    turn.must_succeed(turn.run(*command, folder / "link"))
+    turn.must_be_same(folder / "behind", reference)
+    turn.count("same")
+    (folder / "file").write_text("kept")
+    (folder / "dangling").symlink_to("nowhere/at/all")
+    names = [folder / "file", folder / "file" / "below", folder / "dangling", pathlib.Path("/proc/graze")]
+    node = device(folder, 3, "null")
+    for name in [*names, *([node] if node else [])]:
+        expect(turn.is_refused(turn.run(*command, name), name.name), f"{name} to be refused")
+        turn.count("refused")
+    expect((folder / "file").read_text() == "kept", "the file to stay as it is")
+    expect(node is None or stat.S_ISCHR(os.lstat(node).st_mode), "the device to stay one")
+    to_nothing(turn, command, folder, b"")

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Groups of strata that a reader asks after together: how a lane does on general pairs says nothing of coplanar ones.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "strata/strata.h"
+
+namespace graze::strata {
+
+enum class Group : std::uint8_t { general, coplanar, degenerate, extreme, mesh };
+
+struct GroupInfo {
+  Group group;
+  std::string_view id;
+  std::string_view what;
+};
+
+// One row for each group, in the order of the enumeration.
+inline constexpr GroupInfo kGroups[] = {
+    {Group::general, "general", "proper triangles of usual shape and size, in planes that cross; near and exact contacts"},
+    {Group::coplanar, "coplanar", "triangles in one plane, in nearly one, or in parallel ones"},
+    {Group::degenerate, "degenerate", "segments and points in place of triangles, often or always"},
+    {Group::extreme, "extreme", "needles, coordinates of extreme size, and pairs far from the origin"},
+    {Group::mesh, "mesh", "pairs of a mesh's triangles whose boxes overlap"},
+};
+
+// The stratum's group.
+constexpr Group group_of(Stratum stratum) {
+  switch (stratum) {
+    case Stratum::uniform:
+    case Stratum::thesis:
+    case Stratum::near_vertex_face:
+    case Stratum::near_edge_edge:
+    case Stratum::near_vertex_edge:
+    case Stratum::near_vertex_vertex:
+    case Stratum::exact_contact:
+    case Stratum::shared_vertex:
+    case Stratum::shared_edge:
+      return Group::general;
+    case Stratum::coplanar_lattice:
+    case Stratum::coplanar_wide:
+    case Stratum::coplanar_rounded:
+    case Stratum::parallel:
+      return Group::coplanar;
+    case Stratum::degenerate:
+    case Stratum::lattice:
+      return Group::degenerate;
+    case Stratum::sliver:
+    case Stratum::far_from_origin:
+    case Stratum::extreme_scale:
+    case Stratum::mixed_scale:
+      return Group::extreme;
+  }
+  return Group::general;
+}
+
+// The group of the source of that name: a stratum, or a mesh. Nothing for a stratum that this build does not know.
+constexpr std::optional<Group> group_of_name(std::string_view id) {
+  for (const StratumInfo& row : kStrata) {
+    if (row.id == id) return group_of(row.stratum);
+  }
+  return id == "mesh" ? std::optional(Group::mesh) : std::nullopt;
+}
+
+}  // namespace graze::strata

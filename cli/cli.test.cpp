@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cli/run_graze.h"
 
@@ -68,7 +69,7 @@ TEST_F(Cli, NothingComparedIsSaidEverywhere) {
   EXPECT_TRUE(Json::parse(contents(
       shell.folder / "c/summary.json"))["strata"]["uniform"]["lanes"]["moller_1997/f32/cuda-fma"]["differs_from_cpu"]
                   .is_null());
-  const std::size_t row = ran.out.find("moller_1997/f32/cuda-fma");
+  const std::size_t row = ran.out.rfind("moller_1997/f32/cuda-fma ");
   EXPECT_TRUE(ran.out.substr(row, ran.out.find('\n', row) - row).ends_with(" -")) << ran.out;
   const Ran beside = shell(fuzz + "--lanes 'moller_1997/f32/c*' --json --out d");
   const Json lanes = Json::parse(beside.out)["strata"]["uniform"]["lanes"];
@@ -76,9 +77,7 @@ TEST_F(Cli, NothingComparedIsSaidEverywhere) {
   EXPECT_EQ(lanes["moller_1997/f32/cuda-nofma"]["differs_from_cpu"], 0);
   // A stratum without pairs has no shares.
   const Ran none = shell("graze fuzz --pairs 1 --strata 'uniform,thesis' --lanes 'moller_*/f32/cpu' --out e");
-  EXPECT_NE(none.out.find("\nthesis                         0           -                       -\n"),
-            std::string::npos)
-      << none.out;
+  EXPECT_TRUE(std::regex_search(none.out, std::regex("\nthesis +0 +- +-\n"))) << none.out;
   expect_done("graze report c && graze report d && graze report e");
   EXPECT_TRUE(Json::parse(contents(shell.folder / "c/report.json"))["rates"][0]["differs_from_cpu"].is_null());
   expect_done("grep -q '^moller_1997/f32/cuda-fma,uniform,wrong,' c/rates.csv && ! grep differs_from_cpu c/rates.csv");

@@ -77,7 +77,9 @@ void add(const CorpusOptions& options) {
                   ? fuzz::found_in_campaign(name, options.signatures, options.most)
                   : fuzz::found_in_cases(cases_to_add(name, options.exact_input), build, under_test.lanes, by_bench));
     if (found.back().second.empty())
-      throw std::runtime_error(name + ": expected a case on which some lane is wrong, found none");
+      throw std::runtime_error(name + (std::filesystem::is_directory(name)
+                                           ? "/summary.json: expected a failure to add, found none"
+                                           : ": expected a case on which some lane is wrong, found none"));
   }
 
   std::error_code failed;

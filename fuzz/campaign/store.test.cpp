@@ -225,8 +225,14 @@ TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
   refused("/2/0/2/0", 300);
   refused("/2/0/2", Json::array());
   refused("/2/1/0", all[2][0][0]);
+  const std::string key = all[2][0][0];
+  refused("/2/0/0", "no signature");
+  refused("/2/0/0", key + "\x87");  // no UTF-8
+  refused("/2/0/0", "none/22/skew/+2^2147483648/" + key.substr(key.rfind('/', key.find(':')) + 1));
   refused("/4", 201);
   refused("/7", "device");
+  EXPECT_THROW(from_bytes("\x9b\x7f\xff\xff\xff\xff\xff\xff\xff", range, Axis::scale, 2),
+               Damaged);  // a size beyond any memory
   EXPECT_THROW(from_bytes(bytes.substr(1), range, Axis::scale, 2), Damaged);
   EXPECT_THROW(from_bytes(bytes, {2, 100, 199}, Axis::scale, 2), Damaged);
   EXPECT_THROW(from_bytes(bytes, range, Axis::none, 2), Damaged);

@@ -107,6 +107,11 @@ std::map<std::string, SignatureCount> read_signatures(const Json& rows, const Pa
   return signatures;
 }
 
+// Signatures and lanes are of printable ASCII.
+bool is_printable(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
+}
+
 // Null for what is no CBOR.
 Json parsed(const std::string& bytes) {
   try {
@@ -160,10 +165,10 @@ StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis a
          "the margins and the batch's pairs");
   expect(read_tally(all[1], range.pairs, counts.extremes, "the extremes") == (axis == Axis::none ? 0 : range.pairs),
          "the extremes and the batch's pairs");
-  counts.signatures =
-      read_signatures(all[2], range, [](const std::string& key) { return analysis::parse_signature(key).has_value(); });
-  counts.executors_apart =
-      read_signatures(all[3], range, [](const std::string& lane) { return parse_lane_name(lane).has_value(); });
+  counts.signatures = read_signatures(
+      all[2], range, [](const std::string& key) { return is_printable(key) && analysis::parse_signature(key); });
+  counts.executors_apart = read_signatures(
+      all[3], range, [](const std::string& lane) { return is_printable(lane) && parse_lane_name(lane); });
   counts.disagreements = whole(all[4], range.pairs, "the disagreements and the batch's pairs");
   counts.cgal = whole(all[5], kMost, "the pairs that CGAL decided");
   counts.gmp = whole(all[6], kMost, "the pairs that GMP confirmed");

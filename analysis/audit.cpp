@@ -55,8 +55,7 @@ Settled of_rounding(const LaneExplanation& lane, const Pair& pair, Verdict truth
 }  // namespace
 
 Settled audit(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
-  if (lane.cause == Cause::logic)
-    return both(true, lane.exactly.settled && oracle::decide_exactly(lane.lane->algorithm, pair).verdict != truth);
+  if (lane.cause == Cause::logic) return both(true, lane.exactly.settled && lane.exactly.verdict != truth);
   if (lane.cause == Cause::contraction) return of_contraction(lane, pair, truth);
   if (lane.cause == Cause::fast_math || lane.evidence == Evidence::none) return Settled::unknown;
   return lane.cause == Cause::rounding ? of_rounding(lane, pair, truth) : of_range(lane, pair, truth);

@@ -22,9 +22,15 @@ double in_scalar(const oracle::Beside& beside, Scalar scalar) {
 
 class Search {
  public:
-  Search(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay, int bits,
-         const WithoutCause& without_cause)
-      : lane_(lane), pair_(pair), truth_(truth), replay_(replay), bits_(bits), without_cause_(without_cause) {}
+  Search(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay,
+         const std::vector<oracle::ExactStep>& exact, int bits, const WithoutCause& without_cause)
+      : lane_(lane),
+        pair_(pair),
+        truth_(truth),
+        replay_(replay),
+        exact_(exact),
+        bits_(bits),
+        without_cause_(without_cause) {}
 
   // Sets of one more comparison than `chosen`, then those of two more, as far as the budget goes.
   Deciding find() {
@@ -57,9 +63,14 @@ class Search {
 
   // In the run with those corrected: what else goes wrong, and right without the cause.
   std::vector<Decider> wrong_after(const std::vector<Decider>& chosen) const {
-    const Trace<double> run = chosen.empty() ? replay_.run : run_with(chosen);
+    if (chosen.empty()) return wrong_in(replay_.run, exact_, chosen);
+    const Trace<double> run = run_with(chosen);
+    return wrong_in(run, oracle::exact_steps(lane_.algorithm, lane_.scalar, pair_, run, bits_), chosen);
+  }
+
+  std::vector<Decider> wrong_in(const Trace<double>& run, const std::vector<oracle::ExactStep>& exact,
+                                const std::vector<Decider>& chosen) const {
     const Path path = path_of(run);
-    const std::vector<oracle::ExactStep> exact = oracle::exact_steps(lane_.algorithm, lane_.scalar, pair_, run, bits_);
     std::vector<Decider> result;
     Trace<double> without;
     std::size_t comparison = 0;
@@ -122,6 +133,7 @@ class Search {
   const Pair& pair_;
   Verdict truth_;
   const Replay& replay_;
+  const std::vector<oracle::ExactStep>& exact_;  // of the replay
   int bits_;
   WithoutCause without_cause_;
   int budget_ = 100;  // runs in exact arithmetic
@@ -129,11 +141,12 @@ class Search {
 
 }  // namespace
 
-Deciding deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay, int bits,
+Deciding deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay,
+                              const std::vector<oracle::ExactStep>& exact, int bits,
                               const WithoutCause& without_cause) {
-  Deciding found = Search(lane, pair, truth, replay, bits, without_cause).find();
+  Deciding found = Search(lane, pair, truth, replay, exact, bits, without_cause).find();
   if (!found.comparisons.empty() || !without_cause) return found;
-  found = Search(lane, pair, truth, replay, bits, {}).find();
+  found = Search(lane, pair, truth, replay, exact, bits, {}).find();
   found.by_cause = false;
   return found;
 }

@@ -30,10 +30,11 @@ struct Deciding {
 // What comparisons would say without the cause of the failure, along that path; one entry for each of the run's `seen`.
 using WithoutCause = std::function<Trace<double>(const Path&)>;
 
-// Rather comparisons that go wrong in the lane and right without the cause (where it is empty: all that go wrong);
-// where these do not suffice, any. Sets of up to three are searched for the smallest. Requires: the lane's replay, with
-// evidence; in exact arithmetic the algorithm says `truth`, found with so many bits.
-Deciding deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay, int bits,
-                              const WithoutCause& without_cause);
+// Rather comparisons that go wrong in the lane and right without the cause, or of what is not finite any more (where it
+// is empty: all that go wrong); where these do not suffice, any. Sets of up to three are searched for the smallest.
+// Requires: the lane's replay, with evidence, and its exact steps; in exact arithmetic the algorithm says `truth`,
+// found with so many bits.
+Deciding deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay,
+                              const std::vector<oracle::ExactStep>& exact, int bits, const WithoutCause& without_cause);
 
 }  // namespace graze::analysis

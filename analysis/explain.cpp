@@ -129,12 +129,12 @@ void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth, const o
   result.evidence = run.evidence;
   result.rule = run.rule;
   if (run.evidence == Evidence::none) return;
-  if (result.cause != Cause::logic)
-    result.deciding =
-        deciding_comparisons(lane, pair, truth, run, exactly.bits, without(result.cause, lane, pair, run));
-  const std::vector<Decider>& deciding = result.deciding.comparisons;
   const std::vector<oracle::ExactStep> exact =
       oracle::exact_steps(lane.algorithm, lane.scalar, pair, run.run, exactly.bits);
+  if (result.cause != Cause::logic)
+    result.deciding =
+        deciding_comparisons(lane, pair, truth, run, exact, exactly.bits, without(result.cause, lane, pair, run));
+  const std::vector<Decider>& deciding = result.deciding.comparisons;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const Seen<double>& seen = run.run.seen[i];
     if (!deciding.empty() && deciding.front().place == i) result.decisive = static_cast<int>(result.steps.size());

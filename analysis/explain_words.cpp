@@ -49,8 +49,12 @@ std::string_view what(const LaneExplanation& lane, const Step& told) {
   return told.right.decimal == "0" && told.right.lane == 0 ? "a number" : "the difference of two numbers";
 }
 
-// "A", "A and B", "A, B and 3 more"
-std::string list(const std::vector<std::string>& names) {
+// "A", "A and B", "A, B and 3 more": equal ones once.
+std::string list(const std::vector<std::string>& all) {
+  std::vector<std::string> names;
+  for (const std::string& name : all) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
   constexpr std::size_t kMost = 3;
   const std::size_t more = names.size() > kMost ? names.size() - kMost : 0;
   std::string result = names.front();
@@ -72,9 +76,7 @@ std::string effect(const LaneExplanation& lane) {
   if (!lane.deciding.by_cause)
     text = fmt::format("makes it wrong together with rounding, by the comparison at {}", told->line);
   std::vector<std::string> then;
-  for (const Step& step : lane.then) {
-    if (std::find(then.begin(), then.end(), step.line) == then.end()) then.push_back(step.line);
-  }
+  for (const Step& step : lane.then) then.push_back(step.line);
   if (!then.empty())
     text +=
         fmt::format(" and, were it right, {} at {}", lane.then.size() == 1 ? "the next one" : "later ones", list(then));
@@ -83,9 +85,7 @@ std::string effect(const LaneExplanation& lane) {
 
 std::string list(const std::vector<cuda::ContractionSite>& sites) {
   std::vector<std::string> names;
-  for (const cuda::ContractionSite& site : sites) {
-    if (std::find(names.begin(), names.end(), words(site)) == names.end()) names.push_back(words(site));
-  }
+  for (const cuda::ContractionSite& site : sites) names.push_back(words(site));
   return list(names);
 }
 

@@ -343,6 +343,13 @@ const std::string* field(const Entry& entry, std::string_view key) {
   return nullptr;
 }
 
+std::string text_of(const Entry& entry, std::string_view key) {
+  const std::string* value = field(entry, key);
+  return value ? *value : "";
+}
+
+std::string origin_of(const Entry& entry) { return numbers_of(entry).value_or(text_of(entry, "from")); }
+
 std::optional<std::string> numbers_of(const Entry& entry) {
   const std::string *stratum = field(entry, "stratum"), *seed = field(entry, "seed"), *index = field(entry, "index");
   if (!stratum || !seed || !index) return std::nullopt;

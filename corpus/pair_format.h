@@ -74,7 +74,13 @@ std::string hex_float(float value);
 // Returns: the value of the field, or null when the entry has none of that key.
 const std::string* field(const Entry& entry, std::string_view key);
 
+// The same, or an empty text.
+std::string text_of(const Entry& entry, std::string_view key);
+
 // STRATUM:SEED:INDEX of a case that has these fields.
 std::optional<std::string> numbers_of(const Entry& entry);
+
+// The same, or else what the field `from` says: where a minimised case came from.
+std::string origin_of(const Entry& entry);
 
 }  // namespace graze::corpus

@@ -47,13 +47,6 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
           {"cards", Json::array()}};
 }
 
-std::string text_of(const corpus::Entry& entry, std::string_view key) {
-  const std::string* value = corpus::field(entry, key);
-  return value ? *value : "";
-}
-
-std::string origin(const corpus::Entry& entry) { return corpus::numbers_of(entry).value_or(text_of(entry, "from")); }
-
 Json coordinates_of(const Pair& pair) {
   Json decimal = Json::array(), hex = Json::array(), value = Json::array();
   for (int i = 0; i < kCoordinates; ++i) {
@@ -75,7 +68,7 @@ Json drawing_of(const Pair& pair) {
 }
 
 double number_in(const std::filesystem::path& file, const corpus::Entry& entry, std::string_view key) {
-  const std::string text = text_of(entry, key);
+  const std::string text = corpus::text_of(entry, key);
   std::size_t used = 0;
   try {
     const double value = std::stod(text, &used);
@@ -121,9 +114,9 @@ Json commands_of(const corpus::Entry& entry, const std::string& subject, const s
 Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const Json& kind, Verdict truth,
                  const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
-  const std::string name =
-      fmt::format("Case {}{}: contact {}, margin {} ({} ulps)", corpus::field(entry, "kind") ? "minimised from " : "",
-                  from, text_of(entry, "contact"), text_of(entry, "margin"), text_of(entry, "margin_ulps"));
+  const std::string name = fmt::format(
+      "Case {}{}: contact {}, margin {} ({} ulps)", corpus::field(entry, "kind") ? "minimised from " : "", from,
+      corpus::text_of(entry, "contact"), corpus::text_of(entry, "margin"), corpus::text_of(entry, "margin_ulps"));
   const auto is_of_kind = [&](const std::string& id) {
     const Json& lanes = kind.at("simplest").at("lanes");
     return std::find(lanes.begin(), lanes.end(), id) != lanes.end();
@@ -176,7 +169,7 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
 Json kept_pairs(const std::filesystem::path& case_file) {
   Json names = Json::array();
   for (const corpus::Entry& entry : corpus::read_pairs(case_file)) {
-    if (!corpus::field(entry, "kind")) names.push_back(origin(entry));
+    if (!corpus::field(entry, "kind")) names.push_back(corpus::origin_of(entry));
   }
   return names;
 }
@@ -190,10 +183,10 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
   if (entries.empty() || fuzz::pair_text(entries.front().pair) != simplest.at("pair").get<std::string>())
     throw corpus::FormatError(file.string() + ": expected the pair of kinds.json first, found another");
   const corpus::Entry& entry = entries.front();
-  const Verdict truth = verdict_of(text_of(entry, "truth"));
+  const Verdict truth = verdict_of(corpus::text_of(entry, "truth"));
   const bool minimised = corpus::field(entry, "kind") != nullptr;
   lacking.minimised += !minimised;
-  const std::string from = origin(entry);
+  const std::string from = corpus::origin_of(entry);
   const Json verdicts = verdicts_of(counts, truth, simplest.at("verdicts"));
   Json card = {{"file", simplest.at("case")}};
   for (const char* field : {"key", "subject", "cause", "line", "shape", "pairs", "signatures", "lanes", "settled",
@@ -204,7 +197,7 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
                {"pair", coordinates_of(entry.pair)},
                {"truth",
                 {{"verdict", name(truth)},
-                 {"contact", text_of(entry, "contact")},
+                 {"contact", corpus::text_of(entry, "contact")},
                  {"margin", number_in(file, entry, "margin")},
                  {"margin_ulps", number_in(file, entry, "margin_ulps")}}},
                {"drawing", drawing_of(entry.pair)},
@@ -258,15 +251,10 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   std::size_t room = kMostMapBytes;
   Lacking lacking;
   std::map<std::size_t, std::vector<std::size_t>> cards_of;  // of each signature, the commonest kind first
-  try {
-    for (const Json& kind : kinds) {
-      if (cards.size() == fuzz::kMostShown) break;
-      for (const Json& place : kind.at("places")) cards_of[place.get<std::size_t>()].push_back(cards.size());
-      cards.push_back(card_of(directory, counts, kind, room, lacking));
-    }
-  } catch (const Json::exception&) {
-    throw corpus::FormatError((directory / "kinds.json").string() +
-                              ": expected what `graze minimize` writes, found something else");
+  for (const Json& kind : kinds) {
+    if (cards.size() == fuzz::kMostShown) break;
+    for (const Json& place : kind.at("places")) cards_of[place.get<std::size_t>()].push_back(cards.size());
+    cards.push_back(card_of(directory, counts, kind, room, lacking));
   }
   if (kinds.size() > cards.size())
     report["missing"].push_back(

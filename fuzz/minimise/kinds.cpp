@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -13,6 +14,7 @@
 
 #include "analysis/explain.h"
 #include "analysis/signature.h"
+#include "core/fnv1a.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
@@ -21,11 +23,6 @@
 
 namespace graze::fuzz {
 namespace {
-
-std::string text_of(const corpus::Entry& entry, std::string_view key) {
-  const std::string* value = corpus::field(entry, key);
-  return value ? *value : "";
-}
 
 // A signature's case file: its pairs, and why lanes are wrong on the one that is shown.
 struct Case {
@@ -39,7 +36,7 @@ struct Case {
 };
 
 Verdict truth_of(const corpus::Entry& entry) {
-  return text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
+  return corpus::text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
 }
 
 Case read_case(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& row) {
@@ -110,10 +107,8 @@ std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::s
   return best;
 }
 
-std::string origin(const corpus::Entry& entry) { return corpus::numbers_of(entry).value_or(text_of(entry, "from")); }
-
 double ulps_of(const corpus::Entry& entry) {
-  const std::string text = text_of(entry, "margin_ulps");
+  const std::string text = corpus::text_of(entry, "margin_ulps");
   return text.empty() ? 0 : std::abs(std::strtod(text.c_str(), nullptr));
 }
 
@@ -123,7 +118,7 @@ Json simplest_pair(const LanesUnderTest& under_test, const Kind& kind, const Cas
   const std::vector<Verdict> verdicts = decide(under_test, c.shown().pair, apart);
   if (!apart.empty())
     throw std::runtime_error(apart.front()->id + ": expected one verdict of device and twin, found two");
-  Json result = {{"case", c.file},         {"pair", pair_text(c.shown().pair)}, {"from", origin(c.shown())},
+  Json result = {{"case", c.file},         {"pair", pair_text(c.shown().pair)}, {"from", corpus::origin_of(c.shown())},
                  {"lanes", Json::array()}, {"verdicts", Json::object()},        {"sentences", Json::array()}};
   std::vector<const Lane*> own, others;
   for (const LaneReason& reason : c.reasons) {
@@ -163,8 +158,8 @@ Json worst_pair(const LanesUnderTest& under_test, const Kind& kind, const std::v
       continue;
     return {{"case", candidate.of->file},
             {"pair", pair_text(candidate.entry->pair)},
-            {"from", origin(*candidate.entry)},
-            {"margin_ulps", std::strtod(text_of(*candidate.entry, "margin_ulps").c_str(), nullptr)}};
+            {"from", corpus::origin_of(*candidate.entry)},
+            {"margin_ulps", std::strtod(corpus::text_of(*candidate.entry, "margin_ulps").c_str(), nullptr)}};
   }
   return nullptr;
 }
@@ -204,11 +199,26 @@ Json row_of(const LanesUnderTest& under_test, const Kind& kind, const std::vecto
           {"worst", worst_pair(under_test, kind, cases, cases[simplest])}};
 }
 
+// Throws: Json::exception where a row of kinds.json lacks something, or it is of another type.
+void expect_kind(const Json& kind) {
+  using Texts = std::map<std::string, std::string>;
+  using Counts = std::map<std::string, std::uint64_t>;
+  for (const char* field : {"key", "subject", "cause", "line", "shape"}) kind.at(field).get_ref<const std::string&>();
+  for (const char* field : {"pairs", "signatures"}) kind.at(field).get<std::uint64_t>();
+  for (const char* field : {"strata", "margins"}) kind.at(field).get<Counts>();
+  kind.at("lanes").get<std::vector<std::string>>();
+  kind.at("settled").get<std::array<std::uint64_t, 2>>();
+  kind.at("places").get<std::vector<std::uint64_t>>();
+  for (const char* which : {"simplest", "worst"}) {
+    for (const char* field : {"case", "pair", "from"}) kind.at(which).at(field).get_ref<const std::string&>();
+  }
+  for (const char* field : {"lanes", "sentences"}) kind.at("simplest").at(field).get<std::vector<std::string>>();
+  kind.at("simplest").at("verdicts").get<Texts>();
+  kind.at("worst").at("margin_ulps").get<double>();
+}
+
 std::string hash_of_summary(const std::filesystem::path& directory) {
-  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
-  for (const char c : read_whole(directory / "summary.json"))
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return fmt::format("{:016x}", hash);
+  return fmt::format("{:016x}", fnv1a(read_whole(directory / "summary.json")));
 }
 
 }  // namespace
@@ -274,10 +284,17 @@ Json find_kinds(const LanesUnderTest& under_test, const std::filesystem::path& d
 }
 
 Json read_kinds(const std::filesystem::path& directory) {
-  const Json stored = Json::parse(read_whole(directory / "kinds.json"), nullptr, false);
-  const bool current = stored.is_object() && stored.contains("kinds") && stored["kinds"].is_array() &&
-                       stored.value("summary", "") == hash_of_summary(directory);
-  return current ? stored["kinds"] : Json();
+  const std::filesystem::path file = directory / "kinds.json";
+  const Json stored = Json::parse(read_whole(file), nullptr, false);
+  if (!stored.is_object() || stored.value("summary", Json()) != hash_of_summary(directory)) return nullptr;
+  try {
+    const Json& kinds = stored.at("kinds");
+    if (!kinds.is_array()) throw std::runtime_error("");
+    for (const Json& kind : kinds) expect_kind(kind);
+    return kinds;
+  } catch (const std::exception&) {
+    throw corpus::FormatError(file.string() + ": expected what `graze minimize` writes, found something else");
+  }
 }
 
 Json kinds_of(const std::filesystem::path& directory, const Json& summary, const std::function<bool()>& stop) {

@@ -2,7 +2,7 @@
 #include "fuzz/minimise/kinds.h"
 
 #include <gtest/gtest.h>
-
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <map>
@@ -102,13 +102,30 @@ TEST_F(Kinds, TheirPairsAreOfTheKind) {
 }
 
 TEST_F(Kinds, AreTheSameWithOneThreadAndAfterStoring) {
-  EXPECT_EQ(find_kinds(under_test_, directory_, summary_).dump(), kinds_.dump());
+  {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(find_kinds(under_test_, directory_, summary_).dump(), kinds_.dump());
+  }
   write_kinds(directory_, kinds_);
   EXPECT_EQ(read_kinds(directory_).dump(), kinds_.dump());
   const std::string text = read_whole(directory_ / "summary.json");
   write_whole(directory_ / "summary.json", text + "\n");
   EXPECT_TRUE(read_kinds(directory_).is_null());
   write_whole(directory_ / "summary.json", text);
+}
+
+// What lacks something, or is of another type, is named by its file; nobody reads on.
+TEST_F(Kinds, StoredOnesAreWhole) {
+  for (const auto& [field, value] : kinds_[0].items()) {
+    Json damaged = kinds_;
+    damaged[0].erase(field);
+    write_kinds(directory_, damaged);
+    EXPECT_THROW(read_kinds(directory_), corpus::FormatError) << field;
+    damaged[0][field] = value.is_object() ? Json(1) : Json::object();
+    write_kinds(directory_, damaged);
+    EXPECT_THROW(read_kinds(directory_), corpus::FormatError) << field;
+  }
+  fs::remove(directory_ / "kinds.json");
 }
 
 TEST_F(Kinds, StopWhenAsked) {

@@ -101,12 +101,7 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
   } catch (const Json::exception&) {
     throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
   }
-  try {
-    return found_in_kinds(directory, summary, kinds, globs, most);
-  } catch (const Json::exception&) {
-    throw corpus::FormatError((directory / "kinds.json").string() +
-                              ": expected what `graze minimize` writes, found something else");
-  }
+  return found_in_kinds(directory, summary, kinds, globs, most);
 }
 
 std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entries, const Json& build,
@@ -180,7 +175,8 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   c.name = known->second.name;
   c.count = known->second.count;
   c.first = known->second.first;
-  known->second = std::move(c);
+  corpus.erase(known);  // of a failure of its kind the signature may be another
+  corpus.emplace(failure.signature, std::move(c));
   return Added::seen_again;
 }
 

@@ -61,7 +61,7 @@ struct Regression : testing::Test {
     for (const Change& change : verify(corpus, liars.lanes, liars.decide()).changes) texts.push_back(change.what);
     return texts;
   }
-  RegressionCase& only() { return corpus.at(kSignature); }
+  RegressionCase& only() { return corpus.begin()->second; }
   std::string read_error(const std::string& from, const std::string& to) {
     write_regressions(file, corpus);
     std::ostringstream text;
@@ -159,6 +159,24 @@ TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
   EXPECT_EQ(only().count, 9u);
   EXPECT_EQ(only().first, "here; campaign 1");
   EXPECT_EQ(changes(), Texts());
+}
+
+// A failure of a kind that has a case counts there; where it takes the fixed case's place, it brings its own signature.
+TEST_F(Regression, AFixedCaseTakesAFailureOfItsKind) {
+  const std::string signature = std::string(kSignature).substr(0, std::string(kSignature).find(':')) + ":-f64/cpu";
+  const std::string kind = "moller_1997/rounding/moller_1997.h:1/general";
+  corpus.clear();
+  ASSERT_EQ(add({kSignature, {kTouching}, 7, "s1", kind}), Added::as_new);
+  EXPECT_EQ(add({signature, {kShifted}, 2, "s2", kind}), Added::seen_again);
+  EXPECT_EQ(corpus.begin()->first, kSignature);
+  liars.wrong.clear();
+  changes();
+  liars.wrong = {"moller_1997/f64/cpu"};
+  EXPECT_EQ(add({signature, {kShifted}, 1, "s3", kind}), Added::seen_again);
+  ASSERT_EQ(corpus.size(), 1u);
+  EXPECT_EQ(corpus.begin()->first, signature);
+  EXPECT_EQ(only().pair.b[0].x, 2);
+  EXPECT_EQ(only().count, 10u);
 }
 
 TEST_F(Regression, LanesThatDoNotRunChangeNothing) {

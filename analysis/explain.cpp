@@ -190,6 +190,7 @@ Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
 }
 
 bool leaves_exponents(const Lane& lane, const Pair& pair) {
+  if (lane.foreign) return false;  // not known
   const DecideBlock block = block_of(rounded_counterpart(lane));
   std::uint64_t intersects, declined;
   std::feclearexcept(FE_OVERFLOW | FE_UNDERFLOW);

@@ -8,7 +8,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::string_view kWrongMarks = "+-?";
+constexpr std::string_view kWrongMarks = "+-?!@%";
 
 // Takes the text before the next `end` off the front of `rest`; nothing without one.
 std::optional<std::string_view> take_until(std::string_view& rest, char end) {
@@ -50,6 +50,7 @@ std::optional<std::vector<WrongLane>> wrong_lanes_of(std::string_view text) {
 
 char mark(Verdict lane, Verdict truth) {
   if (lane == Verdict::declined) return truth == Verdict::declined ? '.' : '?';
+  if (is_failure(lane)) return lane == Verdict::crashed ? '!' : lane == Verdict::timed_out ? '@' : '%';
   return lane == truth ? '.' : lane == Verdict::intersects ? '+' : '-';
 }
 

@@ -32,10 +32,12 @@ void Tally::add(const JudgedBlock& block) {
     LaneCounts* counts = &lanes_[l * kBucketCount];
     for (std::size_t w = 0; w * 64 < block.count; ++w) {
       const std::uint64_t yes = lane.intersects[w], none = lane.declined[w], truth = block.truth[w];
+      const std::uint64_t failed = lane.foreign ? yes & none : 0;
       const auto at = [&](std::size_t i) -> LaneCounts& { return counts[row(block.buckets[w * 64 + i])]; };
       for_each_bit(yes & ~truth & ~none, [&](std::size_t i) { ++at(i).false_positive; });
       for_each_bit(~yes & truth & ~none, [&](std::size_t i) { ++at(i).false_negative; });
-      for_each_bit(none, [&](std::size_t i) { ++at(i).declined; });
+      for_each_bit(none & ~failed, [&](std::size_t i) { ++at(i).declined; });
+      for_each_bit(failed, [&](std::size_t i) { at(i).count(lane.at(w * 64 + i), 1); });
       if (cpu_twin_[l] >= 0) {
         const LaneVerdicts& cpu = block.verdicts[static_cast<std::size_t>(cpu_twin_[l])];
         for_each_bit((yes ^ cpu.intersects[w]) | (none ^ cpu.declined[w]),
@@ -60,6 +62,12 @@ void Tally::add(Bucket b, std::uint64_t pairs, std::uint64_t intersects) {
 
 void Tally::add(Bucket b, int lane, const LaneCounts& counts) {
   lanes_[static_cast<std::size_t>(lane) * kBucketCount + row(b)] += counts;
+}
+
+void Tally::excuse(Bucket b, int lane, Verdict verdict) {
+  LaneCounts& counts = lanes_[static_cast<std::size_t>(lane) * kBucketCount + row(b)];
+  counts.count(verdict, ~std::uint64_t{0});  // one less
+  ++counts.by_convention;
 }
 
 Bits disagreements(const JudgedBlock& block) {

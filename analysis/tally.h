@@ -19,8 +19,13 @@ inline bool test_bit(std::span<const std::uint64_t> bits, std::size_t i) { retur
 struct LaneVerdicts {
   std::span<const std::uint64_t> intersects;
   std::span<const std::uint64_t> declined;
+  const DecideBlock* foreign = nullptr;  // of foreign code what decided, and the pairs: both bits say that it failed
+  const Pair* pairs = nullptr;
 
-  Verdict at(std::size_t i) const { return verdict_of_bits(test_bit(intersects, i), test_bit(declined, i)); }
+  Verdict at(std::size_t i) const {
+    const bool yes = test_bit(intersects, i), none = test_bit(declined, i);
+    return foreign ? foreign->verdict_of(yes, none, pairs[i]) : verdict_of_bits(yes, none);
+  }
 };
 
 struct JudgedBlock {
@@ -35,13 +40,31 @@ struct LaneCounts {
   std::uint64_t false_negative = 0;
   std::uint64_t declined = 0;
   std::uint64_t differs_from_cpu = 0;  // another verdict than the cpu lane of the same algorithm and scalar
+  // Of foreign code alone:
+  std::uint64_t crashed = 0, timed_out = 0, unstable = 0;
+  std::uint64_t by_convention = 0;  // another verdict than the truth's where its convention leaves that open
 
-  bool any() const { return false_positive || false_negative || declined || differs_from_cpu; }
+  std::uint64_t failed() const { return crashed + timed_out + unstable; }
+  std::uint64_t wrong() const { return false_positive + false_negative + declined + failed(); }
+  bool any_foreign() const { return failed() || by_convention; }
+  bool any() const { return wrong() || differs_from_cpu || by_convention; }
+  void count(Verdict verdict, std::uint64_t pairs) {  // one that is not the truth
+    (verdict == Verdict::intersects  ? false_positive
+     : verdict == Verdict::disjoint  ? false_negative
+     : verdict == Verdict::declined  ? declined
+     : verdict == Verdict::crashed   ? crashed
+     : verdict == Verdict::timed_out ? timed_out
+                                     : unstable) += pairs;
+  }
   LaneCounts& operator+=(const LaneCounts& other) {
     false_positive += other.false_positive;
     false_negative += other.false_negative;
     declined += other.declined;
     differs_from_cpu += other.differs_from_cpu;
+    crashed += other.crashed;
+    timed_out += other.timed_out;
+    unstable += other.unstable;
+    by_convention += other.by_convention;
     return *this;
   }
 };
@@ -57,6 +80,8 @@ class Tally {
   void add(const Tally& other);
   void add(Bucket b, std::uint64_t pairs, std::uint64_t intersects);
   void add(Bucket b, int lane, const LaneCounts& counts);
+  // Of a verdict counted as wrong that the lane's convention leaves open.
+  void excuse(Bucket b, int lane, Verdict verdict);
 
   int lane_count() const { return static_cast<int>(cpu_twin_.size()); }
   std::uint64_t pairs(Bucket b) const { return pairs_[row(b)]; }

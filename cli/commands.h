@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,25 @@ void add_lanes(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
 void add_prove_twin(CLI::App& app, int& status);
 
-// --lanes and --executor, which every verb that runs lanes has.
+// --lanes, --subject and --executor, which every verb that runs lanes has; the last not where twins stand for devices.
 struct LaneOptions {
   std::vector<std::string> globs;
+  std::vector<std::string> subjects;  // NAME=WHAT
+  std::vector<std::string> flags;     // of the compiler
+  double timeout = 1;
   fuzz::Executor executor = fuzz::Executor::automatic;
 };
-void add_lane_options(CLI::App& command, LaneOptions& options);
+enum class Executors { chosen, twins };
+void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors = Executors::chosen);
+
+// Opens the subjects that a campaign's directory recorded, or that of which this is a case file.   Throws: as
+// subjects::open_recorded. Of anything else: nothing happens.
+void open_subjects_of(const std::filesystem::path& name);
+
+// Opens the subjects, those of what the command is about as well, then selects the lanes.
+// Throws: as subjects::open and fuzz::select_lanes.
+fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::filesystem::path& about = {},
+                                      bool require_device = false);
 
 // Patterns, separated by commas, in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);

@@ -67,7 +67,8 @@ void print_next(const CorpusOptions& options, const char* verb) {
 }
 
 void add(const CorpusOptions& options) {
-  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
+  for (const std::string& name : options.names) open_subjects_of(name);
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
   const fuzz::DecideLanes by_bench = decide_by(under_test);
   const Json build = fuzz::build_info(under_test);
   std::vector<std::pair<std::string, std::vector<fuzz::FoundFailure>>> found;
@@ -114,7 +115,7 @@ void list(const CorpusOptions& options) {
 }
 
 int verify(const CorpusOptions& options) {
-  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
   std::optional<fuzz::FolderLock> lock;
   if (options.update && std::filesystem::exists(options.folder))
     lock.emplace(options.folder, fuzz::FolderLock::WhenTaken::wait);

@@ -120,13 +120,13 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
 
 struct ExplainOptions {
   std::string name;
-  std::vector<std::string> globs;
+  LaneOptions lanes;
   bool json = false;
   bool exact_input = false;
 };
 
 void explain_cases(const ExplainOptions& options) {
-  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, fuzz::Executor::twin);
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
   const reports::Screen screen = output_screen();
   bool wrong = false;
   for (const corpus::Entry& entry : read_cases(options.name)) {
@@ -177,7 +177,7 @@ void add_explain(CLI::App& app, int& status) {
   command->footer("Example: graze explain near_edge_edge:1:7");
   auto options = std::make_shared<ExplainOptions>();
   command->add_option("case", options->name, "A file of pairs, or STRATUM:SEED:INDEX")->required();
-  add_globs(*command, "--lanes", options->globs, "Only lanes that match a pattern");
+  add_lane_options(*command, options->lanes, Executors::twins);
   add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "One JSON object for each case, on a line of its own, with all values");
   command->callback([options, &status] {

@@ -20,6 +20,7 @@
 #include "reports/margin_figure.h"
 #include "reports/terminal.h"
 #include "strata/mesh.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 
@@ -51,7 +52,7 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
 
 int fuzz(const FuzzOptions& options) {
   const fuzz::LanesUnderTest under_test =
-      fuzz::select_lanes(options.lanes.globs, options.lanes.executor, options.require_device);
+      lanes_under_test(options.lanes, {}, options.require_device);
   fuzz::Campaign campaign;
   campaign.seed = options.seed;
   campaign.under_test = &under_test;
@@ -76,6 +77,8 @@ int fuzz(const FuzzOptions& options) {
   }
   campaign.spec = fuzz::campaign_spec(campaign);
   if (!mesh_spec.is_null()) campaign.spec["mesh"] = mesh_spec;
+  if (const Json subjects = subjects::record(campaign.spec["lanes"].get<std::vector<std::string>>()); !subjects.is_null())
+    campaign.spec["subjects"] = subjects;
   campaign.build = fuzz::build_info(under_test);
 
   const std::atomic<bool>& interrupted = catch_interrupts();

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 struct MapOptions {
   std::string name, out = "map.png", x, y;
-  std::vector<std::string> globs;
+  LaneOptions lanes;
 };
 
 int coordinate(const std::string& option, const std::string& name) {
@@ -91,7 +91,7 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
 
 void map_case(const MapOptions& options) {
   const std::optional<analysis::MovedCoordinates> asked = asked_for(options);
-  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, fuzz::Executor::twin);
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
   const corpus::Entry entry = read_cases(options.name).front();
   if (!is_finite(entry.pair)) throw std::runtime_error(options.name + ": expected finite coordinates, found others");
   const analysis::MovedCoordinates moved =
@@ -121,7 +121,7 @@ void add_map(CLI::App& app, int&) {
   auto options = std::make_shared<MapOptions>();
   command->add_option("case", options->name, "A file of pairs, the first of which is drawn, or STRATUM:SEED:INDEX")
       ->required();
-  add_globs(*command, "--lanes", options->globs, "Only lanes that match a pattern");
+  add_lane_options(*command, options->lanes, Executors::twins);
   command->add_option("--out", options->out, "The picture, or a directory for one picture a panel")
       ->check(not_empty())
       ->option_text("FILE.png|DIR")

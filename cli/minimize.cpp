@@ -79,7 +79,7 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
 }
 
 int minimize_case(const MinimizeOptions& options) {
-  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
   std::vector<corpus::Entry> entries = read_cases(options.name);
   for (const corpus::Entry& entry : entries) {
     if (options.exact_input) expect_exact_input(options.name, entry);
@@ -186,7 +186,7 @@ int minimize_directory(MinimizeOptions options) {
   if (!is_summary)
     throw std::runtime_error(options.name + ": expected a campaign's directory with summary.json, found none");
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
-  const fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.lanes.globs, options.lanes.executor);
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
   std::vector<fs::path> files;
   for (const Json& row : summary["signatures"]) files.push_back(fuzz::case_file(directory, row));
 

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <sstream>
 
 #include "cli/commands.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "fuzz/campaign/result_files.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 
@@ -91,8 +94,25 @@ CLI::Validator not_empty() {
                         "");
 }
 
-void add_lane_options(CLI::App& command, LaneOptions& options) {
+void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
   add_globs(command, "--lanes", options.globs, "Only lanes that match a pattern");
+  command
+      .add_option("--subject", options.subjects,
+                  "Your own code as lanes NAME/…: a shared object or a C or C++ source, each with :FUNCTION, or "
+                  "cmd:COMMAND; any number of times (docs/your_own_code.md)")
+      ->allow_extra_args(false)
+      ->option_text("NAME=WHAT");
+  command.add_option("--flags", options.flags, "For the compiler, of subjects that are sources: --flags='-O3 -Iinclude'")
+      ->allow_extra_args(false)
+      ->option_text("TEXT");
+  command.add_option("--subject-timeout", options.timeout, "Seconds that a subject may take for a pair")
+      ->check(CLI::Range(0.001, 86400.0))
+      ->capture_default_str()
+      ->option_text("SECONDS");
+  if (executors == Executors::twins) {
+    options.executor = fuzz::Executor::twin;
+    return;
+  }
   static_assert(static_cast<int>(fuzz::Executor::automatic) == 0 && static_cast<int>(fuzz::Executor::device) == 1 &&
                 static_cast<int>(fuzz::Executor::twin) == 2 && static_cast<int>(fuzz::Executor::both) == 3);
   command
@@ -102,6 +122,30 @@ void add_lane_options(CLI::App& command, LaneOptions& options) {
           "(compared)")
       ->transform(one_of({"auto", "device", "twin", "both"}, Chosen::place))
       ->option_text("auto|device|twin|both");
+}
+
+void open_subjects_of(const std::filesystem::path& name) {
+  for (const std::filesystem::path& directory : {name, name.parent_path().parent_path()}) {
+    if (!std::filesystem::is_regular_file(directory / "summary.json")) continue;
+    const fuzz::Json summary = fuzz::Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
+    if (summary.is_object() && summary.value("spec", fuzz::Json()).is_object())
+      return subjects::open_recorded(summary["spec"]);
+  }
+}
+
+fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::filesystem::path& about,
+                                      bool require_device) {
+  for (const std::string& text : options.subjects) {
+    subjects::Wanted wanted = subjects::parse_subject(text);
+    for (const std::string& flags : options.flags) {
+      std::istringstream words(flags);
+      for (std::string word; words >> word;) wanted.flags.push_back(word);
+    }
+    wanted.timeout = options.timeout;
+    subjects::open(wanted);
+  }
+  if (!about.empty()) open_subjects_of(about);
+  return fuzz::select_lanes(options.globs, options.executor, require_device);
 }
 
 std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair) {

@@ -73,6 +73,7 @@ void report(const ReportOptions& options) {
     fmt::print("Wrote {}\n", options.out);
     say_what_the_page_is();
   } else if (!options.compare.empty()) {
+    for (const std::string& directory : options.compare) open_subjects_of(directory);
     Json after = reports::make_report(options.compare[1]);
     reports::add_comparison(after, reports::make_report(options.compare[0]), fuzz::read_kinds(options.compare[1]),
                             fuzz::read_kinds(options.compare[0]));
@@ -80,6 +81,7 @@ void report(const ReportOptions& options) {
     for (const Json& sentence : after["compare"]["differences"]) fmt::print("{}\n", sentence.get<std::string>());
     write_report(options.compare[1], after, "compare");
   } else {
+    open_subjects_of(options.directory);
     const Json made = reports::make_report(options.directory);
     write_report(options.directory, made, "report");
     if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", shell_word(options.directory));

@@ -23,7 +23,7 @@ void decide_block(const Pair* pairs, std::size_t count, std::uint64_t* intersect
 
 template <class... Algorithm>
 constexpr HostBlocks blocks(const std::tuple<Algorithm...>*) {
-  return {std::array<DecideBlock, 2>{decide_block<Algorithm, float>, decide_block<Algorithm, double>}...};
+  return {std::array<DecideBlock::Function, 2>{decide_block<Algorithm, float>, decide_block<Algorithm, double>}...};
 }
 
 extern const HostBlocks kHostBlocks = blocks(static_cast<const Algorithms*>(nullptr));

@@ -9,7 +9,7 @@
 
 namespace graze {
 
-using HostBlocks = std::array<std::array<DecideBlock, 2>, kAlgorithmCount>;
+using HostBlocks = std::array<std::array<DecideBlock::Function, 2>, kAlgorithmCount>;
 
 #define GRAZE_DECLARE_host(name)       \
   namespace name {                     \

@@ -4,12 +4,15 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "core/exact/exact.h"
 #include "core/host_blocks.h"
 
 namespace graze {
 namespace {
+
+constexpr std::size_t kMostLanes = 1024;  // lanes stay where they are, so there must be room from the beginning
 
 constexpr AlgorithmInfo kExactInfo{"exact",
                                    "Guigue and Devillers 2003, and separating axes, on exact numbers",
@@ -52,13 +55,14 @@ const HostBlocks* host_blocks(Variant variant) {
 }
 
 Lane lane_of(const AlgorithmInfo* info, Scalar scalar, Variant variant) {
-  Lane lane{"", info, scalar, variant, "", -1, nullptr, false, false};
+  Lane lane{"", info, scalar, variant, "", -1, nullptr, false, false, false, 0, ""};
   lane.id = id_of(lane.lane_name());
   return lane;
 }
 
 std::vector<Lane> make_lanes() {
   std::vector<Lane> table;
+  table.reserve(kMostLanes);
   int algorithm = 0;
   for (const AlgorithmInfo* info : infos(static_cast<const Algorithms*>(nullptr))) {
     for (const Scalar scalar : {Scalar::f32, Scalar::f64}) {
@@ -79,6 +83,11 @@ std::vector<Lane> make_lanes() {
     if (!lane.is_cuda()) lane.decide = decide_exactly;
   }
   return table;
+}
+
+std::vector<Lane>& table() {
+  static std::vector<Lane> all = make_lanes();
+  return all;
 }
 
 }  // namespace
@@ -109,9 +118,16 @@ LaneName Lane::lane_name() const {
   return {std::string(info->id), std::string(name(scalar)), std::string(name(variant)), policy};
 }
 
-std::span<const Lane> lanes() {
-  static const std::vector<Lane> table = make_lanes();
-  return table;
+std::span<const Lane> lanes() { return table(); }
+
+void add_lanes(std::vector<Lane> foreign) {
+  if (table().size() + foreign.size() > kMostLanes)
+    throw std::runtime_error("expected at most " + std::to_string(kMostLanes) + " lanes, found more");
+  for (Lane& lane : foreign) {
+    lane.foreign = true;
+    lane.id = id_of(lane.lane_name());
+    table().push_back(std::move(lane));
+  }
 }
 
 std::span<const Lane> published_lanes() {
@@ -130,10 +146,10 @@ const Lane* counterpart(const Lane& lane, Variant variant) {
   return find_lane(id_of(other));
 }
 
-Verdict decide_one(DecideBlock block, const Pair& pair) {
+Verdict decide_one(const DecideBlock& block, const Pair& pair) {
   std::uint64_t intersects = 0, declined = 0;
   block(&pair, 1, &intersects, &declined);
-  return verdict_of_bits(intersects & 1, declined & 1);
+  return block.verdict_of(intersects & 1, declined & 1, pair);
 }
 
 bool runs_on_this_cpu(const Lane& lane) {

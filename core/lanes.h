@@ -34,17 +34,51 @@ std::string id_of(const LaneName& name);
 // Returns: nothing unless there are three parts, none of them empty, or four; the fourth may hold more slashes.
 std::optional<LaneName> parse_lane_name(std::string_view id);
 
+// Code that is not ours (subjects/). It may fail on a pair, which both bits together say.
+class ForeignCode {
+ public:
+  virtual ~ForeignCode() = default;
+  virtual void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) = 0;
+  // How it failed on a pair on which it did: crashed, timed_out or unstable.
+  virtual Verdict failure(const Pair& pair) = 0;
+};
+
 // Decides pairs[0..count): bit i % 64 of word i / 64 says intersects, or declined. Unused bits become zero.
 // Requires: room for (count + 63) / 64 words in both.
-using DecideBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined);
+class DecideBlock {
+ public:
+  using Function = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined);
 
-// What a pair's two bits say.
+  constexpr DecideBlock(Function function = nullptr) : function_(function) {}
+  DecideBlock(ForeignCode& foreign) : foreign_(&foreign) {}
+
+  void operator()(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) const {
+    foreign_ ? foreign_->decide(pairs, count, intersects, declined) : function_(pairs, count, intersects, declined);
+  }
+  constexpr explicit operator bool() const { return function_ || foreign_; }
+  bool operator==(const DecideBlock&) const = default;
+
+  // What a pair's two bits say.
+  Verdict verdict_of(bool intersects, bool declined, const Pair& pair) const {
+    if (foreign_ && intersects && declined) return foreign_->failure(pair);
+    return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
+  }
+
+ private:
+  Function function_ = nullptr;
+  ForeignCode* foreign_ = nullptr;
+};
+
+// What a pair's two bits say, of a lane of ours.
 constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
   return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
 }
 
 // The block's verdict on one pair.
-Verdict decide_one(DecideBlock block, const Pair& pair);
+Verdict decide_one(const DecideBlock& block, const Pair& pair);
+
+// Pairs that a subject does not promise to decide; see subjects/include/graze/subject.h.
+enum Outside : unsigned { kOutsideTouching = 1, kOutsideCoplanar = 2, kOutsideDegenerate = 4, kOutsideShared = 8 };
 
 struct Lane {
   std::string id;
@@ -58,13 +92,22 @@ struct Lane {
   DecideBlock decide;  // on this processor; null for lanes of a device, see cuda/lanes/device.h
   bool exact;          // right on every finite pair, and declines the others; see core/exact/exact.h
   bool explainable;    // runs on numbers that write down every step; see core/algorithms/traced.h
+  // Of foreign code alone:
+  bool foreign = false;
+  unsigned outside = 0;  // what its convention leaves open: a sum of Outside
+  std::string evidence;  // what runs a CUDA lane: "device", "twin, not yet verified"; or why nothing does
 
   bool is_cuda() const { return info_of(variant).runs_on == RunsOn::device; }
   LaneName lane_name() const;
 };
 
-// All lanes: subject by subject, and of each f32 before f64, in the order of the variants; the exact ones last.
+// All lanes: subject by subject, and of each f32 before f64, in the order of the variants; of ours the exact ones last,
+// then those of foreign code.
 std::span<const Lane> lanes();
+
+// Adds the lanes of a foreign subject, for good.   Requires: no other thread is at work with lanes.
+// Throws: std::runtime_error where there are too many.
+void add_lanes(std::vector<Lane> foreign);
 
 // Those of published algorithms.
 std::span<const Lane> published_lanes();

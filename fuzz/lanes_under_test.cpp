@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/lanes_under_test.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/error.h"
@@ -23,11 +25,14 @@ std::vector<const Lane*> LanesUnderTest::device_lanes() const {
 }
 
 std::string LanesUnderTest::evidence(std::size_t l) const {
+  if (lanes[l]->foreign) return lanes[l]->evidence;
   const std::string twin = on_host[l] ? twin_evidence_of(*lanes[l]) : "";
   return !on_device(l) ? twin : twin.empty() ? "device" : "device and " + twin;
 }
 
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
+  if (lane.foreign && lane.is_cuda())
+    return fmt::format("{} ({})", lane.decide ? "available" : "unavailable", lane.evidence);
   if (!lane.is_cuda()) {
     const std::string needs(info_of(lane.variant).needs);
     return runs_on_this_cpu(lane) ? "available" : "unavailable (no " + needs + " instructions)";
@@ -53,9 +58,10 @@ LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor exec
   if (needs_device && !under_test.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
-    const bool only_device = lane.is_cuda() && under_test.device && executor != Executor::both;
+    const bool only_device = lane.is_cuda() && !lane.foreign && under_test.device && executor != Executor::both;
     const DecideBlock on_host = only_device ? nullptr : cuda::block_on_host(lane);
-    if (lane.is_cuda() ? on_host || under_test.device : runs_on_this_cpu(lane)) {
+    const bool device = under_test.device && !lane.foreign;
+    if (lane.is_cuda() ? on_host || device : runs_on_this_cpu(lane)) {
       under_test.lanes.push_back(&lane);
       under_test.on_host.push_back(on_host);
     } else {

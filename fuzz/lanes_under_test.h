@@ -20,7 +20,8 @@ struct LanesUnderTest {
   std::vector<DecideBlock> on_host;      // of each: the host lane or the twin; null where only the device runs it
   std::unique_ptr<cuda::Device> device;  // null when the CUDA lanes do not run on one
 
-  bool on_device(std::size_t l) const { return device && lanes[l]->is_cuda(); }
+  // Foreign code runs in a process of its own, on a device as well.
+  bool on_device(std::size_t l) const { return device && lanes[l]->is_cuda() && !lanes[l]->foreign; }
   // Those that the device runs, in order.
   std::vector<const Lane*> device_lanes() const;
   // Whether the lane runs on the device and by its twin, to be compared; the device's verdicts then count.

@@ -34,7 +34,7 @@ struct StratumCounts {
   std::map<std::string, std::map<int, WrongCounts>> extremes;  // by axis ("scale", "offset") and exponent
 
   std::uint64_t wrong(std::size_t lane) const {
-    return lanes[lane].false_positive + lanes[lane].false_negative + lanes[lane].declined;
+    return lanes[lane].wrong();
   }
 };
 

@@ -50,6 +50,11 @@ Json rates(const CampaignCounts& counts) {
                       {"differs_from_cpu", nullptr}});
       if (counts.lanes[l].cpu >= 0)
         rows.back()["differs_from_cpu"] = to_json(share_of(lane.differs_from_cpu, stratum.pairs));
+      if (!lane.any_foreign()) return;
+      rows.back()["crashed"] = lane.crashed;
+      rows.back()["timed_out"] = lane.timed_out;
+      rows.back()["unstable"] = lane.unstable;
+      rows.back()["by_convention"] = lane.by_convention;
     });
   }
   return rows;

@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <numeric>
+#include <optional>
 #include <ostream>
 #include <vector>
 
+#include "analysis/convention.h"
 #include "corpus/pair_format.h"
 #include "reports/text_table.h"
 
@@ -16,9 +19,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Of a lane's counts, those that are there.
+std::uint64_t sum(const Json& counts, std::initializer_list<const char*> fields) {
+  std::uint64_t total = 0;
+  for (const char* field : fields) {
+    const auto found = counts.find(field);
+    if (found != counts.end() && !found->is_null()) total += found->get<std::uint64_t>();
+  }
+  return total;
+}
+
 std::uint64_t errors(const Json& counts) {
-  return counts["false_positive"].get<std::uint64_t>() + counts["false_negative"].get<std::uint64_t>() +
-         counts["declined"].get<std::uint64_t>();
+  return sum(counts, {"false_positive", "false_negative", "declined", "crashed", "timed_out", "unstable"});
 }
 
 void print_strata(std::ostream& out, const Json& summary, const Screen& screen) {
@@ -45,22 +57,44 @@ void print_strata(std::ostream& out, const Json& summary, const Screen& screen) 
 }
 
 void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
-  TextTable table({{"lane, over all strata", Align::left},
-                   {"false positive"},
-                   {"false negative"},
-                   {"declined"},
-                   {"differs from cpu"}});
-  for (const auto& lane : summary["spec"]["lanes"]) {
-    const std::string id = lane;
-    std::uint64_t sums[4] = {};
-    bool compared = false;  // with the cpu lane
+  struct Kind {
+    const char *field, *title;
+    bool foreign;  // of foreign code alone
+  };
+  constexpr Kind kKinds[] = {{"false_positive", "false positive", false},
+                             {"false_negative", "false negative", false},
+                             {"declined", "declined", false},
+                             {"crashed", "crashed", true},
+                             {"timed_out", "timed out", true},
+                             {"unstable", "unstable", true},
+                             {"by_convention", "by convention", true},
+                             {"differs_from_cpu", "differs from cpu", false}};
+  const auto over_strata = [&](const std::string& id, const char* field) {
+    std::uint64_t total = 0;
+    bool any = false;
     for (const auto& [stratum, row] : summary["strata"].items()) {
-      int i = 0;
-      for (const auto& [kind, count] : row["lanes"][id].items())
-        sums[i++] += count.is_null() ? 0 : count.get<std::uint64_t>();
-      compared = compared || !row["lanes"][id]["differs_from_cpu"].is_null();
+      total += sum(row["lanes"][id], {field});
+      any = any || !row["lanes"][id].value(field, Json()).is_null();
     }
-    table.add({id, grouped(sums[0]), grouped(sums[1]), grouped(sums[2]), compared ? grouped(sums[3]) : "-"});
+    return any ? std::optional(total) : std::nullopt;
+  };
+  const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
+  std::vector<Column> columns{{"lane, over all strata", Align::left}};
+  std::vector<Kind> kinds;
+  for (const Kind& kind : kKinds) {
+    const auto has = [&](const std::string& id) { return over_strata(id, kind.field).value_or(0) > 0; };
+    if (kind.foreign && std::none_of(lanes.begin(), lanes.end(), has)) continue;
+    kinds.push_back(kind);
+    columns.push_back({kind.title});
+  }
+  TextTable table(columns);
+  for (const std::string& id : lanes) {
+    std::vector<Cell> cells{id};
+    for (const Kind& kind : kinds) {
+      const std::optional<std::uint64_t> count = over_strata(id, kind.field);
+      cells.push_back(count ? grouped(*count) : "-");
+    }
+    table.add(std::move(cells));
   }
   out << '\n' << table.text(screen);
 }
@@ -112,8 +146,9 @@ namespace {
 
 // One row for each subject and scalar, one column for each variant among the lanes; '-' where a lane did not run, '!'
 // where it is wrong. The exact CUDA lane stands in the columns of all device variants: it is the same in each.
-void print_verdicts(std::ostream& out, Verdict truth, std::span<const Lane* const> lanes,
+void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& true_of_pair, std::span<const Lane* const> lanes,
                     std::span<const Verdict> verdicts, const Screen& screen) {
+  const Verdict truth = true_of_pair.verdict;
   const auto belongs = [](const Lane& lane, const VariantInfo& column) {
     return lane.exact && lane.is_cuda() ? column.runs_on == RunsOn::device : lane.variant == column.variant;
   };
@@ -138,7 +173,9 @@ void print_verdicts(std::ostream& out, Verdict truth, std::span<const Lane* cons
       for (std::size_t l = first; l < end && cell.text == "-"; ++l) {
         if (!belongs(*lanes[l], *variant)) continue;
         const bool wrong = truth != Verdict::declined && verdicts[l] != truth;
-        cell = {fmt::format("{}{}", name(verdicts[l]), wrong ? " !" : ""), wrong};
+        const bool convention = wrong && analysis::by_convention(*lanes[l], verdicts[l], pair, true_of_pair);
+        cell = {fmt::format("{}{}", name(verdicts[l]), convention ? " (convention)" : wrong ? " !" : ""),
+                wrong && !convention};
       }
     }
     table.add(std::move(cells));
@@ -185,7 +222,7 @@ void print_pair(std::ostream& out, const Pair& pair, const oracle::Truth& truth,
       << bold(screen, fmt::format("truth: {}, contact {}, margin {:.7g} ({:.7g} ulps)", name(truth.verdict),
                                   name(truth.contact), truth.margin, truth.margin_ulps))
       << '\n';
-  print_verdicts(out, truth.verdict, lanes, verdicts, screen);
+  print_verdicts(out, pair, truth, lanes, verdicts, screen);
 }
 
 }  // namespace graze::reports

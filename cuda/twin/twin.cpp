@@ -63,7 +63,7 @@ const TwinRow& twin_row(const Lane& lane) {
              : kNone;
 }
 
-DecideBlock twin_block(const Lane& lane) { return twin_row(lane).decide; }
+DecideBlock::Function twin_block(const Lane& lane) { return twin_row(lane).decide; }
 
 DecideBlock block_on_host(const Lane& lane) {
   if (lane.decide) return lane.decide;

@@ -12,7 +12,7 @@
 namespace graze::cuda {
 
 // The twin of a published CUDA lane; null where there is none.
-DecideBlock twin_block(const Lane& lane);
+DecideBlock::Function twin_block(const Lane& lane);
 
 // What gives the lane's verdicts on the host: the lane itself, or the twin of a CUDA lane; that of the exact CUDA lane
 // is the exact CPU lane, the same source. Null where there is none.

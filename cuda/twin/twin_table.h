@@ -12,7 +12,7 @@
 namespace graze::cuda {
 
 struct TwinRow {
-  DecideBlock decide = nullptr;
+  DecideBlock::Function decide = nullptr;
   TraceBlock trace = nullptr;
   Verdict (*decide_fusing)(const Pair& pair, const std::uint64_t* fused) = nullptr;
   const char* hash = "";

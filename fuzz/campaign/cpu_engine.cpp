@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "analysis/convention.h"
 #include "analysis/signature.h"
 #include "oracle/truth.h"
 
@@ -46,7 +47,8 @@ class BlockJudge {
         bits.intersects.resize(words);
         bits.declined.resize(words);
         under_test_.on_host[l](pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
-        views_[l] = {bits.intersects, bits.declined};
+        views_[l] = {bits.intersects, bits.declined, nullptr, pairs.data()};
+        if (under_test_.lanes[l]->foreign) views_[l].foreign = &under_test_.on_host[l];
       }
       if (!under_test_.on_device(l)) continue;
       const cuda::LaneBits& bits = device_bits_[next_device++];
@@ -80,6 +82,9 @@ class BlockJudge {
                         campaign_.seed, index, intersects ? "intersects" : "disjoint", name(contact)));
       }
       if (!disagreement) continue;
+      const Verdict truth = intersects ? Verdict::intersects : Verdict::disjoint;
+      const oracle::Shape hulls = oracle::shape(pairs[i]);
+      bool any_wrong = false;
       for (std::size_t l = 0; l < views_.size(); ++l) {
         verdicts_[l] = views_[l].at(i);
         if (under_test_.lanes[l]->exact && (verdicts_[l] == Verdict::intersects) != intersects) {
@@ -87,12 +92,21 @@ class BlockJudge {
                                                 under_test_.lanes[l]->id, source_id(), campaign_.seed, index,
                                                 name(verdicts_[l]), intersects ? "intersects" : "disjoint"));
         }
+        if (verdicts_[l] == truth) continue;
+        if (analysis::by_convention(*under_test_.lanes[l], verdicts_[l], pairs[i], contact, hulls, buckets_[i] == 0)) {
+          result.tally.excuse(buckets_[i], static_cast<int>(l), verdicts_[l]);
+          if (campaign_.sources[static_cast<std::size_t>(source_)].axis != Axis::none)
+            result.extremes.excuse(extremes_[i], static_cast<int>(l), verdicts_[l]);
+          verdicts_[l] = truth;
+          continue;
+        }
+        any_wrong = true;
       }
+      if (!any_wrong) continue;
       ++result.disagreements;
-      const oracle::Shape hulls = oracle::shape(pairs[i]);
       analysis::for_each_subject(under_test_.lanes, [&](std::size_t first, std::size_t count) {
         const analysis::Signature failure = analysis::signature(
-            contact, hulls, buckets_[i], intersects ? Verdict::intersects : Verdict::disjoint,
+            contact, hulls, buckets_[i], truth,
             std::span(under_test_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
         if (failure.wrong()) result.signatures[failure].add(CaseKey{index, source_});
       });

@@ -36,7 +36,7 @@ Json measure_costs(const Campaign& campaign) {
   }
   std::vector<const Lane*> lanes;
   for (const Lane* lane : campaign.under_test->lanes) {
-    if (lane->decide && runs_on_this_cpu(*lane)) lanes.push_back(lane);
+    if (lane->decide && !lane->foreign && runs_on_this_cpu(*lane)) lanes.push_back(lane);
   }
   std::vector<std::vector<Passes>> taken(lanes.size(), std::vector<Passes>(blocks.size()));
   for (std::size_t pass = 0; pass < kPassesTimed; ++pass) {

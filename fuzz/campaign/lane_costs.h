@@ -10,7 +10,8 @@ namespace graze::fuzz {
 inline constexpr std::uint64_t kPairsTimed = 1024;  // of each source, its first ones
 inline constexpr int kPassesTimed = 9;
 
-// Times the lanes of the host; those of a device and their twins have no cost here. All lanes take turns on all pairs,
+// Times the lanes of the host; those of a device and their twins have no cost here, nor has foreign code, whose time
+// would be that of its processes. All lanes take turns on all pairs,
 // so many passes over: what else the machine does then falls on all of them, and no lane finds its branches remembered.
 // Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, of the passes the quartiles.
 Json measure_costs(const Campaign& campaign);

@@ -33,8 +33,7 @@ Json source_results(const strata::PairSource& source, const std::vector<std::str
       Json& row = rows[name] = {{"pairs", tally.pairs(bucket)}, {"wrong", Json::object()}};
       for (std::size_t l = 0; l < lanes.size(); ++l) {
         const analysis::LaneCounts& lane = tally.lane(static_cast<int>(l), bucket);
-        const std::uint64_t wrong = lane.false_positive + lane.false_negative + lane.declined;
-        if (wrong > 0) row["wrong"][lanes[l]] = wrong;
+        if (lane.wrong() > 0) row["wrong"][lanes[l]] = lane.wrong();
       }
     };
     add(counts.tally, name_of_bucket(bucket), margins);
@@ -44,11 +43,18 @@ Json source_results(const strata::PairSource& source, const std::vector<std::str
     for (std::size_t l = 0; l < lanes.size(); ++l) of_lane[l] += counts.tally.lane(static_cast<int>(l), bucket);
   }
   Json row = {{"pairs", pairs}, {"intersects", intersects}, {"lanes", Json::object()}, {"margins", margins}};
-  for (std::size_t l = 0; l < lanes.size(); ++l)
-    row["lanes"][lanes[l]] = {{"false_positive", of_lane[l].false_positive},
-                              {"false_negative", of_lane[l].false_negative},
-                              {"declined", of_lane[l].declined},
-                              {"differs_from_cpu", of_lane[l].differs_from_cpu}};
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    Json& of = row["lanes"][lanes[l]] = {{"false_positive", of_lane[l].false_positive},
+                                         {"false_negative", of_lane[l].false_negative},
+                                         {"declined", of_lane[l].declined},
+                                         {"differs_from_cpu", of_lane[l].differs_from_cpu}};
+    const Lane* lane = find_lane(lanes[l]);
+    if (!lane || !lane->foreign) continue;
+    of["crashed"] = of_lane[l].crashed;
+    of["timed_out"] = of_lane[l].timed_out;
+    of["unstable"] = of_lane[l].unstable;
+    of["by_convention"] = of_lane[l].by_convention;
+  }
   if (source.axis != Axis::none) row["extremes"][std::string(name(source.axis))] = extremes;
   return row;
 }

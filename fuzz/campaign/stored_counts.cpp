@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]
+// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]; of foreign
+// code that has them also crashed, timed out, unstable, by convention.
 Json to_json(const analysis::Tally& tally) {
   Json rows = Json::array();
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
@@ -24,8 +25,11 @@ Json to_json(const analysis::Tally& tally) {
     Json lanes = Json::array();
     for (int l = 0; l < tally.lane_count(); ++l) {
       const analysis::LaneCounts& lane = tally.lane(l, bucket);
-      if (lane.any())
-        lanes.push_back({l, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu});
+      if (!lane.any()) continue;
+      lanes.push_back({l, lane.false_positive, lane.false_negative, lane.declined, lane.differs_from_cpu});
+      if (!lane.any_foreign()) continue;
+      for (const std::uint64_t count : {lane.crashed, lane.timed_out, lane.unstable, lane.by_convention})
+        lanes.back().push_back(count);
     }
     rows.push_back({b, tally.pairs(bucket), tally.intersects(bucket), std::move(lanes)});
   }
@@ -73,13 +77,16 @@ std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally&
     tally.add(bucket, here, intersects);
     int last_lane = -1;
     for (const Json& lane : list(row[3], 0, static_cast<std::size_t>(tally.lane_count()), what)) {
-      list(lane, 5, 5, what);
+      list(lane, 5, 9, what);
+      expect(lane.size() == 5 || lane.size() == 9, what);
       const int l = static_cast<int>(whole(lane[0], static_cast<std::uint64_t>(tally.lane_count() - 1), what));
       expect(l > last_lane, what);
       last_lane = l;
+      const auto foreign = [&](std::size_t i) { return lane.size() == 9 ? whole(lane[i], here, what) : 0; };
       const analysis::LaneCounts counts{whole(lane[1], here - intersects, what), whole(lane[2], intersects, what),
-                                        whole(lane[3], here, what), whole(lane[4], here, what)};
-      expect(counts.false_positive + counts.false_negative + counts.declined <= here, what);
+                                        whole(lane[3], here, what), whole(lane[4], here, what),
+                                        foreign(5), foreign(6), foreign(7), foreign(8)};
+      expect(counts.wrong() + counts.by_convention <= here && (lane.size() == 5 || counts.any_foreign()), what);
       tally.add(bucket, l, counts);
     }
   }

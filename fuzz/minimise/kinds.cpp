@@ -19,6 +19,7 @@
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimised_cases.h"
+#include "subjects/subjects.h"
 #include "fuzz/minimise/simplicity.h"
 
 namespace graze::fuzz {
@@ -301,6 +302,7 @@ Json kinds_of(const std::filesystem::path& directory, const Json& summary, const
   Json kinds = read_kinds(directory);
   if (!kinds.is_null()) return kinds;
   const auto lanes = summary.at("spec").at("lanes").get<std::vector<std::string>>();
+  subjects::open_recorded(summary.at("spec"));
   kinds = find_kinds(select_lanes(lanes, Executor::twin), directory, summary, stop);
   try {
     if (!kinds.is_null()) write_kinds(directory, kinds);

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 
+#include "analysis/convention.h"
 #include "core/exact/exact.h"
 #include "core/margin/margin.h"
 #include "cuda/twin/twin.h"
@@ -25,7 +26,8 @@ std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs)
       if ((failure.verdicts[l] != failure.truth.verdict) != wrong) continue;
       std::uint64_t intersects = 0, declined = 0;
       failure.on_host[l](pairs.data(), pairs.size(), &intersects, &declined);
-      const std::uint64_t alike = failure.verdicts[l] == Verdict::declined     ? declined
+      const std::uint64_t alike = is_failure(failure.verdicts[l])              ? intersects & declined
+                                  : failure.verdicts[l] == Verdict::declined   ? ~intersects & declined
                                   : failure.verdicts[l] == Verdict::intersects ? intersects & ~declined
                                                                                : ~intersects & ~declined;
       std::size_t i = 0;
@@ -262,7 +264,10 @@ std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& p
       failure.lanes.push_back(&lane);
       failure.on_host.push_back(on_host);
       failure.verdicts.push_back(verdicts[l]);
-      wrong = wrong || verdicts[l] != truth_of_pair.verdict;
+      const bool touches = truth_of_pair.verdict == Verdict::intersects && truth_of_pair.margin_sign == 0;
+      wrong = wrong || (verdicts[l] != truth_of_pair.verdict &&
+                        !analysis::by_convention(lane, verdicts[l], pair, truth_of_pair.contact, truth_of_pair.shape,
+                                                 touches));
     }
     if (!wrong) return;
     if (!fails_alike(failure, pair)) {

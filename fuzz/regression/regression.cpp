@@ -94,6 +94,12 @@ std::string verdict_of_mark(char mark, std::string_view truth) {
       return "disjoint (wrong)";
     case '?':
       return "declined (wrong)";
+    case '!':
+      return "crashed (wrong)";
+    case '@':
+      return "timed out (wrong)";
+    case '%':
+      return "unstable (wrong)";
     default:
       return "another from replay to replay";
   }

@@ -34,7 +34,7 @@ enum { GRAZE_DECLINED = -1, GRAZE_DISJOINT = 0, GRAZE_INTERSECTS = 1 };
 /* Pairs that a subject does not promise to decide so: its convention. Its answers there are counted apart, neither as
  * errors nor as right. */
 enum {
-  GRAZE_OUTSIDE_TOUCHING = 1,   /* the hulls meet, but the least movement separates them */
+  GRAZE_OUTSIDE_TOUCHING = 1,   /* the hulls meet in points or segments, and the least movement parts them */
   GRAZE_OUTSIDE_COPLANAR = 2,   /* all six vertices in one plane */
   GRAZE_OUTSIDE_DEGENERATE = 4, /* a triangle that is a segment or a point */
   GRAZE_OUTSIDE_SHARED = 8      /* a vertex of one is a vertex of the other */

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Foreign code in processes of its own, as a lane's block function. It may crash, hang, scribble or lie: each is a
+// verdict on the pair on which it happens, and the next pair is asked in a new process.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/lanes.h"
+
+namespace graze::subjects {
+
+// What graze-subject-host loads; see its first lines.
+struct Code {
+  std::string kind;              // "library" or "command"
+  std::string what, name;        // file and export, or the command
+  std::string scalar = "any";    // of a function without description
+  double timeout = 1;            // seconds for a pair, or for a block of a subject that takes blocks
+  std::uint64_t memory = 1024;   // MiB
+};
+
+// What a subject says of itself.
+struct Description {
+  bool f32 = false, f64 = false;
+  unsigned outside = 0;  // a sum of Outside
+  std::string version, source, convention;
+};
+
+// Throws: std::runtime_error, in one line, where the code cannot be loaded.
+Description describe(const Code& code);
+
+class HostProcess;
+
+// One process for each thread that asks at once. Thread-safe.
+class ForeignProcesses : public ForeignCode {
+ public:
+  ForeignProcesses(Code code, Scalar scalar);
+  ~ForeignProcesses() override;
+  void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override;
+  Verdict failure(const Pair& pair) override;
+
+ private:
+  Code code_;
+  Scalar scalar_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<HostProcess>> idle_;
+  std::map<std::string, Verdict> failures_;  // by the pair's bytes; some of them, the others are asked again
+};
+
+}  // namespace graze::subjects

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shared objects from a user's C or C++ source, one for each host variant, kept by the hash of all that they are made of.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/variants.h"
+
+namespace graze::subjects {
+
+// Where what was built is kept: $XDG_CACHE_HOME/graze, or ~/.cache/graze, or a folder for temporary files.
+std::filesystem::path cache_folder();
+
+// Returns: the shared object's file, built if it is not there yet: `function` of the source, or the descriptions that
+// the source makes itself (see graze/subject.h), with the variant's flags and then `flags`.
+// Throws: std::runtime_error with the compiler's first error.
+std::filesystem::path build_source(const std::filesystem::path& source, const std::string& function,
+                                   const VariantInfo& variant, const std::vector<std::string>& flags);
+
+}  // namespace graze::subjects

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subjects/subjects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "core/error.h"
+#include "core/fnv1a.h"
+#include "core/lanes.h"
+#include "core/text.h"
+#include "subjects/process.h"
+#include "subjects/source_build.h"
+
+namespace graze::subjects {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// What the lane table points to, for good.
+struct Entry {
+  Opened opened;
+  std::string source, coplanar, degenerate, order;
+  AlgorithmInfo info;
+  std::vector<std::unique_ptr<ForeignProcesses>> processes;
+};
+
+std::deque<Entry>& entries() {
+  static std::deque<Entry> all;
+  return all;
+}
+
+constexpr std::string_view kCommand = "cmd:";
+
+std::uint64_t hash_of_file(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (!fs::is_regular_file(file) || !(text << in.rdbuf()))
+    throw std::runtime_error(file.string() + ": expected a file with code, found none");
+  return fnv1a(text.str());
+}
+
+Opened parsed(const Wanted& wanted) {
+  Opened result{wanted, "", {}, "", 0};
+  if (wanted.what.starts_with(kCommand)) {
+    result.kind = "command";
+    result.hash = fnv1a(wanted.what);
+    return result;
+  }
+  static const std::regex form(R"((.*\.(?:(so|so\.[0-9.]+|dylib)|cpp|cc|cxx|c))(?::([^/:].*))?)");
+  std::smatch parts;
+  if (!std::regex_match(wanted.what, parts, form)) {
+    throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c or cmd:COMMAND, found '{}'",
+                                 wanted.name, printable(wanted.what)));
+  }
+  result.file = parts[1].str();
+  result.function = parts[3];
+  result.kind = parts[2].matched ? "library" : "source";
+  result.hash = hash_of_file(result.file);
+  return result;
+}
+
+// What its convention says of pairs of a sort.
+std::string says(const Description& description, unsigned outside, std::string_view otherwise) {
+  if (!(description.outside & outside)) return std::string(otherwise);
+  return "not in its contract" + (description.convention.empty() ? "" : ": " + description.convention);
+}
+
+void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
+  auto& process = entry.processes.emplace_back(std::make_unique<ForeignProcesses>(std::move(code), scalar));
+  lanes.push_back({"", &entry.info, scalar, variant, "", -1, *process, false, false, true, outside, ""});
+}
+
+}  // namespace
+
+Wanted parse_subject(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  const auto fits = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.'; };
+  if (equals == text.npos || name.empty() || !std::all_of(name.begin(), name.end(), fits) || equals + 1 == text.size()) {
+    throw UsageError("--subject: expected NAME=WHAT with a name of letters, digits, '_', '-' and '.', found '" +
+                     printable(text) + "'");
+  }
+  Wanted wanted{name, text.substr(equals + 1), {}};
+  if (!wanted.what.starts_with(kCommand)) wanted.what = fs::absolute(wanted.what).lexically_normal().string();
+  return wanted;
+}
+
+void open(const Wanted& wanted) {
+  const Opened wish = parsed(wanted);
+  if (const Opened* there = opened(wanted.name)) {
+    if (there->hash == wish.hash && there->wanted.what == wanted.what && there->wanted.flags == wanted.flags) return;
+    throw UsageError(fmt::format("--subject {}: expected one subject of this name, found two", wanted.name));
+  }
+  for (const Lane& lane : lanes()) {
+    if (lane.info->id == wanted.name)
+      throw UsageError(fmt::format("--subject {}: expected a name of its own, found that of a published algorithm",
+                                   wanted.name));
+  }
+  entries().push_back({wish, "", "", "", "", {}, {}});
+  Entry& entry = entries().back();
+  try {
+    Code code{wish.kind == "command" ? "command" : "library", wish.kind == "command" ? wanted.what.substr(kCommand.size())
+                                                                                      : wish.file.string(),
+              wish.function, "any", wanted.timeout, wanted.memory};
+    const std::size_t slash = wish.function.find('/');
+    if (wish.kind == "library" && slash != std::string::npos) {
+      code.name = wish.function.substr(0, slash);
+      code.scalar = wish.function.substr(slash + 1);
+      if (code.scalar != "f32" && code.scalar != "f64")
+        throw UsageError(fmt::format("--subject {}: expected FUNCTION/f32 or FUNCTION/f64, found '{}'", wanted.name,
+                                     printable(wish.function)));
+    }
+    std::vector<std::pair<Variant, Code>> builds;
+    if (wish.kind == "source") {
+      for (const VariantInfo& row : kVariants) {
+        if (row.runs_on != RunsOn::host || row.arithmetic == Arithmetic::exact) continue;
+        Code built = code;
+        built.name.clear();
+        built.what = build_source(wish.file, wish.function.empty() ? "intersects" : wish.function, row, wanted.flags);
+        builds.emplace_back(row.variant, std::move(built));
+      }
+    } else {
+      builds.emplace_back(Variant::cpu, std::move(code));
+    }
+    Lane probe{};
+    std::vector<Lane> made;
+    Description description;
+    for (const auto& [variant, of_variant] : builds) {
+      probe.variant = variant;
+      if (!runs_on_this_cpu(probe)) continue;
+      description = describe(of_variant);
+      if (description.f32) add_lane(entry, made, of_variant, Scalar::f32, variant, description.outside);
+    }
+    for (const auto& [variant, of_variant] : builds) {
+      probe.variant = variant;
+      if (description.f64 && runs_on_this_cpu(probe))
+        add_lane(entry, made, of_variant, Scalar::f64, variant, description.outside);
+    }
+    entry.source = wanted.what;
+    if (!description.source.empty()) entry.source += ": " + description.source;
+    if (!description.version.empty()) entry.source += ", version " + description.version;
+    entry.coplanar = says(description, kOutsideCoplanar, "not said");
+    entry.degenerate = says(description, kOutsideDegenerate, "not said");
+    entry.order = "not said";
+    entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
+    add_lanes(std::move(made));
+  } catch (const std::exception&) {
+    entries().pop_back();
+    throw;
+  }
+}
+
+const Opened* opened(std::string_view subject) {
+  for (const Entry& entry : entries()) {
+    if (entry.opened.wanted.name == subject) return &entry.opened;
+  }
+  return nullptr;
+}
+
+Json record(const std::vector<std::string>& lanes) {
+  Json rows;
+  for (const Entry& entry : entries()) {
+    const Opened& o = entry.opened;
+    if (std::none_of(lanes.begin(), lanes.end(), [&](const std::string& id) { return id.starts_with(o.wanted.name + '/'); }))
+      continue;
+    rows.push_back({{"name", o.wanted.name},
+                    {"what", o.wanted.what},
+                    {"flags", o.wanted.flags},
+                    {"timeout", o.wanted.timeout},
+                    {"memory", o.wanted.memory},
+                    {"hash", fmt::format("{:016x}", o.hash)}});
+  }
+  return rows;
+}
+
+void open_recorded(const Json& spec) {
+  for (const Json& row : spec.value("subjects", Json::array())) {
+    const std::string name = row.at("name");
+    if (opened(name)) continue;
+    const Wanted wanted{name, row.at("what"), row.at("flags").get<std::vector<std::string>>(), row.at("timeout"),
+                        row.at("memory")};
+    const std::string hash = row.at("hash");
+    if (const std::string found = fmt::format("{:016x}", parsed(wanted).hash); found != hash) {
+      throw std::runtime_error(fmt::format("{}: expected the code that the campaign ran ({}), found other code ({})",
+                                           wanted.what, hash, found));
+    }
+    open(wanted);
+  }
+}
+
+}  // namespace graze::subjects

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A person's own code, or a library's, as lanes: what stands behind --subject NAME=WHAT.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace graze::subjects {
+
+// WHAT is one of
+//   FILE.so[:NAME[/f64]]   a shared object: a description (graze/subject.h), or a function
+//   FILE.cpp[:FUNCTION]    a C++ source, also .cc and .cxx, or FILE.c: built for each host variant
+//   cmd:COMMAND            a program that answers line by line
+struct Wanted {
+  std::string name, what;
+  std::vector<std::string> flags;  // of the compiler, after ours
+  double timeout = 1;              // seconds
+  std::uint64_t memory = 1024;     // MiB
+};
+
+// Splits NAME=WHAT; a file's path becomes absolute.   Throws: UsageError.
+Wanted parse_subject(const std::string& text);
+
+// Adds the subject's lanes to the lane table. Of the same name and content a second time: nothing happens.
+// Throws: UsageError for a name that is taken; std::runtime_error, in one line, for code that cannot be had.
+void open(const Wanted& wanted);
+
+// Of the subjects whose lanes are among these: what a campaign records, so that it can open them again: [{"name",
+// "what", "flags", "timeout", "memory", "hash"}, …]. Null where there are none.
+nlohmann::ordered_json record(const std::vector<std::string>& lanes);
+
+// Opens what a campaign recorded, where it is not open yet.   Throws: std::runtime_error where the code is not what it
+// was, or is not there.
+void open_recorded(const nlohmann::ordered_json& spec);
+
+// How a lane's subject is had, for a person or a program that shows a case again; empty for our own.
+struct Opened {
+  Wanted wanted;
+  std::string kind;      // "library", "source", "command"
+  std::filesystem::path file;
+  std::string function;  // empty: none named
+  std::uint64_t hash = 0;
+};
+const Opened* opened(std::string_view subject);
+
+}  // namespace graze::subjects

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subjects/subjects.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <regex>
+#include <thread>
+
+#include "core/algorithms/algorithms.h"
+#include "core/error.h"
+#include "core/lanes.h"
+#include "strata/strata.h"
+#include "subjects/process.h"
+
+namespace graze::subjects {
+namespace {
+
+namespace fs = std::filesystem;
+
+// One of each misbehaviour, on the pairs that `bad` picks; on the others they say whether a is left of b.
+constexpr const char* kMisbehaving = R"(
+#include <stdlib.h>
+#include <unistd.h>
+static unsigned calls;
+static int bad(const float a[9]) { return a[0] > 0.9f; }
+int good(const float a[9], const float b[9]) { return a[0] < b[0]; }
+int declines(const float a[9], const float b[9]) { return bad(a) ? -1 : good(a, b); }
+int aborts(const float a[9], const float b[9]) { if (bad(a)) abort(); return good(a, b); }
+int exits(const float a[9], const float b[9]) { if (bad(a)) exit(0); return good(a, b); }
+int scribbles(const float a[9], const float b[9]) { if (bad(a)) ((float*)b)[3] = 3; return good(a, b); }
+int hangs(const float a[9], const float b[9]) { if (bad(a)) for (;;) pause(); return good(a, b); }
+int wavers(const float a[9], const float b[9]) { return bad(a) ? ++calls & 1 : good(a, b); }
+int eats(const float a[9], const float b[9]) {
+  if (bad(a)) for (;;) { char* p = malloc(1 << 20); if (!p) abort(); for (int i = 0; i < 1 << 20; i += 4096) p[i] = 1; }
+  return good(a, b);
+}
+int in_double(const double a[9], const double b[9]) { return a[0] < b[0]; }
+)";
+
+constexpr const char* kDescribed = R"(
+#include <graze/subject.h>
+#include <stdexcept>
+static int throws(const float a[9], const float b[9]) {
+  if (a[0] > 0.9f) throw std::runtime_error("no");
+  return a[0] < b[0];
+}
+static void block(const float* pairs, size_t count, signed char* answers) {
+  for (size_t i = 0; i < count; ++i) {
+    if (pairs[18 * i] > 0.9f) __builtin_trap();
+    answers[i] = pairs[18 * i] < pairs[18 * i + 9];
+  }
+}
+GRAZE_SUBJECT(graze_subject) = {GRAZE_SUBJECT_ABI, GRAZE_OUTSIDE_TOUCHING | GRAZE_OUTSIDE_COPLANAR, "1.2", "a test", "page 3", throws, nullptr, nullptr, nullptr};
+GRAZE_SUBJECT(in_blocks) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, block, nullptr};
+GRAZE_SUBJECT(of_another_time) = {99, 0, nullptr, nullptr, nullptr, throws, nullptr, nullptr, nullptr};
+GRAZE_SUBJECT(empty) = {GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
+)";
+
+struct Subjects : testing::Test {
+  static inline fs::path folder;
+  static inline std::vector<Pair> pairs;
+
+  static fs::path write(const std::string& name, const std::string& text) {
+    std::ofstream(folder / name) << text;
+    return folder / name;
+  }
+  static void SetUpTestSuite() {
+    folder = fs::path(testing::TempDir()) / ("subjects-" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
+    const std::string include = "-I" GRAZE_SOURCE_DIR "/subjects/include ";
+    const fs::path c = write("bad.c", kMisbehaving), cpp = write("described.cpp", kDescribed);
+    ASSERT_EQ(std::system(("cc -O2 -shared -fPIC " + c.string() + " -o " + (folder / "libbad.so").string()).c_str()), 0);
+    ASSERT_EQ(std::system(("c++ -std=c++20 -O2 -shared -fPIC " + include + cpp.string() + " -o " +
+                           (folder / "libdescribed.so").string()).c_str()), 0);
+    for (std::uint64_t i = 0; i < 3000; ++i) pairs.push_back(strata::generate(1, strata::Stratum::uniform, i));
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder); }
+
+  static bool is_bad(const Pair& pair) { return pair.a[0].x > 0.9f; }
+  static Verdict left_of(const Pair& pair) {
+    return pair.a[0].x < pair.b[0].x ? Verdict::intersects : Verdict::disjoint;
+  }
+
+  // Every pair's verdict, by blocks of all of them.
+  static std::vector<Verdict> verdicts(const DecideBlock& block) {
+    std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
+    block(pairs.data(), pairs.size(), yes.data(), none.data());
+    std::vector<Verdict> result;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      result.push_back(block.verdict_of(yes[i / 64] >> i % 64 & 1, none[i / 64] >> i % 64 & 1, pairs[i]));
+    return result;
+  }
+  // Of the bad pairs this, of the others what `good` says.
+  static void expect(ForeignProcesses& subject, Verdict of_bad) {
+    const std::vector<Verdict> found = verdicts(subject);
+    std::size_t bad = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      bad += is_bad(pairs[i]);
+      ASSERT_EQ(found[i], is_bad(pairs[i]) ? of_bad : left_of(pairs[i])) << i;
+    }
+    EXPECT_GT(bad, 50u);
+  }
+  static std::string error_of(const std::function<void()>& act) {
+    try {
+      act();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "none";
+  }
+  static void open_one(const std::string& text) { open(parse_subject(text)); }
+};
+
+TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
+  const struct {
+    const char* name;
+    Verdict verdict;
+    double timeout = 5;
+  } kCases[] = {{"declines", Verdict::declined}, {"aborts", Verdict::crashed},   {"exits", Verdict::crashed},
+                {"scribbles", Verdict::crashed}, {"wavers", Verdict::unstable}};
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.name);
+    ForeignProcesses subject({"library", (folder / "libbad.so").string(), c.name, "f32", c.timeout}, Scalar::f32);
+    expect(subject, c.verdict);
+  }
+}
+
+TEST_F(Subjects, EndlessLoopsAndMemoryEnd) {
+  const std::vector<Pair> all = pairs;
+  pairs.assign(all.begin(), all.begin() + 600);
+  std::vector<Verdict> found;
+  ForeignProcesses hangs({"library", (folder / "libbad.so").string(), "hangs", "f32", 0.02}, Scalar::f32);
+  found = verdicts(hangs);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::timed_out : left_of(pairs[i])) << i;
+  pairs.assign(all.begin(), all.begin() + 60);
+  ForeignProcesses eats({"library", (folder / "libbad.so").string(), "eats", "f32", 60, 64}, Scalar::f32);
+  found = verdicts(eats);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i])) << i;
+  pairs = all;
+}
+
+TEST_F(Subjects, DescriptionsAndBlocksAndExceptions) {
+  const Description description = describe({"library", (folder / "libdescribed.so").string(), ""});
+  EXPECT_TRUE(description.f32);
+  EXPECT_FALSE(description.f64);
+  EXPECT_EQ(description.outside, unsigned{kOutsideTouching | kOutsideCoplanar});
+  EXPECT_EQ(description.version + description.source + description.convention, "1.2a testpage 3");
+  ForeignProcesses throws({"library", (folder / "libdescribed.so").string(), ""}, Scalar::f32);
+  expect(throws, Verdict::crashed);
+  ForeignProcesses in_blocks({"library", (folder / "libdescribed.so").string(), "in_blocks"}, Scalar::f32);
+  expect(in_blocks, Verdict::crashed);
+}
+
+TEST_F(Subjects, ManyThreadsAtOnce) {
+  ForeignProcesses subject({"library", (folder / "libbad.so").string(), "aborts", "f32"}, Scalar::f32);
+  std::vector<std::vector<Verdict>> found(4);
+  std::vector<std::thread> threads;
+  for (auto& of : found) threads.emplace_back([&] { of = verdicts(subject); });
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& of : found) EXPECT_EQ(of, found[0]);
+}
+
+TEST_F(Subjects, AProgramOfAnyLanguage) {
+  write("program.py", R"(
+import os, sys
+for line in sys.stdin:
+    x = [float.fromhex(word) for word in line.split()]
+    assert len(x) == 18
+    if x[0] > 0.9 and sys.argv[1] == "dies": os._exit(3)
+    if x[0] > 0.9 and sys.argv[1] == "babbles": print("well")
+    elif x[0] > 0.9 and sys.argv[1] == "declines": print("?")
+    else: print(int(x[0] < x[9]))
+    sys.stdout.flush()
+)");
+  const std::vector<Pair> all = pairs;
+  pairs.resize(300);
+  const auto run = [](const std::string& how) {
+    ForeignProcesses subject({"command", "python3 " + (folder / "program.py").string() + " " + how, "", "f32", 20}, Scalar::f32);
+    return verdicts(subject);
+  };
+  for (const auto& [how, verdict] : {std::pair{"declines", Verdict::declined}, {"dies", Verdict::crashed}, {"babbles", Verdict::crashed}}) {
+    const std::vector<Verdict> found = run(how);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      EXPECT_EQ(found[i], is_bad(pairs[i]) ? verdict : left_of(pairs[i])) << how << ' ' << i;
+  }
+  pairs = all;
+}
+
+// The published algorithms, pushed through a source as a stranger's code: exactly their lanes' verdicts.
+class OurOwn : public Subjects, public testing::WithParamInterface<int> {};
+
+TEST_P(OurOwn, AsForeignCodeAreTheirLanes) {
+  const std::vector<const AlgorithmInfo*> infos = std::apply(
+      [](auto... algorithm) { return std::vector<const AlgorithmInfo*>{&decltype(algorithm)::kInfo...}; }, Algorithms{});
+  const std::string id(infos.at(static_cast<std::size_t>(GetParam()))->id), name = "own_" + id;
+  const fs::path source = write(name + ".cpp", R"(
+#define GRAZE_FP stranger
+#include "core/algorithms/algorithms.h"
+template <class Real>
+int decide(const Real a[9], const Real b[9]) {
+  graze::Pair pair;
+  for (int i = 0; i < 9; ++i) {
+    (&pair.a[0].x)[i] = static_cast<float>(a[i]);
+    (&pair.b[0].x)[i] = static_cast<float>(b[i]);
+  }
+  using Algorithm = std::tuple_element_t<)" + std::to_string(GetParam()) + R"(, graze::Algorithms>;
+  const graze::Verdict verdict = graze::decide_widened<Algorithm, Real>(pair);
+  return verdict == graze::Verdict::declined ? -1 : verdict == graze::Verdict::intersects;
+}
+)");
+  Wanted wanted = parse_subject(name + "=" + source.string() + ":decide");
+  wanted.flags = {"-I" GRAZE_SOURCE_DIR, "-O3"};
+  wanted.timeout = 60;
+  open(wanted);
+  std::size_t compared = 0;
+  for (const char* scalar : {"f32", "f64"}) {
+    {  // what cpu-fma fuses is the compiler's choice, and another in another function
+      const std::string lane = std::string("/") + scalar + "/cpu";
+      const Lane *foreign = find_lane(name + lane), *ours = find_lane(id + lane);
+      ASSERT_TRUE(ours);
+      ASSERT_EQ(foreign != nullptr, runs_on_this_cpu(*ours));
+      if (!foreign) continue;
+      EXPECT_TRUE(foreign->foreign);
+      const std::vector<Pair> before = pairs;
+      for (const strata::StratumInfo& stratum : strata::kStrata) {
+        pairs.clear();
+        for (std::uint64_t i = 0; i < 2000; ++i) pairs.push_back(strata::generate(7, stratum.stratum, i));
+        EXPECT_EQ(verdicts(foreign->decide), verdicts(ours->decide)) << stratum.id << lane;
+        compared += pairs.size();
+      }
+      pairs = before;
+    }
+  }
+  EXPECT_GE(compared, 2u * 2000 * std::size(strata::kStrata));
+}
+INSTANTIATE_TEST_SUITE_P(Subjects, OurOwn, testing::Range(0, kAlgorithmCount), [](const auto& of) {
+  return std::to_string(of.param);
+});
+
+TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
+  write("both.cpp", "#include \"part.h\"\nnamespace geo { bool meets(const float a[9], const float b[9]) { return LESS(a, b); }\n"
+                    "bool meets(const double a[9], const double b[9]) { return LESS(a, b); } }");
+  write("part.h", "#define LESS(a, b) (a)[0] < (b)[0]");
+  open_one("both=" + (folder / "both.cpp").string() + ":geo::meets");
+  open_one("in_double=" + (folder / "bad.c").string() + ":in_double");
+  open_one("by_name=" + (folder / "libbad.so").string() + ":in_double/f64");
+  for (const char* id : {"both/f32/cpu", "both/f64/cpu", "both/f32/cpu-fast", "in_double/f64/cpu", "by_name/f64/cpu"}) {
+    const Lane* lane = find_lane(id);
+    if (!lane && std::string(id).ends_with("fast")) continue;
+    ASSERT_TRUE(lane) << id;
+    const std::vector<Verdict> found = verdicts(lane->decide);
+    for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(found[i], left_of(pairs[i])) << id;
+  }
+  EXPECT_FALSE(find_lane("in_double/f32/cpu"));
+  EXPECT_FALSE(find_lane("by_name/f32/cpu"));
+  // What is included counts: another header is another build.
+  write("part.h", "#define LESS(a, b) (a)[0] >= (b)[0]");
+  open_one("changed=" + (folder / "both.cpp").string() + ":geo::meets");
+  EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0], left_of(pairs[0]) == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint);
+}
+
+TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
+  const std::string so = (folder / "libbad.so").string(), described = (folder / "libdescribed.so").string();
+  write("broken.cpp", "bool intersects(const float a[9], const float b[9]) { return a[0] < ; }");
+  write("other.cpp", "int intersects(int a) { return a; }");
+  write("loads.c", "__attribute__((constructor)) static void f(void) { __builtin_trap(); }");
+  ASSERT_EQ(std::system(("cc -shared -fPIC " + (folder / "loads.c").string() + " -o " + (folder / "loads.so").string()).c_str()), 0);
+  const auto expect_error = [&](const std::string& text, const std::string& pattern) {
+    const std::string error = error_of([&] { open_one(text); });
+    EXPECT_TRUE(std::regex_search(error, std::regex(pattern))) << text << ": " << error;
+    EXPECT_EQ(error.find('\n'), error.npos) << error;
+  };
+  expect_error("x", "expected NAME=WHAT .* found 'x'");
+  expect_error("a/b=" + so, "expected NAME=WHAT");
+  expect_error("x=", "expected NAME=WHAT");
+  expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c or cmd:COMMAND, found '.*mine.txt'");
+  expect_error("x=nothere.so", "nothere.so: expected a file with code, found none");
+  expect_error("exact=" + so + ":good", "expected a name of its own");
+  expect_error("x=" + so, "libbad.so: expected a function named intersects, or a description .* found only .*good");
+  expect_error("x=" + so + ":nothing", "function or description named nothing, .* found only");
+  expect_error("x=" + so + ":good/f16", "expected FUNCTION/f32 or FUNCTION/f64");
+  expect_error("x=" + described + ":of_another_time", "version 1 of graze/subject.h, found 99");
+  expect_error("x=" + described + ":empty", "expected a description with a function");
+  expect_error("x=" + (folder / "broken.cpp").string(), "broken.cpp:1:[0-9]+: error: ");
+  expect_error("x=" + (folder / "other.cpp").string(), "other.cpp: expected a function intersects of two triangles");
+  expect_error("x=" + (folder / "loads.so").string(), "loads.so: crashed while it was loaded");
+  EXPECT_FALSE(opened("x"));
+  for (const Lane& lane : lanes()) EXPECT_NE(lane.info->id, "x");
+}
+
+TEST_F(Subjects, ACampaignsRecordOpensThemAgainUnlessTheyChanged) {
+  const fs::path source = write("recorded.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  open_one("recorded=" + source.string());
+  EXPECT_TRUE(record({"moller_1997/f32/cpu", "recorded2/f32/cpu"}).is_null());
+  nlohmann::ordered_json spec{{"subjects", record({"moller_1997/f32/cpu", "recorded/f32/cpu"})}};
+  ASSERT_EQ(spec["subjects"].size(), 1u);
+  open_recorded(spec);                         // open already
+  open_one("recorded=" + source.string());     // the same again
+  spec["subjects"][0]["name"] = "again";
+  open_recorded(spec);
+  EXPECT_TRUE(find_lane("again/f32/cpu"));
+  spec["subjects"][0]["name"] = "third";
+  write("recorded.c", "int intersects(const float a[9], const float b[9]) { return a[0] > b[0]; }");
+  EXPECT_NE(error_of([&] { open_recorded(spec); }).find("expected the code that the campaign ran"), std::string::npos);
+  EXPECT_NE(error_of([&] { open_one("recorded=" + source.string()); }).find("found two"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace graze::subjects

@@ -67,7 +67,7 @@ std::vector<Lane> make_lanes() {
   for (const AlgorithmInfo* info : infos(static_cast<const Algorithms*>(nullptr))) {
     for (const Scalar scalar : {Scalar::f32, Scalar::f64}) {
       for (const VariantInfo& row : kVariants) {
-        if (row.arithmetic == Arithmetic::exact) continue;
+        if (!builds_published(row)) continue;
         Lane& lane = table.emplace_back(lane_of(info, scalar, row.variant));
         lane.algorithm = algorithm;
         lane.explainable = row.arithmetic != Arithmetic::fast;

@@ -14,7 +14,7 @@ enum class Variant : std::uint8_t {
 #undef GRAZE_VARIANT
 };
 
-enum class Arithmetic : std::uint8_t { rounded, contracted, fast, exact };
+enum class Arithmetic : std::uint8_t { rounded, contracted, fast, flushed, exact };
 enum class RunsOn : std::uint8_t { host, device };
 enum class Twin : std::uint8_t { no_twin, twin };
 
@@ -37,6 +37,11 @@ inline constexpr VariantInfo kVariants[] = {
 
 constexpr const VariantInfo& info_of(Variant variant) { return kVariants[static_cast<int>(variant)]; }
 constexpr std::string_view name(Variant variant) { return info_of(variant).id; }
+
+// Whether the published algorithms are built in this variant.
+constexpr bool builds_published(const VariantInfo& row) {
+  return row.arithmetic != Arithmetic::exact && row.arithmetic != Arithmetic::flushed;
+}
 
 constexpr std::optional<Variant> variant_of_name(std::string_view id) {
   for (const VariantInfo& row : kVariants) {

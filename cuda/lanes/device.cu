@@ -19,6 +19,7 @@ namespace graze::cuda {
 #define GRAZE_DECLARE_host_contracted(name)
 #define GRAZE_DECLARE_host_fast(name)
 #define GRAZE_DECLARE_device_exact(name)
+#define GRAZE_DECLARE_device_flushed(name)
 #define GRAZE_DECLARE_device_rounded(name) GRAZE_DECLARE(name)
 #define GRAZE_DECLARE_device_contracted(name) GRAZE_DECLARE(name)
 #define GRAZE_DECLARE_device_fast(name) GRAZE_DECLARE(name)
@@ -31,6 +32,7 @@ const VariantKernels& kernels_of(Variant variant) {
 #define GRAZE_KERNELS_host_contracted(name) nullptr
 #define GRAZE_KERNELS_host_fast(name) nullptr
 #define GRAZE_KERNELS_device_exact(name) nullptr
+#define GRAZE_KERNELS_device_flushed(name) nullptr
 #define GRAZE_KERNELS_device_rounded(name) &name::kKernels
 #define GRAZE_KERNELS_device_contracted(name) &name::kKernels
 #define GRAZE_KERNELS_device_fast(name) &name::kKernels

@@ -31,6 +31,8 @@ struct TwinTables {
   {}
 #define GRAZE_TABLES_no_twin_fast(name) \
   {}
+#define GRAZE_TABLES_no_twin_flushed(name) \
+  {}
 #define GRAZE_TABLES_no_twin_exact(name) \
   {}
 #define GRAZE_TABLES_twin_rounded(name) \

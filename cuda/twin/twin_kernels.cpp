@@ -6,7 +6,8 @@
 #include <tuple>
 
 #include "cuda/lanes/device_pairs.h"
-#include "cuda/twin/twin_ops_logic.h"
+#include "cuda/twin/twin_ops_bits.h"
+#include "cuda/twin/twin_ops_rounding.h"
 #include "cuda/twin/twin_table.h"
 
 namespace graze::cuda {

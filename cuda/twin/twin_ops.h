@@ -18,9 +18,11 @@ namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace ptx {
 
+using u8 = std::uint8_t;
 using u16 = std::uint16_t;
 using u32 = std::uint32_t;
 using u64 = std::uint64_t;
+using s8 = std::int8_t;
 using s16 = std::int16_t;
 using s32 = std::int32_t;
 using s64 = std::int64_t;
@@ -28,7 +30,8 @@ using f32 = float;
 using f64 = double;
 
 template <class T>
-using Bits = std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>;
+using Bits = std::conditional_t<
+    sizeof(T) == 1, u8, std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
 
 // The register's bits as another type of the same size; integers of other sizes are widened or cut.
 template <class T, class From>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every PTX operation that the generator replays, over special values: cuda/twin/generator/semantics.ptx, through the
 // generator and this compiler, against the standard library or the words of the PTX ISA.
-#include "cuda/twin/twin_ops_logic.h"
+#include "cuda/twin/twin_ops_bits.h"
+#include "cuda/twin/twin_ops_rounding.h"
 
 #include <gtest/gtest.h>
 

@@ -26,8 +26,37 @@ Wide<T> mul_wide(T a, T b) {
 
 template <class T>
 T mul_hi(T a, T b) {
-  static_assert(sizeof(T) <= 4);
-  return static_cast<T>(mul_wide(a, b) >> (8 * sizeof(T)));
+  if constexpr (sizeof(T) == 8) {
+    const u64 x = static_cast<u64>(a), y = static_cast<u64>(b);
+    const u64 low = (x & 0xffffffffu) * (y & 0xffffffffu), one = (x >> 32) * (y & 0xffffffffu) + (low >> 32),
+              two = (x & 0xffffffffu) * (y >> 32) + (one & 0xffffffffu);
+    u64 high = (x >> 32) * (y >> 32) + (one >> 32) + (two >> 32);
+    if constexpr (std::is_signed_v<T>) high -= (a < 0 ? y : 0) + (b < 0 ? x : 0);
+    return static_cast<T>(high);
+  } else {
+    return static_cast<T>(mul_wide(a, b) >> (8 * sizeof(T)));
+  }
+}
+
+// PTX leaves division by zero open; devices give all ones, and the dividend as the remainder.
+template <class T>
+T quotient(T a, T b) {
+  if (b == 0) return static_cast<T>(-1);
+  if (std::is_signed_v<T> && b == static_cast<T>(-1)) return neg(a);
+  return static_cast<T>(a / b);
+}
+
+template <class T>
+T remainder(T a, T b) {
+  if (b == 0) return a;
+  if (std::is_signed_v<T> && b == static_cast<T>(-1)) return 0;
+  return static_cast<T>(a % b);
+}
+
+// |a - b|
+template <class T>
+T sad(T a, T b) {
+  return a < b ? sub(b, a) : sub(a, b);
 }
 
 // Shifts by the width or more leave zero, or the sign.
@@ -158,6 +187,20 @@ To to_integer(From x) {
   if (x >= above) return std::numeric_limits<To>::max();
   if (x <= static_cast<From>(std::numeric_limits<To>::min())) return std::numeric_limits<To>::min();
   return static_cast<To>(x);
+}
+
+// cvt.sat between integers: the nearest number of the type.
+template <class To, class From>
+To clamped(From x) {
+  if constexpr (std::is_signed_v<From>) {
+    const s64 wide = x;
+    if (std::is_unsigned_v<To> && wide < 0) return 0;
+    if (std::is_signed_v<To> && wide < static_cast<s64>(std::numeric_limits<To>::min()))
+      return std::numeric_limits<To>::min();
+    if (wide < 0) return static_cast<To>(wide);
+  }
+  const u64 most = static_cast<u64>(std::numeric_limits<To>::max());
+  return static_cast<u64>(x) > most ? std::numeric_limits<To>::max() : static_cast<To>(x);
 }
 
 }  // namespace ptx

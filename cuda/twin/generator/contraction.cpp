@@ -37,7 +37,7 @@
 namespace graze::cuda::twin {
 namespace {
 
-bool is_float(const Instruction& i) { return !i.is_label() && (i.op.back() == "f32" || i.op.back() == "f64"); }
+bool is_float(const Instruction& i) { return i.is_operation() && (i.op.back() == "f32" || i.op.back() == "f64"); }
 bool is_rounded(const Instruction& i) { return i.has("rn") || i.has("rz") || i.has("rm") || i.has("rp"); }
 
 bool is_product(const Instruction& i) {
@@ -95,7 +95,7 @@ class BlockPass {
     std::map<std::string, Value> holds;  // registers that hold a product of this block
     for (std::size_t place : block_.instructions) {
       const Instruction& i = kernel_.body[place];
-      if (i.is_label()) continue;
+      if (!i.is_operation()) continue;
       if (is_addition(i)) {
         note_addition(place, i, holds);
       } else if (!(is_copy(i) && holds.count(i.operands[1]))) {
@@ -274,9 +274,11 @@ class Rewriter {
     Instruction i = kernel_.body[place];
     if (is_float(i) && (i.op[0] == "mul" || i.op[0] == "add" || i.op[0] == "sub") && !is_rounded(i))
       i.op.insert(i.op.begin() + 1, "rn");
+    if (i.has("approx") || i.has("full"))  // ptxas expands it, and contracts within
+      throw PtxError(module_.path + ":" + std::to_string(i.line) + ": cannot be replayed: " + text(i));
     if (is_float(i) && i.op[0] == "mad")
       throw PtxError(module_.path + ":" + std::to_string(i.line) + ": mad leaves the rounding open: " + text(i));
-    if (is_float(i) && i.op[0] == "fma") add_site(i, false);
+    if (is_float(i) && i.op[0] == "fma" && i.has("rn") && !i.by_hand) add_site(i, false);
     result_.kernel.body.push_back(std::move(i));
   }
 

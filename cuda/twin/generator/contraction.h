@@ -23,7 +23,7 @@ struct Site {
 };
 
 struct Contracted {
-  Kernel kernel;  // every mul, add, sub of floating point says .rn; each fma has its site
+  Kernel kernel;  // every mul, add, sub of floating point says .rn; each fma that is a contraction has its site
   std::vector<Site> sites;
 };
 

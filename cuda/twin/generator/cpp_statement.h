@@ -8,12 +8,6 @@
 
 namespace graze::cuda::twin {
 
-// "%f32" as "f32_", which is no type; "$L__BB0_3" as "L__BB0_3".
-std::string identifier(std::string name);
-
-// C++ type of a PTX type; the untyped ones count as unsigned. Empty for a type without one.
-std::string cpp_type(const std::string& type);
-
 // The instruction as a statement of the function `run`; see cpp_writer.h.   Requires: no label.
 // Throws: PtxError for an instruction that is unknown or cannot be replayed.
 std::string cpp_statement(const Module& module, const Kernel& kernel, const Instruction& instruction);

@@ -19,13 +19,21 @@ std::vector<std::string> registers_in(const std::string& operand) {
 }
 
 bool writes_first_operand(const Instruction& i) {
-  return !i.is_label() && i.op[0] != "st" && i.op[0] != "bra" && i.op[0] != "ret" && i.op[0] != "exit";
+  return i.is_operation() && i.op[0] != "st" && i.op[0] != "bra" && i.op[0] != "brx" && i.op[0] != "call" &&
+         i.op[0] != "ret" && i.op[0] != "exit";
 }
 
 bool leaves(const Instruction& i) {
-  return !i.is_label() && i.guard.empty() && (i.op[0] == "ret" || i.op[0] == "exit");
+  return i.is_operation() && i.guard.empty() && (i.op[0] == "ret" || i.op[0] == "exit");
 }
-bool jumps(const Instruction& i) { return !i.is_label() && i.op[0] == "bra"; }
+bool jumps(const Instruction& i) { return i.is_operation() && (i.op[0] == "bra" || i.op[0] == "brx"); }
+
+// The labels of a jump: one, or those of its list.
+std::vector<std::string> targets(const Kernel& kernel, const Instruction& i) {
+  if (i.op[0] == "bra") return {i.operands.at(0)};
+  const auto list = kernel.branch_targets.find(i.operands.at(1));
+  return list == kernel.branch_targets.end() ? std::vector<std::string>{i.operands[1]} : list->second;
+}
 
 std::vector<Block> basic_blocks(const Module& module, const Kernel& kernel) {
   std::vector<Block> result(1);
@@ -46,11 +54,13 @@ std::vector<Block> basic_blocks(const Module& module, const Kernel& kernel) {
     if (result[b].instructions.empty()) continue;
     const Instruction& last = kernel.body[result[b].instructions.back()];
     if (jumps(last)) {
-      const auto target = label_block.find(last.operands.at(0));
-      if (target == label_block.end())
-        throw PtxError(module.path + ":" + std::to_string(last.line) +
-                       ": expected a label of this kernel: " + text(last));
-      result[b].successors.push_back(target->second);
+      for (const std::string& label : targets(kernel, last)) {
+        const auto target = label_block.find(label);
+        if (target == label_block.end())
+          throw PtxError(module.path + ":" + std::to_string(last.line) +
+                         ": expected a label of this kernel: " + text(last));
+        result[b].successors.push_back(target->second);
+      }
     }
     if (b + 1 < result.size() && !leaves(last) && !(jumps(last) && last.guard.empty()))
       result[b].successors.push_back(b + 1);

@@ -2,12 +2,14 @@
 // Reader and writers: what they make of PTX, and what they refuse. Values are in cuda/twin/twin_ops.test.cpp.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
 #include "cuda/twin/generator/cpp_writer.h"
 #include "cuda/twin/generator/proofs.h"
 #include "cuda/twin/generator/ptx_writer.h"
+#include "cuda/twin/generator/reduce.h"
 
 namespace graze::cuda::twin {
 namespace {
@@ -32,7 +34,8 @@ std::string complaint(const std::string& instruction) {
 }
 
 TEST(TwinGenerator, RefusesWhatItDoesNotKnow) {
-  EXPECT_EQ(complaint("bfe.u32 %r1, %r2, 3, 4;"), "test.ptx:13: unknown instruction: bfe.u32 %r1, %r2, 3, 4");
+  EXPECT_EQ(complaint("fns.b32 %r1, %r2, 3, 4;"), "test.ptx:13: unknown instruction: fns.b32 %r1, %r2, 3, 4");
+  EXPECT_EQ(complaint("prmt.b32.f4e %r1, %r2, 3, 4;"), "test.ptx:13: unknown instruction: prmt.b32.f4e %r1, %r2, 3, 4");
   EXPECT_EQ(complaint("bar.sync 0;"), "test.ptx:13: unknown instruction: bar.sync 0");
   EXPECT_EQ(complaint("add.f16x2 %r1, %r2, %r3;"), "test.ptx:13: unknown instruction: add.f16x2 %r1, %r2, %r3");
   EXPECT_EQ(complaint("setp.lt.what.f32 %p1, %f1, %f2;"),
@@ -52,8 +55,11 @@ TEST(TwinGenerator, RefusesWhatCannotBeReplayed) {
   EXPECT_EQ(complaint("div.full.f32 %f1, %f2, %f3;"), "test.ptx:13: cannot be replayed: div.full.f32 %f1, %f2, %f3");
   EXPECT_EQ(complaint("sqrt.approx.ftz.f32 %f1, %f2;"),
             "test.ptx:13: cannot be replayed: sqrt.approx.ftz.f32 %f1, %f2");
-  EXPECT_EQ(complaint("add.rz.f32 %f1, %f2, %f3;"), "test.ptx:13: cannot be replayed: add.rz.f32 %f1, %f2, %f3");
-  EXPECT_EQ(complaint("cvt.rm.f32.f64 %f1, %fd1;"), "test.ptx:13: cannot be replayed: cvt.rm.f32.f64 %f1, %fd1");
+  EXPECT_EQ(complaint("rcp.approx.ftz.f32 %f1, %f2;"), "test.ptx:13: cannot be replayed: rcp.approx.ftz.f32 %f1, %f2");
+  EXPECT_EQ(complaint("call (%rd1), %rd2, (%rd3);"),
+            "test.ptx:13: a call by a function pointer cannot be replayed: call (%rd1), %rd2, (%rd3)");
+  EXPECT_EQ(complaint("call.uni other, (%rd3);"),
+            "test.ptx:13: a function of another file cannot be replayed: call.uni other, (%rd3)");
   EXPECT_EQ(complaint("mad.f32 %f1, %f2, %f3, %f4;"),
             "test.ptx:13: mad leaves the rounding open: mad.f32 %f1, %f2, %f3, %f4");
 }
@@ -62,13 +68,19 @@ TEST(TwinGenerator, RefusesWhatItCannotRead) {
   EXPECT_THROW(module_of(".shared .align 4 .b8 memory[64];"), PtxError);
   EXPECT_THROW(module_of("add.f32 %f1, %f2,"), PtxError);
   EXPECT_NE(complaint("bra $L_nowhere;").find("expected a label of this kernel"), std::string::npos);
-  std::istringstream function(".version 9.0\n.func f()\n");
-  try {
-    read_ptx(function, "f.ptx");
-    FAIL();
-  } catch (const PtxError& error) {
-    EXPECT_STREQ(error.what(), "f.ptx:2: expected a kernel: .func f()");
-  }
+  const auto of_file = [](const std::string& line) -> std::string {
+    std::istringstream in(".version 9.0\n" + line + "\n");
+    try {
+      read_ptx(in, "f.ptx");
+      return "";
+    } catch (const PtxError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(of_file("frobnicate"), "f.ptx:2: expected a kernel: frobnicate");
+  EXPECT_EQ(of_file(".shared .align 4 .b8 memory[64];"), "f.ptx:2: expected a kernel: .shared .align 4 .b8 memory[64];");
+  EXPECT_EQ(of_file(".const .align 8 .u64 at[1] = {other};"),
+            "f.ptx:2: expected a table of numbers: .const .align 8 .u64 at[1] = {other};");
 }
 
 TEST(TwinGenerator, ReadsSourceLines) {
@@ -115,6 +127,73 @@ TEST(TwinGenerator, HashKnowsInstructionsButNoLines) {
   // The number of the kernel in its module is in the names of labels.
   EXPECT_EQ(hash("bra $L__BB0_7;\n$L__BB0_7:\n"), hash("bra $L__BB12_7;\n$L__BB12_7:\n"));
   EXPECT_NE(hash("bra $L__BB0_7;\n$L__BB0_7:\n"), hash("bra $L__BB0_8;\n$L__BB0_8:\n"));
+}
+
+TEST(TwinGenerator, ExplicitPtxRefusesApproximateOperations) {
+  std::ostringstream out;
+  EXPECT_THROW(write_explicit(out, module_of("div.approx.f32 %f1, %f2, %f3;"), Rule::ptxas), PtxError);
+}
+
+constexpr char kWithFunctions[] =
+    ".version 9.0\n.target sm_75\n.address_size 64\n.const .align 4 .b8 table[8] = {1, 0, 255, 128, 0};\n"
+    ".global .align 4 .f32 one = 0f3F800000;\n"
+    ".func  (.param .b32 func_retval0) half\n(\n\t.param .b32 half_param_0\n)\n;\n"
+    ".visible .entry other()\n{\nret;\n}\n"
+    ".visible .entry k(\n\t.param .u64 k_param_0\n)\n{\n.reg .f32 %f<3>;\n.reg .b64 %rd<3>;\n.reg .pred %p<2>;\n"
+    ".reg .b32 %r<2>;\n$L_again:\n.pragma \"nounroll\";\n"
+    "{ // callseq 0, 0\n.reg .b32 temp_param_reg;\n.param .b32 param0;\nst.param.f32 [param0+0], %f1;\n"
+    ".param .b32 retval0;\ncall.uni (retval0), \nhalf, \n(\nparam0\n);\nld.param.f32 %f2, [retval0+0];\n} // callseq 0\n"
+    "{ .reg .pred q; setp.gt.f32 q, %f2, %f1; mov.pred %p1, q; }\n@%p1 bra $L_again;\n"
+    "$L_list: .branchtargets\n$L_again,\n$L_end;\nbrx.idx %r1, $L_list;\n$L_end:\nret;\n}\n"
+    ".func  (.param .b32 func_retval0) half(\n\t.param .b32 half_param_0\n)\n{\n.reg .f32 %f<3>;\n"
+    "ld.param.f32 %f1, [half_param_0];\nmul.f32 %f2, %f1, 0f3F000000;\nst.param.f32 [func_retval0+0], %f2;\nret;\n}\n";
+
+TEST(TwinGenerator, ReadsFunctionsTablesAndScopes) {
+  std::istringstream in(kWithFunctions);
+  const Module module = read_ptx(in, "f.ptx");
+  ASSERT_EQ(module.kernels.size(), 3u);
+  ASSERT_EQ(module.tables.size(), 2u);
+  EXPECT_EQ(module.tables[0].bytes, (std::vector<std::uint8_t>{1, 0, 255, 128, 0, 0, 0, 0}));
+  EXPECT_EQ(module.tables[1].bytes, (std::vector<std::uint8_t>{0, 0, 0x80, 0x3f}));
+  const Kernel &kernel = module.kernels[1], &function = module.kernels[2];
+  EXPECT_TRUE(function.is_function && function.declared_before);
+  ASSERT_EQ(function.returned.size(), 1u);
+  EXPECT_EQ(function.returned[0].bytes, 4);
+  EXPECT_EQ(kernel.registers.at("%scope2_q"), (std::pair<std::string, int>{"pred", 0}));
+  EXPECT_EQ(kernel.branch_targets.at("$L_list"), (std::vector<std::string>{"$L_again", "$L_end"}));
+  const auto has = [&](const std::string& line) {
+    return std::any_of(kernel.body.begin(), kernel.body.end(), [&](const Instruction& i) { return text(i) == line; });
+  };
+  EXPECT_TRUE(has(".pragma \"nounroll\";"));
+  EXPECT_TRUE(has("call.uni (retval0), half, (param0)"));
+  EXPECT_TRUE(has("mov.pred %p1, %scope2_q"));
+}
+
+TEST(TwinGenerator, KeepsTheKernelThatCounts) {
+  std::istringstream in(kWithFunctions);
+  const Module module = read_ptx(in, "f.ptx"), small = reduced(module, "k");
+  ASSERT_EQ(small.kernels.size(), 2u);
+  EXPECT_THROW(reduced(module, "none"), PtxError);
+  std::ostringstream cpp, ptx;
+  write_cpp(cpp, small, Rule::ptxas);
+  EXPECT_NE(cpp.str().find("call_half(returns, arguments, fuse);"), std::string::npos);
+  EXPECT_NE(cpp.str().find("case 1: goto L_end;"), std::string::npos);
+  EXPECT_EQ(cpp.str().find("struct other"), std::string::npos);
+  write_explicit(ptx, small, Rule::ptxas);
+  for (const char* kept : {".pragma \"nounroll\";", ".const .align 4 .b8 table[8]", "mul.rn.f32", ".branchtargets"})
+    EXPECT_NE(ptx.str().find(kept), std::string::npos) << kept;
+  std::istringstream again(ptx.str());  // its own reader takes it
+  EXPECT_EQ(read_ptx(again, "again.ptx").kernels.size(), 2u);
+}
+
+TEST(TwinGenerator, AnFmaByHandIsNoContraction) {
+  const std::string body = ".loc 1 3 1\nfma.rn.f32 %f1, %f2, %f3, %f4;\n.loc 1 4 1\nfma.rn.f32 %f1, %f2, %f3, %f4;\n";
+  Module module = module_of(body);
+  Lines lines = lines_with_fma(module);
+  EXPECT_EQ(lines, (Lines{{"", 3}, {"", 4}}));
+  lines.erase({"", 4});
+  mark_by_hand(module, lines);
+  EXPECT_EQ(contract(module, module.kernels[0]).sites.size(), 1u);
 }
 
 TEST(TwinGenerator, ExplicitPtxLeavesNothingOpen) {

@@ -19,12 +19,24 @@ constexpr char kUsage[] =
     "  --explicit OUT         the PTX with every contraction written out\n"
     "  --stored ROOT OUT      the PTX as the repository keeps it, paths relative to ROOT\n"
     "  --embedded OUT         the explicit PTX as C++ string literals, for inclusion\n"
+    "usage: graze_twin_generator --text OUT FILE …   the files as C++ string literals, without their own includes\n"
     "usage: graze_twin_generator --proofs OUT [RECORD …]\n";
 
 // The text as a list of raw string literals, since compilers limit the length of one.
 void write_literal(std::ostream& out, const std::string& text) {
   constexpr std::size_t kPiece = 8000;
   for (std::size_t at = 0; at < text.size(); at += kPiece) out << "R\"ptx(" << text.substr(at, kPiece) << ")ptx\",\n";
+}
+
+// Headers of the project, which stand before what includes them.
+std::string without_own_includes(const std::string& path) {
+  std::ifstream in(path);
+  if (!in) throw PtxError(path + ":0: cannot be read");
+  std::string text;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("#include \"") && line != "#pragma once") text += line + "\n";
+  }
+  return text;
 }
 
 void write_file(const std::string& path, const std::string& text) {
@@ -37,6 +49,11 @@ int run(int count, char** arguments) {
   if (count > 2 && std::strcmp(arguments[1], "--proofs") == 0) {
     std::ostringstream text;
     write_proofs(text, {arguments + 3, arguments + count});
+    return write_file(arguments[2], text.str()), 0;
+  }
+  if (count > 3 && std::strcmp(arguments[1], "--text") == 0) {
+    std::ostringstream text;
+    for (int f = 3; f < count; ++f) write_literal(text, without_own_includes(arguments[f]));
     return write_file(arguments[2], text.str()), 0;
   }
   Rule rule = Rule::ptxas;

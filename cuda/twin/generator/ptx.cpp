@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <istream>
 #include <regex>
+#include <set>
 
 namespace graze::cuda::twin {
 namespace {
@@ -23,9 +24,9 @@ std::vector<std::string> split(std::string_view text, char separator) {
     if (i == text.size() || (text[i] == separator && depth == 0)) {
       parts.push_back(trimmed(text.substr(start, i - start)));
       start = i + 1;
-    } else if (text[i] == '[' || text[i] == '{') {
+    } else if (text[i] == '[' || text[i] == '{' || text[i] == '(') {
       ++depth;
-    } else if (text[i] == ']' || text[i] == '}') {
+    } else if (text[i] == ']' || text[i] == '}' || text[i] == ')') {
       --depth;
     }
   }
@@ -49,7 +50,7 @@ class Reader {
       } else if (!in_body_) {
         read_parameters();
       } else {
-        read_inside();
+        read_statements();
       }
     }
     if (kernel_ != nullptr) fail("the file ends within a kernel");
@@ -84,9 +85,27 @@ class Reader {
     return {std::stoi(match[at]), std::stoi(match[at + 1]), std::stoi(match[at + 2])};
   }
 
+  // Adds the following lines up to the semicolon.
+  void join_lines() {
+    const int first = line_;
+    std::string whole = text_;
+    while (!whole.ends_with(';')) {
+      if (!next_line() || text_ == "}") {
+        line_ = first;
+        text_ = whole;
+        fail("expected a semicolon");
+      }
+      whole += " " + text_;
+    }
+    text_ = whole;
+    line_ = first;
+  }
+
   void read_outside() {
     static const std::regex kVersion(R"(\.version\s+(\S+))"), kTarget(R"(\.target\s+([^\s,]+).*)"),
-        kFile(R"re(\.file\s+(\d+)\s+"([^"]*)".*)re"), kEntry(R"((?:\.visible\s+)?\.entry\s+([\w$]+)\s*\()");
+        kFile(R"re(\.file\s+(\d+)\s+"([^"]*)".*)re"), kEntry(R"((?:\.visible\s+)?\.entry\s+([\w$]+)\s*\(\)?)"),
+        kFunction(R"((\.visible\s+|\.weak\s+|\.extern\s+)?\.func\s+(?:\((.*?)\)\s*)?([\w$]+)\s*\(?\)?)"),
+        kTable(R"((?:\.visible\s+|\.weak\s+)?\.(?:const|global)\s+.*)");
     std::smatch match;
     if (std::regex_match(text_, match, kVersion)) {
       module_.version = match[1];
@@ -104,27 +123,104 @@ class Reader {
       kernel_->name = match[1];
       kernel_->line = line_;
       source_ = {};
+    } else if (std::regex_match(text_, match, kFunction)) {
+      module_.kernels.emplace_back();
+      kernel_ = &module_.kernels.back();
+      kernel_->name = match[3];
+      kernel_->line = line_;
+      kernel_->is_function = true;
+      kernel_->linkage = match[1].matched ? trimmed(match[1].str()) + " " : "";
+      if (match[2].matched) kernel_->returned.push_back(parameter_or_fail(trimmed(match[2].str())));
+      source_ = {};
+    } else if (std::regex_match(text_, kTable)) {
+      join_lines();
+      read_table();
     } else {
       fail("expected a kernel");
     }
   }
 
+  // .const .align 4 .b8 NAME[12] = {0, 0, 128, 63, …}; .global .align 4 .u32 NAME = 7;
+  void read_table() {
+    static const std::regex kTable(
+        R"((?:\.visible |\.weak )?\.(?:const|global)\s+\.align\s+(\d+)\s+\.([busf])(\d+)\s+([\w$]+)(?:\[(\d+)\])?(?:\s*=\s*(.*))?)");
+    static const std::regex kHex("0[fFdD]([0-9a-fA-F]+)"), kNumber("-?[0-9]+");
+    Table table;
+    table.declaration = text_.substr(0, text_.size() - 1);
+    std::smatch match;
+    if (!std::regex_match(table.declaration, match, kTable)) fail("expected a table of numbers");
+    table.align = std::stoi(match[1]);
+    table.name = match[4];
+    const std::size_t size = std::stoul(match[3]) / 8, count = match[5].matched ? std::stoul(match[5]) : 1;
+    std::string values = match[6];
+    if (values.starts_with('{')) values = values.substr(1, values.size() - 2);
+    for (const std::string& value : values.empty() ? std::vector<std::string>() : split(values, ',')) {
+      std::uint64_t bits = 0;
+      if (std::regex_match(value, match, kHex)) {
+        bits = std::stoull(match[1], nullptr, 16);
+      } else if (std::regex_match(value, kNumber)) {
+        bits = value[0] == '-' ? 0 - std::stoull(value.substr(1)) : std::stoull(value);
+      } else {
+        fail("expected a table of numbers");  // addresses of other tables and of functions
+      }
+      for (std::size_t b = 0; b < size; ++b) table.bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * b)));
+    }
+    table.bytes.resize(size * count);
+    module_.tables.push_back(std::move(table));
+  }
+
+  Parameter parameter_or_fail(const std::string& declaration) const {
+    const auto result = parameter(declaration);
+    if (!result) fail("expected a parameter");
+    return *result;
+  }
+
   void read_parameters() {
-    static const std::regex kParameter(R"(\.param\s+(?:\.align \d+ )?\.\w+(?:\s+\.ptr.*)?\s+([\w$]+)(?:\[\d+\])?)");
     if (text_ == "{") {
       in_body_ = true;
+      kernel_->declared_before = declared_.contains(kernel_->name);
+    } else if (text_ == ";") {  // of a function: its definition follows, or is in another file
+      declared_.insert(kernel_->name);
+      module_.kernels.pop_back();
+      kernel_ = nullptr;
     } else if (text_.starts_with(".param")) {
-      std::smatch match;
-      const std::string declaration = text_.ends_with(',') ? text_.substr(0, text_.size() - 1) : text_;
-      if (!std::regex_match(declaration, match, kParameter)) fail("expected a parameter");
-      kernel_->parameters.push_back({declaration, match[1]});
-    } else if (text_ != ")" && !text_.starts_with(".maxntid") && !text_.starts_with(".minnctapersm")) {
+      kernel_->parameters.push_back(
+          parameter_or_fail(text_.ends_with(',') ? text_.substr(0, text_.size() - 1) : text_));
+    } else if (text_ != "(" && text_ != ")" && !text_.starts_with(".maxntid") && !text_.starts_with(".minnctapersm")) {
       fail("expected a parameter");
     }
   }
 
+  // A line of a body: mostly one statement; inline assembly has several, and scopes.
+  void read_statements() {
+    if ((text_.starts_with("call") || text_.starts_with('@') || text_.find(".branchtargets") != text_.npos) &&
+        !text_.ends_with(';') && (text_.find("call") != text_.npos || text_.find(".branchtargets") != text_.npos))
+      join_lines();
+    std::string rest = text_;
+    while (!rest.empty() && kernel_ != nullptr) {
+      const auto end = rest[0] == '{' || rest[0] == '}' ? 0 : rest.find(';');
+      text_ = rest.substr(0, end == rest.npos ? end : end + 1);
+      rest = end == rest.npos ? "" : trimmed(rest.substr(end + 1));
+      read_inside();
+    }
+  }
+
+  void add_directive(const std::string& text) {
+    Instruction directive;
+    directive.directive = text;
+    directive.line = line_;
+    kernel_->body.push_back(std::move(directive));
+  }
+
   void read_inside() {
-    if (text_ == "}") {
+    if (text_ == "{") {
+      scopes_.emplace_back();
+      ++scope_count_;
+      add_directive(text_);
+    } else if (text_ == "}" && !scopes_.empty()) {
+      scopes_.pop_back();
+      add_directive(text_);
+    } else if (text_ == "}") {
       kernel_ = nullptr;
       in_body_ = false;
     } else if (text_.ends_with(':') && text_.find(' ') == std::string::npos) {
@@ -132,6 +228,10 @@ class Reader {
       label.label = text_.substr(0, text_.size() - 1);
       label.line = line_;
       kernel_->body.push_back(label);
+    } else if (const auto targets = text_.find(": .branchtargets"); targets != text_.npos) {
+      const std::string list = text_.substr(targets + 16, text_.size() - targets - 17);
+      kernel_->branch_targets[text_.substr(0, targets)] = split(list, ',');
+      add_directive(text_);
     } else if (text_[0] == '.') {
       read_directive();
     } else {
@@ -142,21 +242,62 @@ class Reader {
   void read_directive() {
     static const std::regex kLoc(
         R"(\.loc\s+(\d+)\s+(\d+)\s+(\d+)(?:,\s*function_name\s+[\w$+ ]+,\s*inlined_at\s+(\d+)\s+(\d+)\s+(\d+))?)"),
-        kReg(R"(\.reg\s+\.(\w+)\s+(%\w+)(?:<(\d+)>)?;)"),
+        kReg(R"(\.reg\s+\.(\w+)\s+([%\w$]+)(?:<(\d+)>)?;)"),
         kLocal(R"(\.local\s+\.align\s+(\d+)\s+\.b8\s+([\w$]+)\[(\d+)\];)");
     std::smatch match;
     if (std::regex_match(text_, match, kLoc)) {
       source_ = {place(match, 1), match[4].matched ? place(match, 4) : inlined_at_};
     } else if (std::regex_match(text_, match, kReg)) {
-      kernel_->registers[match[2]] = {match[1], match[3].matched ? std::stoi(match[3]) : 0};
+      if (!scopes_.empty()) {
+        declare_in_scope(match);
+      } else {
+        kernel_->registers[match[2]] = {match[1], match[3].matched ? std::stoi(match[3]) : 0};
+      }
     } else if (std::regex_match(text_, match, kLocal)) {
       if (!kernel_->local.empty()) fail("expected one local array at most");
       kernel_->local = match[2];
       kernel_->local_align = std::stoi(match[1]);
       kernel_->local_bytes = std::stoi(match[3]);
-    } else if (!text_.starts_with(".pragma")) {  // such as "nounroll": about speed
+    } else if (text_.starts_with(".pragma")) {  // "nounroll": ptxas unrolls the loop otherwise
+      add_directive(text_);
+    } else if (text_.starts_with(".param") && !scopes_.empty() &&
+               parameter(text_.substr(0, text_.size() - 1))) {  // of a call
+      add_directive(text_);
+    } else {
       fail("expected an instruction");
     }
+  }
+
+  // A register of a scope becomes one of the kernel, of a name of its own.
+  void declare_in_scope(const std::smatch& match) {
+    if (match[3].matched) fail("expected a register with a name of its own");
+    if (match[2] == "temp_param_reg") return;  // nvcc declares it for each call, and uses it nowhere
+    std::string name = match[2];
+    std::erase(name, '%');
+    name = "%scope" + std::to_string(scope_count_) + "_" + name;
+    kernel_->registers[name] = {match[1], 0};
+    scopes_.back()[match[2]] = name;
+  }
+
+  // The operand, with names of registers of scopes replaced.
+  std::string resolved(const std::string& operand) const {
+    if (std::all_of(scopes_.begin(), scopes_.end(), [](const auto& scope) { return scope.empty(); })) return operand;
+    static const std::regex kName(R"([%\w$]+)");
+    std::string result;
+    auto at = operand.begin();
+    for (std::sregex_iterator name(operand.begin(), operand.end(), kName), end; name != end; ++name) {
+      result.append(at, operand.begin() + name->position());
+      std::string found = name->str();
+      for (auto scope = scopes_.rbegin(); scope != scopes_.rend(); ++scope) {
+        if (const auto row = scope->find(found); row != scope->end()) {
+          found = row->second;
+          break;
+        }
+      }
+      result += found;
+      at = operand.begin() + name->position() + name->length();
+    }
+    return result.append(at, operand.end());
   }
 
   void read_instruction() {
@@ -175,8 +316,9 @@ class Reader {
     instruction.op = split(rest.substr(0, end), '.');
     if (end != std::string::npos) {
       for (const std::string& operand : split(rest.substr(end), ','))
-        instruction.operands.push_back(without_spaces(operand));
+        instruction.operands.push_back(resolved(without_spaces(operand)));
     }
+    instruction.guard = resolved(instruction.guard);
     if (instruction.op[0].empty()) fail("expected an instruction");
     kernel_->body.push_back(std::move(instruction));
   }
@@ -186,6 +328,9 @@ class Reader {
   Kernel* kernel_ = nullptr;
   bool in_body_ = false;
   bool in_debug_section_ = false;
+  std::set<std::string> declared_;                           // functions
+  std::vector<std::map<std::string, std::string>> scopes_;   // registers that are declared in each, by their new names
+  int scope_count_ = 0;                                      // in the file
   Source source_;
   Place inlined_at_;
   std::string text_;
@@ -198,11 +343,20 @@ bool Instruction::has(std::string_view modifier) const { return std::find(op.beg
 
 std::string text(const Instruction& instruction) {
   if (instruction.is_label()) return instruction.label + ":";
+  if (!instruction.is_operation()) return instruction.directive;
   std::string result;
   if (!instruction.guard.empty()) result = (instruction.guard_negated ? "@!" : "@") + instruction.guard + " ";
   for (std::size_t i = 0; i < instruction.op.size(); ++i) result += (i ? "." : "") + instruction.op[i];
   for (std::size_t i = 0; i < instruction.operands.size(); ++i) result += (i ? ", " : " ") + instruction.operands[i];
   return result;
+}
+
+std::optional<Parameter> parameter(const std::string& declaration) {
+  static const std::regex kParameter(
+      R"(\.param\s+(?:\.align \d+ )?\.[a-z](\d+)(?:\s+\.ptr.*)?\s+([\w$]+)(?:\[(\d+)\])?)");
+  std::smatch match;
+  if (!std::regex_match(declaration, match, kParameter)) return std::nullopt;
+  return Parameter{declaration, match[2], std::stoi(match[1]) / 8 * (match[3].matched ? std::stoi(match[3]) : 1)};
 }
 
 std::string register_type(const Kernel& kernel, std::string_view name) {

@@ -11,17 +11,35 @@
 namespace graze::cuda::twin {
 namespace {
 
+// ".visible .entry NAME(…)", ".func (…) NAME(…)"
+void write_signature(std::ostream& out, const Kernel& kernel) {
+  if (kernel.is_function) {
+    out << "\n" << kernel.linkage << ".func ";
+    if (!kernel.returned.empty()) out << "(" << kernel.returned[0].declaration << ") ";
+  } else {
+    out << "\n.visible .entry ";
+  }
+  out << kernel.name << "(\n";
+  for (std::size_t p = 0; p < kernel.parameters.size(); ++p)
+    out << "\t" << kernel.parameters[p].declaration << (p + 1 < kernel.parameters.size() ? ",\n" : "\n");
+  out << ")\n";
+}
+
 void write_head(std::ostream& out, const Module& module) {
   out << fmt::format("// Cuda compilation tools, release {}, V{}\n.version {}\n.target {}\n.address_size 64\n",
                      module.toolkit.substr(0, module.toolkit.rfind('.')), module.toolkit, module.version,
                      module.target);
+  for (const Table& table : module.tables) out << "\n" << table.declaration << ";\n";
+  for (const Kernel& kernel : module.kernels) {
+    if (!kernel.declared_before) continue;
+    write_signature(out, kernel);
+    out << ";\n";
+  }
 }
 
 void write_declarations(std::ostream& out, const Kernel& kernel) {
-  out << "\n.visible .entry " << kernel.name << "(\n";
-  for (std::size_t p = 0; p < kernel.parameters.size(); ++p)
-    out << "\t" << kernel.parameters[p].declaration << (p + 1 < kernel.parameters.size() ? ",\n" : "\n");
-  out << ")\n{\n";
+  write_signature(out, kernel);
+  out << "{\n";
   if (!kernel.local.empty())
     out << fmt::format("\t.local .align {} .b8 {}[{}];\n", kernel.local_align, kernel.local, kernel.local_bytes);
   for (const auto& [prefix, row] : kernel.registers) {
@@ -39,7 +57,7 @@ std::string relative(std::string path, const std::string& root) {
 
 // Whether the instruction is or may become a contraction: only there sources are of use.
 bool may_contract(const Instruction& i) {
-  return !i.is_label() && i.op.back()[0] == 'f' &&
+  return i.is_operation() && i.op.back()[0] == 'f' &&
          (i.op[0] == "fma" || ((i.op[0] == "add" || i.op[0] == "sub") && !i.has("rn")));
 }
 
@@ -53,7 +71,7 @@ void write_body(std::ostream& out, const Kernel& kernel, bool with_sources) {
       out << "\n";
       last = i.source;
     }
-    out << (i.is_label() ? "" : "\t") << text(i) << (i.is_label() ? "\n" : ";\n");
+    out << (i.is_label() ? "" : "\t") << text(i) << (i.is_operation() ? ";\n" : "\n");
   }
   out << "}\n";
 }

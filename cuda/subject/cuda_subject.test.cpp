@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of users' files, and that builds are kept and the same each time.
+#include "cuda/subject/cuda_subject.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "core/error.h"
+#include "cuda/subject/machine_code.h"
+#include "cuda/subject/nvrtc.h"
+#include "cuda/subject/twin_build.h"
+#include "cuda/subject/twin_library.h"
+
+namespace graze::cuda {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CudaSubject : public testing::Test {
+ protected:
+  CudaSubject() : scratch_(fs::temp_directory_path()) {}
+  void SetUp() override {
+    try {
+      Nvrtc::get();
+    } catch (const std::runtime_error& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+
+  fs::path file(const std::string& text) const {
+    const fs::path path = scratch_.path() / "mine.cu";
+    std::ofstream(path) << text;
+    return path;
+  }
+  std::vector<CudaBuild> build(const std::string& text, const std::string& function = "intersects",
+                               const std::vector<std::string>& flags = {}) const {
+    return build_cuda_subject(file(text), function, flags, scratch_.path() / "cache");
+  }
+  // What is said of the text, without the folder.
+  std::string complaint(const std::string& text, const std::string& function = "intersects") const {
+    try {
+      build(text, function);
+      return "";
+    } catch (const UsageError& error) {
+      std::string said = error.what();
+      const std::string folder = scratch_.path().string() + "/";
+      for (auto at = said.find(folder); at != said.npos; at = said.find(folder)) said.erase(at, folder.size());
+      return said;
+    }
+  }
+
+  Scratch scratch_;
+};
+
+constexpr char kSimple[] = "__device__ bool intersects(const float a[9], const float b[9]) { return a[0] * b[0] + a[1] > b[1]; }\n";
+
+TEST_F(CudaSubject, HasFourBuilds) {
+  const std::vector<CudaBuild> builds = build(kSimple);
+  ASSERT_EQ(builds.size(), 4u);
+  const Variant variants[] = {Variant::cuda_nofma, Variant::cuda_fma, Variant::cuda_fast, Variant::cuda_ftz};
+  for (std::size_t v = 0; v < 4; ++v) {
+    EXPECT_EQ(builds[v].variant, variants[v]);
+    EXPECT_EQ(builds[v].scalar, Scalar::f32);
+    EXPECT_EQ(builds[v].why_no_twin, "");
+    EXPECT_EQ(builds[v].hash.size(), 16u);
+    EXPECT_EQ(builds[v].toolkit.substr(0, 2), Nvrtc::get().version().substr(0, 2));
+  }
+  EXPECT_NE(builds[0].hash, builds[1].hash);
+  EXPECT_NE(builds[1].hash, builds[3].hash);
+  const TwinLibrary contracted(builds[1].twin, Scalar::f32);
+  ASSERT_EQ(contracted.sites().size(), 1u);
+  EXPECT_EQ(contracted.sites()[0].line, 1);
+  EXPECT_THROW(TwinLibrary(builds[1].twin, Scalar::f64), std::runtime_error);
+}
+
+TEST_F(CudaSubject, FlushesSubnormalsInItsVariantOnly) {
+  const auto builds = build("__device__ int intersects(const float a[9], const float b[9]) { return a[0] * b[0] > 0 ? 1 : a[1] != 0 ? -1 : 0; }");
+  const Pair pairs[] = {{{{0x1p-70f, 0, 0}}, {{0x1p-70f, 0, 0}}}, {{{0, 1, 0}}, {}}};
+  for (const CudaBuild& one : builds) {
+    std::int8_t answers[2] = {};
+    TwinLibrary(one.twin, one.scalar).decide(pairs, answers);
+    EXPECT_EQ(answers[0], one.variant == Variant::cuda_nofma || one.variant == Variant::cuda_fma) << name(one.variant);
+    EXPECT_EQ(answers[1], -1);
+  }
+}
+
+TEST_F(CudaSubject, KnowsFloatAndDoubleAndNames) {
+  EXPECT_EQ(build("__device__ bool f(const double* a, const double* b) { return a[0] < b[0]; }", "f")[0].scalar, Scalar::f64);
+  EXPECT_EQ(build("namespace n { template <class T> __device__ bool f(const T* a, const T* b) { return a[0] < b[0]; } }", "n::f")[0].scalar,
+            Scalar::f32);
+  EXPECT_EQ(build("__device__ bool g(const float (&a)[9], const float (&b)[9]) { return a[8] < b[8]; }", "g")[0].scalar, Scalar::f32);
+}
+
+TEST_F(CudaSubject, SaysWhatItFound) {
+  const std::string expected =
+      "mine.cu: expected __device__ bool intersects(const float a[9], const float b[9]), or int, or with double; ";
+  EXPECT_EQ(complaint("__device__ bool other(const float* a) { return a[0] > 0; }"), expected + "found no function of that name");
+  EXPECT_EQ(complaint("__device__ bool intersects(const float* a) { return a[0] > 0; }"), expected + "found bool (*)(const float *)");
+  EXPECT_EQ(complaint("\n__device__ bool intersects(const float a[9], const float b[9]) { return c; }"),
+            "mine.cu:2: identifier \"c\" is undefined");
+  EXPECT_EQ(complaint("#include \"missing.h\"\n").substr(0, 10), "mine.cu:1:");
+  EXPECT_EQ(complaint(kSimple, "f(1)"), "mine.cu: expected the name of a function, found 'f(1)'");
+  EXPECT_THROW(build_cuda_subject(scratch_.path() / "none.cu", "f", {}, scratch_.path()), UsageError);
+}
+
+TEST_F(CudaSubject, TakesHeadersAndFlags) {
+  EXPECT_EQ(complaint("#include <math.h>\n#include <cmath>\n#include <cfloat>\n#include <cstdint>\n#include <stdio.h>\n#include <assert.h>\n"
+                      "#include <stdbool.h>\n#include <limits>\n#include <algorithm>\n#include <cuda_runtime.h>\n"
+                      "__device__ bool intersects(const float a[9], const float b[9]) {\n  assert(a[0] == 0);\n"
+                      "  return std::fabs(a[0]) < std::max(FLT_EPSILON, std::numeric_limits<float>::infinity()) && a[2] < INFINITY && std::sqrt(b[0]) > (uint8_t)a[1];\n}\n"
+                      "int main() { return 0; }\n"),
+            "");
+  EXPECT_EQ(build("__device__ bool intersects(const float a[9], const float b[9]) { return a[0] < LIMIT; }", "intersects", {"-DLIMIT=3"}).size(), 4u);
+}
+
+TEST_F(CudaSubject, RefusesByName) {
+  const auto why = [&](const std::string& body, const std::string& before = "") {
+    return build(before + "__device__ bool intersects(const float a[9], const float b[9]) { " + body + " }")[0].why_no_twin;
+  };
+  EXPECT_NE(why("return __fdividef(a[0], b[0]) > 1;").find("cannot be replayed: div.approx.f32"), std::string::npos);
+  EXPECT_NE(why("count = 1; return a[0] > b[0];", "__device__ int count;\n").find("a write to global memory cannot be replayed"), std::string::npos);
+  EXPECT_NE(why("printf(\"%f\", a[0]); return a[0] > b[0];").find("function of another file cannot be replayed"), std::string::npos);
+}
+
+std::string content(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(CudaSubject, KeepsWhatItBuilds) {
+  const auto first = build(kSimple);
+  const auto changed = fs::last_write_time(first[1].twin);
+  const auto second = build(kSimple);
+  EXPECT_EQ(second[1].twin, first[1].twin);
+  EXPECT_EQ(second[1].hash, first[1].hash);
+  EXPECT_EQ(second[1].ptx, first[1].ptx);
+  EXPECT_EQ(fs::last_write_time(first[1].twin), changed);
+  const auto elsewhere = build_cuda_subject(file(kSimple), "intersects", {}, scratch_.path() / "other");
+  EXPECT_EQ(content(elsewhere[1].twin), content(first[1].twin));
+  for (const auto& entry : fs::directory_iterator(scratch_.path() / "cache"))
+    EXPECT_TRUE(entry.path().filename().string().starts_with("twin-") || entry.path().filename().string().starts_with("code-"));
+  // Comments do not change what a proof holds for.
+  EXPECT_EQ(build(std::string("// a comment\n") + kSimple)[1].hash, first[1].hash);
+}
+
+TEST_F(CudaSubject, SeesWrongMachineCode) {
+  const fs::path ptxas = find_ptxas(Nvrtc::get().library());
+  if (ptxas.empty()) GTEST_SKIP() << "no ptxas";
+  const auto builds = build(kSimple);
+  EXPECT_TRUE(builds[1].machine_code_identical);
+  EXPECT_NE(assemble(ptxas, builds[0].ptx, scratch_.path()), assemble(ptxas, builds[1].ptx, scratch_.path()));
+  EXPECT_THROW(assemble(ptxas, "nonsense", scratch_.path()), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace graze::cuda

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/subject/nvrtc.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include "cuda/subject/headers.h"
+
+namespace graze::cuda {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> places() {
+  std::vector<fs::path> all = {""};  // the library path
+  for (const char* variable : {"CUDA_HOME", "CUDA_PATH"}) {
+    if (const char* home = std::getenv(variable)) all.push_back(fs::path(home) / "lib64");
+  }
+  std::error_code none;
+  all.push_back("/usr/local/cuda/lib64");
+  for (const auto& entry : fs::directory_iterator("/usr/local", none)) {
+    if (entry.path().filename().string().starts_with("cuda-")) all.push_back(entry.path() / "lib64");
+  }
+  all.push_back(fs::read_symlink("/proc/self/exe", none).parent_path());
+  return all;
+}
+
+template <class Function>
+void find(void* library, const char* name, Function& function) {
+  function = reinterpret_cast<Function>(dlsym(library, name));
+  if (!function) throw std::runtime_error(fmt::format("expected {} in NVRTC, found none", name));
+}
+
+}  // namespace
+
+Nvrtc::Nvrtc() {
+  void* library = nullptr;
+  for (const char* name : {"libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so"}) {
+    for (const fs::path& place : places()) {
+      if (!library) library = dlopen((place.empty() ? fs::path(name) : place / name).c_str(), RTLD_NOW | RTLD_LOCAL);
+    }
+  }
+  if (!library)
+    throw std::runtime_error(
+        "expected NVRTC of the CUDA Toolkit (libnvrtc.so.13 or .12), found none; install the toolkit, or its package "
+        "cuda-nvrtc, and set CUDA_HOME where it is in a place of its own");
+  int (*get_version)(int*, int*) = nullptr;
+  find(library, "nvrtcVersion", get_version);
+  find(library, "nvrtcCreateProgram", create_);
+  find(library, "nvrtcDestroyProgram", destroy_);
+  find(library, "nvrtcCompileProgram", compile_);
+  find(library, "nvrtcGetPTXSize", ptx_size_);
+  find(library, "nvrtcGetPTX", ptx_);
+  find(library, "nvrtcGetProgramLogSize", log_size_);
+  find(library, "nvrtcGetProgramLog", log_);
+  int major = 0, minor = 0;
+  get_version(&major, &minor);
+  version_ = fmt::format("{}.{}", major, minor);
+  Dl_info info;
+  if (dladdr(reinterpret_cast<void*>(get_version), &info)) library_ = info.dli_fname;
+}
+
+const Nvrtc& Nvrtc::get() {
+  static const Nvrtc nvrtc;
+  return nvrtc;
+}
+
+std::string Nvrtc::ptx(const std::string& source, const std::string& name,
+                       const std::vector<std::string>& options) const {
+  std::vector<const char*> texts, names, words;
+  for (const StubHeader& header : stub_headers()) {
+    texts.push_back(header.text);
+    names.push_back(header.name);
+  }
+  for (const std::string& option : options) words.push_back(option.c_str());
+  Program program = nullptr;
+  if (create_(&program, source.c_str(), name.c_str(), static_cast<int>(texts.size()), texts.data(), names.data()) != 0)
+    throw std::runtime_error("NVRTC takes no program");
+  const auto destroy = [this](Program* p) { destroy_(p); };
+  const std::unique_ptr<Program, decltype(destroy)> owner(&program, destroy);
+  std::size_t size = 0;
+  if (compile_(program, static_cast<int>(words.size()), words.data()) != 0) {
+    log_size_(program, &size);
+    std::string log(size, 0);
+    log_(program, log.data());
+    throw CompileError(log.c_str());
+  }
+  ptx_size_(program, &size);
+  std::string result(size, 0);
+  if (ptx_(program, result.data()) != 0) throw std::runtime_error("NVRTC gives no PTX");
+  result.resize(result.find_last_not_of('\0') + 1);
+  return result;
+}
+
+}  // namespace graze::cuda

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// NVRTC, the compiler of the CUDA Toolkit as a library, loaded when it is asked for: neither nvcc nor its headers are
+// needed to build this, and none of it to run the rest.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace graze::cuda {
+
+// What the compiler says of a source that it refuses: its whole log.
+struct CompileError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+class Nvrtc {
+ public:
+  // The first NVRTC found: on the library path, below CUDA_HOME and /usr/local/cuda*, beside this program.
+  // Throws: std::runtime_error when there is none, in one line that says what to install.
+  static const Nvrtc& get();
+
+  // The source as PTX. `name` stands for it in messages and line tables.   Throws: CompileError.
+  std::string ptx(const std::string& source, const std::string& name, const std::vector<std::string>& options) const;
+
+  const std::string& version() const { return version_; }  // "13.0"
+  const std::string& library() const { return library_; }  // its file
+
+ private:
+  Nvrtc();
+  using Program = void*;
+  int (*create_)(Program*, const char*, const char*, int, const char* const*, const char* const*) = nullptr;
+  int (*destroy_)(Program*) = nullptr;
+  int (*compile_)(Program, int, const char* const*) = nullptr;
+  int (*ptx_size_)(Program, std::size_t*) = nullptr;
+  int (*ptx_)(Program, char*) = nullptr;
+  int (*log_size_)(Program, std::size_t*) = nullptr;
+  int (*log_)(Program, char*) = nullptr;
+  std::string version_, library_;
+};
+
+}  // namespace graze::cuda

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// From the PTX of one kernel to its twin as a shared library: generated, compiled by the host's compiler, kept.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/lanes.h"
+#include "cuda/twin/generator/ptx.h"
+
+namespace graze::cuda {
+
+// The shared library of the module's one kernel in `cache`, built when it is not there yet; subject.h's graze_subject
+// and what twin_library.h reads. Its name is a hash of its source, the compiler and its flags.
+// Throws: twin::PtxError for an instruction that cannot be replayed, std::runtime_error when the compiler fails.
+std::filesystem::path build_twin(const twin::Module& module, Scalar scalar, bool contracted,
+                                 const std::filesystem::path& cache);
+
+// A new folder for files on their way, removed with its owner.
+class Scratch {
+ public:
+  explicit Scratch(const std::filesystem::path& within);
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch();
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace graze::cuda

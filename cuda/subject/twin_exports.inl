@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// The source of a twin's shared library, after cuda/twin/twin_ops*.h and subjects/include/graze/subject.h: the kernels
+// that the generator writes, and what others call; see twin_library.h. The kernel is the one that wrapper.cpp appends.
+#include <cstddef>
+#include <string_view>
+#include <tuple>
+
+namespace graze::cuda {
+
+enum class Scalar { f32, f64 };
+struct SourceLine {
+  const char* file;
+  int line;
+};
+struct ContractionSite {
+  SourceLine at, from;
+  bool by_ptxas;
+  int ptx_line;
+};
+
+inline namespace GRAZE_FP {
+namespace ptx {
+namespace {
+
+#include GRAZE_TWIN_KERNELS
+
+using Kernel = std::tuple_element_t<0, Kernels>;
+
+// One pair, as a block of one: stride 1, so that its coordinates are the 18 arrays.
+template <class Fuse>
+int decide(const Real* pair, const Fuse& fuse) {
+  const u32 one = 1;
+  signed char answer = 0;
+  signed char* const answer_at = &answer;
+  const auto bytes = [](const void* object) { return static_cast<const unsigned char*>(object); };
+  const unsigned char* const parameters[] = {bytes(&pair), bytes(&one), bytes(&one), bytes(&answer_at)};
+  Kernel::run(parameters, fuse);
+  return answer;
+}
+
+void decide_block(const Real* pairs, std::size_t count, signed char* answers) {
+  for (std::size_t i = 0; i < count; ++i) answers[i] = static_cast<signed char>(decide(pairs + 18 * i, AllFused{}));
+}
+
+}  // namespace
+}  // namespace ptx
+}  // namespace GRAZE_FP
+}  // namespace graze::cuda
+
+extern "C" {
+
+using namespace graze::cuda;
+
+int graze_twin_site_count(void) { return ptx::Kernel::kSiteCount; }
+const char* graze_twin_site_file(int site) { return ptx::Kernel::kSites[site].at.file; }
+int graze_twin_site_line(int site) { return ptx::Kernel::kSites[site].at.line; }
+const char* graze_twin_site_from_file(int site) { return ptx::Kernel::kSites[site].from.file; }
+int graze_twin_site_from_line(int site) { return ptx::Kernel::kSites[site].from.line; }
+int graze_twin_site_by_ptxas(int site) { return ptx::Kernel::kSites[site].by_ptxas; }
+void graze_twin_decide_block(const ptx::Real* pairs, std::size_t count, signed char* answers) {
+  ptx::decide_block(pairs, count, answers);
+}
+int graze_twin_is_f64(void) { return sizeof(ptx::Real) == 8; }
+int graze_twin_decide_fusing(const ptx::Real* pair, const std::uint64_t* fused) {
+  return ptx::decide(pair, ptx::SomeFused{fused});
+}
+}
+
+GRAZE_SUBJECT(graze_subject) = {
+    GRAZE_SUBJECT_ABI, 0, GRAZE_TWIN_VERSION, nullptr, nullptr, nullptr, nullptr, GRAZE_TWIN_BLOCKS};

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/subject/twin_library.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+namespace graze::cuda {
+namespace {
+
+constexpr std::size_t kPart = 1 << 13;  // pairs for one thread at a time
+
+using Block32 = void (*)(const float*, std::size_t, signed char*);
+using Block64 = void (*)(const double*, std::size_t, signed char*);
+
+void decide_part(void* block, Scalar scalar, std::span<const Pair> pairs, signed char* answers) {
+  if (scalar == Scalar::f32)
+    return reinterpret_cast<Block32>(block)(coordinates(pairs[0]), pairs.size(), answers);
+  std::vector<double> wide(pairs.size() * kCoordinates);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    std::copy_n(coordinates(pairs[i]), kCoordinates, wide.begin() + static_cast<std::ptrdiff_t>(i * kCoordinates));
+  reinterpret_cast<Block64>(block)(wide.data(), pairs.size(), answers);
+}
+
+}  // namespace
+
+TwinLibrary::TwinLibrary(const std::filesystem::path& file, Scalar scalar)
+    : library_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)), scalar_(scalar) {
+  if (!library_) throw std::runtime_error(dlerror());
+  const auto symbol = [&](const char* name) {
+    void* found = dlsym(library_, name);
+    if (!found) throw std::runtime_error(file.string() + ": expected a twin, found no " + name);
+    return found;
+  };
+  if (reinterpret_cast<int (*)()>(symbol("graze_twin_is_f64"))() != (scalar == Scalar::f64))
+    throw std::runtime_error(file.string() + ": expected a twin in " + std::string(name(scalar)));
+  block_ = symbol("graze_twin_decide_block");
+  fusing_ = symbol("graze_twin_decide_fusing");
+  const int count = reinterpret_cast<int (*)()>(symbol("graze_twin_site_count"))();
+  for (int s = 0; s < count; ++s) {
+    const auto text = [&](const char* name) { return reinterpret_cast<const char* (*)(int)>(symbol(name))(s); };
+    const auto number = [&](const char* name) { return reinterpret_cast<int (*)(int)>(symbol(name))(s); };
+    sites_.push_back({text("graze_twin_site_file"), number("graze_twin_site_line"), text("graze_twin_site_from_file"),
+                      number("graze_twin_site_from_line"), number("graze_twin_site_by_ptxas") != 0});
+  }
+}
+
+TwinLibrary::~TwinLibrary() { dlclose(library_); }
+
+void TwinLibrary::decide(std::span<const Pair> pairs, std::int8_t* answers) const {
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t at = next.fetch_add(kPart); at < pairs.size(); at = next.fetch_add(kPart)) {
+      const std::size_t n = std::min(kPart, pairs.size() - at);
+      decide_part(block_, scalar_, pairs.subspan(at, n), answers + at);
+    }
+  };
+  const std::size_t parts = (pairs.size() + kPart - 1) / kPart;
+  std::vector<std::thread> threads;
+  for (std::size_t t = 1; t < std::min<std::size_t>(parts, std::thread::hardware_concurrency()); ++t)
+    threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+}
+
+int TwinLibrary::decide_fusing(const Pair& pair, std::span<const std::uint64_t> fused) const {
+  if (fused.size() * 64 < sites_.size()) throw std::invalid_argument("decide_fusing: too few bits for the sites");
+  if (scalar_ == Scalar::f32)
+    return reinterpret_cast<int (*)(const float*, const std::uint64_t*)>(fusing_)(coordinates(pair), fused.data());
+  double wide[kCoordinates];
+  std::copy_n(coordinates(pair), kCoordinates, wide);
+  return reinterpret_cast<int (*)(const double*, const std::uint64_t*)>(fusing_)(wide, fused.data());
+}
+
+}  // namespace graze::cuda

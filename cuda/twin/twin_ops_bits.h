@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// PTX operations on the CPU, continued: bits, bit fields and bytes of integers.
+#pragma once
+
+#include "cuda/twin/twin_ops_logic.h"
+
+namespace graze::cuda {
+inline namespace GRAZE_FP {
+namespace ptx {
+
+template <class T>
+u32 popc(T x) {
+  return static_cast<u32>(std::popcount(x));
+}
+
+template <class T>
+u32 clz(T x) {
+  return static_cast<u32>(std::countl_zero(x));
+}
+
+template <class T>
+T brev(T x) {
+  T result = 0;
+  for (unsigned bit = 0; bit < 8 * sizeof(T); ++bit) result = static_cast<T>(result << 1 | (x >> bit & 1));
+  return result;
+}
+
+// Place of the highest bit that is set, of a negative number that is clear; all ones when there is none.
+template <class T>
+u32 bfind(T x) {
+  const Bits<T> bits = static_cast<Bits<T>>(x < 0 ? ~x : x);
+  return bits == 0 ? ~u32{0} : static_cast<u32>(8 * sizeof(T)) - 1 - clz(bits);
+}
+
+// .shiftamt: by how much to shift that bit left until it is the highest.
+template <class T>
+u32 bfind_shift(T x) {
+  const u32 place = bfind(x);
+  return place == ~u32{0} ? place : static_cast<u32>(8 * sizeof(T)) - 1 - place;
+}
+
+// Bits [at, at + count), with the highest of them, or of the number, as sign. Of at and count the low bytes count.
+template <class T>
+T bfe(T x, u32 at, u32 count) {
+  constexpr u32 kMost = 8 * sizeof(T) - 1;
+  at &= 0xff;
+  count &= 0xff;
+  const u32 top = at + count - 1 < kMost ? at + count - 1 : kMost;  // of count 0 it is not used
+  const Bits<T> bits = static_cast<Bits<T>>(x), sign = std::is_unsigned_v<T> || count == 0 ? 0 : bits >> top & 1;
+  Bits<T> result = 0;
+  for (u32 k = 0; k <= kMost; ++k) {
+    const Bits<T> bit = k < count && at + k <= kMost ? bits >> (at + k) & 1 : sign;
+    result = static_cast<Bits<T>>(result | bit << k);
+  }
+  return static_cast<T>(result);
+}
+
+// b with its bits [at, at + count) from the low end of a.
+template <class T>
+T bfi(T a, T b, u32 at, u32 count) {
+  at &= 0xff;
+  count &= 0xff;
+  for (u32 k = 0; k < count && at + k < 8 * sizeof(T); ++k) {
+    const T bit = static_cast<T>(T{1} << (at + k));
+    b = static_cast<T>((b & ~bit) | ((a >> k & 1) << (at + k)));
+  }
+  return b;
+}
+
+// Four of the eight bytes of (b, a), each chosen by four bits, of which the highest spreads the byte's sign.
+inline u32 prmt(u32 a, u32 b, u32 choice) {
+  const u64 all = u64{b} << 32 | a;
+  u32 result = 0;
+  for (u32 k = 0; k < 4; ++k) {
+    const u32 select = choice >> (4 * k) & 15;
+    u32 byte = static_cast<u32>(all >> (8 * (select & 7))) & 0xff;
+    if (select & 8) byte = byte & 0x80 ? 0xff : 0;
+    result |= byte << (8 * k);
+  }
+  return result;
+}
+
+// The shift of shf: modulo 32, or 32 at most.
+inline u32 wrap(u32 by) { return by & 31; }
+inline u32 clamp(u32 by) { return by < 32 ? by : 32; }
+
+// (b, a) shifted: its upper half to the left, its lower half to the right.
+inline u32 shf_l(u32 a, u32 b, u32 by) { return static_cast<u32>((u64{b} << 32 | a) << by >> 32); }
+inline u32 shf_r(u32 a, u32 b, u32 by) { return static_cast<u32>((u64{b} << 32 | a) >> by); }
+
+// Each result bit is the table's bit whose number is made of the three operands' bits.
+inline u32 lop3(u32 a, u32 b, u32 c, u32 table) {
+  u32 result = 0;
+  for (u32 k = 0; k < 8; ++k) {
+    if (table >> k & 1) result |= (k & 4 ? a : ~a) & (k & 2 ? b : ~b) & (k & 1 ? c : ~c);
+  }
+  return result;
+}
+
+}  // namespace ptx
+}  // namespace GRAZE_FP
+}  // namespace graze::cuda

@@ -130,6 +130,43 @@ TEST_F(CudaSubject, TakesHeadersAndFlags) {
             4u);
 }
 
+TEST_F(CudaSubject, HasTwinsOfWhatPeopleWrite) {
+  const auto why = [&](const std::string& body, const std::string& before = "") {
+    const auto builds =
+        build(before + "\n__device__ bool intersects(const float a[9], const float b[9]) { " + body + " }");
+    return builds[0].why_no_twin + builds[1].why_no_twin + builds[3].why_no_twin;
+  };
+  // Vector types, another kernel of the file, a host function.
+  EXPECT_EQ(
+      why("const float3 c = cross(make_float3(a[0], a[1], a[2]), make_float3(b[0], b[1], b[2])); return c.x > c.y * "
+          "c.z;",
+          "static __device__ __forceinline__ float3 cross(float3 u, float3 v) { return make_float3(u.y * v.z - u.z * "
+          "v.y, "
+          "u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x); }\n__global__ void other(float* x) { x[0] = __sinf(x[1]); }\n"
+          "int main() { return 0; }"),
+      "");
+  // Math functions that the toolkit has in full precision: with their own tables and loops.
+  EXPECT_EQ(why("return cosf(a[0]) < b[0] && atan2f(a[1], b[1]) < 1 && sinf(a[2]) < hypotf(b[2], 1);"), "");
+  EXPECT_EQ(why("return nextafterf(a[3], 1) < lroundf(b[3]) && fdimf(a[0], b[0]) < scalbnf(b[1], 3);"), "");
+  // Others of them are made of approximate operations.
+  EXPECT_NE(why("return fmodf(a[0], b[0]) < a[1];").find("cannot be replayed: rcp.approx.ftz.f32"), std::string::npos);
+  EXPECT_NE(why("return cbrtf(a[2]) < b[2];").find("cannot be replayed: lg2.approx.f32"), std::string::npos);
+  EXPECT_NE(why("return pow((double)a[0], 2.0) < b[0];").find("cannot be replayed: rcp.approx.ftz.f64"),
+            std::string::npos);
+  // Inline assembly with a scope.
+  EXPECT_EQ(
+      why("int is; asm(\"{ .reg .pred q; setp.gt.f32 q, %1, %2; selp.s32 %0, 1, 0, q; }\" : \"=r\"(is) : \"f\"(a[0]), "
+          "\"f\"(b[0])); return is;"),
+      "");
+  // A union, and an array of structs that is sorted.
+  EXPECT_EQ(why("E e[3]; for (int i = 0; i < 3; ++i) { e[i].at.f = a[3 * i] * b[i]; e[i].i = i; }\n"
+                "for (int i = 0; i < 2; ++i) for (int j = 0; j < 2 - i; ++j) if (e[j + 1].at.f < e[j].at.f) { E t = "
+                "e[j]; e[j] = e[j + 1]; "
+                "e[j + 1] = t; }\nreturn e[0].i == 1 && (e[2].at.u & 0x80);",
+                "struct E { union { float f; unsigned u; } at; int i; };"),
+            "");
+}
+
 TEST_F(CudaSubject, RefusesByName) {
   const auto why = [&](const std::string& body, const std::string& before = "") {
     return build(before + "__device__ bool intersects(const float a[9], const float b[9]) { " + body + " }")[0]

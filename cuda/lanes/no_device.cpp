@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "cuda/engine/engine.h"
+#include "cuda/subject/subject_device.h"
 #include "cuda/twin/prove.h"
 
 namespace graze::cuda {
@@ -17,5 +18,13 @@ std::unique_ptr<Device> open_device(std::string& why_not) {
 std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const>) { return {}; }
 
 ProofRecord prove_twin(const ProofOptions&) { throw std::runtime_error("a proof needs a device: built without CUDA"); }
+
+std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild&) {
+  throw std::runtime_error("a user's CUDA code needs a device: built without CUDA");
+}
+
+ProofRecord prove_subjects(std::span<const NamedBuild>, const ProofOptions&) {
+  throw std::runtime_error("a proof needs a device: built without CUDA");
+}
 
 }  // namespace graze::cuda

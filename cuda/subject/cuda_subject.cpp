@@ -40,7 +40,8 @@ std::vector<std::string> options(Variant variant, const fs::path& source, const 
 
 twin::Module module_of(const CudaBuild& build, const fs::path& source) {
   std::istringstream in(build.ptx);
-  twin::Module module = twin::read_ptx(in, fmt::format("{}, PTX of {}", source.filename().string(), name(build.variant)));
+  twin::Module module =
+      twin::read_ptx(in, fmt::format("{}, PTX of {}", source.filename().string(), name(build.variant)));
   return twin::reduced(module, kSubjectKernel);
 }
 
@@ -94,9 +95,8 @@ std::vector<CudaBuild> build_cuda_subject(const fs::path& source, const std::str
   const auto compile = [&](Variant variant, const std::string& whole) {
     return nvrtc.ptx(whole, source.string(), options(variant, source, flags));
   };
-  const Scalar scalar = scalar_of(text, source, function, [&](const std::string& whole) {
-    return compile(Variant::cuda_nofma, whole);
-  });
+  const Scalar scalar =
+      scalar_of(text, source, function, [&](const std::string& whole) { return compile(Variant::cuda_nofma, whole); });
   const std::string whole = wrapped(text, source, function, scalar);
   std::vector<CudaBuild> builds;
   twin::Lines by_hand;  // lines with an fma without contraction too

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A user's CUDA source as a subject: `__device__ bool f(const float a[9], const float b[9])`, or int, or in double, with
-// whatever else the file holds. Compiled by NVRTC in every device variant, and replayed by a twin where it can be.
+// A user's CUDA source as a subject: `__device__ bool f(const float a[9], const float b[9])`, or int, or in double,
+// with whatever else the file holds. Compiled by NVRTC in every device variant, and replayed by a twin where it can be.
 #pragma once
 
 #include <filesystem>
@@ -19,11 +19,11 @@ inline constexpr char kSubjectKernel[] = "graze_subject_kernel";
 struct CudaBuild {
   Variant variant;
   Scalar scalar;
-  std::string ptx;             // for compute_75, as NVRTC gives it
-  std::string toolkit;         // "13.0.88"
-  std::string hash;            // of the instructions and their contractions: what a proof holds for
-  std::filesystem::path twin;  // a shared library, see twin_library.h; empty where there is none
-  std::string why_no_twin;     // one line; empty where there is one
+  std::string ptx;                      // for compute_75, as NVRTC gives it
+  std::string toolkit;                  // "13.0.88"
+  std::string hash;                     // of the instructions and their contractions: what a proof holds for
+  std::filesystem::path twin;           // a shared library, see twin_library.h; empty where there is none
+  std::string why_no_twin;              // one line; empty where there is one
   bool machine_code_identical = false;  // ptxas gives the same bytes for this PTX and for that with every contraction
                                         // written out, which the twin replays
 };

@@ -54,7 +54,8 @@ class CudaSubject : public testing::Test {
   Scratch scratch_;
 };
 
-constexpr char kSimple[] = "__device__ bool intersects(const float a[9], const float b[9]) { return a[0] * b[0] + a[1] > b[1]; }\n";
+constexpr char kSimple[] =
+    "__device__ bool intersects(const float a[9], const float b[9]) { return a[0] * b[0] + a[1] > b[1]; }\n";
 
 TEST_F(CudaSubject, HasFourBuilds) {
   const std::vector<CudaBuild> builds = build(kSimple);
@@ -76,7 +77,9 @@ TEST_F(CudaSubject, HasFourBuilds) {
 }
 
 TEST_F(CudaSubject, FlushesSubnormalsInItsVariantOnly) {
-  const auto builds = build("__device__ int intersects(const float a[9], const float b[9]) { return a[0] * b[0] > 0 ? 1 : a[1] != 0 ? -1 : 0; }");
+  const auto builds = build(
+      "__device__ int intersects(const float a[9], const float b[9]) { return a[0] * b[0] > 0 ? 1 : a[1] != 0 ? -1 : "
+      "0; }");
   const Pair pairs[] = {{{{0x1p-70f, 0, 0}}, {{0x1p-70f, 0, 0}}}, {{{0, 1, 0}}, {}}};
   for (const CudaBuild& one : builds) {
     std::int8_t answers[2] = {};
@@ -87,17 +90,24 @@ TEST_F(CudaSubject, FlushesSubnormalsInItsVariantOnly) {
 }
 
 TEST_F(CudaSubject, KnowsFloatAndDoubleAndNames) {
-  EXPECT_EQ(build("__device__ bool f(const double* a, const double* b) { return a[0] < b[0]; }", "f")[0].scalar, Scalar::f64);
-  EXPECT_EQ(build("namespace n { template <class T> __device__ bool f(const T* a, const T* b) { return a[0] < b[0]; } }", "n::f")[0].scalar,
+  EXPECT_EQ(build("__device__ bool f(const double* a, const double* b) { return a[0] < b[0]; }", "f")[0].scalar,
+            Scalar::f64);
+  EXPECT_EQ(
+      build("namespace n { template <class T> __device__ bool f(const T* a, const T* b) { return a[0] < b[0]; } }",
+            "n::f")[0]
+          .scalar,
+      Scalar::f32);
+  EXPECT_EQ(build("__device__ bool g(const float (&a)[9], const float (&b)[9]) { return a[8] < b[8]; }", "g")[0].scalar,
             Scalar::f32);
-  EXPECT_EQ(build("__device__ bool g(const float (&a)[9], const float (&b)[9]) { return a[8] < b[8]; }", "g")[0].scalar, Scalar::f32);
 }
 
 TEST_F(CudaSubject, SaysWhatItFound) {
   const std::string expected =
       "mine.cu: expected __device__ bool intersects(const float a[9], const float b[9]), or int, or with double; ";
-  EXPECT_EQ(complaint("__device__ bool other(const float* a) { return a[0] > 0; }"), expected + "found no function of that name");
-  EXPECT_EQ(complaint("__device__ bool intersects(const float* a) { return a[0] > 0; }"), expected + "found bool (*)(const float *)");
+  EXPECT_EQ(complaint("__device__ bool other(const float* a) { return a[0] > 0; }"),
+            expected + "found no function of that name");
+  EXPECT_EQ(complaint("__device__ bool intersects(const float* a) { return a[0] > 0; }"),
+            expected + "found bool (*)(const float *)");
   EXPECT_EQ(complaint("\n__device__ bool intersects(const float a[9], const float b[9]) { return c; }"),
             "mine.cu:2: identifier \"c\" is undefined");
   EXPECT_EQ(complaint("#include \"missing.h\"\n").substr(0, 10), "mine.cu:1:");
@@ -106,22 +116,68 @@ TEST_F(CudaSubject, SaysWhatItFound) {
 }
 
 TEST_F(CudaSubject, TakesHeadersAndFlags) {
-  EXPECT_EQ(complaint("#include <math.h>\n#include <cmath>\n#include <cfloat>\n#include <cstdint>\n#include <stdio.h>\n#include <assert.h>\n"
+  EXPECT_EQ(complaint("#include <math.h>\n#include <cmath>\n#include <cfloat>\n#include <cstdint>\n#include "
+                      "<stdio.h>\n#include <assert.h>\n"
                       "#include <stdbool.h>\n#include <limits>\n#include <algorithm>\n#include <cuda_runtime.h>\n"
                       "__device__ bool intersects(const float a[9], const float b[9]) {\n  assert(a[0] == 0);\n"
-                      "  return std::fabs(a[0]) < std::max(FLT_EPSILON, std::numeric_limits<float>::infinity()) && a[2] < INFINITY && std::sqrt(b[0]) > (uint8_t)a[1];\n}\n"
+                      "  return std::fabs(a[0]) < std::max(FLT_EPSILON, std::numeric_limits<float>::infinity()) && "
+                      "a[2] < INFINITY && std::sqrt(b[0]) > (uint8_t)a[1];\n}\n"
                       "int main() { return 0; }\n"),
             "");
-  EXPECT_EQ(build("__device__ bool intersects(const float a[9], const float b[9]) { return a[0] < LIMIT; }", "intersects", {"-DLIMIT=3"}).size(), 4u);
+  EXPECT_EQ(build("__device__ bool intersects(const float a[9], const float b[9]) { return a[0] < LIMIT; }",
+                  "intersects", {"-DLIMIT=3"})
+                .size(),
+            4u);
+}
+
+TEST_F(CudaSubject, HasTwinsOfWhatPeopleWrite) {
+  const auto why = [&](const std::string& body, const std::string& before = "") {
+    const auto builds =
+        build(before + "\n__device__ bool intersects(const float a[9], const float b[9]) { " + body + " }");
+    return builds[0].why_no_twin + builds[1].why_no_twin + builds[3].why_no_twin;
+  };
+  // Vector types, another kernel of the file, a host function.
+  EXPECT_EQ(
+      why("const float3 c = cross(make_float3(a[0], a[1], a[2]), make_float3(b[0], b[1], b[2])); return c.x > c.y * "
+          "c.z;",
+          "static __device__ __forceinline__ float3 cross(float3 u, float3 v) { return make_float3(u.y * v.z - u.z * "
+          "v.y, "
+          "u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x); }\n__global__ void other(float* x) { x[0] = __sinf(x[1]); }\n"
+          "int main() { return 0; }"),
+      "");
+  // Math functions that the toolkit has in full precision: with their own tables and loops.
+  EXPECT_EQ(why("return cosf(a[0]) < b[0] && atan2f(a[1], b[1]) < 1 && sinf(a[2]) < hypotf(b[2], 1);"), "");
+  EXPECT_EQ(why("return nextafterf(a[3], 1) < lroundf(b[3]) && fdimf(a[0], b[0]) < scalbnf(b[1], 3);"), "");
+  // Others of them are made of approximate operations.
+  EXPECT_NE(why("return fmodf(a[0], b[0]) < a[1];").find("cannot be replayed: rcp.approx.ftz.f32"), std::string::npos);
+  EXPECT_NE(why("return cbrtf(a[2]) < b[2];").find("cannot be replayed: lg2.approx.f32"), std::string::npos);
+  EXPECT_NE(why("return pow((double)a[0], 2.0) < b[0];").find("cannot be replayed: rcp.approx.ftz.f64"),
+            std::string::npos);
+  // Inline assembly with a scope.
+  EXPECT_EQ(
+      why("int is; asm(\"{ .reg .pred q; setp.gt.f32 q, %1, %2; selp.s32 %0, 1, 0, q; }\" : \"=r\"(is) : \"f\"(a[0]), "
+          "\"f\"(b[0])); return is;"),
+      "");
+  // A union, and an array of structs that is sorted.
+  EXPECT_EQ(why("E e[3]; for (int i = 0; i < 3; ++i) { e[i].at.f = a[3 * i] * b[i]; e[i].i = i; }\n"
+                "for (int i = 0; i < 2; ++i) for (int j = 0; j < 2 - i; ++j) if (e[j + 1].at.f < e[j].at.f) { E t = "
+                "e[j]; e[j] = e[j + 1]; "
+                "e[j + 1] = t; }\nreturn e[0].i == 1 && (e[2].at.u & 0x80);",
+                "struct E { union { float f; unsigned u; } at; int i; };"),
+            "");
 }
 
 TEST_F(CudaSubject, RefusesByName) {
   const auto why = [&](const std::string& body, const std::string& before = "") {
-    return build(before + "__device__ bool intersects(const float a[9], const float b[9]) { " + body + " }")[0].why_no_twin;
+    return build(before + "__device__ bool intersects(const float a[9], const float b[9]) { " + body + " }")[0]
+        .why_no_twin;
   };
   EXPECT_NE(why("return __fdividef(a[0], b[0]) > 1;").find("cannot be replayed: div.approx.f32"), std::string::npos);
-  EXPECT_NE(why("count = 1; return a[0] > b[0];", "__device__ int count;\n").find("a write to global memory cannot be replayed"), std::string::npos);
-  EXPECT_NE(why("printf(\"%f\", a[0]); return a[0] > b[0];").find("function of another file cannot be replayed"), std::string::npos);
+  EXPECT_NE(why("count = 1; return a[0] > b[0];", "__device__ int count;\n")
+                .find("a write to global memory cannot be replayed"),
+            std::string::npos);
+  EXPECT_NE(why("printf(\"%f\", a[0]); return a[0] > b[0];").find("function of another file cannot be replayed"),
+            std::string::npos);
 }
 
 std::string content(const fs::path& path) {
@@ -140,7 +196,8 @@ TEST_F(CudaSubject, KeepsWhatItBuilds) {
   const auto elsewhere = build_cuda_subject(file(kSimple), "intersects", {}, scratch_.path() / "other");
   EXPECT_EQ(content(elsewhere[1].twin), content(first[1].twin));
   for (const auto& entry : fs::directory_iterator(scratch_.path() / "cache"))
-    EXPECT_TRUE(entry.path().filename().string().starts_with("twin-") || entry.path().filename().string().starts_with("code-"));
+    EXPECT_TRUE(entry.path().filename().string().starts_with("twin-") ||
+                entry.path().filename().string().starts_with("code-"));
   // Comments do not change what a proof holds for.
   EXPECT_EQ(build(std::string("// a comment\n") + kSimple)[1].hash, first[1].hash);
 }

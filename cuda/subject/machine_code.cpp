@@ -58,7 +58,8 @@ fs::path find_ptxas(const fs::path& library) {
   }
   std::error_code none;
   folders.push_back(fs::weakly_canonical(library, none).parent_path() / "../bin");
-  folders.push_back(fs::weakly_canonical(library, none).parent_path() / "../../../bin");  // …/targets/x86_64-linux/lib
+  // …/targets/x86_64-linux/lib
+  folders.push_back(fs::weakly_canonical(library, none).parent_path() / "../../../bin");
   std::istringstream path(std::getenv("PATH") ? std::getenv("PATH") : "");
   for (std::string folder; std::getline(path, folder, ':');) folders.push_back(folder);
   folders.push_back("/usr/local/cuda/bin");

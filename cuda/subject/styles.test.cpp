@@ -89,7 +89,8 @@ std::vector<std::int8_t> on_host(const std::string& style, Scalar scalar, const 
   std::ofstream(in) << fmt::format(
       "#include \"{0}/host.h\"\n#include \"{0}/{1}.cu\"\nextern \"C\" void decide(const float* pairs, unsigned long "
       "count, signed char* answers) {{\n  for (unsigned long i = 0; i < count; ++i) {{\n    {2} p[18];\n    for (int k "
-      "= 0; k < 18; ++k) p[k] = pairs[18 * i + k];\n    const int is = intersects(p, p + 9);\n    answers[i] = is < 0 ? "
+      "= 0; k < 18; ++k) p[k] = pairs[18 * i + k];\n    const int is = intersects(p, p + 9);\n    answers[i] = is < 0 "
+      "? "
       "-1 : is != 0;\n  }}\n}}\n",
       kStyles.string(), style, real);
   std::string said;
@@ -184,8 +185,7 @@ TEST_P(Style, EverySiteUnfusedIsTheBuildWithoutContraction) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Style, testing::ValuesIn(kStyleTwins),
-                         [](const auto& row) { return row.param.first; });
+INSTANTIATE_TEST_SUITE_P(All, Style, testing::ValuesIn(kStyleTwins), [](const auto& row) { return row.param.first; });
 
 TEST(Styles, AreAllTested) {
   std::set<std::string> files, tested;

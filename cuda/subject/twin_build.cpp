@@ -73,14 +73,14 @@ Scratch::~Scratch() {
 
 fs::path build_twin(const twin::Module& module, Scalar scalar, bool contracted, const fs::path& cache) {
   const std::string source = source_of(module, scalar);
-  std::vector<std::string> words = {
-      compiler(), "-std=c++20", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-math-errno", "-w",
-      "-DGRAZE_FP=twin"};
+  std::vector<std::string> words = {compiler(),          "-std=c++20",      "-O2", "-fPIC",           "-shared",
+                                    "-ffp-contract=off", "-fno-math-errno", "-w",  "-DGRAZE_FP=twin", "-static-libgcc",
+                                    "-Wl,--as-needed"};
   if (contracted && has_fma()) words.push_back("-mfma");
   words.push_back(fmt::format("-DGRAZE_TWIN_VERSION=\"nvcc {}\"", module.toolkit));
-  words.push_back(fmt::format("-DGRAZE_TWIN_BLOCKS={}",
-                              scalar == Scalar::f32 ? "graze::cuda::ptx::decide_block, nullptr"
-                                                    : "nullptr, graze::cuda::ptx::decide_block"));
+  words.push_back(fmt::format("-DGRAZE_TWIN_BLOCKS={}", scalar == Scalar::f32
+                                                            ? "graze::cuda::ptx::decide_block, nullptr"
+                                                            : "nullptr, graze::cuda::ptx::decide_block"));
   std::uint64_t hash = fnv1a(version_of(compiler(), cache), fnv1a(source));
   for (const std::string& word : words) hash = fnv1a(word, fnv1a(" ", hash));
   const fs::path library = cache / fmt::format("twin-{:016x}.so", hash);

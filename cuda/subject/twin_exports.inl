@@ -66,5 +66,5 @@ int graze_twin_decide_fusing(const ptx::Real* pair, const std::uint64_t* fused) 
 }
 }
 
-GRAZE_SUBJECT(graze_subject) = {
-    GRAZE_SUBJECT_ABI, 0, GRAZE_TWIN_VERSION, nullptr, nullptr, nullptr, nullptr, GRAZE_TWIN_BLOCKS};
+GRAZE_SUBJECT(graze_subject) = {GRAZE_SUBJECT_ABI, 0,       GRAZE_TWIN_VERSION, nullptr, nullptr,
+                                nullptr,           nullptr, GRAZE_TWIN_BLOCKS};

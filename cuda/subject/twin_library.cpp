@@ -17,8 +17,7 @@ using Block32 = void (*)(const float*, std::size_t, signed char*);
 using Block64 = void (*)(const double*, std::size_t, signed char*);
 
 void decide_part(void* block, Scalar scalar, std::span<const Pair> pairs, signed char* answers) {
-  if (scalar == Scalar::f32)
-    return reinterpret_cast<Block32>(block)(coordinates(pairs[0]), pairs.size(), answers);
+  if (scalar == Scalar::f32) return reinterpret_cast<Block32>(block)(coordinates(pairs[0]), pairs.size(), answers);
   std::vector<double> wide(pairs.size() * kCoordinates);
   for (std::size_t i = 0; i < pairs.size(); ++i)
     std::copy_n(coordinates(pairs[i]), kCoordinates, wide.begin() + static_cast<std::ptrdiff_t>(i * kCoordinates));

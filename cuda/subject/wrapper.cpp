@@ -35,9 +35,11 @@ extern "C" __global__ void graze_subject_kernel(const {0}* coordinates, unsigned
 
 // The first error that a log tells, as "FILE:LINE: what".
 std::string first_error(const std::string& log) {
-  static const std::regex kError(R"(([^\n]*?)\((\d+)\): (?:catastrophic )?error: ([^\n]*))"), kOther("[^\n]*error[^\n]*");
+  static const std::regex kError(R"(([^\n]*?)\((\d+)\): (?:catastrophic )?error: ([^\n]*))"),
+      kOther("[^\n]*error[^\n]*");
   std::smatch match;
-  if (std::regex_search(log, match, kError)) return fmt::format("{}:{}: {}", match[1].str(), match[2].str(), match[3].str());
+  if (std::regex_search(log, match, kError))
+    return fmt::format("{}:{}: {}", match[1].str(), match[2].str(), match[3].str());
   if (std::regex_search(log, match, kOther)) return match[0];
   return log.substr(0, log.find('\n'));
 }
@@ -65,9 +67,9 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
       if (log.empty()) log = error.what();
     }
   }
-  const std::string expected = fmt::format(
-      "{}: expected __device__ bool {}(const float a[9], const float b[9]), or int, or with double", source.string(),
-      function);
+  const std::string expected =
+      fmt::format("{}: expected __device__ bool {}(const float a[9], const float b[9]), or int, or with double",
+                  source.string(), function);
   try {
     compile(with_lines(text, source));
   } catch (const CompileError& error) {
@@ -75,7 +77,8 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
   }
   try {  // its type, from the message about a template that is only declared
     compile(with_lines(text, source) + fmt::format("\ntemplate <class T> struct graze_found;\n"
-                                                   "graze_found<decltype(&{})> graze_type;\n", function));
+                                                   "graze_found<decltype(&{})> graze_type;\n",
+                                                   function));
   } catch (const CompileError& error) {
     static const std::regex kType("incomplete type \"?graze_found<(.*?)>\"? ");
     const std::string said = error.what();
@@ -83,7 +86,8 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
     if (said.find("is undefined") != said.npos || said.find("has no member") != said.npos)
       throw UsageError(expected + "; found no function of that name");
     if (std::regex_search(said, match, kType))
-      throw UsageError(fmt::format("{}; found {}", expected, std::regex_replace(match[1].str(), std::regex("__nv_bool"), "bool")));
+      throw UsageError(
+          fmt::format("{}; found {}", expected, std::regex_replace(match[1].str(), std::regex("__nv_bool"), "bool")));
     if (said.find("overloaded") != said.npos)
       throw UsageError(fmt::format("{}; found several functions of that name, none of them so", expected));
   }

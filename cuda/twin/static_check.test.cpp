@@ -5,11 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <random>
 #include <set>
@@ -17,37 +13,14 @@
 #include <string>
 #include <vector>
 
+#include "cuda/subject/machine_code.h"
+#include "cuda/subject/twin_build.h"
 #include "cuda/twin/generator/ptx_writer.h"
 
 namespace graze::cuda {
 namespace {
 
-// The kernels' machine code in a cubin, an ELF file: the sections .text.KERNEL.
-using Code = std::map<std::string, std::string>;
-
-template <class T>
-T read(const std::string& file, std::size_t at) {
-  T value;
-  if (at + sizeof value > file.size()) throw std::runtime_error("a cubin that ends early");
-  std::memcpy(&value, file.data() + at, sizeof value);
-  return value;
-}
-
-Code read_cubin(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string file{std::istreambuf_iterator<char>(in), {}};
-  const auto sections = read<std::uint64_t>(file, 0x28);
-  const auto size = read<std::uint16_t>(file, 0x3a), count = read<std::uint16_t>(file, 0x3c),
-             names = read<std::uint16_t>(file, 0x3e);
-  const auto names_at = read<std::uint64_t>(file, sections + std::uint64_t{names} * size + 0x18);
-  Code code;
-  for (std::uint64_t s = sections; s < sections + std::uint64_t{count} * size; s += size) {
-    const std::string section = file.c_str() + names_at + read<std::uint32_t>(file, s);
-    if (section.starts_with(".text."))
-      code[section.substr(6)] = file.substr(read<std::uint64_t>(file, s + 0x18), read<std::uint64_t>(file, s + 0x20));
-  }
-  return code;
-}
+using Code = std::map<std::string, std::string>;  // machine code by kernels
 
 // Floating-point operations in machine code of sm_70 to sm_120: 16 bytes per instruction, told by its low nine bits.
 std::map<std::string, int> operations(const std::string& code) {
@@ -55,7 +28,9 @@ std::map<std::string, int> operations(const std::string& code) {
                                                     {0x28, "DMUL"}, {0x29, "DADD"}, {0x2b, "DFMA"}};
   std::map<std::string, int> counts;
   for (std::size_t at = 0; at + 16 <= code.size(); at += 16) {
-    if (const auto name = kNames.find(read<std::uint16_t>(code, at) & 0x1ff); name != kNames.end())
+    if (const auto name =
+            kNames.find((static_cast<unsigned char>(code[at]) | static_cast<unsigned char>(code[at + 1]) << 8) & 0x1ff);
+        name != kNames.end())
       ++counts[name->second];
   }
   return counts;
@@ -155,12 +130,9 @@ std::string random_program(std::mt19937& random, const std::string& name, const 
          " %a<9>;\n.reg ." + type + " %f<40>;\nld.param.u64 %rd1, [" + name + "_p];\n" + body + "ret;\n}\n";
 }
 
-Code assembled(const std::string& name, const std::string& ptx) {
-  const std::string path = testing::TempDir() + name;
-  std::ofstream(path + ".ptx") << ptx;
-  if (std::system((std::string(GRAZE_PTXAS) + " -arch=sm_90 " + path + ".ptx -o " + path + ".cubin").c_str()) != 0)
-    throw std::runtime_error("ptxas failed");
-  return read_cubin(path + ".cubin");
+Code assembled(const std::string& ptx) {
+  const Scratch scratch(testing::TempDir());
+  return assemble(GRAZE_PTXAS, ptx, scratch.path());
 }
 
 constexpr int kPrograms = 500;
@@ -180,7 +152,7 @@ class RandomPrograms : public testing::TestWithParam<const char*> {
     twin::Module module = twin::read_ptx(in, "random.ptx");
     std::ostringstream out;
     twin::write_explicit(out, module, rule);
-    const Code open = assembled("open_" + type, ptx), closed = assembled("closed_" + type, out.str());
+    const Code open = assembled(ptx), closed = assembled(out.str());
     if (rule == twin::Rule::ptxas) {
       for (const auto& [kernel, code] : open) EXPECT_EQ(operations(code), operations(closed.at(kernel))) << kernel;
     }

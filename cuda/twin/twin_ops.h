@@ -30,8 +30,8 @@ using f32 = float;
 using f64 = double;
 
 template <class T>
-using Bits = std::conditional_t<
-    sizeof(T) == 1, u8, std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
+using Bits = std::conditional_t<sizeof(T) == 1, u8,
+                                std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
 
 // The register's bits as another type of the same size; integers of other sizes are widened or cut.
 template <class T, class From>

@@ -28,146 +28,7 @@ namespace {
 #include "cuda/generated/semantics.inc"
 #pragma GCC diagnostic pop
 
-template <class Real>
-using Limits = std::numeric_limits<Real>;
-
-// Zeros, subnormals, neighbours of 1 and of powers of two, halves, limits of integers, the largest, infinity, NaN; and
-// factors whose product or quotient is just below the least normal number.
-template <class Real>
-std::vector<Real> special_values() {
-  const Real tiny = Limits<Real>::denorm_min(), least = Limits<Real>::min(), most = Limits<Real>::max(), one = 1,
-             epsilon = Limits<Real>::epsilon();
-  std::vector<Real> values = {0,
-                              tiny,
-                              least - tiny,
-                              least,
-                              2 * least,
-                              Real(0.3),
-                              Real(0.5),
-                              one - epsilon / 2,
-                              1,
-                              1 + epsilon,
-                              Real(1.5),
-                              Real(2.5),
-                              Real(2147483648.0),
-                              Real(4294967296.0),
-                              Real(9.3e18),
-                              Real(2e19),
-                              1 / least,
-                              most,
-                              Limits<Real>::infinity()};
-  if (sizeof(Real) == 8) {  // what becomes the least normal float, or just does not
-    for (double x : {0x1p-126 - 0x1p-151, 0x1p-126 - 0x1p-150, 0x1p-126 - 0x1p-170, 0x1p-126, 0x1p-140}) {
-      values.push_back(static_cast<Real>(x));
-    }
-    values.push_back(static_cast<Real>(std::nextafter(0x1p-126 - 0x1p-151, 0.0)));
-  }
-  for (std::size_t i = 0, n = values.size(); i < n; ++i) values.push_back(-values[i]);
-  values.push_back(Limits<Real>::quiet_NaN());
-  return values;
-}
-
-// A result: the slot's bytes as the expected type; any NaN is the same.
-template <class T>
-bool same(std::uint64_t slot, T expected) {
-  T found;
-  std::memcpy(&found, &slot, sizeof found);
-  if constexpr (std::is_floating_point_v<T>) {
-    if (std::isnan(found) || std::isnan(expected)) return std::isnan(found) && std::isnan(expected);
-  }
-  return std::bit_cast<Bits<T>>(found) == std::bit_cast<Bits<T>>(expected);
-}
-
-// One slot of a kernel: what it should hold for (a, b, c).
-template <class In>
-struct Slot {
-  std::string name;
-  std::function<bool(std::uint64_t slot, In a, In b, In c)> holds;
-};
-
-template <class In, class Expected>
-Slot<In> slot(const std::string& name, Expected expected) {
-  return {name, [expected](std::uint64_t found, In a, In b, In c) { return same(found, expected(a, b, c)); }};
-}
-
-template <class In>
-struct alignas(16) Input {
-  In values[3];
-};
-
-template <class In>
-std::vector<Input<In>> triples(const std::vector<In>& values) {
-  std::vector<Input<In>> all;
-  for (In a : values) {
-    for (In b : values) {
-      for (In c : values) all.push_back({{a, b, c}});
-    }
-  }
-  return all;
-}
-
-template <class Kernel, class In>
-std::vector<std::uint64_t> run_here(const std::vector<Input<In>>& inputs, std::size_t slots) {
-  std::vector<std::uint64_t> out(inputs.size() * slots);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const void *in_at = &inputs[i], *out_at = out.data() + i * slots;
-    const unsigned char* const parameters[] = {reinterpret_cast<const unsigned char*>(&in_at),
-                                               reinterpret_cast<const unsigned char*>(&out_at)};
-    Kernel::run(parameters, AllFused{});
-  }
-  return out;
-}
-
-template <class Kernel, class In>
-void check(const std::vector<Slot<In>>& slots, const std::vector<In>& values) {
-  const std::vector<Input<In>> inputs = triples(values);
-  const std::vector<std::uint64_t> out = run_here<Kernel>(inputs, slots.size());
-  std::vector<int> wrong(slots.size(), 0);
-  for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const auto& [a, b, c] = inputs[i].values;
-    for (std::size_t s = 0; s < slots.size(); ++s) {
-      if (!slots[s].holds(out[i * slots.size() + s], a, b, c) && wrong[s]++ == 0) {
-        ADD_FAILURE() << slots[s].name << " of " << a << ", " << b << ", " << c;
-      }
-    }
-  }
-}
-
-#ifdef GRAZE_HAS_NVCC
-// Both NaN, as doubles or, where the upper halves are zero, as floats.
-bool both_nan(std::uint64_t a, std::uint64_t b) {
-  if (is_nan(std::bit_cast<f64>(a)) && is_nan(std::bit_cast<f64>(b))) return true;
-  return a >> 32 == 0 && b >> 32 == 0 && is_nan(std::bit_cast<f32>(static_cast<u32>(a))) &&
-         is_nan(std::bit_cast<f32>(static_cast<u32>(b)));
-}
-#endif
-
-// The same kernel on a device, slot by slot.
-template <class Kernel, class In>
-void check_on_device(const std::vector<Slot<In>>& slots, const std::vector<In>& values) {
-#ifdef GRAZE_HAS_NVCC
-  if (std::string why; !open_device(why)) GTEST_SKIP() << why;
-  std::ifstream file(GRAZE_SOURCE_DIR "/cuda/twin/generator/semantics.ptx");
-  const std::string ptx{std::istreambuf_iterator<char>(file), {}};
-  const std::vector<Input<In>> inputs = triples(values);
-  const std::vector<std::uint64_t> here = run_here<Kernel>(inputs, slots.size());
-  const std::vector<std::uint64_t> there =
-      run_ptx(ptx, std::string(Kernel::kName), inputs.data(), inputs.size(), sizeof inputs[0], slots.size());
-  std::vector<int> wrong(slots.size(), 0);
-  for (std::size_t i = 0; i < here.size(); ++i) {
-    const std::size_t s = i % slots.size();
-    if (here[i] != there[i] && !both_nan(here[i], there[i]) && wrong[s]++ == 0) {
-      const auto& [a, b, c] = inputs[i / slots.size()].values;
-      ADD_FAILURE() << slots[s].name << " of " << a << ", " << b << ", " << c << ": twin " << std::hex << here[i]
-                    << ", device " << there[i];
-    }
-  }
-#else
-  static_cast<void>(slots);
-  static_cast<void>(values);
-  GTEST_SKIP() << "built without CUDA";
-#endif
-}
+#include "cuda/twin/twin_ops_testing.inl"
 
 template <class Real>
 Real flush(Real x) {
@@ -299,13 +160,6 @@ std::vector<Slot<Real>> conversions() {
       slot<Real>("cvt.rni.u64", [](Real a, Real, Real) { return nearest_integer<u64>(std::rint(a), u64{1} << 63); })};
 }
 
-template <class In>
-std::vector<Slot<In>> joined(std::vector<std::vector<Slot<In>>> parts) {
-  std::vector<Slot<In>> all;
-  for (auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
-}
-
 std::vector<Slot<f32>> f32_slots() {
   using F = f32;
   return joined<F>(
@@ -323,7 +177,9 @@ std::vector<Slot<f32>> f32_slots() {
 }
 
 TEST(TwinOps, F32) { check<semantics_f32, f32>(f32_slots(), special_values<f32>()); }
-TEST(TwinOps, F32OnADevice) { check_on_device<semantics_f32, f32>(f32_slots(), special_values<f32>()); }
+TEST(TwinOps, F32OnADevice) {
+  check_on_device<semantics_f32, f32>("semantics.ptx", f32_slots(), special_values<f32>());
+}
 
 std::vector<Slot<f64>> f64_slots() {
   using F = f64;
@@ -338,7 +194,9 @@ std::vector<Slot<f64>> f64_slots() {
 }
 
 TEST(TwinOps, F64) { check<semantics_f64, f64>(f64_slots(), special_values<f64>()); }
-TEST(TwinOps, F64OnADevice) { check_on_device<semantics_f64, f64>(f64_slots(), special_values<f64>()); }
+TEST(TwinOps, F64OnADevice) {
+  check_on_device<semantics_f64, f64>("semantics.ptx", f64_slots(), special_values<f64>());
+}
 
 std::vector<Slot<u32>> integer_slots() {
   using I = u32;
@@ -383,7 +241,9 @@ const std::vector<u32> kIntegers = {0,      1,      2,          5,          31, 
                                     0x8000, 0xffff, 0x7fffffff, 0x80000000, 0x80000001, 0xffffffff, 123456789};
 
 TEST(TwinOps, Integers) { check<semantics_integer, u32>(integer_slots(), kIntegers); }
-TEST(TwinOps, IntegersOnADevice) { check_on_device<semantics_integer, u32>(integer_slots(), kIntegers); }
+TEST(TwinOps, IntegersOnADevice) {
+  check_on_device<semantics_integer, u32>("semantics.ptx", integer_slots(), kIntegers);
+}
 
 TEST(TwinOps, FlushedProductKeepsItsSign) {
   EXPECT_EQ(std::bit_cast<u32>(flushed(-0x1p-130f)), 0x80000000u);

@@ -54,10 +54,10 @@ auto in_rounding_mode(int mode, F f) {
   std::fesetround(FE_TONEAREST);
   return result;
 }
-#define GRAZE_ROUNDED(name, mode, expression)                                   \
-  inline float name(float a_, float b_) {                                       \
-    const volatile float a = a_, b = b_;                                        \
-    return in_rounding_mode(mode, [&] { return (float)(expression); });         \
+#define GRAZE_ROUNDED(name, mode, expression)                           \
+  inline float name(float a_, float b_) {                               \
+    const volatile float a = a_, b = b_;                                \
+    return in_rounding_mode(mode, [&] { return (float)(expression); }); \
   }
 GRAZE_ROUNDED(__fadd_rd, FE_DOWNWARD, a + b)
 GRAZE_ROUNDED(__fadd_ru, FE_UPWARD, a + b)

@@ -18,6 +18,6 @@ __device__ bool hits(const float* o, const float* end, const float* t) {
 }
 
 __device__ bool intersects(const float a[9], const float b[9]) {
-  return hits(a, a + 3, b) || hits(a + 3, a + 6, b) || hits(a + 6, a, b) || hits(b, b + 3, a) || hits(b + 3, b + 6, a) ||
-         hits(b + 6, b, a);
+  return hits(a, a + 3, b) || hits(a + 3, a + 6, b) || hits(a + 6, a, b) || hits(b, b + 3, a) ||
+         hits(b + 3, b + 6, a) || hits(b + 6, b, a);
 }

@@ -15,8 +15,7 @@ __device__ bool intersects(const float a[9], const float b[9]) {
     const float* other = t ? a : b;
     float n[3];
 #pragma unroll 1
-    for (int k = 0; k < 3; ++k)
-      n[k] = e[(k + 1) % 3] * e[3 + (k + 2) % 3] - e[(k + 2) % 3] * e[3 + (k + 1) % 3];
+    for (int k = 0; k < 3; ++k) n[k] = e[(k + 1) % 3] * e[3 + (k + 2) % 3] - e[(k + 2) % 3] * e[3 + (k + 1) % 3];
 #pragma unroll 1
     for (int v = 0; v < 3; ++v) {
       float d = 0;

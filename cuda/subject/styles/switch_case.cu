@@ -14,14 +14,23 @@ __device__ bool intersects(const float a[9], const float b[9]) {
     }
   }
   switch (nearest) {
-    case 0: return a[0] * b[4] - a[1] * b[3] < least;
-    case 1: return a[1] * b[5] + a[2] * b[4] > least;
-    case 2: return a[3] / (b[6] + 2) > least;
-    case 3: return a[4] * b[7] * a[0] > least;
-    case 4: return a[5] - b[8] * b[8] > least;
-    case 5: return sqrtf(fabsf(a[6])) + b[0] * b[1] > least;
-    case 6: return a[7] > b[1] * least;
-    case 7: return a[8] * a[8] - b[2] * b[2] > least;
-    default: return least == 0;
+    case 0:
+      return a[0] * b[4] - a[1] * b[3] < least;
+    case 1:
+      return a[1] * b[5] + a[2] * b[4] > least;
+    case 2:
+      return a[3] / (b[6] + 2) > least;
+    case 3:
+      return a[4] * b[7] * a[0] > least;
+    case 4:
+      return a[5] - b[8] * b[8] > least;
+    case 5:
+      return sqrtf(fabsf(a[6])) + b[0] * b[1] > least;
+    case 6:
+      return a[7] > b[1] * least;
+    case 7:
+      return a[8] * a[8] - b[2] * b[2] > least;
+    default:
+      return least == 0;
   }
 }

@@ -21,12 +21,10 @@ std::string rounded_operation(const Operands& o, const std::string& arguments) {
   const std::string mode = rounding_of(i);
   const bool ftz = i.has("ftz");
   if (mode.empty()) o.fail("the rounding is left open");
-  if (mode != "rn")
-    return fmt::format("rounded_{}<Rounding::{}, {}>({})", op, mode, ftz ? "true" : "false", arguments);
+  if (mode != "rn") return fmt::format("rounded_{}<Rounding::{}, {}>({})", op, mode, ftz ? "true" : "false", arguments);
   if (op == "fma" && i.site < 0) return fmt::format("fma{}({})", ftz ? "_ftz" : "", arguments);
   if (op == "fma") return fmt::format("fuse{}({}, {})", ftz ? ".flushing" : "", i.site, arguments);
-  if (op == "rcp")
-    return fmt::format("div{}({}{{1}}, {})", ftz ? "_ftz" : "", cpp_type(o.type()), arguments);
+  if (op == "rcp") return fmt::format("div{}({}{{1}}, {})", ftz ? "_ftz" : "", cpp_type(o.type()), arguments);
   if (ftz && one_of(op, {"mul", "div"})) return fmt::format("{}_ftz({})", op, arguments);
   const std::string result = fmt::format("{}({})", op, arguments);
   return ftz && one_of(op, {"add", "sub"}) ? fmt::format("flushed({})", result) : result;
@@ -69,8 +67,8 @@ std::string bit_statement(const Operands& o) {
   if (op == "bfind") {
     is({"u32", "s32", "u64", "s64"});
     o.only({"shiftamt"});
-    return o.assign("u32", fmt::format("bfind{}<{}>({})", i.has("shiftamt") ? "_shift" : "", cpp_type(type),
-                                       o.value(1, type)));
+    return o.assign(
+        "u32", fmt::format("bfind{}<{}>({})", i.has("shiftamt") ? "_shift" : "", cpp_type(type), o.value(1, type)));
   }
   if (op == "bfe") {
     is({"u32", "s32", "u64", "s64"});

@@ -38,10 +38,7 @@ std::string logic(const Operands& o) {
   const std::string a = o.value(1, type), &op = o.instruction().op[0];
   const bool pred = type == "pred";
   if (op == "not") return o.assign(type, pred ? "!" + a : fmt::format("static_cast<{}>(~{})", cpp_type(type), a));
-  const char* symbol = op == "and"  ? (pred ? "&&" : "&")
-                       : op == "or" ? (pred ? "||" : "|")
-                       : pred       ? "!="
-                                    : "^";
+  const char* symbol = op == "and" ? (pred ? "&&" : "&") : op == "or" ? (pred ? "||" : "|") : pred ? "!=" : "^";
   return o.assign(type, fmt::format("static_cast<{}>({} {} {})", cpp_type(type), a, symbol, o.value(2, type)));
 }
 

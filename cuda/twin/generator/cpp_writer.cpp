@@ -126,7 +126,8 @@ void write_cpp(std::ostream& out, const Module& module, Rule rule) {
         "  static constexpr char kHash[] = \"{}\";\n  static constexpr int kSiteCount = {};\n  static constexpr "
         "ContractionSite kSites[] = {{\n",
         kernel_hash(kernel, contracted), count_sites(contracted, functions));
-    for (const Contracted& function : functions) sites.insert(sites.end(), function.sites.begin(), function.sites.end());
+    for (const Contracted& function : functions)
+      sites.insert(sites.end(), function.sites.begin(), function.sites.end());
     for (const Site& site : sites) {
       out << fmt::format("    {{{}, {}, {}, {}}},\n", spelled(module, site.source.at),
                          spelled(module, site.source.from), site.by_ptxas ? "true" : "false", site.line);

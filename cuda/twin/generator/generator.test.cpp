@@ -78,7 +78,8 @@ TEST(TwinGenerator, RefusesWhatItCannotRead) {
     }
   };
   EXPECT_EQ(of_file("frobnicate"), "f.ptx:2: expected a kernel: frobnicate");
-  EXPECT_EQ(of_file(".shared .align 4 .b8 memory[64];"), "f.ptx:2: expected a kernel: .shared .align 4 .b8 memory[64];");
+  EXPECT_EQ(of_file(".shared .align 4 .b8 memory[64];"),
+            "f.ptx:2: expected a kernel: .shared .align 4 .b8 memory[64];");
   EXPECT_EQ(of_file(".const .align 8 .u64 at[1] = {other};"),
             "f.ptx:2: expected a table of numbers: .const .align 8 .u64 at[1] = {other};");
 }
@@ -142,7 +143,8 @@ constexpr char kWithFunctions[] =
     ".visible .entry k(\n\t.param .u64 k_param_0\n)\n{\n.reg .f32 %f<3>;\n.reg .b64 %rd<3>;\n.reg .pred %p<2>;\n"
     ".reg .b32 %r<2>;\n$L_again:\n.pragma \"nounroll\";\n"
     "{ // callseq 0, 0\n.reg .b32 temp_param_reg;\n.param .b32 param0;\nst.param.f32 [param0+0], %f1;\n"
-    ".param .b32 retval0;\ncall.uni (retval0), \nhalf, \n(\nparam0\n);\nld.param.f32 %f2, [retval0+0];\n} // callseq 0\n"
+    ".param .b32 retval0;\ncall.uni (retval0), \nhalf, \n(\nparam0\n);\nld.param.f32 %f2, [retval0+0];\n} // callseq "
+    "0\n"
     "{ .reg .pred q; setp.gt.f32 q, %f2, %f1; mov.pred %p1, q; }\n@%p1 bra $L_again;\n"
     "$L_list: .branchtargets\n$L_again,\n$L_end;\nbrx.idx %r1, $L_list;\n$L_end:\nret;\n}\n"
     ".func  (.param .b32 func_retval0) half(\n\t.param .b32 half_param_0\n)\n{\n.reg .f32 %f<3>;\n"

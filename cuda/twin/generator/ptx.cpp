@@ -328,9 +328,9 @@ class Reader {
   Kernel* kernel_ = nullptr;
   bool in_body_ = false;
   bool in_debug_section_ = false;
-  std::set<std::string> declared_;                           // functions
-  std::vector<std::map<std::string, std::string>> scopes_;   // registers that are declared in each, by their new names
-  int scope_count_ = 0;                                      // in the file
+  std::set<std::string> declared_;                          // functions
+  std::vector<std::map<std::string, std::string>> scopes_;  // registers that are declared in each, by their new names
+  int scope_count_ = 0;                                     // in the file
   Source source_;
   Place inlined_at_;
   std::string text_;

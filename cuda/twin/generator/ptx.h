@@ -37,7 +37,8 @@ struct Source {
 // A label, a directive among the instructions, or an instruction.
 struct Instruction {
   std::string label = {};
-  std::string directive = {};  // "{", "}", ".param .b32 param0;", ".pragma …;", ".branchtargets L1, L2;" after its label
+  std::string directive =
+      {};                  // "{", "}", ".param .b32 param0;", ".pragma …;", ".branchtargets L1, L2;" after its label
   std::string guard = {};  // "%p3", or empty
   bool guard_negated = false;
   std::vector<std::string> op = {};        // "fma", "rn", "f32"

@@ -53,7 +53,8 @@ Module reduced(const Module& module, const std::string& kernel) {
     for (const Instruction& i : one.body) {
       if (!i.is_operation() || i.op[0] != "st" || !i.has("global")) continue;
       if (++writes > 1)
-        throw PtxError(fmt::format("{}:{}: a write to global memory cannot be replayed: {}", module.path, i.line, text(i)));
+        throw PtxError(
+            fmt::format("{}:{}: a write to global memory cannot be replayed: {}", module.path, i.line, text(i)));
     }
   }
   return result;

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/subject/subject_device.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "cuda/lanes/device.h"
+#include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/stratum_kernels.cuh"
+#include "cuda/subject/twin_library.h"
+#include "strata/strata.h"
+
+namespace graze::cuda {
+namespace {
+
+constexpr unsigned kBlock = 1u << 22;  // pairs at once: 302 MB of coordinates in float
+constexpr unsigned kThreadsOfBlock = 256;
+constexpr std::size_t kStackBytes = 16384;  // of a thread: for recursion
+
+__global__ void widen(const float* from, double* to, std::size_t count) {
+  const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
+  if (i < count) to[i] = from[i];
+}
+
+unsigned blocks_of(std::size_t threads) {
+  return static_cast<unsigned>((threads + kThreadsOfBlock - 1) / kThreadsOfBlock);
+}
+
+class Subject final : public SubjectOnDevice {
+ public:
+  explicit Subject(const CudaBuild& build) : scalar_(build.scalar) {
+    check(cudaDeviceSetLimit(cudaLimitStackSize, kStackBytes));
+    check(cudaLibraryLoadData(&library_, build.ptx.c_str(), nullptr, nullptr, 0, nullptr, nullptr, 0));
+    check(cudaLibraryGetKernel(&kernel_, library_, kSubjectKernel));
+  }
+  ~Subject() override { cudaLibraryUnload(library_); }
+
+  void decide(std::span<const Pair> pairs, std::int8_t* answers) override {
+    std::vector<float> columns;
+    for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
+      const auto n = static_cast<unsigned>(std::min<std::size_t>(kBlock, pairs.size() - first));
+      columns.resize(std::size_t{n} * kCoordinates);
+      for (unsigned i = 0; i < n; ++i) {
+        for (unsigned c = 0; c < kCoordinates; ++c) columns[std::size_t{c} * n + i] = coordinates(pairs[first + i])[c];
+      }
+      float* at = coordinates_.at_least(columns.size());
+      check(cudaMemcpy(at, columns.data(), columns.size() * sizeof(float), cudaMemcpyHostToDevice));
+      decide_block(at, n, answers + first);
+    }
+  }
+
+  // Coordinates on the device, 18 arrays of n.
+  void decide_block(const float* coordinates, unsigned n, std::int8_t* answers) {
+    signed char* answers_at = answers_.at_least(n);
+    const void* from = coordinates;
+    if (scalar_ == Scalar::f64) {
+      const std::size_t count = std::size_t{n} * kCoordinates;
+      double* wide = wide_.at_least(count);
+      widen<<<blocks_of(count), kThreadsOfBlock>>>(coordinates, wide, count);
+      check(cudaGetLastError());
+      from = wide;
+    }
+    void* arguments[] = {&from, &n, &n, &answers_at};
+    check(cudaLaunchKernel(reinterpret_cast<const void*>(kernel_), dim3(blocks_of(n)), dim3(kThreadsOfBlock), arguments,
+                           0, nullptr));
+    check(cudaMemcpy(answers, answers_at, n, cudaMemcpyDeviceToHost));
+  }
+
+ private:
+  Scalar scalar_;
+  cudaLibrary_t library_ = nullptr;
+  cudaKernel_t kernel_ = nullptr;
+  DeviceArray<float> coordinates_;
+  DeviceArray<double> wide_;
+  DeviceArray<signed char> answers_;
+};
+
+// The block's pairs from the device: what its kernels saw.
+void fetch(const float* on_device, std::vector<Pair>& pairs) {
+  std::vector<float> columns(pairs.size() * kCoordinates);
+  check(cudaMemcpy(columns.data(), on_device, columns.size() * sizeof(float), cudaMemcpyDeviceToHost));
+  const std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+  std::vector<std::thread> workers;
+  for (std::size_t t = 0; t < threads; ++t) {
+    workers.emplace_back([&, t] {
+      for (std::size_t i = pairs.size() * t / threads; i < pairs.size() * (t + 1) / threads; ++i) {
+        for (std::size_t c = 0; c < kCoordinates; ++c) coordinates(pairs[i])[c] = columns[c * pairs.size() + i];
+      }
+    });
+  }
+  for (std::thread& worker : workers) worker.join();
+}
+
+void compare(Subject& subject, const TwinLibrary& twin, const float* on_device, const std::vector<Pair>& pairs,
+             std::uint64_t first, StratumProof& row) {
+  std::vector<std::int8_t> there(pairs.size()), here(pairs.size());
+  subject.decide_block(on_device, static_cast<unsigned>(pairs.size()), there.data());
+  twin.decide(pairs, here.data());
+  row.pairs += pairs.size();
+  row.twin_pairs += pairs.size();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (there[i] == here[i]) continue;
+    ++row.twin_verdict_differences;
+    if (row.examples.size() < kExamples) row.examples.push_back(first + i);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build) {
+  std::string why_not;
+  if (!open_device(why_not)) throw std::runtime_error("a user's CUDA code needs a device: " + why_not);
+  return std::make_unique<Subject>(build);
+}
+
+ProofRecord prove_subjects(std::span<const NamedBuild> builds, const ProofOptions& options) {
+  std::string why_not;
+  const auto device = open_device(why_not);
+  if (!device) throw std::runtime_error("a proof needs a device: " + why_not);
+  const auto start = std::chrono::steady_clock::now();
+  ProofRecord record;
+  record.device = device->name;
+  record.driver = device->driver;
+  record.seed = options.seed;
+  std::vector<std::unique_ptr<Subject>> subjects;
+  std::vector<std::unique_ptr<TwinLibrary>> twins;
+  for (const auto& [lane, build] : builds) {
+    if (build->twin.empty()) continue;
+    record.toolkit = build->toolkit;
+    subjects.push_back(std::make_unique<Subject>(*build));
+    twins.push_back(std::make_unique<TwinLibrary>(build->twin, build->scalar));
+    record.lanes.push_back({lane, build->hash, "", std::vector<StratumProof>(strata::kStrataCount)});
+  }
+  DeviceArray<float> coordinates_of_block;
+  for (int s = 0; s < strata::kStrataCount; ++s) {
+    const std::uint64_t count = options.twin_pairs / strata::kStrataCount +
+                                (static_cast<std::uint64_t>(s) < options.twin_pairs % strata::kStrataCount);
+    for (LaneProof& lane : record.lanes) lane.strata[static_cast<std::size_t>(s)].stratum = strata::kStrata[s].id;
+    for (std::uint64_t first = 0; first < count; first += kBlock) {
+      std::vector<Pair> pairs(std::min<std::uint64_t>(kBlock, count - first));
+      float* on_device = coordinates_of_block.at_least(pairs.size() * kCoordinates);
+      launch_generate(on_device, static_cast<std::uint32_t>(pairs.size()), options.seed, s, first, nullptr);
+      check(cudaGetLastError());
+      fetch(on_device, pairs);
+      for (std::size_t l = 0; l < record.lanes.size(); ++l)
+        compare(*subjects[l], *twins[l], on_device, pairs, first, record.lanes[l].strata[static_cast<std::size_t>(s)]);
+    }
+    record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (options.progress)
+      options.progress(std::string(strata::kStrata[s].id) + ": " + std::to_string(count) + " pairs");
+  }
+  return record;
+}
+
+}  // namespace graze::cuda

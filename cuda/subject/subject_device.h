@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Builds of a user's CUDA source on a device, and the proof that their twins are the same.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/pair.h"
+#include "cuda/subject/cuda_subject.h"
+#include "cuda/twin/prove.h"
+
+namespace graze::cuda {
+
+// A build that the driver has assembled for the first device. One thread at a time.
+class SubjectOnDevice {
+ public:
+  virtual ~SubjectOnDevice() = default;
+
+  // -1 declined, 0 disjoint, 1 intersects, for each pair.
+  // Throws: std::runtime_error on any CUDA error; after one that the user's code causes, this process has no device.
+  virtual void decide(std::span<const Pair> pairs, std::int8_t* answers) = 0;
+};
+
+// Throws: std::runtime_error without a device, when built without CUDA, or when the driver refuses the PTX.
+std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build);
+
+// Compares device and twin, each build that has one, on `options.twin_pairs` pairs of all strata together; its lane is
+// the name. Of the record's counts those of the twin and of the pairs are the same pairs; there are no trace hashes.
+// Throws: as open_on_device.
+struct NamedBuild {
+  std::string lane;  // "mine/f32/cuda-fma"
+  const CudaBuild* build;
+};
+ProofRecord prove_subjects(std::span<const NamedBuild> builds, const ProofOptions& options);
+
+}  // namespace graze::cuda

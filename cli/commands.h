@@ -37,6 +37,9 @@ struct LaneOptions {
 enum class Executors { chosen, twins };
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors = Executors::chosen);
 
+// Opens the subjects.   Throws: as subjects::open.
+void open_subjects(const LaneOptions& options);
+
 // Opens the subjects that a campaign's directory recorded, or that of which this is a case file.   Throws: as
 // subjects::open_recorded. Of anything else: nothing happens.
 void open_subjects_of(const std::filesystem::path& name);

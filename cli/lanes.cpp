@@ -14,7 +14,7 @@
 namespace graze::cli {
 namespace {
 
-void print_lanes(bool json) {
+void print_lanes(bool json, const std::vector<std::string>& globs) {
   std::string why_no_device;
   const auto device = cuda::open_device(why_no_device);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
@@ -23,6 +23,7 @@ void print_lanes(bool json) {
   const AlgorithmInfo* last = nullptr;
   const reports::Screen screen = output_screen();
   for (const Lane& lane : lanes()) {
+    if (!matches_any(globs, lane.id)) continue;
     const std::string here = fuzz::status(lane, device.get(), why_no_device);
     if (json) {
       rows.push_back({{"lane", lane.id},
@@ -72,7 +73,12 @@ void add_lanes(CLI::App& app, int&) {
   command->footer("Example: graze lanes --json | jq -r '.[].lane'");
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "One JSON array");
-  command->callback([json] { print_lanes(*json); });
+  auto lanes = std::make_shared<LaneOptions>();
+  add_lane_options(*command, *lanes, Executors::twins);
+  command->callback([json, lanes] {
+    open_subjects(*lanes);
+    print_lanes(*json, lanes->globs);
+  });
 }
 
 void add_strata(CLI::App& app, int&) {

@@ -98,8 +98,8 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
   add_globs(command, "--lanes", options.globs, "Only lanes that match a pattern");
   command
       .add_option("--subject", options.subjects,
-                  "Your own code as lanes NAME/…: a shared object or a C or C++ source, each with :FUNCTION, or "
-                  "cmd:COMMAND; any number of times (docs/your_own_code.md)")
+                  "Your own code as lanes NAME/…: a shared object or a C, C++ or CUDA source, each with :FUNCTION, "
+                  "or cmd:COMMAND; any number of times (docs/your_own_code.md)")
       ->allow_extra_args(false)
       ->option_text("NAME=WHAT");
   command.add_option("--flags", options.flags, "For the compiler, of subjects that are sources: --flags='-O3 -Iinclude'")
@@ -133,8 +133,10 @@ void open_subjects_of(const std::filesystem::path& name) {
   }
 }
 
-fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::filesystem::path& about,
-                                      bool require_device) {
+void open_subjects(const LaneOptions& options) {
+  if (options.subjects.empty()) return;
+  std::string why_not;
+  const bool on_device = options.executor != fuzz::Executor::twin && cuda::open_device(why_not);
   for (const std::string& text : options.subjects) {
     subjects::Wanted wanted = subjects::parse_subject(text);
     for (const std::string& flags : options.flags) {
@@ -142,8 +144,13 @@ fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::fil
       for (std::string word; words >> word;) wanted.flags.push_back(word);
     }
     wanted.timeout = options.timeout;
-    subjects::open(wanted);
+    subjects::open(wanted, on_device);
   }
+}
+
+fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::filesystem::path& about,
+                                      bool require_device) {
+  open_subjects(options);
   if (!about.empty()) open_subjects_of(about);
   return fuzz::select_lanes(options.globs, options.executor, require_device);
 }

@@ -2,6 +2,7 @@
 // `graze prove-twin`: on a device, verifies that the twins give its verdicts, and writes the record.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -9,12 +10,28 @@
 #include "cuda/twin/prove.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 namespace {
 
-int prove(const cuda::ProofOptions& options, const std::string& out) {
-  const cuda::ProofRecord record = cuda::prove_twin(options);
+// The twins of the subjects, where there are any; else those of the published algorithms.
+cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions& lanes, std::string& out) {
+  open_subjects(lanes);
+  std::vector<cuda::NamedBuild> builds = subjects::cuda_builds();
+  std::erase_if(builds, [&](const cuda::NamedBuild& named) {
+    return named.build->twin.empty() || !matches_any(options.lanes, named.lane);
+  });
+  if (lanes.subjects.empty()) return cuda::prove_twin(options);
+  if (builds.empty()) throw std::runtime_error("expected a CUDA source with a twin, found none");
+  if (out.empty())
+    out = subjects::proof_file(subjects::opened(parse_lane_name(builds[0].lane)->subject)->file).string();
+  return cuda::prove_subjects(builds, options);
+}
+
+int prove(const cuda::ProofOptions& options, const LaneOptions& lanes, std::string out) {
+  const cuda::ProofRecord record = record_of(options, lanes, out);
+  if (out.empty()) out = "proof.json";
   fuzz::write_whole(out, to_json(record).dump(1) + "\n");
   fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", "lane", "explicit PTX", "differences", "twin", "differences");
   for (const cuda::LaneProof& lane : record.lanes) {
@@ -35,7 +52,8 @@ void add_prove_twin(CLI::App& app, int& status) {
       "On a GPU: compare each CUDA lane with its explicit PTX and its twin, bit for bit; exit 1 on any difference");
   command->footer("Example: graze prove-twin --pairs 10000000000 --out proof.json");
   auto options = std::make_shared<cuda::ProofOptions>();
-  auto out = std::make_shared<std::string>("proof.json");
+  auto out = std::make_shared<std::string>();
+  auto lanes = std::make_shared<LaneOptions>();
   command->add_option("--pairs", options->pairs, "Pairs a lane, all strata together")
       ->transform(whole_number(1, kMostWhole))
       ->capture_default_str();
@@ -45,12 +63,14 @@ void add_prove_twin(CLI::App& app, int& status) {
   command->add_option("--seed", options->seed, "Seed of all strata")
       ->transform(whole_number(0, kMostWhole))
       ->capture_default_str();
-  add_globs(*command, "--lanes", options->lanes, "Only lanes that match a pattern");
+  add_lane_options(*command, *lanes, Executors::twins);
   command->add_flag("--wrong-rule", options->wrong_rule, "Contract the wrong product first: the proof must then fail");
-  command->add_option("--out", *out, "File of the record")->check(not_empty())->capture_default_str();
-  command->callback([options, out, &status] {
+  command->add_option("--out", *out, "File of the record: proof.json, or FILE.cu.proof.json of a subject, where it counts")
+      ->check(not_empty());
+  command->callback([options, lanes, out, &status] {
+    options->lanes = lanes->globs;
     options->progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
-    status = prove(*options, *out);
+    status = prove(*options, *lanes, *out);
   });
 }
 

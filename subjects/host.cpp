@@ -2,7 +2,8 @@
 // graze-subject-host: loads foreign code and asks it, in a process of its own. Started by graze, not by a person:
 //   graze-subject-host library FILE NAME f32|f64|any LIMIT    (a shared object, and what it exports; see graze/subject.h)
 //   graze-subject-host command TEXT "" f32 LIMIT              (a program; see subjects/README.md)
-// LIMIT: MiB of memory that the code may take.
+//   graze-subject-device device FILE "" f32|f64 LIMIT         (PTX of cuda/subject; the same program, with CUDA)
+// LIMIT: MiB of memory that the code may take; a device's driver takes what it wants.
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
@@ -23,12 +24,19 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <sstream>
 #include <string>
 #include <typeinfo>
 #include <vector>
 
 #include "subjects/channel.h"
 #include "subjects/line_protocol.h"
+#ifdef GRAZE_SUBJECT_DEVICE
+#include "cuda/subject/subject_device.h"
+#endif
 
 namespace graze::subjects {
 namespace {
@@ -126,9 +134,9 @@ template <class Number>
 class Asking {
  public:
   using Single = int (*)(const Number*, const Number*);
-  using Block = void (*)(const Number*, std::size_t, signed char*);
+  using Block = std::function<void(const Number*, std::size_t, signed char*)>;
 
-  Asking(Single single, Block block) : single_(single), block_(block) {}
+  Asking(Single single, Block block) : single_(single), block_(std::move(block)) {}
 
   void ask() {
     if (!channel->second) {
@@ -204,6 +212,29 @@ template <class Ask>
   _exit(0);
 }
 
+#ifdef GRAZE_SUBJECT_DEVICE
+// The worker's own device: what a process had before it forked is of no use afterwards.
+class OnDevice {
+ public:
+  OnDevice(const std::string& file, const std::string& scalar) {
+    cuda::CudaBuild build{};
+    build.scalar = scalar == "f64" ? Scalar::f64 : Scalar::f32;
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    build.ptx = text.str();
+    device_ = cuda::open_on_device(build);
+  }
+
+  // Pairs are float32 here, whatever the scalar.
+  void operator()(const float* from, std::size_t count, signed char* answers) const {
+    device_->decide({reinterpret_cast<const Pair*>(from), count}, answers);
+  }
+
+ private:
+  std::unique_ptr<cuda::SubjectOnDevice> device_;
+};
+#endif
+
 void limit_memory(const char* mib) {
   const rlim_t bytes = std::strtoull(mib, nullptr, 10) << 20;
   const rlimit data{bytes, bytes}, none{0, 0};
@@ -269,6 +300,12 @@ int host(int argc, char** argv) {
                       channel->second, channel->answers);
         });
       }
+#ifdef GRAZE_SUBJECT_DEVICE
+      if (kind == "device") {
+        const auto device = std::make_shared<OnDevice>(what, argv[4]);
+        serve([&] { Asking<float>(nullptr, [device](auto... asked) { (*device)(asked...); }).ask(); });
+      }
+#endif
       if (std::strcmp(argv[4], "f64") == 0) serve([&] { Asking<double>(subject.f64, subject.block_f64).ask(); });
       serve([&] { Asking<float>(subject.f32, subject.block_f32).ask(); });
     }

@@ -28,10 +28,10 @@ namespace {
 constexpr int kLoadSeconds = 60;
 constexpr std::size_t kMostFailuresKept = std::size_t{1} << 20;
 
-// Beside the running program, or beside the library's tests.
-std::filesystem::path host_program() {
+// Beside the running program.
+std::filesystem::path host_program(const Code& code) {
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
-  return self.parent_path() / "graze-subject-host";
+  return self.parent_path() / (code.kind == "device" ? "graze-subject-device" : "graze-subject-host");
 }
 
 int shared_memory(std::size_t bytes) {
@@ -92,7 +92,7 @@ class HostProcess {
 
   // Returns: whether all went well; otherwise the process is of no use any more.
   void ask(const Pair* pairs, std::size_t count, Scalar scalar) {
-    if (scalar == Scalar::f32) {
+    if (scalar == Scalar::f32 || code_.kind == "device") {
       std::memcpy(pairs_, pairs, count * sizeof(Pair));
     } else {
       std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_));
@@ -156,7 +156,7 @@ class HostProcess {
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    const std::string program = host_program(), memory = std::to_string(code_.memory);
+    const std::string program = host_program(code_), memory = std::to_string(code_.memory);
     const char* words[] = {program.c_str(),      code_.kind.c_str(), code_.what.c_str(), code_.name.c_str(),
                            code_.scalar.c_str(), memory.c_str(),     nullptr};
     const int error =

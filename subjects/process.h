@@ -15,8 +15,8 @@ namespace graze::subjects {
 
 // What graze-subject-host loads; see its first lines.
 struct Code {
-  std::string kind;              // "library" or "command"
-  std::string what, name;        // file and export, or the command
+  std::string kind;              // "library", "command" or "device"
+  std::string what, name;        // file and export, or the command, or a file of PTX
   std::string scalar = "any";    // of a function without description
   double timeout = 1;            // seconds for a pair, or for a block of a subject that takes blocks
   std::uint64_t memory = 1024;   // MiB

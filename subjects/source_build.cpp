@@ -97,6 +97,13 @@ fs::path cache_folder() {
   return fs::temp_directory_path() / fmt::format("graze-{}", getuid());
 }
 
+void write_atomically(const fs::path& file, std::string_view text) {
+  fs::create_directories(file.parent_path());
+  const fs::path part = file.string() + fmt::format(".{}", getpid());
+  write(part, text);
+  fs::rename(part, file);
+}
+
 fs::path build_source(const fs::path& source, const std::string& function, const VariantInfo& variant,
                       const std::vector<std::string>& flags) {
   const bool c = source.extension() == ".c";
@@ -119,12 +126,8 @@ fs::path build_source(const fs::path& source, const std::string& function, const
       fmt::format("#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n", name, function, expected);
   // All that is included could change too: the preprocessor's output is what the result depends on.
   const fs::path folder = cache_folder();
-  fs::create_directories(folder / "include" / "graze");
-  if (!fs::exists(folder / "include/graze/subject.h") || text_of(folder / "include/graze/subject.h") != kHeader) {
-    const fs::path part = folder / fmt::format("include/graze/subject.h.{}", getpid());
-    write(part, kHeader);
-    fs::rename(part, folder / "include/graze/subject.h");
-  }
+  const fs::path header = folder / "include/graze/subject.h";
+  if (!fs::exists(header) || text_of(header) != kHeader) write_atomically(header, kHeader);
   const fs::path part = folder / fmt::format("part-{}-{}{}", getpid(), variant.id, c ? ".c" : ".cpp");
   const fs::path object = fs::path(part).replace_extension(".so"), errors = fs::path(part).replace_extension(".txt");
   const auto clean = [&] {

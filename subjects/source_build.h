@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/variants.h"
@@ -12,6 +13,9 @@ namespace graze::subjects {
 
 // Where what was built is kept: $XDG_CACHE_HOME/graze, or ~/.cache/graze, or a folder for temporary files.
 std::filesystem::path cache_folder();
+
+// Writes the file in one step: nobody sees a part of it.   Throws: std::runtime_error.
+void write_atomically(const std::filesystem::path& file, std::string_view text);
 
 // Returns: the shared object's file, built if it is not there yet: `function` of the source, or the descriptions that
 // the source makes itself (see graze/subject.h), with the variant's flags and then `flags`.

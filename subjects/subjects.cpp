@@ -13,6 +13,8 @@
 #include "core/fnv1a.h"
 #include "core/lanes.h"
 #include "core/text.h"
+#include "cuda/subject/cuda_subject.h"
+#include "cuda/twin/twin.h"
 #include "subjects/process.h"
 #include "subjects/source_build.h"
 
@@ -28,6 +30,7 @@ struct Entry {
   std::string source, coplanar, degenerate, order;
   AlgorithmInfo info;
   std::vector<std::unique_ptr<ForeignProcesses>> processes;
+  std::vector<cuda::CudaBuild> builds;  // of CUDA code: of each lane
 };
 
 std::deque<Entry>& entries() {
@@ -52,15 +55,15 @@ Opened parsed(const Wanted& wanted) {
     result.hash = fnv1a(wanted.what);
     return result;
   }
-  static const std::regex form(R"((.*\.(?:(so|so\.[0-9.]+|dylib)|cpp|cc|cxx|c))(?::([^/:].*))?)");
+  static const std::regex form(R"((.*\.(?:(so|so\.[0-9.]+|dylib)|(cu)|cpp|cc|cxx|c))(?::([^/:].*))?)");
   std::smatch parts;
   if (!std::regex_match(wanted.what, parts, form)) {
-    throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c or cmd:COMMAND, found '{}'",
+    throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found '{}'",
                                  wanted.name, printable(wanted.what)));
   }
   result.file = parts[1].str();
-  result.function = parts[3];
-  result.kind = parts[2].matched ? "library" : "source";
+  result.function = parts[4];
+  result.kind = parts[2].matched ? "library" : parts[3].matched ? "cuda" : "source";
   result.hash = hash_of_file(result.file);
   return result;
 }
@@ -71,9 +74,69 @@ std::string says(const Description& description, unsigned outside, std::string_v
   return "not in its contract" + (description.convention.empty() ? "" : ": " + description.convention);
 }
 
+void describe_info(Entry& entry, const Description& description) {
+  entry.source = entry.opened.wanted.what;
+  if (!description.source.empty()) entry.source += ": " + description.source;
+  if (!description.version.empty()) entry.source += ", version " + description.version;
+  entry.coplanar = says(description, kOutsideCoplanar, "not said");
+  entry.degenerate = says(description, kOutsideDegenerate, "not said");
+  entry.order = "not said";
+  entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
+}
+
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
   auto& process = entry.processes.emplace_back(std::make_unique<ForeignProcesses>(std::move(code), scalar));
   lanes.push_back({"", &entry.info, scalar, variant, "", -1, *process, false, false, true, outside, ""});
+}
+
+LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
+  return {subject, std::string(name(build.scalar)), std::string(name(build.variant)), ""};
+}
+
+// What a record of `graze prove-twin` beside the source says of this very build, else what is known without it.
+std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
+  std::ifstream in(proof_file(source));
+  const Json record = Json::parse(in, nullptr, false);
+  try {
+    for (const Json& lane : record.at("lanes")) {
+      const auto count = [&](const char* field) { return lane.at(field).get<std::uint64_t>(); };
+      if (lane.at("hash") != build.hash || build.twin.empty() || count("twin_pairs") == 0 || count("differences") > 0 ||
+          count("twin_differences") > 0)
+        continue;
+      return fmt::format("twin, verified on {}, nvcc {}, {:.3g} pairs", record.at("device").get<std::string>(),
+                         record.at("toolkit").get<std::string>(), static_cast<double>(count("twin_pairs")));
+    }
+  } catch (const Json::exception&) {  // no record, or a damaged one, verifies nothing
+  }
+  return cuda::evidence(build);
+}
+
+// The device's build where there is a device, else its twin. A build with neither is a lane that says why.
+void add_cuda_lanes(Entry& entry, bool on_device) {
+  const Opened& o = entry.opened;
+  const fs::path cache = cache_folder();
+  std::vector<Lane> made;
+  for (cuda::CudaBuild& build : cuda::build_cuda_subject(o.file, o.function.empty() ? "intersects" : o.function,
+                                                         o.wanted.flags, cache)) {
+    Code code{"library", build.twin.string(), "", std::string(name(build.scalar)), o.wanted.timeout, o.wanted.memory};
+    if (on_device) {
+      code.kind = "device";
+      code.what = (cache / fmt::format("{:016x}.ptx", fnv1a(build.ptx))).string();
+      write_atomically(code.what, build.ptx);
+    }
+    if (code.what.empty()) {
+      made.push_back({"", &entry.info, build.scalar, build.variant, "", -1, nullptr, false, false, true, 0, ""});
+    } else {
+      add_lane(entry, made, std::move(code), build.scalar, build.variant, 0);
+    }
+    made.back().evidence = on_device ? "device" : evidence_of(o.file, build);
+    entry.builds.push_back(std::move(build));
+  }
+  describe_info(entry, {});
+  add_lanes(std::move(made));
+  for (const cuda::CudaBuild& build : entry.builds) {
+    if (!build.twin.empty()) cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, build))), build.twin);
+  }
 }
 
 }  // namespace
@@ -91,7 +154,7 @@ Wanted parse_subject(const std::string& text) {
   return wanted;
 }
 
-void open(const Wanted& wanted) {
+void open(const Wanted& wanted, bool on_device) {
   const Opened wish = parsed(wanted);
   if (const Opened* there = opened(wanted.name)) {
     if (there->hash == wish.hash && there->wanted.what == wanted.what && there->wanted.flags == wanted.flags) return;
@@ -102,7 +165,7 @@ void open(const Wanted& wanted) {
       throw UsageError(fmt::format("--subject {}: expected a name of its own, found that of a published algorithm",
                                    wanted.name));
   }
-  entries().push_back({wish, "", "", "", "", {}, {}});
+  entries().push_back({wish, "", "", "", "", {}, {}, {}});
   Entry& entry = entries().back();
   try {
     Code code{wish.kind == "command" ? "command" : "library", wish.kind == "command" ? wanted.what.substr(kCommand.size())
@@ -116,6 +179,7 @@ void open(const Wanted& wanted) {
         throw UsageError(fmt::format("--subject {}: expected FUNCTION/f32 or FUNCTION/f64, found '{}'", wanted.name,
                                      printable(wish.function)));
     }
+    if (wish.kind == "cuda") return add_cuda_lanes(entry, on_device);
     std::vector<std::pair<Variant, Code>> builds;
     if (wish.kind == "source") {
       for (const VariantInfo& row : kVariants) {
@@ -142,18 +206,23 @@ void open(const Wanted& wanted) {
       if (description.f64 && runs_on_this_cpu(probe))
         add_lane(entry, made, of_variant, Scalar::f64, variant, description.outside);
     }
-    entry.source = wanted.what;
-    if (!description.source.empty()) entry.source += ": " + description.source;
-    if (!description.version.empty()) entry.source += ", version " + description.version;
-    entry.coplanar = says(description, kOutsideCoplanar, "not said");
-    entry.degenerate = says(description, kOutsideDegenerate, "not said");
-    entry.order = "not said";
-    entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
+    describe_info(entry, description);
     add_lanes(std::move(made));
   } catch (const std::exception&) {
     entries().pop_back();
     throw;
   }
+}
+
+fs::path proof_file(const fs::path& source) { return source.string() + ".proof.json"; }
+
+std::vector<cuda::NamedBuild> cuda_builds() {
+  std::vector<cuda::NamedBuild> all;
+  for (const Entry& entry : entries()) {
+    for (const cuda::CudaBuild& build : entry.builds)
+      all.push_back({id_of(lane_name(entry.opened.wanted.name, build)), &build});
+  }
+  return all;
 }
 
 const Opened* opened(std::string_view subject) {
@@ -179,7 +248,7 @@ Json record(const std::vector<std::string>& lanes) {
   return rows;
 }
 
-void open_recorded(const Json& spec) {
+void open_recorded(const Json& spec, bool on_device) {
   for (const Json& row : spec.value("subjects", Json::array())) {
     const std::string name = row.at("name");
     if (opened(name)) continue;
@@ -190,7 +259,7 @@ void open_recorded(const Json& spec) {
       throw std::runtime_error(fmt::format("{}: expected the code that the campaign ran ({}), found other code ({})",
                                            wanted.what, hash, found));
     }
-    open(wanted);
+    open(wanted, on_device);
   }
 }
 

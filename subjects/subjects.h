@@ -8,11 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "cuda/subject/subject_device.h"
+
 namespace graze::subjects {
 
 // WHAT is one of
 //   FILE.so[:NAME[/f64]]   a shared object: a description (graze/subject.h), or a function
 //   FILE.cpp[:FUNCTION]    a C++ source, also .cc and .cxx, or FILE.c: built for each host variant
+//   FILE.cu[:FUNCTION]     a CUDA source with a __device__ function: built for each device variant by NVRTC, run on a
+//                          device or by its twin
 //   cmd:COMMAND            a program that answers line by line
 struct Wanted {
   std::string name, what;
@@ -25,8 +29,9 @@ struct Wanted {
 Wanted parse_subject(const std::string& text);
 
 // Adds the subject's lanes to the lane table. Of the same name and content a second time: nothing happens.
+// on_device: what runs CUDA code; its twin otherwise.
 // Throws: UsageError for a name that is taken; std::runtime_error, in one line, for code that cannot be had.
-void open(const Wanted& wanted);
+void open(const Wanted& wanted, bool on_device = false);
 
 // Of the subjects whose lanes are among these: what a campaign records, so that it can open them again: [{"name",
 // "what", "flags", "timeout", "memory", "hash"}, …]. Null where there are none.
@@ -34,16 +39,22 @@ nlohmann::ordered_json record(const std::vector<std::string>& lanes);
 
 // Opens what a campaign recorded, where it is not open yet.   Throws: std::runtime_error where the code is not what it
 // was, or is not there.
-void open_recorded(const nlohmann::ordered_json& spec);
+void open_recorded(const nlohmann::ordered_json& spec, bool on_device = false);
 
 // How a lane's subject is had, for a person or a program that shows a case again; empty for our own.
 struct Opened {
   Wanted wanted;
-  std::string kind;      // "library", "source", "command"
+  std::string kind;      // "library", "source", "cuda", "command"
   std::filesystem::path file;
   std::string function;  // empty: none named
   std::uint64_t hash = 0;
 };
 const Opened* opened(std::string_view subject);
+
+// The builds of all opened CUDA sources, each with its lane's name.
+std::vector<cuda::NamedBuild> cuda_builds();
+
+// Where the record of a CUDA source's proof lies; lanes whose twin it holds for say so.
+std::filesystem::path proof_file(const std::filesystem::path& source);
 
 }  // namespace graze::subjects

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <regex>
 #include <thread>
@@ -11,6 +12,7 @@
 #include "core/algorithms/algorithms.h"
 #include "core/error.h"
 #include "core/lanes.h"
+#include "cuda/twin/twin.h"
 #include "strata/strata.h"
 #include "subjects/process.h"
 
@@ -264,6 +266,64 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
   EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0], left_of(pairs[0]) == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint);
 }
 
+// Without a device a CUDA source is replayed by its twin; where a product is fused into a sum that shows.
+TEST_F(Subjects, ACudaSourceIsReplayedByItsTwin) {
+  const fs::path source = write("mine.cu", R"(
+#include <math.h>
+__device__ static float area(const float* t) { return t[0] * t[4] - t[1] * t[3]; }
+__device__ bool intersects(const float a[9], const float b[9]) { return area(a) > area(b); }
+)");
+  try {
+    open_one("gpu=" + source.string());
+  } catch (const std::runtime_error& error) {
+    if (std::string(error.what()).find("expected NVRTC") == std::string::npos) throw;
+    GTEST_SKIP() << error.what();
+  }
+  const Lane *rounded = find_lane("gpu/f32/cuda-nofma"), *fused = find_lane("gpu/f32/cuda-fma"),
+             *fast = find_lane("gpu/f32/cuda-fast"), *flushed = find_lane("gpu/f32/cuda-ftz");
+  ASSERT_TRUE(rounded && fused && fast && flushed);
+  EXPECT_TRUE(rounded->evidence.starts_with("twin, ")) << rounded->evidence;
+  const auto area = [](const Vec3<float>* t) { return t[0].x * t[1].y - t[0].y * t[1].x; };
+  const std::vector<Verdict> found = verdicts(rounded->decide);
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    ASSERT_EQ(found[i] == Verdict::intersects, area(pairs[i].a) > area(pairs[i].b)) << i;
+  EXPECT_TRUE(cuda::contraction_sites(*rounded).empty());
+  EXPECT_FALSE(cuda::contraction_sites(*fused).empty());
+  // Triangles whose area's two products are nearly equal.
+  const std::vector<Pair> before = pairs;
+  pairs.clear();
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    Pair pair = before[i];
+    pair.a[1] = {3 * pair.a[0].x, 3 * pair.a[0].y, 0};
+    pair.b[0] = {0, 0, 0};
+    pairs.push_back(pair);
+  }
+  const std::vector<Verdict> by_fma = verdicts(fused->decide), by_rounding = verdicts(rounded->decide);
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const std::vector<std::uint64_t> none(1 + cuda::contraction_sites(*fused).size() / 64), all(none.size(), ~std::uint64_t{0});
+    EXPECT_EQ(cuda::decide_fusing(*fused, pairs[i], none), by_rounding[i]);
+    EXPECT_EQ(cuda::decide_fusing(*fused, pairs[i], all), by_fma[i]);
+    differ += by_fma[i] != by_rounding[i];
+  }
+  EXPECT_GT(differ, 0u);
+  pairs = before;
+
+  // A record counts for the very build that it names.
+  const std::vector<cuda::NamedBuild> builds = cuda_builds();
+  const auto build = std::find_if(builds.begin(), builds.end(), [](const auto& b) { return b.lane == "gpu/f32/cuda-fma"; });
+  ASSERT_NE(build, builds.end());
+  nlohmann::ordered_json record{{"device", "a device"}, {"toolkit", "13.0"}, {"lanes", {{{"hash", build->build->hash}, {"twin_pairs", 100}, {"differences", 0}, {"twin_differences", 0}}}}};
+  std::ofstream(proof_file(source)) << record;
+  open_one("proven=" + source.string());
+  EXPECT_EQ(find_lane("proven/f32/cuda-fma")->evidence, "twin, verified on a device, nvcc 13.0, 100 pairs");
+  EXPECT_EQ(find_lane("proven/f32/cuda-nofma")->evidence, rounded->evidence);
+  record["lanes"][0]["twin_differences"] = 1;
+  std::ofstream(proof_file(source)) << record;
+  open_one("disproven=" + source.string());
+  EXPECT_EQ(find_lane("disproven/f32/cuda-fma")->evidence, fused->evidence);
+}
+
 TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   const std::string so = (folder / "libbad.so").string(), described = (folder / "libdescribed.so").string();
   write("broken.cpp", "bool intersects(const float a[9], const float b[9]) { return a[0] < ; }");
@@ -278,7 +338,7 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x", "expected NAME=WHAT .* found 'x'");
   expect_error("a/b=" + so, "expected NAME=WHAT");
   expect_error("x=", "expected NAME=WHAT");
-  expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c or cmd:COMMAND, found '.*mine.txt'");
+  expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found '.*mine.txt'");
   expect_error("x=nothere.so", "nothere.so: expected a file with code, found none");
   expect_error("exact=" + so + ":good", "expected a name of its own");
   expect_error("x=" + so, "libbad.so: expected a function named intersects, or a description .* found only .*good");

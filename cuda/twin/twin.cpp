@@ -3,7 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <memory>
+#include <vector>
+
 #include "core/error.h"
+#include "cuda/subject/twin_library.h"
 #include "cuda/twin/twin_table.h"
 
 namespace graze::cuda {
@@ -44,6 +49,17 @@ constexpr TwinTables kTables[] = {
 #include "core/variants.inc"
 };
 #undef GRAZE_VARIANT
+
+// Those of users' CUDA code, by the lane's id.
+struct ForeignTwin {
+  std::unique_ptr<TwinLibrary> library;
+  std::vector<ContractionSite> sites;
+};
+
+std::map<std::string, ForeignTwin>& foreign_twins() {
+  static std::map<std::string, ForeignTwin> all;
+  return all;
+}
 
 const TwinTable* twin_table(Variant variant) {
 #if defined(__x86_64__)
@@ -95,9 +111,24 @@ std::string twin_evidence(const Lane& lane) {
   return "twin";
 }
 
-std::span<const ContractionSite> contraction_sites(const Lane& lane) { return twin_row(lane).sites; }
+void add_foreign_twin(const Lane& lane, const std::filesystem::path& twin) {
+  ForeignTwin& added = foreign_twins()[lane.id];
+  added.library = std::make_unique<TwinLibrary>(twin, lane.scalar);
+  for (const TwinSite& site : added.library->sites())
+    added.sites.push_back({{site.file.c_str(), site.line}, {site.from_file.c_str(), site.from_line}, site.by_ptxas, 0});
+}
+
+std::span<const ContractionSite> contraction_sites(const Lane& lane) {
+  if (!lane.foreign) return twin_row(lane).sites;
+  const auto found = foreign_twins().find(lane.id);
+  return found == foreign_twins().end() ? std::span<const ContractionSite>() : found->second.sites;
+}
 
 Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused) {
+  if (lane.foreign) {
+    const int answer = foreign_twins().at(lane.id).library->decide_fusing(pair, fused);
+    return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
+  }
   const TwinRow& row = twin_row(lane);
   if (!row.decide_fusing || fused.size() * 64 < row.sites.size())
     throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -48,6 +49,9 @@ struct ContractionSite {
 
 // The contraction sites of a lane with a twin, in program order; none without a twin, or without contraction.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
+
+// Gives a foreign CUDA lane the sites of its twin, a library of cuda/subject.   Throws: as TwinLibrary.
+void add_foreign_twin(const Lane& lane, const std::filesystem::path& twin);
 
 // The verdict of a lane that has contraction sites, with two roundings at every site whose bit is not set: none set is
 // cuda-nofma, all set is the lane itself. Bit i % 64 of word i / 64 belongs to site i.   Requires: a word for each 64

@@ -231,6 +231,9 @@ ForeignProcesses::~ForeignProcesses() = default;
 
 void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
                               std::uint64_t* declined) {
+  // Processes that share a device wait for each other: one is as fast.
+  std::unique_lock alone(alone_, std::defer_lock);
+  if (code_.kind == "device") alone.lock();
   std::unique_ptr<HostProcess> process;
   {
     const std::lock_guard lock(mutex_);

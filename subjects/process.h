@@ -45,7 +45,7 @@ class ForeignProcesses : public ForeignCode {
  private:
   Code code_;
   Scalar scalar_;
-  std::mutex mutex_;
+  std::mutex mutex_, alone_;
   std::vector<std::unique_ptr<HostProcess>> idle_;
   std::map<std::string, Verdict> failures_;  // by the pair's bytes; some of them, the others are asked again
 };

@@ -33,11 +33,21 @@ template <class T>
 using Bits = std::conditional_t<sizeof(T) == 1, u8,
                                 std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
 
+// The bits of a register. The NaN that an operation on float32 makes is another on a device than on x86, and its sign
+// shows where its bits are looked at; of float64 it is the same.
+constexpr u32 bits_of(f32 x) {
+  const u32 bits = std::bit_cast<u32>(x);
+  return bits == 0xffc00000u ? 0x7fffffffu : bits;
+}
+constexpr u64 bits_of(f64 x) { return std::bit_cast<u64>(x); }
+
 // The register's bits as another type of the same size; integers of other sizes are widened or cut.
 template <class T, class From>
 constexpr T as(From x) {
   if constexpr (std::is_integral_v<T> && std::is_integral_v<From>) {
     return static_cast<T>(x);
+  } else if constexpr (std::is_integral_v<T>) {
+    return std::bit_cast<T>(bits_of(x));
   } else {
     return std::bit_cast<T>(x);
   }
@@ -79,7 +89,7 @@ T abs(T x) {
 // The magnitude of b with the sign of a: PTX has the operands in this order.
 template <class T>
 T copysign(T a, T b) {
-  return std::bit_cast<T>((std::bit_cast<Bits<T>>(a) & kSign<T>) | (std::bit_cast<Bits<T>>(b) & ~kSign<T>));
+  return std::bit_cast<T>((bits_of(a) & kSign<T>) | (std::bit_cast<Bits<T>>(b) & ~kSign<T>));
 }
 
 template <class T>

@@ -39,13 +39,19 @@ u32 bfind_shift(T x) {
   return place == ~u32{0} ? place : static_cast<u32>(8 * sizeof(T)) - 1 - place;
 }
 
-// Bits [at, at + count), with the highest of them, or of the number, as sign. Of at and count the low bytes count.
+// Of a bit field's place and size: the low byte counts where the number has 32 bits, all of it where it has 64, as
+// measured on a device.
 template <class T>
-T bfe(T x, u32 at, u32 count) {
+u64 field(u32 number) {
+  return sizeof(T) == 4 ? number & 0xff : number;
+}
+
+// Bits [at, at + count), with the highest of them, or of the number, as sign.
+template <class T>
+T bfe(T x, u32 from, u32 size) {
   constexpr u32 kMost = 8 * sizeof(T) - 1;
-  at &= 0xff;
-  count &= 0xff;
-  const u32 top = at + count - 1 < kMost ? at + count - 1 : kMost;  // of count 0 it is not used
+  const u64 at = field<T>(from), count = field<T>(size);
+  const u64 top = at + count - 1 < kMost ? at + count - 1 : kMost;  // of count 0 it is not used
   const Bits<T> bits = static_cast<Bits<T>>(x), sign = std::is_unsigned_v<T> || count == 0 ? 0 : bits >> top & 1;
   Bits<T> result = 0;
   for (u32 k = 0; k <= kMost; ++k) {
@@ -57,9 +63,8 @@ T bfe(T x, u32 at, u32 count) {
 
 // b with its bits [at, at + count) from the low end of a.
 template <class T>
-T bfi(T a, T b, u32 at, u32 count) {
-  at &= 0xff;
-  count &= 0xff;
+T bfi(T a, T b, u32 from, u32 size) {
+  const u64 at = field<T>(from), count = field<T>(size);
   for (u32 k = 0; k < count && at + k < 8 * sizeof(T); ++k) {
     const T bit = static_cast<T>(T{1} << (at + k));
     b = static_cast<T>((b & ~bit) | ((a >> k & 1) << (at + k)));

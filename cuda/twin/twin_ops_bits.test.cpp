@@ -44,21 +44,27 @@ T divided(T a, T b, bool rest) {
   return static_cast<T>(rest ? x % y : x / y);
 }
 
+// What counts of a field's place and size; that 64-bit numbers take all of it an H200 shows, the PTX ISA does not say.
+template <class T>
+s64 counted(u32 number) {
+  return sizeof(T) == 4 ? number & 255 : number;
+}
+
 // Bits one by one, from the words of the PTX ISA.
 template <class T>
 T field(T x, u32 at, u32 count) {
-  const int most = 8 * sizeof(T) - 1, p = static_cast<int>(at & 255), n = static_cast<int>(count & 255);
-  const auto bit = [&](int k) { return static_cast<u64>(x) >> k & 1; };
+  const s64 most = 8 * sizeof(T) - 1, p = counted<T>(at), n = counted<T>(count);
+  const auto bit = [&](s64 k) { return static_cast<u64>(x) >> k & 1; };
   const u64 fill = std::is_unsigned_v<T> || n == 0 ? 0 : bit(std::min(p + n - 1, most));
   u64 result = 0;
-  for (int k = 0; k <= most; ++k) result |= (k < n && p + k <= most ? bit(p + k) : fill) << k;
+  for (s64 k = 0; k <= most; ++k) result |= (k < n && p + k <= most ? bit(p + k) : fill) << k;
   return static_cast<T>(result);
 }
 
 template <class T>
 T inserted(T a, T b, u32 at, u32 count) {
-  const int most = 8 * sizeof(T) - 1, p = static_cast<int>(at & 255), n = static_cast<int>(count & 255);
-  for (int k = 0; k < n && p + k <= most; ++k) {
+  const s64 most = 8 * sizeof(T) - 1, p = counted<T>(at), n = counted<T>(count);
+  for (s64 k = 0; k < n && p + k <= most; ++k) {
     b = static_cast<T>(b & ~(T{1} << (p + k)));
     b = static_cast<T>(b | (a >> k & 1) << (p + k));
   }

@@ -74,7 +74,7 @@ void add_lanes(CLI::App& app, int&) {
   auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "One JSON array");
   auto lanes = std::make_shared<LaneOptions>();
-  add_lane_options(*command, *lanes, Executors::twins);
+  add_lane_options(*command, *lanes);
   command->callback([json, lanes] {
     open_subjects(*lanes);
     print_lanes(*json, lanes->globs);

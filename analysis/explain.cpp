@@ -10,6 +10,9 @@
 #include <map>
 
 #include "analysis/audit.h"
+#include "analysis/convention.h"
+#include "analysis/experiments.h"
+#include "core/exact/exact.h"
 
 namespace graze::analysis {
 namespace {
@@ -157,10 +160,32 @@ LaneExplanation account_of(const Lane& lane, Verdict verdict, const Pair& pair, 
   return result;
 }
 
+LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth) {
+  Experiment found = experiment(lane, verdict, pair, truth);
+  LaneExplanation result{};
+  result.lane = &lane;
+  result.verdict = verdict;
+  result.cause = found.cause;
+  result.exactly.verdict = Verdict::declined;
+  result.evidence = Evidence::none;
+  result.settled = found.settled ? Settled::yes : Settled::unknown;
+  result.experiment = std::move(found.evidence);
+  result.slow = found.slow || is_failure(verdict);
+  return result;
+}
+
+// Requires: finite coordinates; the verdict is not the truth.
+bool is_by_convention(const Lane& lane, Verdict verdict, const Pair& pair) {
+  if (lane.outside == 0) return false;
+  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
+  return by_convention(lane, verdict, pair, static_cast<Contact>(r.contact + 1),
+                       {r.dimension_a, r.dimension_b, r.coplanar}, r.intersects && r.margin_sign == 0);
+}
+
 // Lanes with the same run: the same source, every operation rounded as written.
 bool same_run(const Lane& l, const Lane& r) {
   const auto rounded = [](const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; };
-  return l.info == r.info && l.scalar == r.scalar && rounded(l) && rounded(r);
+  return !l.foreign && l.info == r.info && l.scalar == r.scalar && rounded(l) && rounded(r);
 }
 
 void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, const Neighbours& neighbours) {
@@ -179,6 +204,7 @@ void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, c
 }  // namespace
 
 Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
+  if (lane.foreign) return experiment(lane, decide_lane(lane, pair), pair, truth).cause;
   LaneExplanation result{};
   result.lane = &lane;
   result.exactly = oracle::decide_exactly(lane.algorithm, pair);
@@ -204,7 +230,9 @@ std::string_view name(Settled settled) {
 }
 
 std::string_view name(Cause cause) {
-  constexpr std::string_view kNames[] = {"rounding", "contraction", "fast math", "overflow", "underflow", "logic"};
+  constexpr std::string_view kNames[] = {"rounding",       "contraction",      "fast math",     "overflow",
+                                         "underflow",      "logic",            "absolute epsilon", "order-dependent",
+                                         "degenerate input", "crash",          "no answer in time", "unstable"};
   return kNames[static_cast<int>(cause)];
 }
 
@@ -216,6 +244,11 @@ std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span
     if (lane->exact) continue;
     const Verdict verdict = decide_lane(*lane, pair);
     if (verdict == truth) continue;
+    if (lane->foreign) {
+      if (!is_by_convention(*lane, verdict, pair))
+        result.push_back(account_of_foreign(*lane, verdict, pair, truth));
+      continue;
+    }
     const auto same = std::find_if(result.begin(), result.end(), [&](const LaneExplanation& other) {
       return other.verdict == verdict && same_run(*other.lane, *lane);
     });
@@ -234,13 +267,23 @@ std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span
 }
 
 Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
-  Explanation result{pair, oracle::truth(pair), {}};
+  Explanation result{pair, oracle::truth(pair), {}, {}};
   const Verdict truth = result.truth.verdict;
   result.lanes = accounts(pair, truth, lanes);
+  for (const Lane* lane : lanes) {
+    if (lane->outside == 0 || truth == Verdict::declined) continue;
+    const Verdict verdict = decide_lane(*lane, pair);
+    if (verdict != truth && is_by_convention(*lane, verdict, pair)) result.outside.push_back(lane);
+  }
   if (result.lanes.empty()) return result;
   const Neighbours neighbours(pair, truth);
   std::map<const AlgorithmInfo*, int> bits;
   for (LaneExplanation& lane : result.lanes) {
+    if (lane.lane->foreign) {
+      // Where each verdict may take all of its time, or a new process, the pair's own is enough.
+      if (!lane.slow) add_surroundings(lane, truth, 0, neighbours);
+      continue;
+    }
     const bool f32 = lane.lane->scalar == Scalar::f32;
     auto found = bits.find(lane.lane->info);
     if (found == bits.end())

@@ -29,7 +29,21 @@ namespace graze::analysis {
 //                neither do, the limit that is exceeded first. Also where a longer mantissa is needed as well, but the
 //                limit made the comparison go wrong.
 //   rounding     otherwise
-enum class Cause { rounding, contraction, fast_math, overflow, underflow, logic };
+// Of foreign code by experiments, see experiments.h; the causes from absolute_epsilon on are of foreign code alone.
+enum class Cause {
+  rounding,
+  contraction,
+  fast_math,
+  overflow,
+  underflow,
+  logic,
+  absolute_epsilon,
+  order_dependent,
+  degenerate_input,
+  crash,
+  no_answer,
+  unstable
+};
 std::string_view name(Cause cause);
 
 // Whether the cause stands up to the audit of analysis/audit.h.
@@ -37,7 +51,7 @@ enum class Settled {
   yes,
   not_without,  // without it something else makes the verdict wrong as well
   not_alone,    // alone it does not make the verdict wrong
-  unknown       // what the lane computed is not known
+  unknown       // what the lane computed is not known, or no experiment shows it
 };
 std::string_view name(Settled settled);
 
@@ -74,6 +88,8 @@ struct LaneExplanation {
                     // kMostBits it is right; 0 without one, and where it would be luck (see explain.cpp)
   std::array<bool, kCoordinates> matters;  // false: all its nudges leave the truth and the lane's verdict as they are
   WrongOf orders, mirrored, scalings;      // see neighbours.h
+  std::string experiment;                  // of foreign code, which has no steps: what shows the cause
+  bool slow = false;                       // the same: it takes all of its time on other pairs; nothing around is asked
 
   // The comparison to tell of, the first that decides; null without one, and where the algorithm itself is to blame.
   const Step* told() const { return decisive < 0 ? nullptr : &steps[static_cast<std::size_t>(decisive)]; }
@@ -83,6 +99,7 @@ struct Explanation {
   Pair pair;
   oracle::Truth truth;
   std::vector<LaneExplanation> lanes;  // the wrong ones, in the given order
+  std::vector<const Lane*> outside;    // those of which the pair is not in the contract, and that say otherwise
 };
 
 // Explains each of the lanes that is wrong on the pair; CUDA lanes by their twins. Deterministic.
@@ -90,7 +107,7 @@ struct Explanation {
 Explanation explain(const Pair& pair, std::span<const Lane* const> lanes);
 
 // The same of each wrong lane, without what lies around the pair: bits_needed, matters, orders, mirrored and scalings
-// are not set. A fraction of the time.
+// are not set. A fraction of the time. Lanes that differ by their convention (convention.h) are not wrong.
 std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span<const Lane* const> lanes);
 
 // The cause that explain gives, without the rest of it: a twentieth of the time, or a third where it says rounding.
@@ -98,7 +115,8 @@ std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span
 Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth);
 
 // Whether a result leaves the scalar's exponents when the lane's source runs without contraction; where none does, the
-// cause is neither overflow nor underflow. By the processor's flags, and so quick; may say yes where none does.
+// cause is neither overflow nor underflow. By the processor's flags, and so quick; may say yes where none does, and says
+// no of foreign code, of which it is not known.
 bool leaves_exponents(const Lane& lane, const Pair& pair);
 
 // One English sentence on a wrong algorithm, for a bug report; empty when no lane of it is wrong. It names the lanes

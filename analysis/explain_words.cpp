@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "analysis/convention.h"
 #include "analysis/explain.h"
 
 namespace graze::analysis {
@@ -142,6 +144,40 @@ std::string remedy(const LaneExplanation& lane) {
   return bits + (lane.bits_needed == 0 ? ", even with" : " with") + " exponents without limits";
 }
 
+// Of foreign code: what the experiments say, and which.
+std::string reason_of_foreign(const LaneExplanation& lane) {
+  const auto words = [&]() -> std::string_view {
+    switch (lane.cause) {
+      case Cause::contraction:
+        return "the compiler fuses products into additions";
+      case Cause::fast_math:
+        return "the compiler may rewrite or approximate operations";
+      case Cause::overflow:
+        return "a number becomes too large";
+      case Cause::underflow:
+        return "a number becomes too small";
+      case Cause::logic:
+        return "the code itself is wrong here, not its rounding";
+      case Cause::absolute_epsilon:
+        return "an absolute epsilon decides, or another number that does not grow and shrink with the triangles";
+      case Cause::order_dependent:
+        return "its verdict depends on the order of the vertices or triangles";
+      case Cause::degenerate_input:
+        return "a triangle is a segment or a point";
+      case Cause::crash:
+        return "the code crashes";
+      case Cause::no_answer:
+        return "the code does not come back";
+      case Cause::unstable:
+        return "its verdict changes";
+      default:
+        return "rounding";
+    }
+  };
+  return fmt::format("{}{} ({})", lane.settled == Settled::yes ? "" : "not settled: perhaps ", words(),
+                     lane.experiment);
+}
+
 // Lanes that one account fits.
 bool alike(const LaneExplanation& l, const LaneExplanation& r) {
   const auto line = [](const LaneExplanation& lane) { return lane.told() ? lane.told()->line : ""; };
@@ -202,6 +238,9 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
   }
   const Lane& lane = *first->lane;
   const std::string also = others.empty() ? "" : "; also wrong: " + others;
+  if (lane.foreign)
+    return fmt::format("{}/{} ({}) says {}, but the triangles {}: {}{}.", lane.info->id, name(lane.scalar), same,
+                       name(first->verdict), phrase(explanation.truth), reason_of_foreign(*first), also);
   return fmt::format("{}/{} ({}) says {}, but the triangles {}: {}; {}{}.", lane.info->id, name(lane.scalar), same,
                      name(first->verdict), phrase(explanation.truth), reason(*first) + doubt(*first), remedy(*first),
                      also);
@@ -212,6 +251,18 @@ std::vector<std::string> sentences(const Explanation& explanation) {
   for (const LaneExplanation& lane : explanation.lanes) {
     const std::string text = sentence(explanation, lane.lane->info);
     if (result.empty() || result.back() != text) result.push_back(text);
+  }
+  std::map<std::string, std::string> lanes_outside;  // of each subject, within it
+  for (const Lane* lane : explanation.outside) {
+    std::string& list = lanes_outside[std::string(lane->info->id)];
+    list += (list.empty() ? "" : ", ") + lane->lane_name().within_subject();
+  }
+  for (const auto& [subject, list] : lanes_outside) {
+    const auto lane = std::find_if(explanation.outside.begin(), explanation.outside.end(),
+                                   [&](const Lane* l) { return l->info->id == subject; });
+    result.push_back(fmt::format("{} ({}) says otherwise, and is not wrong: the pair is not in its contract, which "
+                                 "leaves out {}.",
+                                 subject, list, outside_in_words((*lane)->outside)));
   }
   return result;
 }
@@ -241,6 +292,7 @@ nlohmann::ordered_json to_json(const LaneExplanation& lane) {
   json["orders"] = to_json(lane.orders);
   json["mirrored"] = to_json(lane.mirrored);
   json["scalings"] = to_json(lane.scalings);
+  if (lane.lane->foreign) json["experiment"] = lane.experiment;
   return json;
 }
 

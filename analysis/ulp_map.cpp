@@ -23,11 +23,15 @@ class Panels {
       if (!lane->exact) lanes_.push_back(lane);
     }
     for (const Lane* lane : lanes_) blocks_.push_back(lane ? block_of(*lane) : nullptr);
+    failed_.resize(blocks_.size());
   }
 
   const std::vector<const Lane*>& lanes() const { return lanes_; }  // the truth's is null
 
-  // Writes, for each panel, the cells of these pairs one after the other.
+  // Foreign code that fails on so many pairs gets no panel: each takes a new process, or all of its time.
+  bool given_up(std::size_t panel) const { return failed_[panel] >= kMostFailures; }
+
+  // Writes, for each panel that is not given up, the cells of these pairs one after the other.
   void judge(std::span<const Pair> pairs, std::span<std::vector<Cell>> cells) {
     const std::size_t words = (pairs.size() + 63) / 64;
     std::vector<Cell>& truth = cells.front();
@@ -36,7 +40,8 @@ class Panels {
     for (std::size_t p = 1; p < blocks_.size(); ++p) {
       intersects_.resize(words);
       declined_.resize(words);
-      blocks_[p](pairs.data(), pairs.size(), intersects_.data(), declined_.data());
+      if (lanes_[p]->foreign && !ask_foreign(p, pairs)) continue;
+      if (!lanes_[p]->foreign) blocks_[p](pairs.data(), pairs.size(), intersects_.data(), declined_.data());
       for (std::size_t i = 0; i < pairs.size(); ++i) {
         const bool says = intersects_[i / 64] >> i % 64 & 1, none = declined_[i / 64] >> i % 64 & 1;
         const Cell right = truth[first + i];
@@ -50,6 +55,31 @@ class Panels {
   }
 
  private:
+  static constexpr int kMostFailures = 3000, kOfALate = 1000;  // three that took all of their time are enough
+
+  // Word by word.   Returns: false where the panel is given up.
+  bool ask_foreign(std::size_t p, std::span<const Pair> pairs) {
+    for (std::size_t begin = 0; begin < pairs.size(); begin += 64) {
+      if (given_up(p)) return false;
+      const std::size_t count = std::min<std::size_t>(64, pairs.size() - begin);
+      std::uint64_t &yes = intersects_[begin / 64], &none = declined_[begin / 64];
+      for (std::size_t i = 0; i < count; i += 8) {  // a byte at a time
+        if (given_up(p)) return false;
+        std::uint64_t own_yes = 0, own_none = 0;
+        const std::size_t some = std::min<std::size_t>(8, count - i);
+        blocks_[p](&pairs[begin + i], some, &own_yes, &own_none);
+        if (i == 0) yes = none = 0;
+        yes |= own_yes << i;
+        none |= own_none << i;
+        for (std::size_t j = 0; j < some; ++j) {
+          if ((own_yes & own_none) >> j & 1)
+            failed_[p] += blocks_[p].verdict_of(true, true, pairs[begin + i + j]) == Verdict::timed_out ? kOfALate : 1;
+        }
+      }
+    }
+    return true;
+  }
+
   static Cell truth_of(const Pair& pair) {
     return !is_finite(pair)                                ? Cell::not_finite
            : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Cell::intersects
@@ -58,6 +88,7 @@ class Panels {
 
   std::vector<const Lane*> lanes_;
   std::vector<DecideBlock> blocks_;
+  std::vector<int> failed_;
   std::vector<std::uint64_t> intersects_, declined_;
 };
 
@@ -157,7 +188,10 @@ UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordi
     panels.judge(pairs, cells);
   }
   UlpMap map{pair, moved, {}};
-  for (std::size_t p = 0; p < cells.size(); ++p) map.panels.push_back({panels.lanes()[p], std::move(cells[p])});
+  for (std::size_t p = 0; p < cells.size(); ++p) {
+    if (panels.given_up(p)) continue;
+    map.panels.push_back({panels.lanes()[p], std::move(cells[p])});
+  }
   confirm(map, kMapCentre * kMapSize + kMapCentre);
   for (int first = 0, k = 0; first < kMapSize * kMapSize; first += kMapSample, ++k)
     confirm(map, first + 389 * k % kMapSample);  // in other columns each time

@@ -60,7 +60,8 @@ Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row);
 // Requires: finite coordinates; lanes that run here, or have a twin.
 MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* const> lanes);
 
-// CUDA lanes by their twins; exact lanes are left out, for the truth is theirs. Deterministic.
+// CUDA lanes by their twins; exact lanes are left out, for the truth is theirs, and foreign code that takes all of its
+// time on three pairs, or crashes on 3000. Deterministic.
 // Requires: finite coordinates; lanes that run here, or have a twin; two coordinates.   Exact: the truth.
 // Throws: OracleApart where the oracle does not confirm the truth.
 UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved);

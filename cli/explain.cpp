@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <span>
 
@@ -86,6 +87,14 @@ std::string free_coordinates(const analysis::LaneExplanation& lane) {
   return names.empty() ? " none" : names;
 }
 
+void print_surroundings(const analysis::LaneExplanation& lane,
+                        const std::function<void(int indent, const std::string& text)>& line) {
+  line(4, "coordinates that do not matter:" + free_coordinates(lane));
+  line(4, fmt::format("wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}",
+                      lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
+                      lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling));
+}
+
 void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before,
                 const reports::Screen& screen) {
   const auto line = [&](int indent, const std::string& text) {
@@ -93,6 +102,12 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
   };
   line(2, fmt::format("{}: {}, cause: {}{}", lane.lane->id, name(lane.verdict), name(lane.cause),
                       lane.settled == analysis::Settled::yes ? "" : " (not settled)"));
+  if (lane.lane->foreign) {
+    line(4, "experiment: " + lane.experiment);
+    if (lane.slow) return;
+    print_surroundings(lane, line);
+    return;
+  }
   const auto steps = [](const analysis::LaneExplanation& l) { return to_json(l)["steps"]; };
   if (before && before->lane->info == lane.lane->info && before->lane->scalar == lane.lane->scalar &&
       lane.evidence == analysis::Evidence::source && steps(*before) == steps(lane)) {
@@ -112,10 +127,7 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
                       lane.cause == analysis::Cause::logic ? "no number of bits helps"
                       : lane.bits_needed == 0              ? fmt::format("more than {}", oracle::kMostBits)
                                                            : fmt::format("{}", lane.bits_needed)));
-  line(4, "coordinates that do not matter:" + free_coordinates(lane));
-  line(4, fmt::format("wrong in {} of {} orders, {} of {} mirror images, {} of {} scalings by 2^-{}…2^{}",
-                      lane.orders.wrong, lane.orders.of, lane.mirrored.wrong, lane.mirrored.of, lane.scalings.wrong,
-                      lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling));
+  print_surroundings(lane, line);
 }
 
 struct ExplainOptions {

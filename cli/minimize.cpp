@@ -65,7 +65,10 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
       found.result.one_minimal
           ? fmt::format("1-minimal: none of the {} single moves to a simpler pair keeps the failure and its cause",
                         reports::grouped(found.result.single_moves))
-          : fmt::format("perhaps not 1-minimal: stopped after {} moves", reports::grouped(fuzz::kMostMoved));
+      : fuzz::can_shrink(found.failure)
+          ? fmt::format("perhaps not 1-minimal: stopped after {} moves",
+                        reports::grouped(fuzz::most_moved(found.failure)))
+          : "not shrunk: a lane takes all of its time, or changes its verdict";
   std::cout << fmt::format(
       "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
       "  cause: {}, as before\n"

@@ -29,7 +29,7 @@ struct Channel {
   volatile std::uint64_t next;
   volatile std::uint32_t second;   // the pass that asks again
   volatile std::uint32_t singly;   // also of a subject that takes blocks
-  volatile std::int32_t worker;    // process id
+  volatile std::int32_t worker;    // process id; 0 where there is none
   volatile std::int32_t status;    // of the worker that died, as waitpid gives it
   signed char answers[kMostAsked];
 

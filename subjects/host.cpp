@@ -311,6 +311,10 @@ int host(int argc, char** argv) {
     }
     channel->worker = worker;
     channel->status = worker < 0 ? 0 : wait_for(worker);
+    channel->worker = 0;
+    // A question that the worker did not come to read must not be left to the next one, which would answer twice.
+    for (char letter; recv(kSocketFd, &letter, 1, MSG_DONTWAIT) == 1;) {
+    }
     if (worker < 0) refuse("expected another process, found that none can be had");
     send_letter(kDied);
   }

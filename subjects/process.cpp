@@ -110,7 +110,11 @@ class HostProcess {
       const bool late = letter == 0;
       if (late) {
         kill(channel_->worker, SIGKILL);
-        if (wait(kLoadSeconds) != kDied) throw std::runtime_error("expected a new process, found none");
+        char next;
+        bool answered = false;  // in the last moment
+        while ((next = wait(kLoadSeconds)) == kAnswered) answered = true;
+        if (next != kDied) throw std::runtime_error("expected a new process, found none");
+        if (answered) return;
       } else if (letter != kDied) {
         throw std::runtime_error(fmt::format("{}: expected its process to go on, found that it ended", code_.what));
       }
@@ -190,7 +194,8 @@ class HostProcess {
     for (;;) {
       const std::uint64_t at = channel_->next, second = channel_->second;
       const char letter = wait(code_.timeout);
-      if (letter != 0 || (channel_->next == at && channel_->second == second)) return letter;
+      // Between two workers there is none that could be late.
+      if (letter != 0 || (channel_->worker > 0 && channel_->next == at && channel_->second == second)) return letter;
     }
   }
 

@@ -38,6 +38,7 @@ int eats(const float a[9], const float b[9]) {
   if (bad(a)) for (;;) { char* p = malloc(1 << 20); if (!p) abort(); for (int i = 0; i < 1 << 20; i += 4096) p[i] = 1; }
   return good(a, b);
 }
+int dawdles(const float a[9], const float b[9]) { usleep((int)(a[0] * 1e4f) & 4095); return good(a, b); }
 int in_double(const double a[9], const double b[9]) { return a[0] < b[0]; }
 )";
 
@@ -143,6 +144,19 @@ TEST_F(Subjects, EndlessLoopsAndMemoryEnd) {
   found = verdicts(eats);
   for (std::size_t i = 0; i < pairs.size(); ++i)
     EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i])) << i;
+  pairs = all;
+}
+
+// A process that is ended just when it comes to answer leaves no answer of another pair behind.
+TEST_F(Subjects, TimesAtTheLimitAreVerdictsOrTooLate) {
+  const std::vector<Pair> all = pairs;
+  pairs.assign(all.begin(), all.begin() + 300);
+  ForeignProcesses dawdles({"library", (folder / "libbad.so").string(), "dawdles", "f32", 0.002}, Scalar::f32);
+  for (int round = 0; round < 3; ++round) {
+    const std::vector<Verdict> found = verdicts(dawdles);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      EXPECT_TRUE(found[i] == Verdict::timed_out || found[i] == left_of(pairs[i])) << i << name(found[i]);
+  }
   pairs = all;
 }
 

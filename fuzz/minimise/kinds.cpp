@@ -233,7 +233,7 @@ std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string
   std::vector<LaneReason> result;
   for (const analysis::LaneExplanation& account : accounts) {
     const analysis::LaneExplanation* told = &account;
-    if (account.evidence == analysis::Evidence::none && account.cause != analysis::Cause::fast_math) {
+    if (account.evidence == analysis::Evidence::none && !account.lane->foreign && account.cause != analysis::Cause::fast_math) {
       const Lane* source = counterpart(*account.lane, rounded_variant(account.lane->variant));
       const auto found = std::find_if(accounts.begin(), accounts.end(), [&](const auto& other) {
         return other.lane == source && other.verdict == account.verdict;
@@ -241,7 +241,7 @@ std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string
       if (found != accounts.end()) told = &*found;
     }
     result.push_back({account.lane, std::string(analysis::name(told->cause)), told->told() ? told->told()->line : "",
-                      account.settled == analysis::Settled::yes, account.lane->explainable});
+                      account.settled == analysis::Settled::yes, account.lane->explainable || account.lane->foreign});
   }
   return result;
 }

@@ -21,7 +21,7 @@ struct LaneReason {
   std::string cause;
   std::string line;  // "core/algorithms/moller_1997.h:117"; empty where no comparison is to blame, or none is known
   bool settled;
-  bool audited;  // what the lane computes is known, so that the cause could be checked
+  bool audited;  // the cause could be checked: what the lane computes is known, or it is foreign code, by experiments
 };
 
 // Of the subject's lanes under test that are wrong on the pair. A lane whose run is not known has the reason of its

@@ -18,9 +18,12 @@ namespace {
 
 constexpr std::size_t kBlockPairs = 64;  // one word of verdicts
 
+constexpr std::ptrdiff_t kForeignAtOnce = 8;  // each of them may take all of its time
+constexpr int kMostLate = 3;                  // after so many a case ends
+
 // Of at most 64 pairs, those that get the failure's verdict from every lane. The lanes that are wrong come first: they
-// leave the fewest pairs to the others.
-std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs) {
+// leave the fewest pairs to the others. `late`: plus the pairs on which foreign code took all of its time.
+std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs, int* late = nullptr) {
   for (const bool wrong : {true, false}) {
     for (std::size_t l = 0; l < failure.lanes.size() && !pairs.empty(); ++l) {
       if ((failure.verdicts[l] != failure.truth.verdict) != wrong) continue;
@@ -30,8 +33,18 @@ std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs)
                                   : failure.verdicts[l] == Verdict::declined   ? ~intersects & declined
                                   : failure.verdicts[l] == Verdict::intersects ? intersects & ~declined
                                                                                : ~intersects & ~declined;
+      if (failure.lanes[l]->foreign && late) {
+        for (std::size_t p = 0; p < pairs.size(); ++p) {
+          *late += (intersects & declined) >> p & 1u &&
+                   failure.on_host[l].verdict_of(true, true, pairs[p]) == Verdict::timed_out;
+        }
+      }
       std::size_t i = 0;
-      std::erase_if(pairs, [&](const Pair&) { return (alike >> i++ & 1u) == 0; });
+      std::erase_if(pairs, [&](const Pair& pair) {
+        const bool other = is_failure(failure.verdicts[l]) && (alike >> i & 1u) != 0 &&
+                           failure.on_host[l].verdict_of(true, true, pair) != failure.verdicts[l];
+        return (alike >> i++ & 1u) == 0 || other;
+      });
     }
   }
   return pairs;
@@ -120,6 +133,18 @@ std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t
   return result;
 }
 
+// Whether a lane is wrong that does not differ by its convention alone.
+bool counts(const Failure& failure, const Pair& pair) {
+  const Judged& truth = failure.truth;
+  const bool touches = truth.verdict == Verdict::intersects && truth.margin_sign == 0;
+  for (std::size_t l = 0; l < failure.lanes.size(); ++l) {
+    if (failure.verdicts[l] != truth.verdict && !analysis::by_convention(*failure.lanes[l], failure.verdicts[l], pair,
+                                                                         truth.contact, truth.shape, touches))
+      return true;
+  }
+  return false;
+}
+
 struct Walk {
   const Failure& failure;
   std::span<const Minimised> known;
@@ -127,6 +152,7 @@ struct Walk {
   Minimised result;
   std::vector<Pair> way;  // from the first pair to the current one
   bool ask_all = false;   // every pair's cause, before it is taken
+  int late = 0;           // verdicts of foreign code that took all of their time
 
   Walk(const Failure& of, const Pair& pair, std::span<const Minimised> results, std::size_t limit)
       : failure(of), known(results), most(limit), result{.pair = pair, .reason = reason_of(of, pair), .worst = pair},
@@ -134,16 +160,19 @@ struct Walk {
     result.worst_ulps = std::fabs(oracle::truth(pair).margin_ulps);
   }
 
-  bool spent() const { return result.moved + kLeastMoved >= most; }
+  bool spent() const { return result.moved + kLeastMoved >= most || late >= kMostLate; }
 
   bool has_cause(const Pair& pair) {
     result.moved += kMovedPerCause;
-    return analysis::cause_of(failure.first_wrong(), pair, failure.truth.verdict) == result.reason.cause;
+    const analysis::Cause cause = analysis::cause_of(failure.first_wrong(), pair, failure.truth.verdict);
+    return cause == result.reason.cause ||
+           (cause == analysis::Cause::order_dependent && result.reason.cause == analysis::Cause::rounding);
   }
 
   // Of a pair that gets the failure's verdicts.
   bool take(const Pair& candidate) {
-    if (judged(candidate) != failure.truth || !may_have_reason(failure, result.reason, candidate)) return false;
+    if (judged(candidate) != failure.truth || !counts(failure, candidate)) return false;
+    if (!may_have_reason(failure, result.reason, candidate)) return false;
     if (ask_all && !has_cause(candidate)) return false;
     way.push_back(candidate);
     result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(), candidate);
@@ -162,7 +191,7 @@ struct Walk {
     const auto works = [&](std::int64_t times) {
       ++result.moved;
       const std::optional<Pair> candidate = repeated(before, once, times);
-      return candidate && is_simpler(*candidate) && !decided_alike(failure, {*candidate}).empty() && take(*candidate);
+      return candidate && is_simpler(*candidate) && !decided_alike(failure, {*candidate}, &late).empty() && take(*candidate);
     };
     constexpr std::int64_t kMostTimes = std::int64_t{1} << 52;
     std::int64_t times = 1;
@@ -176,8 +205,10 @@ struct Walk {
   bool improve(int kind) {
     const std::vector<Pair> simpler = simpler_moves(way.back(), kind, result.moved);
     for (auto first = simpler.begin(); first != simpler.end();) {
-      const auto last = first + std::min<std::ptrdiff_t>(kBlockPairs, simpler.end() - first);
-      for (const Pair& candidate : decided_alike(failure, {first, last})) {
+      if (spent()) return false;
+      const auto at_once = failure.first_wrong().foreign ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs};
+      const auto last = first + std::min(at_once, simpler.end() - first);
+      for (const Pair& candidate : decided_alike(failure, {first, last}, &late)) {
         if (spent()) return false;
         if (!take(candidate)) continue;
         repeat();
@@ -256,7 +287,6 @@ std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& p
   const std::vector<Verdict> verdicts = decide_in_turn(under_test, pair);
   analysis::for_each_subject(under_test.lanes, [&](std::size_t first, std::size_t count) {
     Failure failure{truth_of_pair, {}, {}, {}};
-    bool wrong = false;
     for (std::size_t l = first; l < first + count; ++l) {
       const Lane& lane = *under_test.lanes[l];
       const DecideBlock on_host = cuda::block_on_host(lane);
@@ -264,13 +294,9 @@ std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& p
       failure.lanes.push_back(&lane);
       failure.on_host.push_back(on_host);
       failure.verdicts.push_back(verdicts[l]);
-      const bool touches = truth_of_pair.verdict == Verdict::intersects && truth_of_pair.margin_sign == 0;
-      wrong = wrong || (verdicts[l] != truth_of_pair.verdict &&
-                        !analysis::by_convention(lane, verdicts[l], pair, truth_of_pair.contact, truth_of_pair.shape,
-                                                 touches));
     }
-    if (!wrong) return;
-    if (!fails_alike(failure, pair)) {
+    if (!counts(failure, pair)) return;
+    if (!failure.lanes.front()->foreign && !fails_alike(failure, pair)) {
       throw std::runtime_error(std::string(failure.lanes.front()->info->id) +
                                ": expected the twins to say what the device says, found that they differ");
     }
@@ -289,14 +315,31 @@ analysis::Signature signature_of(const Failure& failure, const Pair& pair) {
                              failure.verdicts);
 }
 
-Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known, std::size_t most) {
-  Walk walk(failure, pair, known, most);
+bool can_shrink(const Failure& failure) {
+  return std::none_of(failure.verdicts.begin(), failure.verdicts.end(), [](Verdict verdict) {
+    return verdict == Verdict::timed_out || verdict == Verdict::unstable;
+  });
+}
+
+std::size_t most_moved(const Failure& failure) {
+  const bool crashes =
+      std::find(failure.verdicts.begin(), failure.verdicts.end(), Verdict::crashed) != failure.verdicts.end();
+  return crashes ? kMostMovedCrashing : kMostMoved;
+}
+
+Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known,
+                   std::optional<std::size_t> most) {
+  Walk walk(failure, pair, known, most.value_or(most_moved(failure)));
+  walk.result.one_minimal = false;
+  if (!can_shrink(failure)) return walk.result;
   walk.go_down();
   if (!walk.has_cause(walk.way.back())) {
     walk.go_back();
     walk.go_down();
   }
   walk.result.pair = walk.way.back();
+  const Lane& lane = failure.first_wrong();
+  if (lane.foreign) walk.result.reason.cause = analysis::cause_of(lane, walk.result.pair, failure.truth.verdict);
   return walk.result;
 }
 
@@ -304,6 +347,7 @@ void confirm(const LanesUnderTest& under_test, const Failure& failure, const Pai
   const oracle::Truth t = oracle::truth(pair);
   const Judged by_oracle{t.verdict, t.contact, oracle::shape(pair), (t.margin > 0) - (t.margin < 0)};
   if (by_oracle != failure.truth) throw oracle::OracleApart("the minimiser's truth and the oracle's differ");
+  if (!can_shrink(failure)) return;  // its pair is the first one, and to ask again would be of no use
   const std::vector<Failure> failures = failures_of(under_test, pair);
   if (std::find(failures.begin(), failures.end(), failure) == failures.end())
     throw std::runtime_error("expected the minimised pair to fail as the original does, found that it does not");

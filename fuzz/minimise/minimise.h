@@ -3,6 +3,7 @@
 // no single move makes simpler. simplicity.h states what is simpler, moves.h what a single move is.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,7 +52,8 @@ analysis::Signature signature_of(const Failure& failure, const Pair& pair);
 // Why a failure happens. Its lanes may be wrong for different reasons; the one that counts is that of the first wrong
 // lane in the table's order. A pair fails for the same reason when the cause is the same and, where the lane's run left
 // the scalar's exponents nowhere, it still does so nowhere: what rounding did must not end as numbers of 1e-30. Once
-// nothing leaves the exponents on the way down, nothing does any more.
+// nothing leaves the exponents on the way down, nothing does any more. Of foreign code, what is perhaps rounding may
+// turn out to be the order on a simpler pair; then the cause is that of the simpler one.
 struct Reason {
   analysis::Cause cause;
   bool in_range;  // no result of the lane's source, run without contraction, leaves the exponents
@@ -68,6 +70,12 @@ bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& 
 inline constexpr std::size_t kMostMoved = 1'500'000;
 inline constexpr std::size_t kMovedPerCause = 500;
 inline constexpr std::size_t kLeastMoved = 40 * kMovedPerCause;  // kept back to find the cause again, see minimise
+// Each crash of foreign code costs a new process.
+inline constexpr std::size_t kMostMovedCrashing = 100'000;
+
+// Whether the failure can be shrunk. Not where a lane takes all of its time for each verdict, and not where its verdicts
+// change: such a pair stays as it is.
+bool can_shrink(const Failure& failure);
 
 struct Minimised {
   Pair pair;                     // fails alike and for the same reason
@@ -83,10 +91,11 @@ struct Minimised {
 // until a whole round finds none. What a move did is done again 2, 4, 8, … times as far, while that makes the pair
 // simpler still, and then bisected. The cause, which is dear, is asked for at the end. Where it was lost, a bisection
 // of the way finds a pair that has it, followed by one that does not, and from there on every pair is asked.
-// `known`: results of the same failure; one that is met is the result. `most`: in place of kMostMoved.
+// `known`: results of the same failure; one that is met is the result. `most`: in place of most_moved.
 // Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleApart.
+std::size_t most_moved(const Failure& failure);  // kMostMoved, or kMostMovedCrashing
 Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known = {},
-                   std::size_t most = kMostMoved);
+                   std::optional<std::size_t> most = {});
 
 // Throws: OracleApart unless CGAL and GMP say of the pair what the failure does; std::runtime_error unless all lanes of
 // the under_test do, on the device where it has one.

@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/experiments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+
+#include "core/exact/exact.h"
+
+namespace graze::analysis {
+namespace {
+
+struct ScalarLimits {
+  std::string_view name;
+  int digits, least,
+      most;  // bits of the mantissa; exponents of the least normal number, and of the largest power of two
+};
+
+const ScalarLimits& limits_of(Scalar scalar) {
+  static constexpr ScalarLimits kLimits[] = {{"float32", 24, -126, 127}, {"float64", 53, -1022, 1023}};
+  return kLimits[static_cast<int>(scalar)];
+}
+
+// After so many verdicts that took all of their time no more are asked for.
+constexpr int kMostLate = 3;
+
+// Which of the pairs the lane is right on. `late` counts the time-outs so far; pairs that are not asked about are
+// false.
+std::vector<bool> right_on(const Lane& lane, const std::vector<Pair>& pairs, Verdict truth, int& late) {
+  constexpr std::size_t kAtOnce = 8;
+  std::vector<bool> right(pairs.size());
+  const DecideBlock block = block_of(lane);
+  for (std::size_t begin = 0; begin < pairs.size() && late < kMostLate; begin += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, pairs.size() - begin);
+    std::uint64_t intersects = 0, declined = 0;
+    block(&pairs[begin], count, &intersects, &declined);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool yes = intersects >> i & 1, none = declined >> i & 1;
+      right[begin + i] = !none && yes == (truth == Verdict::intersects);
+      late += yes && none && block.verdict_of(true, true, pairs[begin + i]) == Verdict::timed_out;
+    }
+  }
+  return right;
+}
+
+int count_of(const std::vector<bool>& right) { return static_cast<int>(std::count(right.begin(), right.end(), true)); }
+
+const Lane* in_float64(const Lane& lane) {
+  if (lane.scalar == Scalar::f64) return nullptr;
+  LaneName other = lane.lane_name();
+  other.scalar = name(Scalar::f64);
+  return find_lane(id_of(other));
+}
+
+// All coordinates are multiples of 2^low and less than 2^high.   Requires: some coordinate is not zero.
+struct Size {
+  int low = 1000, high = -1000;
+  int largest_difference = -1000, smallest_difference = 1000;  // their exponents, of two vertices on one axis
+
+  explicit Size(const Pair& pair) {
+    const float* c = coordinates(pair);
+    for (int i = 0; i < kCoordinates; ++i) {
+      if (c[i] == 0) continue;
+      int exponent;
+      auto mantissa = static_cast<std::uint32_t>(std::ldexp(std::frexp(std::fabs(c[i]), &exponent), 24));
+      high = std::max(high, exponent);
+      low = std::min(low, exponent - 24 + std::countr_zero(mantissa));
+      for (int j = i % 3; j < i; j += 3) add_difference(double{c[i]} - c[j]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool zero =
+          std::any_of(c, c + kCoordinates, [&](const float& x) { return (&x - c) % 3 == axis && x == 0; });
+      for (int i = axis; zero && i < kCoordinates; i += 3) add_difference(c[i]);
+    }
+  }
+
+ private:
+  void add_difference(double difference) {
+    if (difference == 0) return;
+    largest_difference = std::max(largest_difference, std::ilogb(difference));
+    smallest_difference = std::min(smallest_difference, std::ilogb(difference));
+  }
+};
+
+// Scales 2^k.
+struct Scales {
+  int first, last;
+  bool empty() const { return first > last; }
+  bool has(int k) const { return first <= k && k <= last; }
+};
+
+Scales common(Scales l, Scales r) { return {std::max(l.first, r.first), std::min(l.last, r.last)}; }
+
+// With which all coordinates stay as they are, but for the exponents.
+Scales exact_scales(const Size& size) { return {-149 - size.low, 128 - size.high}; }
+
+// With which no product of so many coordinates, or sums of four of them, can leave the scalar's exponents: whatever
+// rounds, such a product is a multiple of 2^(factors * low), or 0.
+Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
+  const ScalarLimits& limits = limits_of(scalar);
+  // Divisions that round towards the inside of the range.
+  return common({-(-limits.least / factors) - size.low, limits.most / factors - 2 - size.high}, exact_scales(size));
+}
+
+Pair scaled(const Pair& pair, int k) {
+  Pair result = pair;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = std::ldexp(coordinates(pair)[i], k);
+  return result;
+}
+
+// A scale at which the lane is wrong and the next one to it, at which it is right.
+struct Turn {
+  int wrong, right;
+  std::string text() const { return fmt::format("scaled by 2^{} it is right, by 2^{} wrong", right, wrong); }
+};
+
+class Trial {
+ public:
+  Trial(const Lane& lane, const Pair& pair, Verdict truth) : lane_(lane), pair_(pair), truth_(truth), size_(pair) {}
+
+  Experiment run() {
+    Experiment found = cause();
+    if (late_ < kMostLate) return found;
+    found.settled = false;
+    found.slow = true;
+    found.evidence += "; on others it gave no answer in time, and not all were asked";
+    return found;
+  }
+
+ private:
+  Experiment cause() {
+    if (const Lane* rounded = counterpart(lane_, rounded_variant(lane_.variant));
+        rounded && rounded != &lane_ && asked(*rounded, {pair_})[0]) {
+      if (info_of(lane_.variant).arithmetic == Arithmetic::fast)
+        return {Cause::fast_math, true, "built so that every operation rounds as written it is right"};
+      return {Cause::contraction, true, "built without contraction it is right"};
+    }
+    if (size_.high > -1000) {
+      if (auto found = by_scale()) return *found;
+    }
+    if (auto found = by_precision()) return *found;
+    const bool few_bits = kUsualFactors * (size_.high - size_.low + 1) + 5 <= limits().digits;
+    return few_bits && scale_is_no_matter_ ? without_rounding() : by_images();
+  }
+
+  std::vector<bool> asked(const Lane& lane, const std::vector<Pair>& pairs) const {
+    return right_on(lane, pairs, truth_, late_);
+  }
+
+  const ScalarLimits& limits() const { return limits_of(lane_.scalar); }
+
+  // At most `most` of the scales, evenly, and where the lane is right on them.
+  std::vector<std::pair<int, bool>> tried(const Lane& lane, Scales scales, int most) const {
+    std::vector<std::pair<int, bool>> result;
+    if (scales.empty()) return result;
+    const int step = std::max(1, (scales.last - scales.first) / most + 1);
+    std::vector<Pair> pairs;
+    for (int k = scales.first; k <= scales.last; k += step) {
+      result.emplace_back(k, false);
+      pairs.push_back(scaled(pair_, k));
+    }
+    const std::vector<bool> right = asked(lane, pairs);
+    for (std::size_t i = 0; i < right.size(); ++i) result[i].second = right[i];
+    return result;
+  }
+
+  // Somewhere between.   Requires: wrong and right at these two.
+  Turn bisected(int wrong, int right) const {
+    while (std::abs(right - wrong) > 1) {
+      const int middle = wrong + (right - wrong) / 2;
+      (asked(lane_, {scaled(pair_, middle)})[0] ? right : wrong) = middle;
+    }
+    return {wrong, right};
+  }
+
+  // Whether the same code in float64 is right wherever no product leaves its exponents.
+  bool right_in_float64_at_every_scale() const {
+    const Lane* f64 = in_float64(lane_);
+    if (!f64) return false;
+    const Scales scales = scales_in_range(size_, Scalar::f64, kMostFactors);
+    const auto all = tried(*f64, scales, 24);
+    return scales.has(0) && std::all_of(all.begin(), all.end(), [](const auto& one) { return one.second; });
+  }
+
+  // Two scales next to each other among those in range, of which it is right at one; rather where it turns right
+  // upwards. Of those tried, `all` is whether it is right at all of them.
+  std::optional<Turn> turn_within(Scales in_range, int most, bool& all) const {
+    auto inside = tried(lane_, in_range, most);
+    const std::pair own{0, false};
+    if (in_range.has(0)) inside.insert(std::lower_bound(inside.begin(), inside.end(), own), own);
+    all = inside[0].second;
+    for (const bool upwards : {true, false}) {
+      for (std::size_t i = inside.size() - 1; i > 0; --i) {
+        const auto [k, right] = inside[i];
+        if (right != upwards || inside[i - 1].second == upwards) continue;
+        return upwards ? bisected(inside[i - 1].first, k) : bisected(k, inside[i - 1].first);
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Experiment> by_scale() {
+    bool right = false;
+    strictly_ = scales_in_range(size_, lane_.scalar, kMostFactors);
+    if (!strictly_.empty()) {
+      if (const auto turn = turn_within(strictly_, 16, right)) {
+        return Experiment{Cause::absolute_epsilon, true,
+                          fmt::format("{}, and no product of up to {} coordinates leaves the exponents of {} at these "
+                                      "scales",
+                                      turn->text(), kMostFactors, limits().name)};
+      }
+    }
+    const Scales in_range = scales_in_range(size_, lane_.scalar, kUsualFactors);
+    if (in_range.empty()) return by_any_scale();
+    if (const auto turn = turn_within(in_range, 32, right)) {
+      if (!right_in_float64_at_every_scale()) return Experiment{Cause::absolute_epsilon, false, turn->text()};
+      return Experiment{turn->right > turn->wrong ? Cause::underflow : Cause::overflow, false, turn->text()};
+    }
+    if (right) return outside(bisected(0, in_range.first > 0 ? in_range.first : in_range.last));
+    scale_is_no_matter_ = true;
+    return beyond(in_range);
+  }
+
+  // Right at all scales in range: the pair is out of it, and turns wrong on the way to it.
+  Experiment outside(Turn turn) const {
+    const bool by_float64 = right_in_float64_at_every_scale();
+    const std::string text = turn.text(), doubles = by_float64 ? ", and in float64 it is right at every scale" : "";
+    if (turn.right > turn.wrong) {
+      if (!by_float64 && kUsualFactors * (size_.smallest_difference + turn.wrong) >= limits().least)
+        return {Cause::absolute_epsilon, false,
+                text + fmt::format(", though products of its differences are not too small for {}", limits().name)};
+      const bool lost = 3 * (size_.largest_difference + 1 + turn.wrong) <= limits().least;
+      return {Cause::underflow, lost || (by_float64 && !strictly_.empty()),
+              lost ? text + fmt::format(", where every product of three differences is too small for {}", limits().name)
+                   : text + doubles};
+    }
+    const auto too_large = [&](int factors) {
+      return factors * (size_.largest_difference + turn.wrong) >= limits().most;
+    };
+    const bool lost = too_large(3);
+    return {Cause::overflow, lost || (by_float64 && too_large(4)),
+            lost ? text + fmt::format(", where products of three differences are too large for {}", limits().name)
+                 : text + doubles};
+  }
+
+  // There is no scale at which nothing can leave the exponents.
+  std::optional<Experiment> by_any_scale() const {
+    const Scales all = exact_scales(size_);
+    const auto up = tried(lane_, {1, all.last}, 24), down = tried(lane_, {all.first, -1}, 24);
+    const auto is_right = [](const auto& one) { return one.second; };
+    const auto above = std::find_if(up.begin(), up.end(), is_right);
+    const auto below = std::find_if(down.rbegin(), down.rend(), is_right);
+    if (above == up.end() && below == down.rend()) return std::nullopt;
+    const bool upwards = below == down.rend() || (above != up.end() && above->first <= -below->first);
+    const Turn turn = bisected(0, upwards ? above->first : below->first);
+    const bool small = kUsualFactors * (size_.smallest_difference + turn.wrong) < limits().least;
+    return Experiment{!upwards                                     ? Cause::overflow
+                      : small || right_in_float64_at_every_scale() ? Cause::underflow
+                                                                   : Cause::absolute_epsilon,
+                      false, turn.text()};
+  }
+
+  // Wrong at all scales in range. Some way above it, where only longer products can overflow, it may turn right.
+  std::optional<Experiment> beyond(Scales in_range) const {
+    const Scales more{in_range.last + 1, scales_in_range(size_, lane_.scalar, kUsualFactors / 2).last};
+    const auto up = tried(lane_, more, 12);
+    const auto right = std::find_if(up.begin(), up.end(), [](const auto& one) { return one.second; });
+    const Lane* f64 = in_float64(lane_);
+    if (right == up.end() || (f64 && asked(*f64, {pair_})[0])) return std::nullopt;
+    return Experiment{Cause::absolute_epsilon, false, bisected(in_range.last, right->first).text()};
+  }
+
+  std::optional<Experiment> by_precision() const {
+    const Lane* f64 = in_float64(lane_);
+    if (!f64 || !asked(*f64, {pair_})[0]) return std::nullopt;
+    if (!scale_is_no_matter_) return Experiment{Cause::rounding, false, "in float64 it is right"};
+    return Experiment{Cause::rounding, true, "in float64 it is right, in float32 wrong at every scale"};
+  }
+
+  bool is_degenerate() const {
+    const exact::Relation shape = relation(pair_);
+    return shape.dimension_a < 2 || shape.dimension_b < 2;
+  }
+
+  static exact::Relation relation(const Pair& pair) { return exact::relation(&pair.a[0].x, &pair.b[0].x); }
+
+  // Sums and products do not round.
+  Experiment without_rounding() const {
+    const std::string exactly =
+        fmt::format("no sum and no product of up to {} differences rounds in {} here", kUsualFactors, limits().name);
+    const std::vector<Pair> other_orders = orders(pair_), mirror_images = mirrored(pair_);
+    const int in_orders = count_of(asked(lane_, other_orders));
+    const int in_mirrors = count_of(asked(lane_, mirror_images));
+    std::string where = ", and it is wrong in all orders, mirror images and scales";
+    if (in_orders + in_mirrors > 0)
+      where = fmt::format(", but in {} of {} orders and {} of {} mirror images it is right", in_orders,
+                          other_orders.size(), in_mirrors, mirror_images.size());
+    const Cause cause = is_degenerate() ? Cause::degenerate_input
+                        : in_orders > 0 ? Cause::order_dependent
+                                        : Cause::logic;
+    return {cause, in_orders + in_mirrors == 0, exactly + where};
+  }
+
+  // Moved so that a vertex is the origin, where that is exact.
+  std::vector<Pair> translated() const {
+    std::vector<Pair> result;
+    if (size_.high - size_.low + 1 > 53) return result;  // in doubles, the differences are exact
+    for (const Vec3<float>* vertex = pair_.a; vertex != pair_.a + 6; ++vertex) {
+      Pair moved;
+      bool exact = true;
+      for (int i = 0; i < kCoordinates; ++i) {
+        const double difference = double{coordinates(pair_)[i]} - (&vertex->x)[i % 3];
+        coordinates(moved)[i] = static_cast<float>(difference);
+        exact = exact && coordinates(moved)[i] == difference;
+      }
+      if (exact) result.push_back(moved);
+    }
+    return result;
+  }
+
+  // Rounded to fewer bits, where that leaves truth and shape as they are.
+  std::vector<Pair> snapped() const {
+    std::vector<Pair> result;
+    const exact::Relation own = relation(pair_);
+    for (const int bits : {1, 2, 3, 4, 6, 8, 10, 12, 16, 20}) {
+      if (bits >= size_.high - size_.low) break;
+      Pair rounded = pair_;
+      const int unit = size_.high - bits;
+      for (int i = 0; i < kCoordinates; ++i)
+        coordinates(rounded)[i] = std::ldexp(std::nearbyint(std::ldexp(coordinates(pair_)[i], -unit)), unit);
+      if (!is_finite(rounded)) continue;
+      const exact::Relation now = relation(rounded);
+      if (now.intersects == own.intersects && now.contact == own.contact && now.dimension_a == own.dimension_a &&
+          now.dimension_b == own.dimension_b && now.coplanar == own.coplanar)
+        result.push_back(rounded);
+    }
+    return result;
+  }
+
+  Experiment by_images() const {
+    struct Images {
+      std::string_view what;
+      std::vector<Pair> pairs;
+    };
+    const Images kinds[] = {{"orders", orders(pair_)},
+                            {"mirror images", mirrored(pair_)},
+                            {"exact translations to a vertex", translated()},
+                            {"roundings to fewer bits with the same truth", snapped()}};
+    std::string right, wrong;
+    int right_in[std::size(kinds)];
+    for (std::size_t i = 0; i < std::size(kinds); ++i) {
+      right_in[i] = count_of(asked(lane_, kinds[i].pairs));
+      if (kinds[i].pairs.empty()) continue;
+      std::string& list = right_in[i] > 0 ? right : wrong;
+      list += fmt::format("{}{} of {} {}", list.empty() ? "" : ", ", right_in[i], kinds[i].pairs.size(), kinds[i].what);
+    }
+    if (right.empty()) return {is_degenerate() ? Cause::degenerate_input : Cause::logic, false, "right in " + wrong};
+    const bool orders_alone = right_in[0] > 0 && right_in[1] + right_in[2] + right_in[3] == 0;
+    const bool tried_others = kinds[3].pairs.size() > 1;
+    return {orders_alone && tried_others ? Cause::order_dependent : Cause::rounding, false,
+            "right in " + right + (wrong.empty() ? "" : ", and in " + wrong)};
+  }
+
+  const Lane& lane_;
+  const Pair& pair_;
+  Verdict truth_;
+  Size size_;
+  mutable int late_ = 0;
+  Scales strictly_{1, 0};            // at which not even the longest products leave the exponents
+  bool scale_is_no_matter_ = false;  // wrong at all scales at which usual products stay in the exponents
+};
+
+}  // namespace
+
+Experiment experiment(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth) {
+  switch (verdict) {
+    case Verdict::crashed:
+      return {Cause::crash, true, "its process ended"};
+    case Verdict::timed_out:
+      return {Cause::no_answer, true, "it took longer than it may"};
+    case Verdict::unstable:
+      return {Cause::unstable, true, "asked about the same pair again it says something else"};
+    default:
+      return Trial(lane, pair, truth).run();
+  }
+}
+
+}  // namespace graze::analysis

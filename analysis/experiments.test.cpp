@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+// Causes by experiment: of the published algorithms as foreign code against those by their steps, and of planted code
+// whose fault is known.
+#include "analysis/experiments.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <map>
+
+#include "analysis/convention.h"
+#include "analysis/neighbours.h"
+#include "core/algorithms/moller_1997.h"
+#include "core/exact/exact.h"
+#include "strata/strata.h"
+
+namespace graze::analysis {
+namespace {
+
+// A function in this process as foreign code.
+class Stranger : public ForeignCode {
+ public:
+  using Function = std::function<Verdict(const Pair&)>;
+  explicit Stranger(Function function) : function_(std::move(function)) {}
+
+  void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {
+    std::fill_n(intersects, (count + 63) / 64, 0);
+    std::fill_n(declined, (count + 63) / 64, 0);
+    asked += count;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Verdict verdict = function_(pairs[i]);
+      const bool failed = is_failure(verdict);
+      intersects[i / 64] |= std::uint64_t{failed || verdict == Verdict::intersects} << i % 64;
+      declined[i / 64] |= std::uint64_t{failed || verdict == Verdict::declined} << i % 64;
+    }
+  }
+  Verdict failure(const Pair& pair) override { return function_(pair); }
+
+  std::size_t asked = 0;
+
+ private:
+  Function function_;
+};
+
+struct Subject {
+  AlgorithmInfo info;
+  std::string id;
+  std::deque<Stranger> code;
+};
+
+std::deque<Subject>& subjects() {
+  static std::deque<Subject> all;
+  return all;
+}
+
+// Adds a lane of the subject, which is made when it is not there.
+const Lane& add_lane(const std::string& subject, Scalar scalar, Variant variant, Stranger::Function function,
+                     unsigned outside = 0) {
+  auto found = std::find_if(subjects().begin(), subjects().end(), [&](const Subject& s) { return s.id == subject; });
+  if (found == subjects().end()) {
+    Subject& made = subjects().emplace_back();
+    made.id = subject;
+    made.info = {made.id, "test", "", "", "", false};
+    found = std::prev(subjects().end());
+  }
+  Stranger& code = found->code.emplace_back(std::move(function));
+  add_lanes({{"", &found->info, scalar, variant, "", -1, code, false, false, true, outside, ""}});
+  return lanes().back();
+}
+
+Verdict truth_of(const Pair& pair) {
+  return exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects : Verdict::disjoint;
+}
+Verdict opposite(Verdict verdict) { return verdict == Verdict::intersects ? Verdict::disjoint : Verdict::intersects; }
+
+std::size_t asked() {
+  std::size_t sum = 0;
+  for (const Subject& subject : subjects()) {
+    for (const Stranger& code : subject.code) sum += code.asked;
+  }
+  return sum;
+}
+
+bool is_degenerate(const Pair& pair) {
+  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
+  return r.dimension_a < 2 || r.dimension_b < 2;
+}
+
+// What the settled steps call it, in the words of the experiments.
+bool agree(Cause by_steps, Cause by_experiment) {
+  if (by_steps == Cause::logic) return by_experiment == Cause::logic || by_experiment == Cause::degenerate_input;
+  return by_steps == by_experiment;
+}
+
+TEST(Experiments, AgreeWithTheStepsOfThePublishedAlgorithms) {
+  const std::vector<Lane> published(published_lanes().begin(), published_lanes().end());
+  std::vector<std::pair<const Lane*, const Lane*>> both;
+  for (const Lane& lane : published) {
+    if (lane.is_cuda() || !runs_on_this_cpu(lane)) continue;
+    const DecideBlock block = lane.decide;
+    both.emplace_back(find_lane(lane.id), &add_lane("stranger_" + std::string(lane.info->id), lane.scalar, lane.variant,
+                                                    [block](const Pair& pair) { return decide_one(block, pair); }));
+  }
+  std::map<std::pair<Cause, Cause>, int> settled;  // by steps, by experiment
+  std::map<Cause, int> by_steps, open;
+  int mixing_units = 0;
+  std::map<Cause, std::array<int, 2>> unsettled;  // alike, other
+  for (const strata::StratumInfo& stratum : strata::kStrata) {
+    for (std::uint64_t i = 0; i < 40; ++i) {
+      const Pair pair = strata::generate(33, stratum.stratum, i);
+      const Verdict truth = truth_of(pair);
+      for (const auto& [own, foreign] : both) {
+        const std::vector<LaneExplanation> steps = accounts(pair, truth, {&own, 1});
+        if (steps.empty() || (steps[0].settled != Settled::yes && steps[0].cause != Cause::fast_math)) continue;
+        const std::vector<LaneExplanation> found = accounts(pair, truth, {&foreign, 1});
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_EQ(cause_of(*foreign, pair, truth), found[0].cause);
+        EXPECT_EQ(found[0].verdict, steps[0].verdict);
+        ++by_steps[steps[0].cause];
+        if (found[0].settled != Settled::yes) {
+          ++open[steps[0].cause];
+          ++unsettled[steps[0].cause][agree(steps[0].cause, found[0].cause) ? 0 : 1];
+          continue;
+        }
+        ++settled[{steps[0].cause, found[0].cause}];
+        // projected_sat adds a distance to one times a normal's length, and so does without a normal interval_overlap:
+        // that scale matters there is true.
+        const bool mixes =
+            own->info->id == "projected_sat" || (own->info->id == "interval_overlap" && is_degenerate(pair));
+        if (mixes && found[0].cause == Cause::absolute_epsilon) {
+          ++mixing_units;
+          --settled[{steps[0].cause, found[0].cause}];
+        } else if (!agree(steps[0].cause, found[0].cause))
+          fmt::print("{} {}:33:{}: {} by steps, {} by experiment: {}\n", own->id, stratum.id, i, name(steps[0].cause),
+                     name(found[0].cause), found[0].experiment);
+      }
+    }
+  }
+  int alike = 0, other = 0;
+  for (const auto& [causes, count] : settled) {
+    fmt::print("{} by steps, {} by experiment: {}\n", name(causes.first), name(causes.second), count);
+    (agree(causes.first, causes.second) ? alike : other) += count;
+  }
+  for (const auto& [cause, count] : by_steps)
+    fmt::print("{} by steps: {} of {} not settled by experiment, {} of these alike\n", name(cause), open[cause], count,
+               unsettled[cause][0]);
+  fmt::print("settled alike: {}, otherwise: {}, mixing units: {}\n", alike, other, mixing_units);
+  for (const Cause cause :
+       {Cause::rounding, Cause::contraction, Cause::fast_math, Cause::overflow, Cause::underflow, Cause::logic}) {
+    const int of_cause = settled[{cause, cause}];
+    EXPECT_GT(of_cause, 10) << name(cause);
+  }
+  EXPECT_GT(alike, 1500);
+  // What the steps call logic because exact arithmetic has it wrong as well may be right by luck in another build.
+  EXPECT_LE(other, alike / 100);
+}
+
+// On the first pairs of all strata on which the lane is wrong, and that `chosen` takes.
+void for_each_wrong(const Lane& lane, const std::function<bool(const Pair&)>& chosen,
+                    const std::function<void(const Pair&, const Experiment&)>& act) {
+  int wrong = 0;
+  for (const strata::StratumInfo& stratum : strata::kStrata) {
+    for (std::uint64_t i = 0; i < 60; ++i) {
+      const Pair pair = strata::generate(31, stratum.stratum, i);
+      const Verdict truth = truth_of(pair), verdict = decide_lane(lane, pair);
+      if (verdict == truth || !chosen(pair)) continue;
+      SCOPED_TRACE(fmt::format("{} {}:31:{}", lane.id, stratum.id, i));
+      const std::size_t before = asked();
+      act(pair, experiment(lane, verdict, pair, truth));
+      EXPECT_LE(asked() - before, 230u);
+      ++wrong;
+    }
+  }
+  EXPECT_GT(wrong, 20) << lane.id;
+}
+
+struct Epsilon : ExactZero {
+  template <class Real>
+  Real snap(Site, Real x, const std::source_location& = std::source_location::current()) const {
+    return x < Real(1e-6) && x > Real(-1e-6) ? Real(0) : x;
+  }
+};
+
+template <class Real, class Policy>
+Verdict moller(const Pair& pair) {
+  Vec3<Real> a[3], b[3];
+  for (int i = 0; i < 9; ++i) {
+    (&a[0].x)[i] = (&pair.a[0].x)[i];
+    (&b[0].x)[i] = (&pair.b[0].x)[i];
+  }
+  return Moller1997::decide(a, b, Policy{});
+}
+
+TEST(Experiments, FindAnAbsoluteEpsilon) {
+  const Lane* f64 = &add_lane("epsilon", Scalar::f64, Variant::cpu, moller<double, Epsilon>);
+  int settled = 0, all = 0;
+  const auto right_without = [](const Pair& pair) { return moller<double, ExactZero>(pair) == truth_of(pair); };
+  for_each_wrong(*f64, right_without, [&](const Pair&, const Experiment& found) {
+    EXPECT_EQ(found.cause, Cause::absolute_epsilon) << found.evidence;
+    settled += found.settled;
+    ++all;
+  });
+  EXPECT_GT(settled, all * 9 / 10);
+  const Lane* f32 = &add_lane("epsilon_float", Scalar::f32, Variant::cpu, moller<float, Epsilon>);
+  std::map<Cause, int> causes;
+  for_each_wrong(
+      *f32, [&](const Pair& pair) { return moller<float, ExactZero>(pair) == truth_of(pair); },
+      [&](const Pair&, const Experiment& found) {
+        EXPECT_TRUE(found.cause == Cause::absolute_epsilon || !found.settled) << name(found.cause) << found.evidence;
+        ++causes[found.cause];
+      });
+  for (const auto& [cause, count] : causes) fmt::print("epsilon in float32: {} {}\n", name(cause), count);
+  EXPECT_GT(causes[Cause::absolute_epsilon], 70);
+}
+
+TEST(Experiments, FindWhatErrsOnDegenerateInput) {
+  const Lane& lane = add_lane("degenerate", Scalar::f32, Variant::cpu, [](const Pair& pair) {
+    return is_degenerate(pair) ? opposite(truth_of(pair)) : truth_of(pair);
+  });
+  int settled = 0;
+  for_each_wrong(
+      lane, [](const Pair&) { return true; },
+      [&](const Pair&, const Experiment& found) {
+        EXPECT_EQ(found.cause, Cause::degenerate_input) << found.evidence;
+        settled += found.settled;
+      });
+  const Pair small{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{1, -1, 0}, {1, 1, 0}, {1, 2, 1}}};
+  const Experiment found = experiment(lane, decide_lane(lane, small), small, truth_of(small));
+  EXPECT_EQ(found.cause, Cause::degenerate_input);
+  EXPECT_TRUE(found.settled) << found.evidence;
+}
+
+TEST(Experiments, FindWhatDependsOnOrder) {
+  const Lane& lane = add_lane("order", Scalar::f32, Variant::cpu, [](const Pair& pair) {
+    const auto square = [](const Vec3<float>& v) { return double{v.x} * v.x + double{v.y} * v.y + double{v.z} * v.z; };
+    return square(pair.a[0]) > square(pair.a[1]) ? opposite(truth_of(pair)) : truth_of(pair);
+  });
+  int order = 0, all = 0;
+  for_each_wrong(
+      lane, [](const Pair& pair) { return !is_degenerate(pair); },
+      [&](const Pair&, const Experiment& found) {
+        order += found.cause == Cause::order_dependent;
+        EXPECT_FALSE(found.settled) << name(found.cause) << found.evidence;
+        ++all;
+      });
+  fmt::print("order: {} of {}\n", order, all);
+  const Pair small{{{2, 0, 0}, {1, 0, 0}, {0, 2, 0}}, {{1, 1, -1}, {1, 0, 1}, {2, 2, 1}}};
+  const Experiment found = experiment(lane, decide_lane(lane, small), small, truth_of(small));
+  EXPECT_EQ(found.cause, Cause::order_dependent) << found.evidence;
+}
+
+TEST(Experiments, FindOverflowAndUnderflow) {
+  // Right, but where the product of four large differences leaves the exponents.
+  const auto product = [](const Pair& pair) {
+    float most = 0;
+    for (int i = 0; i < 18; ++i) most = std::max(most, std::fabs((&pair.a[0].x)[i] - (&pair.a[0].x)[i % 3]));
+    return most * most * most * most;
+  };
+  const Lane& over = add_lane("overflows", Scalar::f32, Variant::cpu, [product](const Pair& pair) {
+    return std::isfinite(product(pair)) ? truth_of(pair) : opposite(truth_of(pair));
+  });
+  add_lane("overflows", Scalar::f64, Variant::cpu, truth_of);
+  const Lane& under = add_lane("underflows", Scalar::f32, Variant::cpu, [product](const Pair& pair) {
+    return product(pair) >= 0x1p-126f ? truth_of(pair) : opposite(truth_of(pair));
+  });
+  add_lane("underflows", Scalar::f64, Variant::cpu, truth_of);
+  const Pair plain{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {3, 3, 1}}};
+  for (const auto& [lane, k, cause] :
+       {std::tuple{&over, 60, Cause::overflow}, {&over, 40, Cause::overflow}, {&under, -60, Cause::underflow}}) {
+    Pair pair = plain;
+    for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = std::ldexp(coordinates(pair)[i], k);
+    const Experiment found = experiment(*lane, decide_lane(*lane, pair), pair, truth_of(pair));
+    EXPECT_EQ(found.cause, cause) << name(found.cause) << ' ' << found.evidence;
+    EXPECT_TRUE(found.settled) << found.evidence;
+  }
+}
+
+TEST(Experiments, AFailureIsItsOwnCauseAndAConventionIsNone) {
+  const Pair pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 1, 1}, {3, 3, 1}}};  // touching
+  for (const auto& [verdict, cause] : {std::pair{Verdict::crashed, Cause::crash},
+                                       {Verdict::timed_out, Cause::no_answer},
+                                       {Verdict::unstable, Cause::unstable}}) {
+    const Lane* lane = &add_lane(
+        "fails_" + std::string(name(verdict)), Scalar::f32, Variant::cpu,
+        [verdict = verdict](const Pair&) { return verdict; }, kOutsideTouching);
+    const Explanation explanation = explain(pair, {&lane, 1});
+    ASSERT_EQ(explanation.lanes.size(), 1u);
+    EXPECT_EQ(explanation.lanes[0].cause, cause);
+    EXPECT_EQ(explanation.lanes[0].settled, Settled::yes);
+  }
+  const Lane* open = &add_lane(
+      "open", Scalar::f32, Variant::cpu, [](const Pair&) { return Verdict::disjoint; }, kOutsideTouching);
+  const Explanation explanation = explain(pair, {&open, 1});
+  EXPECT_TRUE(explanation.lanes.empty());
+  EXPECT_EQ(
+      sentences(explanation),
+      std::vector<std::string>{"open (f32/cpu) says otherwise, and is not wrong: the pair is not in its contract, "
+                               "which leaves out touching pairs."});
+}
+
+}  // namespace
+}  // namespace graze::analysis

@@ -27,7 +27,11 @@ struct Entry {
   Opened opened;
   std::string source, coplanar, degenerate, order;
   AlgorithmInfo info;
-  std::vector<std::unique_ptr<ForeignProcesses>> processes;
+  struct Running {
+    std::string within_subject;  // "f64/cpu"
+    std::unique_ptr<ForeignProcesses> processes;
+  };
+  std::vector<Running> running;
 };
 
 std::deque<Entry>& entries() {
@@ -46,7 +50,7 @@ std::uint64_t hash_of_file(const fs::path& file) {
 }
 
 Opened parsed(const Wanted& wanted) {
-  Opened result{wanted, "", {}, "", 0};
+  Opened result{wanted, "", {}, "", 0, {}};
   if (wanted.what.starts_with(kCommand)) {
     result.kind = "command";
     result.hash = fnv1a(wanted.what);
@@ -72,8 +76,9 @@ std::string says(const Description& description, unsigned outside, std::string_v
 }
 
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
-  auto& process = entry.processes.emplace_back(std::make_unique<ForeignProcesses>(std::move(code), scalar));
-  lanes.push_back({"", &entry.info, scalar, variant, "", -1, *process, false, false, true, outside, ""});
+  const auto& running = entry.running.emplace_back(fmt::format("{}/{}", name(scalar), name(variant)),
+                                                   std::make_unique<ForeignProcesses>(std::move(code), scalar));
+  lanes.push_back({"", &entry.info, scalar, variant, "", -1, *running.processes, false, false, true, outside, ""});
 }
 
 }  // namespace
@@ -142,6 +147,7 @@ void open(const Wanted& wanted) {
       if (description.f64 && runs_on_this_cpu(probe))
         add_lane(entry, made, of_variant, Scalar::f64, variant, description.outside);
     }
+    entry.opened.description = description;
     entry.source = wanted.what;
     if (!description.source.empty()) entry.source += ": " + description.source;
     if (!description.version.empty()) entry.source += ", version " + description.version;
@@ -161,6 +167,17 @@ const Opened* opened(std::string_view subject) {
     if (entry.opened.wanted.name == subject) return &entry.opened;
   }
   return nullptr;
+}
+
+ForeignProcesses& processes_of(const Lane& lane) {
+  const LaneName name = lane.lane_name();
+  for (const Entry& entry : entries()) {
+    if (entry.opened.wanted.name != name.subject) continue;
+    for (const Entry::Running& running : entry.running) {
+      if (running.within_subject == name.within_subject()) return *running.processes;
+    }
+  }
+  throw std::logic_error(lane.id + ": expected a lane of foreign code");
 }
 
 Json record(const std::vector<std::string>& lanes) {

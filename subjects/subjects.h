@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "subjects/process.h"
+
 namespace graze::subjects {
 
 // WHAT is one of
@@ -43,7 +45,11 @@ struct Opened {
   std::filesystem::path file;
   std::string function;  // empty: none named
   std::uint64_t hash = 0;
+  Description description;  // of its first build
 };
 const Opened* opened(std::string_view subject);
+
+// What runs a lane of foreign code.   Requires: such a lane, of the lane table.
+ForeignProcesses& processes_of(const Lane& lane);
 
 }  // namespace graze::subjects

@@ -56,11 +56,26 @@ void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
   result.worst_ulps = ulps;
 }
 
+// Of foreign code, whose steps are not known, one for all.
+analysis::Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
+  return lane.foreign ? analysis::Cause::logic : analysis::cause_of(lane, pair, truth);
+}
+
 // All but the cause itself: what can be known quickly.
 bool may_have_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
   const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
   if (!reason.in_range && !by_range) return true;
   return analysis::leaves_exponents(failure.first_wrong(), pair) != reason.in_range;
+}
+
+// Whether the convention of the lane that is wrong leaves the pair open: what it says of shared vertices is not in the
+// truth. Requires: a pair that gets the failure's verdicts and truth.
+bool by_convention(const Failure& failure, const Pair& pair) {
+  const Lane& lane = failure.first_wrong();
+  if (!(lane.outside & kOutsideShared)) return false;
+  const auto place = std::find(failure.lanes.begin(), failure.lanes.end(), &lane) - failure.lanes.begin();
+  return analysis::by_convention(lane, failure.verdicts[static_cast<std::size_t>(place)], pair, failure.truth.contact,
+                                 failure.truth.shape, false);
 }
 
 // What the moves of a kind make of the pair that is simpler than it, each pair once, the simplest first.
@@ -138,12 +153,13 @@ struct Walk {
 
   bool has_cause(const Pair& pair) {
     result.moved += kMovedPerCause;
-    return analysis::cause_of(failure.first_wrong(), pair, failure.truth.verdict) == result.reason.cause;
+    return cause_of(failure.first_wrong(), pair, failure.truth.verdict) == result.reason.cause;
   }
 
   // Of a pair that gets the failure's verdicts.
   bool take(const Pair& candidate) {
     if (judged(candidate) != failure.truth || !may_have_reason(failure, result.reason, candidate)) return false;
+    if (by_convention(failure, candidate)) return false;
     if (ask_all && !has_cause(candidate)) return false;
     way.push_back(candidate);
     result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(), candidate);
@@ -235,12 +251,12 @@ const Lane& Failure::first_wrong() const {
 
 Reason reason_of(const Failure& failure, const Pair& pair) {
   const Lane& lane = failure.first_wrong();
-  return {analysis::cause_of(lane, pair, failure.truth.verdict), !analysis::leaves_exponents(lane, pair)};
+  return {cause_of(lane, pair, failure.truth.verdict), !analysis::leaves_exponents(lane, pair)};
 }
 
 bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
   return fails_alike(failure, pair) && may_have_reason(failure, reason, pair) &&
-         analysis::cause_of(failure.first_wrong(), pair, failure.truth.verdict) == reason.cause;
+         cause_of(failure.first_wrong(), pair, failure.truth.verdict) == reason.cause;
 }
 
 Judged judged(const Pair& pair) {

@@ -19,6 +19,7 @@ void add_minimize(CLI::App& app, int& status);
 void add_corpus(CLI::App& app, int& status);
 void add_explain(CLI::App& app, int& status);
 void add_kinds(CLI::App& app, int& status);
+void add_league(CLI::App& app, int& status);
 void add_map(CLI::App& app, int& status);
 void add_dump(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);

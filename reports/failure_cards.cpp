@@ -11,7 +11,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/kinds.h"
-#include "oracle/common_set.h"
+#include "reports/plain_figures.h"
 #include "reports/snippet.h"
 #include "reports/ulp_map_picture.h"
 
@@ -45,26 +45,6 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
           {"margin", name_of_bucket(signature.bucket)},
           {"marks", marks},
           {"cards", Json::array()}};
-}
-
-Json coordinates_of(const Pair& pair) {
-  Json decimal = Json::array(), hex = Json::array(), value = Json::array();
-  for (int i = 0; i < kCoordinates; ++i) {
-    const float c = coordinates(pair)[i];
-    decimal.push_back(fmt::format("{}", c));
-    hex.push_back(corpus::hex_float(c));
-    value.push_back(static_cast<double>(c));
-  }
-  return {{"decimal", decimal}, {"hex", hex}, {"value", value}};
-}
-
-Json drawing_of(const Pair& pair) {
-  const auto points = [](const std::vector<Vec3<double>>& all) {
-    Json rows = Json::array();
-    for (const Vec3<double>& p : all) rows.push_back({p.x, p.y, p.z});
-    return rows;
-  };
-  return {{"contact", points(oracle::common_set(pair))}, {"planes_line", points(oracle::planes_line(pair))}};
 }
 
 double number_in(const std::filesystem::path& file, const corpus::Entry& entry, std::string_view key) {

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/margin/bucket.h"
+#include "corpus/pair_format.h"
+#include "oracle/common_set.h"
 
 namespace graze::reports {
 namespace {
@@ -76,6 +78,26 @@ std::string html(const std::string& text) {
     }
   }
   return escaped;
+}
+
+Json coordinates_of(const Pair& pair) {
+  Json decimal = Json::array(), hex = Json::array(), value = Json::array();
+  for (int i = 0; i < kCoordinates; ++i) {
+    const float c = coordinates(pair)[i];
+    decimal.push_back(fmt::format("{}", c));
+    hex.push_back(corpus::hex_float(c));
+    value.push_back(static_cast<double>(c));
+  }
+  return {{"decimal", decimal}, {"hex", hex}, {"value", value}};
+}
+
+Json drawing_of(const Pair& pair) {
+  const auto points = [](const std::vector<Vec3<double>>& all) {
+    Json rows = Json::array();
+    for (const Vec3<double>& p : all) rows.push_back({p.x, p.y, p.z});
+    return rows;
+  };
+  return {{"contact", points(oracle::common_set(pair))}, {"planes_line", points(oracle::planes_line(pair))}};
 }
 
 std::string margin_chart(const Json& row) {

@@ -20,7 +20,7 @@ LIBRARIES = [  # what an include names, which library that is, the folder that m
 EXCEPTIONS = {  # files, the library that they see, and why
     "core/*.test.cpp": ("CGAL, GMP and MPFR", "runs the algorithms on MPFR numbers: they must compile for any scalar"),
     "strata/mesh*.cpp": ("CGAL, GMP and MPFR", "CGAL's mesh readers and box intersection, which decide nothing"),
-    "subjects/third_party/cgal.cpp": ("CGAL, GMP and MPFR", "CGAL's own predicates as a subject, in a library of their own"),
+    "subjects/third_party/cgal.cpp": ("CGAL, GMP and MPFR", "the library that is tested; scripts/league alone builds it"),
     "fuzz/lanes.bench.cpp": ("CGAL, GMP and MPFR", "times CGAL's own predicates beside the lanes"),
 }
 

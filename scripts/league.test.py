@@ -47,6 +47,13 @@ class League(unittest.TestCase):
             self.assertIn(f"`{name}`", readme)
             self.assertLessEqual(len((league.SOURCES / name).read_text(encoding="utf-8").splitlines()), 60, name)
 
+    def test_notes_are_of_subjects_and_of_kinds_that_graze_reads(self):
+        names = {adapter[0] for adapter in league.ADAPTERS}
+        for row, notes in league.NOTES.items():
+            self.assertTrue(any(row == name or row.startswith(name + "_") for name in names), row)
+            for note in notes:
+                self.assertRegex(note, r"^(version|source|convention): .+|^pairs: [1-9][0-9]*$")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -31,6 +31,7 @@ struct Channel {
   volatile std::uint32_t singly;   // also of a subject that takes blocks
   volatile std::int32_t worker;    // process id; 0 where there is none
   volatile std::int32_t status;    // of the worker that died, as waitpid gives it
+  volatile std::uint64_t nanoseconds;  // of processor time, of the first pass over all pairs; 0 where it was interrupted
   signed char answers[kMostAsked];
 
   // Of the code, once it is loaded.

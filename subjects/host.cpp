@@ -12,6 +12,7 @@
 #include <link.h>
 #include <poll.h>
 #include <sys/mman.h>
+#include <sys/personality.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -23,6 +24,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <fstream>
 #include <functional>
@@ -129,6 +131,13 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
 
 signed char answer_of(int said) { return said < 0 ? kDeclined : said > 0 ? kIntersects : kDisjoint; }
 
+// Of this thread, so that it does not depend on what else the machine does.
+std::uint64_t processor_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
+}
+
 // Asks about the pairs, each twice: forward, then backward, so that what one call leaves behind shows in another.
 template <class Number>
 class Asking {
@@ -140,7 +149,10 @@ class Asking {
 
   void ask() {
     if (!channel->second) {
+      const bool whole = channel->next == 0;
+      const std::uint64_t start = processor_nanoseconds();
       first();
+      channel->nanoseconds = whole ? processor_nanoseconds() - start : 0;
       channel->next = channel->count - 1;
       channel->second = 1;
     }
@@ -262,11 +274,19 @@ int wait_for(pid_t worker) {
 
 }  // namespace
 
+// Addresses are the same in every process, where that may be had: code whose answers depend on them says the same again.
+void fix_addresses(char** argv) {
+  const int now = personality(0xffffffff);
+  if (now < 0 || now & ADDR_NO_RANDOMIZE || personality(static_cast<unsigned long>(now) | ADDR_NO_RANDOMIZE) < 0) return;
+  if (personality(0xffffffff) & ADDR_NO_RANDOMIZE) execv("/proc/self/exe", argv);
+}
+
 int host(int argc, char** argv) {
   if (argc != 6) {
     fmt::print(stderr, "graze-subject-host: is started by graze\n");
     return 2;
   }
+  fix_addresses(argv);
   channel = static_cast<Channel*>(mmap(nullptr, sizeof(Channel), PROT_READ | PROT_WRITE, MAP_SHARED, kChannelFd, 0));
   pairs = mmap(nullptr, kPairsBytes, PROT_READ, MAP_SHARED, kPairsFd, 0);
   if (channel == MAP_FAILED || pairs == MAP_FAILED) return 2;

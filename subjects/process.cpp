@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -101,6 +103,7 @@ class HostProcess {
     channel_->next = 0;
     channel_->second = 0;
     channel_->singly = 0;
+    channel_->nanoseconds = 0;
     channel_->message[0] = '\0';
     std::fill_n(channel_->answers, count, static_cast<signed char>(kDeclined));
     send_letter();
@@ -189,13 +192,38 @@ class HostProcess {
     return read(socket_, &letter, 1) == 1 ? letter : static_cast<char>(-1);
   }
 
-  // The same, but 0 only where the worker stayed at one pair for all of its time.
+  // Processor seconds that the worker took so far.
+  double worker_seconds() const {
+    clockid_t clock;
+    timespec taken{};
+    if (clock_getcpuclockid(channel_->worker, &clock) != 0 || clock_gettime(clock, &taken) != 0) return 0;
+    return static_cast<double>(taken.tv_sec) + 1e-9 * static_cast<double>(taken.tv_nsec);
+  }
+
+  // Whether it would go on if the machine let it: it waits for nothing but a processor.
+  bool worker_is_held_up() const {
+    std::ifstream in(fmt::format("/proc/{}/stat", int{channel_->worker}));
+    std::string line;
+    std::getline(in, line);
+    const std::size_t name_end = line.rfind(") ");
+    return name_end != line.npos && name_end + 2 < line.size() && (line[name_end + 2] == 'R' || line[name_end + 2] == 'D');
+  }
+
+  // The same, but 0 only where the worker stayed at one pair for all of its time: time that it had, so that a busy
+  // machine makes no verdicts.
   char wait_while_it_goes_on() {
-    for (;;) {
+    constexpr int kMostTimes = 100;
+    double before = worker_seconds();
+    for (int times = 1;; ++times) {
       const std::uint64_t at = channel_->next, second = channel_->second;
       const char letter = wait(code_.timeout);
-      // Between two workers there is none that could be late.
-      if (letter != 0 || (channel_->worker > 0 && channel_->next == at && channel_->second == second)) return letter;
+      if (letter != 0) return letter;
+      if (channel_->worker <= 0 || channel_->next != at || channel_->second != second) {  // it went on, or another begins
+        before = worker_seconds();
+        times = 0;
+      } else if (times == kMostTimes || !worker_is_held_up() || worker_seconds() - before >= 0.9 * code_.timeout) {
+        return 0;
+      }
     }
   }
 
@@ -250,9 +278,12 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
   if (!process) process = std::make_unique<HostProcess>(code_);
   std::fill_n(intersects, (count + 63) / 64, std::uint64_t{0});
   std::fill_n(declined, (count + 63) / 64, std::uint64_t{0});
+  std::optional<std::uint64_t> nanoseconds = 0;
   for (std::size_t begin = 0; begin < count; begin += kMostAsked) {
     const std::size_t size = std::min(count - begin, kMostAsked);
     process->ask(pairs + begin, size, scalar_);
+    const std::uint64_t taken = process->channel().nanoseconds;
+    nanoseconds = nanoseconds && taken > 0 ? std::optional(*nanoseconds + taken) : std::nullopt;
     for (std::size_t i = 0; i < size; ++i) {
       const Verdict verdict = verdict_of(process->channel().answers[i]);
       const std::size_t at = begin + i;
@@ -266,7 +297,17 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
     }
   }
   const std::lock_guard lock(mutex_);
+  nanoseconds_ = nanoseconds;
   idle_.push_back(std::move(process));
+}
+
+std::optional<std::uint64_t> ForeignProcesses::nanoseconds() const {
+  const std::lock_guard lock(mutex_);
+  return nanoseconds_;
+}
+
+std::unique_ptr<ForeignProcesses> ForeignProcesses::anew() const {
+  return std::make_unique<ForeignProcesses>(code_, scalar_);
 }
 
 Verdict ForeignProcesses::failure(const Pair& pair) {

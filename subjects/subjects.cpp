@@ -29,7 +29,11 @@ struct Entry {
   Opened opened;
   std::string source, coplanar, degenerate, order;
   AlgorithmInfo info;
-  std::vector<std::unique_ptr<ForeignProcesses>> processes;
+  struct Running {
+    std::string within_subject;  // "f64/cpu"
+    std::unique_ptr<ForeignProcesses> processes;
+  };
+  std::vector<Running> running;
   std::vector<cuda::CudaBuild> builds;  // of CUDA code: of each lane
 };
 
@@ -49,7 +53,7 @@ std::uint64_t hash_of_file(const fs::path& file) {
 }
 
 Opened parsed(const Wanted& wanted) {
-  Opened result{wanted, "", {}, "", 0};
+  Opened result{wanted, "", {}, "", 0, {}};
   if (wanted.what.starts_with(kCommand)) {
     result.kind = "command";
     result.hash = fnv1a(wanted.what);
@@ -85,8 +89,9 @@ void describe_info(Entry& entry, const Description& description) {
 }
 
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
-  auto& process = entry.processes.emplace_back(std::make_unique<ForeignProcesses>(std::move(code), scalar));
-  lanes.push_back({"", &entry.info, scalar, variant, "", -1, *process, false, false, true, outside, ""});
+  const auto& running = entry.running.emplace_back(fmt::format("{}/{}", name(scalar), name(variant)),
+                                                   std::make_unique<ForeignProcesses>(std::move(code), scalar));
+  lanes.push_back({"", &entry.info, scalar, variant, "", -1, *running.processes, false, false, true, outside, ""});
 }
 
 LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
@@ -206,6 +211,7 @@ void open(const Wanted& wanted, bool on_device) {
       if (description.f64 && runs_on_this_cpu(probe))
         add_lane(entry, made, of_variant, Scalar::f64, variant, description.outside);
     }
+    entry.opened.description = description;
     describe_info(entry, description);
     add_lanes(std::move(made));
   } catch (const std::exception&) {
@@ -230,6 +236,17 @@ const Opened* opened(std::string_view subject) {
     if (entry.opened.wanted.name == subject) return &entry.opened;
   }
   return nullptr;
+}
+
+ForeignProcesses& processes_of(const Lane& lane) {
+  const LaneName name = lane.lane_name();
+  for (const Entry& entry : entries()) {
+    if (entry.opened.wanted.name != name.subject) continue;
+    for (const Entry::Running& running : entry.running) {
+      if (running.within_subject == name.within_subject()) return *running.processes;
+    }
+  }
+  throw std::logic_error(lane.id + ": expected a lane of foreign code");
 }
 
 Json record(const std::vector<std::string>& lanes) {

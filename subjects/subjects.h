@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cuda/subject/subject_device.h"
+#include "subjects/process.h"
 
 namespace graze::subjects {
 
@@ -48,6 +49,7 @@ struct Opened {
   std::filesystem::path file;
   std::string function;  // empty: none named
   std::uint64_t hash = 0;
+  Description description;  // of its first build
 };
 const Opened* opened(std::string_view subject);
 
@@ -56,5 +58,7 @@ std::vector<cuda::NamedBuild> cuda_builds();
 
 // Where the record of a CUDA source's proof lies; lanes whose twin it holds for say so.
 std::filesystem::path proof_file(const std::filesystem::path& source);
+// What runs a lane of foreign code.   Requires: such a lane, of the lane table.
+ForeignProcesses& processes_of(const Lane& lane);
 
 }  // namespace graze::subjects

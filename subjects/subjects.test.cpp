@@ -117,6 +117,23 @@ struct Subjects : testing::Test {
   static void open_one(const std::string& text) { open(parse_subject(text)); }
 };
 
+TEST_F(Subjects, WhatTheCodeItselfTakesIsKnown) {
+  write("slow.c", "int slow(const float a[9], const float b[9]) { volatile int i = 20000; while (i > 0) --i; return a[0] < b[0]; }");
+  ASSERT_EQ(std::system(("cc -O2 -shared -fPIC " + (folder / "slow.c").string() + " -o " + (folder / "libslow.so").string()).c_str()), 0);
+  const auto nanoseconds = [&](const char* library, const char* function) {
+    ForeignProcesses subject({"library", (folder / library).string(), function, "f32"}, Scalar::f32);
+    EXPECT_FALSE(subject.nanoseconds());
+    verdicts(subject);
+    return subject.nanoseconds();
+  };
+  const auto quick = nanoseconds("libbad.so", "good"), slow = nanoseconds("libslow.so", "slow");
+  ASSERT_TRUE(quick && slow);
+  EXPECT_GT(*quick, 0u);
+  EXPECT_GT(*slow, 3000u * 2000);  // at least 2 us a pair: 20,000 steps
+  EXPECT_GT(*slow, 20 * *quick);
+  EXPECT_FALSE(nanoseconds("libbad.so", "aborts"));  // it failed on some
+}
+
 TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
   const struct {
     const char* name;

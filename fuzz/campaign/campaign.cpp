@@ -24,19 +24,6 @@ namespace {
 
 constexpr std::uint64_t kBatchPairs = 65536;  // a transaction of the CPU engine
 
-// The processor that this runs on.
-std::string machine_name() {
-  utsname system{};
-  uname(&system);
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    const std::size_t value = line.find(": ");
-    if (line.starts_with("model name") && value != line.npos)
-      return fmt::format("{}, {}", line.substr(value + 2), system.machine);
-  }
-  return system.machine;
-}
-
 // The next batch: of the source of which the least is done, so that a campaign that is cut short has seen all of them.
 // Of a large source whose cost is not known, first a few pairs, so that the time left is known early. Not before a
 // whole batch where all sources have been seen: else one that is always cut short would never end.
@@ -62,6 +49,18 @@ std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store
 }
 
 }  // namespace
+
+std::string machine_name() {
+  utsname system{};
+  uname(&system);
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t value = line.find(": ");
+    if (line.starts_with("model name") && value != line.npos)
+      return fmt::format("{}, {}", line.substr(value + 2), system.machine);
+  }
+  return system.machine;
+}
 
 Json campaign_spec(const Campaign& campaign) {
   Json strata = Json::array(), lane_ids = Json::array();

@@ -48,6 +48,9 @@ Json campaign_spec(const Campaign& campaign);
 // Version, commit, compiler, type and flags of the build, toolkit, device, and for each CUDA lane what ran it.
 Json build_info(const LanesUnderTest& under_test);
 
+// The processor's name and the architecture, for timings.
+std::string machine_name();
+
 // What judges the pairs. automatic: the devices where they can, which is where all lanes are theirs and all sources
 // are strata; else the CPU.
 enum class EngineChoice { automatic, cpu, gpu };

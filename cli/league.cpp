@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze league`: libraries and our algorithms on the same pairs, side by side.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/screen.h"
+#include "core/text.h"
+#include "fuzz/campaign/campaign.h"
+#include "fuzz/cost_estimate.h"
+#include "fuzz/files.h"
+#include "fuzz/league/league.h"
+#include "reports/league.h"
+#include "reports/terminal.h"
+#include "subjects/subjects.h"
+
+namespace graze::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kStartOfAProgram = 10;  // seconds; it is part of what it takes for its first pair
+
+struct LeagueOptions {
+  std::string subjects, out = "league";
+  std::uint64_t pairs = 100'000, seed = 1;
+  std::vector<std::string> strata;
+  double timeout = 0.1;
+};
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t\r");
+  return first == text.npos ? "" : text.substr(first, last - first + 1);
+}
+
+// NAME=WHAT a line; an indented `version: …`, `source: …` or `convention: …` below it says what the code itself does not;
+// # begins a comment.   Throws: std::runtime_error with file and line.
+// `pairs: N`: it is slow, and takes no more.
+std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::MostPairs& most) {
+  std::vector<reports::LeagueSubject> subjects;
+  std::istringstream in(fuzz::read_whole(file));
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    const std::string text = trimmed(line);
+    if (text.empty() || text[0] == '#') continue;
+    const auto refuse = [&](const char* expected) {
+      return std::runtime_error(fmt::format("{}:{}: expected {}, found {}", file.string(), number, expected, shown(text)));
+    };
+    if (line[0] != ' ' && line[0] != '\t') {
+      const std::size_t equals = text.find('=');
+      if (equals == text.npos || equals == 0 || equals + 1 == text.size()) throw refuse("NAME=WHAT");
+      subjects.push_back({text.substr(0, equals), text.substr(equals + 1), "", "", ""});
+      continue;
+    }
+    const std::size_t colon = text.find(": ");
+    const std::string key = text.substr(0, colon);
+    if (key == "pairs" && colon != text.npos && !subjects.empty()) {
+      const std::optional<std::uint64_t> pairs = parse_whole(text.substr(colon + 2));
+      if (!pairs || *pairs == 0) throw refuse("a number of pairs");
+      most[subjects.back().name] = *pairs;
+      continue;
+    }
+    std::string reports::LeagueSubject::*field = key == "version"      ? &reports::LeagueSubject::version
+                                                 : key == "source"     ? &reports::LeagueSubject::source
+                                                 : key == "convention" ? &reports::LeagueSubject::convention
+                                                                       : nullptr;
+    if (colon == text.npos || !field || subjects.empty())
+      throw refuse("'version: ', 'source: ', 'convention: ' or 'pairs: ' below a subject");
+    subjects.back().*field = text.substr(colon + 2);
+  }
+  if (subjects.empty()) throw std::runtime_error(file.string() + ": expected a subject, NAME=WHAT, found none");
+  return subjects;
+}
+
+// What the code says of itself goes before what the file says.
+void open(reports::LeagueSubject& subject, double timeout) {
+  subjects::Wanted wanted = subjects::parse_subject(subject.name + '=' + subject.what);
+  wanted.timeout = wanted.what.starts_with("cmd:") ? std::max(timeout, kStartOfAProgram) : timeout;
+  subjects::open(wanted);
+  const subjects::Description& said = subjects::opened(subject.name)->description;
+  if (!said.version.empty()) subject.version = said.version;
+  if (!said.source.empty()) subject.source = said.source;
+  if (!said.convention.empty()) subject.convention = said.convention;
+}
+
+int league(const LeagueOptions& options) {
+  fuzz::MostPairs most;
+  std::vector<reports::LeagueSubject> subjects = read_subjects(options.subjects, most);
+  for (reports::LeagueSubject& subject : subjects) open(subject, options.timeout);
+  const fuzz::LanesUnderTest lanes = fuzz::league_lanes({"*/cpu", "*/cpu-fma"});
+  const std::vector<strata::PairSource> sources = strata::stratum_sources(options.seed, options.pairs, options.strata);
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  const auto start = std::chrono::steady_clock::now();
+  Progress progress("pairs", options.pairs, isatty(STDERR_FILENO), error_screen());
+  const fuzz::League found = fuzz::run_league(lanes, sources, options.seed, most, [&](std::uint64_t done) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    if (const auto line = progress.line(done, passed.count(), std::nullopt)) fmt::print(stderr, "{}", *line);
+    return interrupted.load();
+  });
+  fmt::print(stderr, "{}", progress.end());
+  if (interrupted) {
+    fmt::print(stderr, "graze: interrupted; wrote nothing\n");
+    return kInterrupted;
+  }
+  const fuzz::Json json =
+      reports::league_json(found, subjects, fuzz::league_costs(found), fuzz::machine_name(),
+                           fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
+  std::string command = fmt::format("graze league --subjects {} --pairs {} --seed {}", shell_word(options.subjects),
+                                    options.pairs, options.seed);
+  for (const std::string& glob : options.strata) command += " --strata " + shell_word(glob);
+  const fs::path out = options.out;
+  fs::remove_all(out / "league");  // drawings of another run
+  fs::create_directories(out / "league");
+  fuzz::write_whole(out / "league.json", json.dump(1) + "\n");
+  fuzz::write_whole(out / "league.md", reports::league_page(json, command));
+  for (const auto& [file, svg] : reports::league_drawings(json)) fuzz::write_whole(out / "league" / file, svg);
+  std::cout << reports::league_table(json, output_screen());
+  fmt::print("\nWrote {0}/league.json, {0}/league.md, {0}/league/\n", options.out);
+  return 0;
+}
+
+}  // namespace
+
+void add_league(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("league", "Compare libraries and our algorithms on the same pairs");
+  command->footer("Example: graze league --subjects build-league/subjects.txt --pairs 1000000 --out league");
+  auto options = std::make_shared<LeagueOptions>();
+  command
+      ->add_option("--subjects", options->subjects,
+                   "A file of subjects, NAME=WHAT a line as --subject takes them; scripts/league writes one of libraries")
+      ->required()
+      ->check(not_empty());
+  command->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata")
+      ->transform(whole_number(1, kMostWhole))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of all strata")
+      ->transform(whole_number(0, kMostWhole))
+      ->capture_default_str();
+  command
+      ->add_option("--subject-timeout", options->timeout,
+                   "Seconds that a subject may take for a pair; one that takes longer is asked once more")
+      ->check(CLI::Range(0.001, 86400.0))
+      ->capture_default_str()
+      ->option_text("SECONDS");
+  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
+      ->take_last()
+      ->check(not_empty())
+      ->capture_default_str();
+  command->callback([options, &status] { status = league(*options); });
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze league` as a user runs it: a file of subjects, a table, a page whose commands show what it says.
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+class LeagueCommand : public CommandTest {
+ protected:
+  LeagueCommand() {
+    std::ofstream(shell.folder / "planted.c") << "#include <stdlib.h>\n"
+                                                 "int no(const float a[9], const float b[9]) { return 0; }\n"
+                                                 "int dies(const float a[9], const float b[9]) { if (a[0] == b[0]) abort(); return 0; }\n";
+    std::ofstream(shell.folder / "subjects.txt") << "# planted\nno=planted.so:no\n  version: 7|8\n  convention: says \"no\"\n  pairs: 200\n"
+                                                    "dies=planted.so:dies\nspoken=cmd:python3 spoken.py\n";
+    std::ofstream(shell.folder / "spoken.py") << "import sys\nfor line in sys.stdin: print(1, flush=True)\n";
+    expect_done("cc -shared -fPIC -O2 planted.c -o planted.so");
+  }
+
+  static nlohmann::json without_timings(nlohmann::json league) {
+    league.erase("timings");
+    return league;
+  }
+};
+
+constexpr const char* kRun = "graze league --subjects subjects.txt --pairs 1000 --strata lattice,uniform --out found";
+
+TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
+  const Ran ran = shell(kRun);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("on the same 1,000 pairs (general\n500, degenerate 500)"), std::string::npos) << ran.out;
+  const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
+  const std::string page = contents(shell.folder / "found/league.md");
+  for (const auto& row : league["rows"]) {
+    const bool slow = row["subject"] == "no";
+    EXPECT_EQ(row["total"]["pairs"], slow ? 200 : 1000) << row["lane"];
+    EXPECT_EQ(row["total"]["wrong"]["of"], slow ? 200 : 1000);
+    if (slow) {
+      EXPECT_EQ(row["total"]["false hit"], 0);
+    }
+    if (row["subject"] == "exact") {
+      EXPECT_EQ(row["total"]["wrong"]["count"], 0);
+    }
+    if (row["subject"] == "spoken") {
+      EXPECT_EQ(row["total"]["miss"], 0);
+      EXPECT_TRUE(league["timings"]["nanoseconds"][row["lane"].get<std::string>()].is_null());
+    }
+    EXPECT_NE(page.find("| `" + row["lane"].get<std::string>() + "` |"), std::string::npos);
+  }
+  EXPECT_NE(page.find("| `no` | 7\\|8 | not known | says &quot;no&quot; | nothing |"), std::string::npos) << page;
+  EXPECT_NE(page.find("| `spoken` | not known | not known | nothing stated | nothing |"), std::string::npos);
+  std::size_t drawings = 0;
+  for (const auto& file : std::filesystem::directory_iterator(shell.folder / "found/league")) {
+    ++drawings;
+    EXPECT_LT(file.file_size(), 4096u);
+    EXPECT_TRUE(contents(file.path()).starts_with("<svg xmlns="));
+    EXPECT_NE(page.find("(league/" + file.path().filename().string() + ")"), std::string::npos);
+  }
+  EXPECT_GT(drawings, 5u);
+}
+
+TEST_F(LeagueCommand, ThePagesCommandsShowItsFailures) {
+  expect_done(kRun);
+  const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
+  const std::string page = contents(shell.folder / "found/league.md");
+  std::set<std::string> subjects;
+  for (const auto& failure : league["failures"]) {
+    const std::string again = failure["again"], says = failure["says"];
+    EXPECT_NE(page.find(again), std::string::npos);
+    subjects.insert(failure["subject"]);
+    const Ran ran = shell(again);
+    ASSERT_EQ(ran.status, 0) << again << ran.err;
+    EXPECT_NE(ran.out.find("truth: " + failure["truth"].get<std::string>()), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find(says + " !"), std::string::npos) << again << '\n' << ran.out;
+  }
+  for (const char* subject : {"no", "dies", "spoken", "moller_1997"}) EXPECT_TRUE(subjects.contains(subject)) << subject;
+}
+
+TEST_F(LeagueCommand, TheSameRunHasTheSameResultsButForTimings) {
+  expect_done(kRun);
+  expect_done("mv found first && " + std::string(kRun));
+  EXPECT_EQ(without_timings(nlohmann::json::parse(contents(shell.folder / "found/league.json"))),
+            without_timings(nlohmann::json::parse(contents(shell.folder / "first/league.json"))));
+}
+
+TEST_F(LeagueCommand, BadFilesAreOneLine) {
+  const auto expect = [&](const std::string& text, const std::string& part) {
+    std::ofstream(shell.folder / "bad.txt") << text;
+    expect_error("graze league --subjects bad.txt --pairs 10 --out found", 1, part);
+  };
+  expect("", "bad.txt: expected a subject, NAME=WHAT, found none");
+  expect("no\n", "bad.txt:1: expected NAME=WHAT, found \"no\"");
+  expect("  version: 1\n", "bad.txt:1: expected 'version: '");
+  expect("no=planted.so:no\n  colour: red\n", "bad.txt:2: expected 'version: '");
+  expect("no=planted.so:no\n  pairs: few\n", "bad.txt:2: expected a number of pairs, found \"pairs: few\"");
+  expect_error("graze league --pairs 10", 2, "--subjects");
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "found"));
+}
+
+}  // namespace
+}  // namespace graze::cli

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/league/league.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <numeric>
+#include <span>
+
+#include "analysis/convention.h"
+#include "analysis/neighbours.h"
+#include "analysis/tally.h"
+#include "fuzz/league/smallest.h"
+#include "fuzz/minimise/kinds.h"
+#include "fuzz/minimise/minimise.h"
+#include "strata/groups.h"
+#include "subjects/subjects.h"
+
+namespace graze::fuzz {
+namespace {
+
+constexpr std::size_t kBatchPairs = 1 << 16;  // a fresh process for each lane and batch that has failures
+constexpr std::size_t kBlockPairs = 1024;
+constexpr std::uint64_t kOrderSample = 950;   // pairs asked in all orders, shared evenly by the strata
+constexpr std::uint64_t kOrderShare = 20;     // at most one in so many of a lane's pairs
+
+Judged true_of(const Pair& pair) {
+  const Judged found = judged(pair);
+  if (found.verdict != oracle::cgal_verdict(pair))
+    throw oracle::OracleApart(pair_text(pair) + ": CGAL and the exact decision of core differ");
+  return found;
+}
+
+// Whether the lane's convention leaves the pair open.
+bool is_outside(const Lane& lane, const Pair& pair, const Judged& truth) {
+  return analysis::by_convention(lane, Verdict::declined, pair, truth.contact, truth.shape,
+                                 truth.verdict == Verdict::intersects && truth.margin_sign == 0);
+}
+
+std::vector<Verdict> verdicts_of(const DecideBlock& decide, std::span<const Pair> pairs) {
+  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
+  if (!pairs.empty()) decide(pairs.data(), pairs.size(), intersects.data(), declined.data());
+  std::vector<Verdict> verdicts(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    verdicts[i] = decide.verdict_of(analysis::test_bit(intersects, i), analysis::test_bit(declined, i), pairs[i]);
+  return verdicts;
+}
+
+// One row as it is counted.
+struct Counting {
+  LeagueRow row;
+  const Lane* fused;  // its cpu-fma counterpart; null for none
+  const DecideBlock* decide;
+  std::uint64_t of_source;  // it takes so many pairs of each source, the first ones
+  Smallest smallest;
+
+  // GMP's word on a verdict that counts as wrong.
+  void confirm(const Pair& pair, const Judged& truth) const {
+    const Contact contact = oracle::gmp_contact(pair);
+    if (contact != truth.contact) {
+      throw oracle::OracleApart(fmt::format("{}: the exact decision of core says contact {}, GMP {}", pair_text(pair),
+                                            name(truth.contact), name(contact)));
+    }
+  }
+
+  void count(std::span<const Pair> pairs, const std::vector<Judged>& truths, LeagueCounts& counts) {
+    const std::vector<Verdict> said = verdicts_of(*decide, pairs);
+    std::vector<std::size_t> wrong;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const bool outside = is_outside(*row.lane, pairs[i], truths[i]);
+      ++(outside ? counts.outside : counts.pairs);
+      if (said[i] == truths[i].verdict) continue;
+      if (outside && !is_failure(said[i])) {
+        ++counts.by_convention;
+      } else {
+        wrong.push_back(i);
+      }
+    }
+    count_wrong(pairs, truths, said, wrong, counts);
+    if (!fused) return;
+    const std::vector<Verdict> other = verdicts_of(fused->decide, pairs);
+    for (std::size_t i = 0; i < pairs.size(); ++i) *row.flips += said[i] != other[i];
+  }
+
+  void count_wrong(std::span<const Pair> pairs, const std::vector<Judged>& truths, const std::vector<Verdict>& said,
+                   const std::vector<std::size_t>& wrong, LeagueCounts& counts) {
+    std::vector<Pair> again_of;
+    for (const std::size_t i : wrong) again_of.push_back(pairs[i]);
+    const std::vector<Verdict> again = said_afresh(*row.lane, again_of);
+    for (std::size_t k = 0; k < wrong.size(); ++k) {
+      const std::size_t i = wrong[k];
+      confirm(pairs[i], truths[i]);
+      if (again[k] != said[i]) {
+        ++counts.not_again;
+        continue;
+      }
+      const WrongBy by = wrong_by(said[i]);
+      ++counts.wrong[static_cast<std::size_t>(by)];
+      const std::string_view shape = shape_name(truths[i].shape);
+      if (shape == "general" && truths[i].margin_sign != 0) {
+        const int exponent = std::abs(int{oracle::margin_bucket(pairs[i], truths[i].verdict)}) + kBucketLowest - 1;
+        counts.clear += exponent >= kClearExponent;
+        if (exponent >= kClearExponent) smallest.add(kClear, by, pairs[i]);
+      }
+      smallest.add(shape, by, pairs[i]);
+    }
+  }
+
+  // On how many of the pairs the verdict changes with the order; those within the contract.
+  void count_orders(std::span<const Pair> pairs, const std::vector<Judged>& truths) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (is_outside(*row.lane, pairs[i], truths[i])) continue;
+      ++row.order_sample;
+      const std::vector<Verdict> said = verdicts_of(*decide, analysis::orders(pairs[i]));
+      row.order_dependent += std::adjacent_find(said.begin(), said.end(), std::not_equal_to<>()) != said.end();
+    }
+  }
+};
+
+double processor_nanoseconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
+}
+
+std::vector<Judged> truths_of(const std::vector<Pair>& pairs) {
+  std::vector<Judged> truths(pairs.size());
+  tbb::parallel_for(std::size_t{0}, (pairs.size() + kBlockPairs - 1) / kBlockPairs, [&](std::size_t block) {
+    for (std::size_t i = block * kBlockPairs; i < std::min(pairs.size(), (block + 1) * kBlockPairs); ++i)
+      truths[i] = true_of(pairs[i]);
+  });
+  return truths;
+}
+
+}  // namespace
+
+LeagueGroup league_group(std::string_view stratum) {
+  if (stratum.starts_with("near_") || stratum == "exact_contact") return LeagueGroup::near;
+  switch (strata::group_of_name(stratum).value_or(strata::Group::general)) {
+    case strata::Group::coplanar:
+      return LeagueGroup::coplanar;
+    case strata::Group::degenerate:
+      return LeagueGroup::degenerate;
+    case strata::Group::extreme:
+      return LeagueGroup::extreme;
+    default:
+      return LeagueGroup::general;
+  }
+}
+
+std::uint64_t LeagueCounts::all_wrong() const { return std::accumulate(wrong.begin(), wrong.end(), std::uint64_t{0}); }
+
+LeagueCounts& LeagueCounts::operator+=(const LeagueCounts& other) {
+  pairs += other.pairs;
+  for (std::size_t i = 0; i < kWrongByCount; ++i) wrong[i] += other.wrong[i];
+  clear += other.clear;
+  outside += other.outside;
+  by_convention += other.by_convention;
+  not_again += other.not_again;
+  return *this;
+}
+
+LanesUnderTest league_lanes(const std::vector<std::string>& globs) {
+  LanesUnderTest all = select_lanes(globs, Executor::twin), result;
+  for (std::size_t l = 0; l < all.lanes.size(); ++l) {
+    if (all.lanes[l]->variant != Variant::cpu && all.lanes[l]->variant != Variant::cpu_fma) continue;
+    result.lanes.push_back(all.lanes[l]);
+    result.on_host.push_back(all.on_host[l]);
+  }
+  return result;
+}
+
+League run_league(const LanesUnderTest& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
+                  const MostPairs& most, const std::function<bool(std::uint64_t)>& stop) {
+  std::vector<Counting> all;
+  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
+    const Lane& lane = *under_test.lanes[l];
+    if (lane.variant != Variant::cpu) continue;
+    const Lane* fused = counterpart(lane, Variant::cpu_fma);
+    if (fused && !runs_on_this_cpu(*fused)) fused = nullptr;
+    const auto limit = most.find(lane.info->id);
+    const std::uint64_t of_source =
+        limit == most.end() ? ~std::uint64_t{0} : std::max<std::uint64_t>(1, limit->second / sources.size());
+    all.push_back({{&lane, {}, 0, 0, fused ? std::optional<std::uint64_t>(0) : std::nullopt}, fused,
+                   &under_test.on_host[l], of_source, {}});
+  }
+  League league;
+  league.seed = seed;
+  bool stopped = false;
+  for (const strata::PairSource& source : sources) {
+    league.strata.push_back(source.id);
+    const auto group = static_cast<std::size_t>(league_group(source.id));
+    for (std::uint64_t begin = 0; begin < source.pairs && !stopped; begin += kBatchPairs) {
+      std::vector<Pair> pairs(std::min<std::uint64_t>(kBatchPairs, source.pairs - begin));
+      for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = source.pair(begin + i);
+      const std::vector<Judged> truths = truths_of(pairs);
+      tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t l) {
+        const std::uint64_t its = std::min(source.pairs, all[l].of_source);
+        if (its <= begin) return;
+        const auto first = [&](std::uint64_t count) {
+          return std::span(pairs).first(std::min<std::uint64_t>(pairs.size(), count));
+        };
+        all[l].count(first(its - begin), truths, all[l].row.groups[group]);
+        if (begin > 0) return;
+        all[l].count_orders(
+            first(std::clamp<std::uint64_t>(its / kOrderShare, 1, std::max<std::uint64_t>(1, kOrderSample / sources.size()))),
+            truths);
+      });
+      league.pairs += pairs.size();
+      stopped = stop(league.pairs);
+    }
+  }
+  std::vector<Candidate> candidates;
+  for (const Counting& counting : all) {
+    league.rows.push_back(counting.row);
+    counting.smallest.add_candidates(*counting.row.lane, candidates);
+  }
+  if (!stopped) league.failures = smallest_failures(candidates, league.failures_not_again);
+  return league;
+}
+
+std::vector<std::optional<double>> league_costs(const League& league) {
+  std::vector<Pair> pairs(kLeagueTimedPairs);
+  for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = strata::generate(league.seed, strata::Stratum::uniform, i);
+  std::vector<std::vector<double>> taken(league.rows.size());
+  for (std::size_t repetition = 0; repetition < kLeagueRepetitions; ++repetition) {
+    for (std::size_t r = 0; r < league.rows.size(); ++r) {
+      const Lane& lane = *league.rows[r].lane;
+      const double start = processor_nanoseconds();
+      verdicts_of(lane.decide, pairs);
+      std::optional<double> nanoseconds = processor_nanoseconds() - start;
+      if (lane.foreign) nanoseconds = subjects::processes_of(lane).nanoseconds();
+      if (nanoseconds) taken[r].push_back(*nanoseconds / static_cast<double>(pairs.size()));
+    }
+  }
+  std::vector<std::optional<double>> medians(league.rows.size());
+  for (std::size_t r = 0; r < medians.size(); ++r) {
+    if (taken[r].size() < kLeagueRepetitions) continue;
+    std::nth_element(taken[r].begin(), taken[r].begin() + kLeagueRepetitions / 2, taken[r].end());
+    medians[r] = taken[r][kLeagueRepetitions / 2];
+  }
+  return medians;
+}
+
+}  // namespace graze::fuzz

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// A league of planted subjects, whose every number is known: each is counted here a second time, with the oracle alone.
+#include "fuzz/league/league.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "analysis/neighbours.h"
+#include "fuzz/minimise/kinds.h"
+#include "fuzz/minimise/simplicity.h"
+#include "strata/strata.h"
+#include "subjects/subjects.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// All are right but where their names say otherwise.
+constexpr const char* kPlanted = R"(
+#include <cstdlib>
+#include <graze/subject.h>
+#include "core/exact/exact.h"
+using graze::exact::relation;
+static int truth(const float a[9], const float b[9]) { return relation(a, b).intersects; }
+static int blind(const float a[9], const float b[9]) { return !relation(a, b).coplanar && truth(a, b); }
+static int dies(const float a[9], const float b[9]) { if (a[0] == 1) abort(); return truth(a, b); }
+static int narrow(const float a[9], const float b[9]) {
+  return relation(a, b).dimension_a == 2 && relation(a, b).dimension_b == 2 && truth(a, b);
+}
+static int one_sided(const float a[9], const float b[9]) { return a[0] > b[0] || truth(a, b); }
+#define PLANT(name, outside) \
+  GRAZE_SUBJECT(name##_one) = {GRAZE_SUBJECT_ABI, outside, "3", nullptr, nullptr, name, nullptr, nullptr, nullptr}
+PLANT(truth, 0);
+PLANT(blind, 0);
+PLANT(dies, 0);
+PLANT(narrow, GRAZE_OUTSIDE_DEGENERATE);
+PLANT(one_sided, 0);
+)";
+
+constexpr std::uint64_t kSeed = 3, kPairs = 3000, kOrders = 50;  // of each source's 1,000 pairs one in 20 in all orders
+constexpr const char* kNames[] = {"truth", "blind", "dies", "narrow", "one_sided"};
+
+std::vector<strata::PairSource> sources() { return strata::stratum_sources(kSeed, kPairs, {"uniform", "lattice", "coplanar_wide"}); }
+
+struct Planted : testing::Test {
+  static inline League league;
+  static inline LanesUnderTest lanes;
+
+  static void SetUpTestSuite() {
+    const fs::path folder = fs::path(testing::TempDir()) / ("league-" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    std::ofstream(folder / "planted.cpp") << kPlanted;
+    const std::string build = "c++ -std=c++20 -O2 -ffp-contract=off -shared -fPIC -I" GRAZE_SOURCE_DIR
+                              " -I" GRAZE_SOURCE_DIR "/subjects/include ";
+    const fs::path library = folder / "planted.so";
+    ASSERT_EQ(std::system((build + (folder / "planted.cpp").string() + " -o " + library.string()).c_str()), 0);
+    for (const std::string name : kNames) subjects::open(subjects::parse_subject(name + '=' + library.string() + ':' + name + "_one"));
+    lanes = league_lanes({"truth/*", "blind/*", "dies/*", "narrow/*", "one_sided/*", "moller_1997/*", "exact/*"});
+    league = run_league(lanes, sources(), kSeed);
+  }
+
+  static const LeagueRow& row(const std::string& lane) {
+    for (const LeagueRow& r : league.rows) {
+      if (r.lane->id == lane) return r;
+    }
+    throw std::logic_error(lane);
+  }
+};
+
+// What a subject must say, by the oracle.
+Verdict planted(std::string_view name, const Pair& pair) {
+  const oracle::Shape shape = oracle::shape(pair);
+  const Verdict truth = oracle::truth(pair).verdict;
+  const bool degenerate = shape.dimension_a < 2 || shape.dimension_b < 2;
+  if (name == "blind" && shape.coplanar) return Verdict::disjoint;
+  if (name == "dies" && pair.a[0].x == 1) return Verdict::crashed;
+  if (name == "narrow" && degenerate) return Verdict::disjoint;
+  if (name == "one_sided" && pair.a[0].x > pair.b[0].x) return Verdict::intersects;
+  return truth;
+}
+
+TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) {
+  for (const std::string name : kNames) {
+    const LeagueRow& found = row(name + "/f32/cpu");
+    std::array<LeagueCounts, kLeagueGroupCount> groups;
+    std::uint64_t order_dependent = 0, sample = 0;
+    for (const strata::PairSource& source : sources()) {
+      ASSERT_EQ(source.pairs, 1000u);
+      LeagueCounts& counts = groups[source.id == "uniform" ? 0 : source.id == "coplanar_wide" ? 2 : 3];
+      for (std::uint64_t i = 0; i < source.pairs; ++i) {
+        const Pair pair = source.pair(i);
+        const oracle::Truth truth = oracle::truth(pair);
+        const oracle::Shape shape = oracle::shape(pair);
+        const bool degenerate = shape.dimension_a < 2 || shape.dimension_b < 2;
+        const bool outside = name == "narrow" && degenerate;
+        const Verdict says = planted(name, pair);
+        ++(outside ? counts.outside : counts.pairs);
+        counts.by_convention += outside && says != truth.verdict;
+        if (!outside && says != truth.verdict) {
+          ++counts.wrong[says == Verdict::disjoint ? 0 : says == Verdict::intersects ? 1 : 3];
+          counts.clear += !shape.coplanar && !degenerate && std::fabs(truth.margin_ulps) >= 4096;
+        }
+        if (i >= kOrders || outside) continue;
+        ++sample;
+        const std::vector<Pair> orders = analysis::orders(pair);
+        order_dependent += std::any_of(orders.begin(), orders.end(),
+                                       [&](const Pair& other) { return planted(name, other) != says; });
+      }
+    }
+    for (std::size_t g = 0; g < kLeagueGroupCount; ++g) {
+      SCOPED_TRACE(name + " " + std::string(kLeagueGroups[g]));
+      EXPECT_EQ(found.groups[g].pairs, groups[g].pairs);
+      EXPECT_EQ(found.groups[g].wrong, groups[g].wrong);
+      EXPECT_EQ(found.groups[g].clear, groups[g].clear);
+      EXPECT_EQ(found.groups[g].outside, groups[g].outside);
+      EXPECT_EQ(found.groups[g].by_convention, groups[g].by_convention);
+      EXPECT_EQ(found.groups[g].not_again, 0u);
+    }
+    EXPECT_EQ(found.order_dependent, order_dependent) << name;
+    EXPECT_EQ(found.order_sample, sample) << name;
+    EXPECT_FALSE(found.flips) << name;
+  }
+  // None of it is empty.
+  EXPECT_GT(row("blind/f32/cpu").groups[2].wrong[0], 100u);
+  EXPECT_GT(row("dies/f32/cpu").groups[3].wrong[3], 100u);
+  EXPECT_GT(row("narrow/f32/cpu").groups[3].by_convention, 50u);
+  EXPECT_GT(row("one_sided/f32/cpu").groups[0].clear, 100u);
+  EXPECT_GT(row("one_sided/f32/cpu").order_dependent, 10u);
+  EXPECT_EQ(row("truth/f32/cpu").order_dependent, 0u);
+}
+
+TEST_F(Planted, FlipsAreThePairsOnWhichContractionChangesTheVerdict) {
+  const Lane *cpu = find_lane("moller_1997/f32/cpu"), *fused = find_lane("moller_1997/f32/cpu-fma");
+  if (!runs_on_this_cpu(*fused)) GTEST_SKIP() << "no FMA instructions";
+  std::uint64_t flips = 0;
+  for (const strata::PairSource& source : sources()) {
+    for (std::uint64_t i = 0; i < source.pairs; ++i)
+      flips += decide_one(cpu->decide, source.pair(i)) != decide_one(fused->decide, source.pair(i));
+  }
+  EXPECT_GT(flips, 0u);
+  EXPECT_EQ(row("moller_1997/f32/cpu").flips, flips);
+}
+
+TEST_F(Planted, TheSmallestFailureOfEachKindIsOneAndIsSmall) {
+  std::map<std::string, int> kinds;
+  for (const LeagueFailure& failure : league.failures) {
+    const std::string subject(failure.lane->info->id);
+    ++kinds[subject + ", " + failure.shape + ", " + std::string(kWrongBy[static_cast<std::size_t>(failure.by)])];
+    EXPECT_EQ(oracle::truth(failure.pair).verdict, failure.truth.verdict);
+    EXPECT_NE(failure.verdict, failure.truth.verdict);
+    EXPECT_EQ(shape_name(oracle::shape(failure.pair)), failure.shape == kClear ? "general" : failure.shape);
+    EXPECT_TRUE(failure.shape != kClear || std::fabs(failure.truth.margin_ulps) >= 4096);
+    if (!failure.lane->foreign) continue;
+    EXPECT_EQ(planted(subject, failure.pair), failure.verdict) << subject;
+    EXPECT_TRUE(failure.minimised);
+    EXPECT_LE(nontrivial_magnitudes(failure.pair), 1) << subject << ' ' << pair_text(failure.pair);
+  }
+  for (const char* kind : {"blind, coplanar, miss", "blind, degenerate, miss", "one_sided, clear, false hit", "dies, clear, crashed", "dies, general, crashed",
+                           "dies, coplanar, crashed", "dies, degenerate, crashed", "one_sided, general, false hit",
+                           "one_sided, coplanar, false hit", "one_sided, degenerate, false hit"}) {
+    EXPECT_EQ(kinds[kind], 1) << kind;
+    kinds.erase(kind);
+  }
+  for (const auto& [kind, count] : kinds) EXPECT_TRUE(kind.starts_with("moller")) << kind;
+  EXPECT_EQ(league.failures_not_again, 0u);
+}
+
+TEST_F(Planted, SameAgainAndOfASlowSubjectTheFirstPairs) {
+  const League again = run_league(lanes, sources(), kSeed, {{"blind", 300}});
+  ASSERT_EQ(again.failures.size(), league.failures.size());
+  for (std::size_t r = 0; r < league.rows.size(); ++r) {
+    for (std::size_t g = 0; g < kLeagueGroupCount; ++g) {
+      const LeagueCounts &now = again.rows[r].groups[g], &then = league.rows[r].groups[g];
+      if (league.rows[r].lane->info->id == "blind") {
+        EXPECT_EQ(now.pairs * 10, then.pairs);
+        EXPECT_LE(now.all_wrong(), then.all_wrong());
+      } else {
+        EXPECT_EQ(now.pairs, then.pairs);
+        EXPECT_EQ(now.wrong, then.wrong);
+        EXPECT_EQ(now.clear, then.clear);
+      }
+    }
+  }
+  for (std::size_t f = 0; f < league.failures.size(); ++f) {
+    if (league.failures[f].lane->info->id == "blind") continue;
+    EXPECT_EQ(pair_text(again.failures[f].pair), pair_text(league.failures[f].pair));
+  }
+}
+
+TEST_F(Planted, CostsAreThoseOfTheCodeItself) {
+  const std::vector<std::optional<double>> costs = league_costs(league);
+  ASSERT_EQ(costs.size(), league.rows.size());
+  for (std::size_t r = 0; r < costs.size(); ++r) {
+    ASSERT_TRUE(costs[r]) << league.rows[r].lane->id;
+    EXPECT_GT(*costs[r], 1) << league.rows[r].lane->id;
+    EXPECT_LT(*costs[r], 100'000) << league.rows[r].lane->id;
+  }
+}
+
+TEST(LeagueGroups, NearAndExactContactsStandApart) {
+  EXPECT_EQ(league_group("near_edge_edge"), LeagueGroup::near);
+  EXPECT_EQ(league_group("exact_contact"), LeagueGroup::near);
+  EXPECT_EQ(league_group("uniform"), LeagueGroup::general);
+  EXPECT_EQ(league_group("shared_edge"), LeagueGroup::general);
+  EXPECT_EQ(league_group("coplanar_rounded"), LeagueGroup::coplanar);
+  EXPECT_EQ(league_group("lattice"), LeagueGroup::degenerate);
+  EXPECT_EQ(league_group("extreme_scale"), LeagueGroup::extreme);
+}
+
+}  // namespace
+}  // namespace graze::fuzz

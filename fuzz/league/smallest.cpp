@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/league/smallest.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "analysis/convention.h"
+#include "analysis/tally.h"
+#include "cuda/twin/twin.h"
+#include "fuzz/minimise/kinds.h"
+#include "fuzz/minimise/minimise.h"
+#include "subjects/subjects.h"
+
+namespace graze::fuzz {
+namespace {
+
+constexpr std::size_t kMostMovedHere = 150'000;  // there may be hundreds; where a pair dies, each costs a process
+
+// A pair on which a process dies costs another one, a pair on which it does not return its time; what comes and goes
+// cannot be walked along.
+std::size_t most_moved(const Candidate& candidate) {
+  if (candidate.by == WrongBy::timed_out || candidate.by == WrongBy::unstable) return 0;
+  return candidate.lane_dies ? kLeastMoved + 10'000 : kMostMovedHere;
+}
+
+LanesUnderTest alone(const Lane& lane) {
+  LanesUnderTest result;
+  result.lanes.push_back(&lane);
+  result.on_host.push_back(lane.decide);
+  return result;
+}
+
+bool is_clear(const Pair& pair, const oracle::Truth& truth) {
+  return shape_name(oracle::shape(pair)) == "general" &&
+         std::fabs(truth.margin_ulps) >= std::ldexp(1.0, kClearExponent);
+}
+
+LeagueFailure minimised(const Candidate& candidate) {
+  LeagueFailure result{candidate.lane, candidate.shape, candidate.by, candidate.pair, {}, Verdict::declined, false};
+  if (most_moved(candidate) == 0) return result;
+  try {
+    const LanesUnderTest under_test = alone(*candidate.lane);
+    const std::vector<Failure> failures = failures_of(under_test, candidate.pair);
+    if (failures.empty()) return result;
+    const Minimised found = minimise(failures.front(), candidate.pair, {}, most_moved(candidate));
+    confirm(under_test, failures.front(), found.pair);
+    if (candidate.shape == kClear && !is_clear(found.pair, oracle::truth(found.pair))) return result;
+    result.pair = found.pair;
+    result.minimised = true;
+  } catch (const oracle::OracleApart&) {
+    throw;
+  } catch (const std::runtime_error&) {  // its failure comes and goes: the pair stays as it was met
+  }
+  return result;
+}
+
+// Whether the lane fails on the pair as on its own: the same truth, shape and verdict, within its contract.
+bool fails_so(const LeagueFailure& failure, const Pair& pair) {
+  const Verdict verdict = decide_one(failure.lane->decide, pair);
+  const oracle::Truth truth = oracle::truth(pair);
+  const bool shaped = failure.shape == kClear ? is_clear(pair, truth) : shape_name(oracle::shape(pair)) == failure.shape;
+  return shaped && verdict != truth.verdict && wrong_by(verdict) == failure.by &&
+         !analysis::by_convention(*failure.lane, verdict, pair, truth);
+}
+
+}  // namespace
+
+WrongBy wrong_by(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::disjoint:
+      return WrongBy::miss;
+    case Verdict::intersects:
+      return WrongBy::false_hit;
+    case Verdict::crashed:
+      return WrongBy::crashed;
+    case Verdict::timed_out:
+      return WrongBy::timed_out;
+    case Verdict::unstable:
+      return WrongBy::unstable;
+    default:
+      return WrongBy::declined;
+  }
+}
+
+std::vector<Verdict> said_afresh(const Lane& lane, const std::vector<Pair>& pairs) {
+  if (pairs.empty()) return {};
+  std::unique_ptr<subjects::ForeignProcesses> fresh;
+  if (lane.foreign) fresh = subjects::processes_of(lane).anew();
+  const DecideBlock decide = fresh ? DecideBlock(*fresh) : lane.decide;
+  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
+  decide(pairs.data(), pairs.size(), intersects.data(), declined.data());
+  std::vector<Verdict> verdicts;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    verdicts.push_back(
+        decide.verdict_of(analysis::test_bit(intersects, i), analysis::test_bit(declined, i), pairs[i]));
+  return verdicts;
+}
+
+void Smallest::add(std::string_view shape, WrongBy by, const Pair& pair) {
+  const std::pair<std::string, WrongBy> key{shape, by};
+  const auto found = pairs_.find(key);
+  if (found == pairs_.end()) {
+    pairs_.emplace(key, std::pair(simplicity(pair), pair));
+  } else if (simplicity_counts(pair, found->second.first.counts) <= found->second.first.counts) {
+    if (const Simplicity now = simplicity(pair); now < found->second.first) found->second = {now, pair};
+  }
+}
+
+void Smallest::add_candidates(const Lane& lane, std::vector<Candidate>& candidates) const {
+  const bool dies = std::any_of(pairs_.begin(), pairs_.end(), [](const auto& row) {
+    return row.first.second == WrongBy::crashed || row.first.second == WrongBy::timed_out;
+  });
+  for (const auto& [key, pair] : pairs_) candidates.push_back({&lane, key.first, key.second, pair.second, dies});
+}
+
+std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_again) {
+  std::vector<const Candidate*> first;
+  std::set<std::tuple<const AlgorithmInfo*, std::string, WrongBy>> seen;
+  for (const Candidate& candidate : candidates) {
+    if (seen.emplace(candidate.lane->info, candidate.shape, candidate.by).second) first.push_back(&candidate);
+  }
+  std::vector<LeagueFailure> failures(first.size());
+  tbb::parallel_for(std::size_t{0}, first.size(), [&](std::size_t i) { failures[i] = minimised(*first[i]); });
+
+  std::vector<LeagueFailure> shared = failures;
+  tbb::parallel_for(std::size_t{0}, failures.size(), [&](std::size_t i) {
+    if (!failures[i].minimised) return;
+    Simplicity least = simplicity(failures[i].pair);
+    for (const LeagueFailure& other : failures) {
+      if (!other.minimised || other.shape != failures[i].shape || other.by != failures[i].by) continue;
+      const Simplicity its = simplicity(other.pair);
+      if (!(its < least) || !fails_so(failures[i], other.pair)) continue;
+      least = its;
+      shared[i].pair = other.pair;
+    }
+  });
+
+  std::vector<char> shown(shared.size());
+  tbb::parallel_for(std::size_t{0}, shared.size(), [&](std::size_t i) {
+    LeagueFailure& failure = shared[i];
+    failure.truth = oracle::truth(failure.pair);
+    failure.verdict = said_afresh(*failure.lane, {failure.pair}).front();
+    shown[i] = failure.verdict != failure.truth.verdict && wrong_by(failure.verdict) == failure.by;
+  });
+  std::vector<LeagueFailure> result;
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    if (shown[i]) result.push_back(shared[i]);
+  }
+  not_again = shared.size() - result.size();
+  return result;
+}
+
+}  // namespace graze::fuzz

@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/league.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "analysis/convention.h"
+#include "core/fnv1a.h"
+#include "core/text.h"
+#include "corpus/pair_format.h"
+#include "fuzz/minimise/kinds.h"
+#include "reports/plain_figures.h"
+#include "reports/terminal.h"
+#include "reports/text_table.h"
+#include "reports/wilson.h"
+
+namespace graze::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json share_json(std::uint64_t count, std::uint64_t of) {
+  const Share share = share_of(count, of);
+  const auto rounded = [](double x) { return std::stod(fmt::format("{:.5g}", x)); };
+  return {{"count", count}, {"of", of}, {"share", rounded(share.share)}, {"low", rounded(share.low)},
+          {"high", rounded(share.high)}};
+}
+
+Json counts_json(const fuzz::LeagueCounts& counts) {
+  Json row{{"pairs", counts.pairs}};
+  for (std::size_t by = 0; by < fuzz::kWrongByCount; ++by) row[std::string(fuzz::kWrongBy[by])] = counts.wrong[by];
+  row["clear"] = counts.clear;
+  row["outside"] = counts.outside;
+  row["by_convention"] = counts.by_convention;
+  row["not_again"] = counts.not_again;
+  row["wrong"] = share_json(counts.all_wrong(), counts.pairs);
+  return row;
+}
+
+Json row_json(const fuzz::LeagueRow& row) {
+  Json groups = Json::object();
+  fuzz::LeagueCounts total;
+  std::uint64_t clear = 0;
+  for (std::size_t g = 0; g < fuzz::kLeagueGroupCount; ++g) {
+    if (row.groups[g].pairs + row.groups[g].outside == 0) continue;
+    groups[std::string(fuzz::kLeagueGroups[g])] = counts_json(row.groups[g]);
+    total += row.groups[g];
+    if (g != static_cast<std::size_t>(fuzz::LeagueGroup::extreme)) clear += row.groups[g].clear;
+  }
+  return {{"lane", row.lane->id},
+          {"subject", row.lane->info->id},
+          {"foreign", row.lane->foreign},
+          {"groups", groups},
+          {"total", counts_json(total)},
+          {"clear", clear},
+          {"order_dependent", share_json(row.order_dependent, row.order_sample)},
+          {"flips", row.flips ? Json(*row.flips) : Json()}};
+}
+
+Json subject_json(const AlgorithmInfo& info, const Lane& lane, const std::vector<LeagueSubject>& subjects) {
+  const auto found = std::find_if(subjects.begin(), subjects.end(), [&](const auto& s) { return s.name == info.id; });
+  Json row{{"name", info.id}, {"foreign", lane.foreign}};
+  if (found == subjects.end()) {
+    row["source"] = info.paper;
+    row["convention"] = fmt::format("coplanar: {}; degenerate: {}", info.coplanar, info.degenerate);
+    return row;
+  }
+  row["what"] = found->what;
+  row["version"] = found->version;
+  row["source"] = found->source;
+  row["outside"] = analysis::outside_in_words(lane.outside);
+  row["convention"] = found->convention;
+  return row;
+}
+
+// A number that reads as these bits: short decimals where they are exact.
+std::string written(float value) {
+  const double scaled = std::fabs(static_cast<double>(value)) * 64;
+  if (scaled < 1e7 && scaled == std::floor(scaled)) return fmt::format("{}", value);
+  return corpus::hex_float(value);
+}
+
+std::string written(const Pair& pair) {
+  std::string text;
+  for (int i = 0; i < kCoordinates; ++i)
+    text += (i == 0 ? "" : i % 9 == 0 ? "   " : i % 3 == 0 ? "  " : " ") + written(coordinates(pair)[i]);
+  return text;
+}
+
+Json failure_json(const fuzz::LeagueFailure& failure, const std::vector<LeagueSubject>& subjects) {
+  const std::string_view subject = failure.lane->info->id;
+  const auto found = std::find_if(subjects.begin(), subjects.end(), [&](const auto& s) { return s.name == subject; });
+  const std::string of_subject =
+      found == subjects.end() ? "" : fmt::format(" --subject {}", shell_word(found->name + '=' + found->what));
+  return {{"subject", subject},
+          {"lane", failure.lane->id},
+          {"shape", failure.shape},
+          {"by", fuzz::kWrongBy[static_cast<std::size_t>(failure.by)]},
+          {"truth", name(failure.truth.verdict)},
+          {"contact", name(failure.truth.contact)},
+          {"margin", failure.truth.margin},
+          {"margin_ulps", failure.truth.margin_ulps},
+          {"says", name(failure.verdict)},
+          {"minimised", failure.minimised},
+          {"pair", coordinates_of(failure.pair)},
+          {"again", fmt::format("echo '{}' | graze check -{} --lanes {}", written(failure.pair), of_subject,
+                                shell_word(failure.lane->id))},
+          {"file", fmt::format("{:016x}.svg", fnv1a(fuzz::pair_text(failure.pair)))},
+          {"drawing", drawing_of(failure.pair)}};
+}
+
+// Leaves the files of as many drawings as there may be.
+void choose_drawings(Json& failures, const Json& rows) {
+  std::set<std::string> foreign, files;
+  for (const Json& row : rows) {
+    if (row.at("foreign")) foreign.insert(row.at("subject"));
+  }
+  for (const bool library : {true, false}) {
+    for (const char* shape : {"clear", "general", "coplanar", "degenerate"}) {
+      for (Json& failure : failures) {
+        if (failure.at("shape") != shape || foreign.contains(failure.at("subject")) != library) continue;
+        const std::string file = failure.at("file");
+        if (files.size() == kMostDrawings && !files.contains(file)) {
+          failure["file"] = nullptr;
+        } else {
+          files.insert(file);
+        }
+      }
+    }
+  }
+}
+
+std::string count_text(const Json& count) { return grouped(count.get<std::uint64_t>()); }
+
+std::string misses_and_false_hits(const Json& counts) {
+  return counts.at("pairs") == 0 ? "-" : count_text(counts.at("miss")) + " / " + count_text(counts.at("false hit"));
+}
+
+std::string nanoseconds_text(const Json& league, const Json& row) {
+  const Json& value = league.at("timings").at("nanoseconds").at(row.at("lane").get<std::string>());
+  if (value.is_null()) return "-";
+  return fmt::format("{:.{}f}", value.get<double>(), value.get<double>() < 100 ? 1 : 0);
+}
+
+// The columns behind the groups, and what each row has there.
+struct Extra {
+  const char* title;
+  std::string (*text)(const Json& league, const Json& row);
+};
+constexpr Extra kExtras[] = {
+    {"clear", [](const Json&, const Json& row) { return count_text(row.at("clear")); }},
+    {"declined", [](const Json&, const Json& row) { return count_text(row.at("total").at("declined")); }},
+    {"crashed", [](const Json&, const Json& row) { return count_text(row.at("total").at("crashed")); }},
+    {"timed out", [](const Json&, const Json& row) { return count_text(row.at("total").at("timed out")); }},
+    {"unstable", [](const Json&, const Json& row) { return count_text(row.at("total").at("unstable")); }},
+    {"not again", [](const Json&, const Json& row) { return count_text(row.at("total").at("not_again")); }},
+    {"by convention",
+     [](const Json&, const Json& row) {
+       return row.at("total").at("outside") == 0 ? "-" : count_text(row.at("total").at("by_convention"));
+     }},
+    {"order",
+     [](const Json&, const Json& row) {
+       const Json& order = row.at("order_dependent");
+       return count_text(order.at("count")) + " of " + count_text(order.at("of"));
+     }},
+    {"flips", [](const Json&, const Json& row) { return row.at("flips").is_null() ? "-" : count_text(row.at("flips")); }},
+    {"ns a pair", nanoseconds_text},
+};
+
+std::string md(std::string text) {
+  for (std::size_t at = 0; (at = text.find('|', at)) != text.npos; at += 2) text.replace(at, 1, "\\|");
+  return html(text);
+}
+
+std::string percent_text(const Json& share) {
+  if (share.at("of") == 0) return "-";
+  const auto percent = [](double x) { return x == 0 ? "0" : x < 1e-4 ? fmt::format("{:.4f}", 100 * x) : fmt::format("{:.3g}", 100 * x); };
+  return fmt::format("{} ({}…{})", percent(share.at("share")), percent(share.at("low")), percent(share.at("high")));
+}
+
+std::string table_line(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
+
+std::string page_counts(const Json& league) {
+  std::vector<std::string> head{"lane"}, rule{"---"};
+  for (const auto& [group, pairs] : league.at("groups").items())
+    head.push_back(fmt::format("{}, {} pairs", group, count_text(pairs)));
+  for (const Extra& extra : kExtras) head.push_back(extra.title);
+  rule.resize(head.size(), "---:");
+  std::string text = table_line(head) + table_line(rule);
+  for (const Json& row : league.at("rows")) {
+    std::vector<std::string> cells{fmt::format("`{}`", row.at("lane").get<std::string>())};
+    for (const auto& [group, pairs] : league.at("groups").items()) {
+      const Json& counts = row.at("groups").at(group);
+      cells.push_back(misses_and_false_hits(counts));
+      if (counts.at("pairs") != pairs && counts.at("pairs") != 0) cells.back() += " of " + count_text(counts.at("pairs"));
+    }
+    for (const Extra& extra : kExtras) cells.push_back(extra.text(league, row));
+    text += table_line(cells);
+  }
+  return text;
+}
+
+std::string page_shares(const Json& league) {
+  std::vector<std::string> head{"lane"}, rule{"---"};
+  for (const auto& [group, pairs] : league.at("groups").items()) head.push_back(group);
+  head.push_back("order-dependent");
+  rule.resize(head.size(), "---:");
+  std::string text = table_line(head) + table_line(rule);
+  for (const Json& row : league.at("rows")) {
+    std::vector<std::string> cells{fmt::format("`{}`", row.at("lane").get<std::string>())};
+    for (const auto& [group, pairs] : league.at("groups").items())
+      cells.push_back(percent_text(row.at("groups").at(group).at("wrong")));
+    cells.push_back(percent_text(row.at("order_dependent")));
+    text += table_line(cells);
+  }
+  return text;
+}
+
+std::string page_subjects(const Json& league) {
+  std::string text = "| subject | version | source | what its documentation states | left out of its contract |\n|---|---|---|---|---|\n";
+  for (const Json& subject : league.at("subjects")) {
+    if (!subject.at("foreign")) continue;
+    const auto field = [&](const char* key, const char* otherwise) {
+      const std::string value = subject.at(key);
+      return value.empty() ? otherwise : md(value);
+    };
+    text += table_line({fmt::format("`{}`", subject.at("name").get<std::string>()), field("version", "not known"),
+                        field("source", "not known"), field("convention", "nothing stated"), field("outside", "nothing")});
+  }
+  return text;
+}
+
+std::string page_failures(const Json& league) {
+  std::string text, subject;
+  for (const Json& failure : league.at("failures")) {
+    if (failure.at("subject") != subject) {
+      subject = failure.at("subject");
+      text += fmt::format("\n### {}\n", subject);
+    }
+    const std::string contact = failure.at("contact") == "none" ? "" : fmt::format(" (contact: {})", failure.at("contact").get<std::string>());
+    const double ulps = failure.at("margin_ulps");
+    text += fmt::format("\n**{}, {}**: `{}` says {}; the truth is {}{}, margin {:.4g}{}.{}\n", failure.at("shape").get<std::string>(),
+                        failure.at("by").get<std::string>(), failure.at("lane").get<std::string>(),
+                        failure.at("says").get<std::string>(), failure.at("truth").get<std::string>(), contact,
+                        failure.at("margin").get<double>(), ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
+                        failure.at("minimised") ? "" : " Not minimised.");
+    text += fmt::format("\n```sh\n{}\n```\n", failure.at("again").get<std::string>());
+    if (!failure.at("file").is_null())
+      text += fmt::format("\n![both triangles](league/{})\n", failure.at("file").get<std::string>());
+  }
+  return text;
+}
+
+}  // namespace
+
+Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& subjects,
+                 const std::vector<std::optional<double>>& nanoseconds, const std::string& machine,
+                 const std::string& date) {
+  Json groups = Json::object(), rows = Json::array(), failures = Json::array(), own = Json::array();
+  for (std::size_t g = 0; g < fuzz::kLeagueGroupCount; ++g) {
+    std::uint64_t pairs = 0;  // of a row that took all
+    for (const fuzz::LeagueRow& row : league.rows) pairs = std::max(pairs, row.groups[g].pairs + row.groups[g].outside);
+    if (pairs > 0) groups[std::string(fuzz::kLeagueGroups[g])] = pairs;
+  }
+  const AlgorithmInfo* last = nullptr;
+  Json timings{{"machine", machine}, {"date", date}, {"nanoseconds", Json::object()}};
+  for (std::size_t r = 0; r < league.rows.size(); ++r) {
+    const Lane& lane = *league.rows[r].lane;
+    rows.push_back(row_json(league.rows[r]));
+    timings["nanoseconds"][lane.id] = nanoseconds[r] ? Json(std::round(*nanoseconds[r] * 10) / 10) : Json();
+    if (lane.info != last) own.push_back(subject_json(*lane.info, lane, subjects));
+    last = lane.info;
+  }
+  std::stable_sort(rows.begin(), rows.end(), [](const Json& l, const Json& r) {
+    const auto key = [](const Json& row) {
+      return std::pair<std::uint64_t, double>(row.at("clear"), row.at("total").at("wrong").at("share"));
+    };
+    return key(l) < key(r);
+  });
+  for (const fuzz::LeagueFailure& failure : league.failures) failures.push_back(failure_json(failure, subjects));
+  choose_drawings(failures, rows);
+  return {{"seed", league.seed},
+          {"pairs", league.pairs},
+          {"strata", league.strata},
+          {"groups", groups},
+          {"subjects", own},
+          {"rows", rows},
+          {"failures", failures},
+          {"failures_not_again", league.failures_not_again},
+          {"timings", timings}};
+}
+
+std::map<std::string, std::string> league_drawings(const Json& league) {
+  std::map<std::string, std::string> drawings;
+  for (const Json& failure : league.at("failures")) {
+    if (failure.at("file").is_null()) continue;
+    std::string svg = pair_drawing(failure);
+    // A file of its own, on any background.
+    svg.insert(svg.find('>') + 1, "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>");
+    svg.insert(4, " xmlns=\"http://www.w3.org/2000/svg\"");
+    drawings[failure.at("file")] = svg + "\n";
+  }
+  return drawings;
+}
+
+std::string league_table(const Json& league, const Screen& screen) {
+  std::vector<Column> columns{{"lane", Align::left}};
+  for (const auto& [group, pairs] : league.at("groups").items()) columns.push_back({group});
+  std::vector<const Extra*> extras;  // without those that are nothing everywhere
+  for (const Extra& extra : kExtras) {
+    const bool any = std::any_of(league.at("rows").begin(), league.at("rows").end(), [&](const Json& row) {
+      const std::string text = extra.text(league, row);
+      return text != "0" && text != "-";
+    });
+    if (!any) continue;
+    extras.push_back(&extra);
+    columns.push_back({extra.title});
+  }
+  TextTable table(columns);
+  for (const Json& row : league.at("rows")) {
+    std::vector<Cell> cells{row.at("lane").get<std::string>()};
+    for (const auto& [group, pairs] : league.at("groups").items())
+      cells.emplace_back(misses_and_false_hits(row.at("groups").at(group)));
+    for (const Extra* extra : extras) cells.emplace_back(extra->text(league, row));
+    table.add(std::move(cells));
+  }
+  std::string pairs;
+  for (const auto& [group, count] : league.at("groups").items())
+    pairs += fmt::format("{}{} {}", pairs.empty() ? "" : ", ", group, count_text(count));
+  return wrapped(fmt::format("Misses / false hits within each one's contract, on the same {} pairs ({}).",
+                             count_text(league.at("pairs")), pairs),
+                 screen.columns) +
+         table.text(screen) +
+         wrapped(fmt::format("{} smallest failures, each shown again by a fresh process; {} were not.",
+                             league.at("failures").size(), count_text(league.at("failures_not_again"))),
+                 screen.columns);
+}
+
+std::string league_page(const Json& league, const std::string& command) {
+  return fmt::format(
+      R"(# League: triangle-triangle tests of libraries, side by side
+
+Made by `{command}`; do not edit. All rows saw the same {pairs} pairs (strata with seed {seed}, in equal shares), but those that are slow, which took the first of each stratum: then, and where pairs are outside its contract, the count is "of" so many. Rows with the fewest clearly wrong verdicts stand first.
+
+The truth of every pair is CGAL's exact decision and that of `core/exact`; of every pair on which a row is wrong, GMP's as well. Every wrong verdict was asked again in a process that was new for it, and counts only where that said the same ("not again": the others). Touching counts, and a degenerate triangle is a segment or a point. What a library's documentation leaves out of its contract is counted apart ("by convention") and is no error; where it states nothing, every difference counts.
+
+{counts}
+Columns: misses / false hits by group of strata ("near": near and exact contacts; "extreme": needles, extreme coordinates, far from the origin). *clear*: of the wrong verdicts outside "extreme" those on proper, not coplanar triangles whose margin is at least 2^{exponent} ulps of the largest coordinate: neither a convention nor rounding of the input excuses them. *order*: pairs, of a sample, on which the verdict changes with the order of triangles and vertices (72 orders, the same truth). *flips*: pairs on which the build with contraction says otherwise, where there is source. *ns a pair*: median of {repetitions} repetitions in turn on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
+
+## Shares
+Wrong within the contract (misses, false hits, declined, crashed, timed out and unstable), in per cent of the pairs within it, with 95 % intervals.
+
+{shares}
+## Subjects
+{subjects}
+## Smallest failures
+The simplest pair found of each subject, shape ("clear": as above) and way to be wrong; from the folder in which `scripts/league` ran. `graze repro --emit` makes a program of a pair. Confirmed by CGAL and GMP, and shown by a fresh process; {not_again} were not shown again and are not here. Orange is the second triangle, red where the two meet, dashed the line in both planes.
+{failures})",
+      fmt::arg("command", command), fmt::arg("pairs", count_text(league.at("pairs"))),
+      fmt::arg("seed", league.at("seed").get<std::uint64_t>()), fmt::arg("counts", page_counts(league)),
+      fmt::arg("exponent", fuzz::kClearExponent), fmt::arg("repetitions", fuzz::kLeagueRepetitions),
+      fmt::arg("timed", fuzz::kLeagueTimedPairs), fmt::arg("machine", league.at("timings").at("machine").get<std::string>()),
+      fmt::arg("date", league.at("timings").at("date").get<std::string>()), fmt::arg("shares", page_shares(league)),
+      fmt::arg("subjects", page_subjects(league)), fmt::arg("not_again", count_text(league.at("failures_not_again"))),
+      fmt::arg("failures", page_failures(league)));
+}
+
+}  // namespace graze::reports

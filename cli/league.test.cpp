@@ -60,6 +60,7 @@ TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
     EXPECT_NE(page.find("(league/" + file.path().filename().string() + ")"), std::string::npos);
   }
   EXPECT_GT(drawings, 5u);
+  EXPECT_LT(page.find("\n### spoken\n"), page.find("\n### moller_1997\n"));  // the libraries' failures come first
 }
 
 TEST_F(LeagueCommand, ThePagesCommandsShowItsFailures) {

@@ -281,7 +281,11 @@ Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& s
     };
     return key(l) < key(r);
   });
-  for (const fuzz::LeagueFailure& failure : league.failures) failures.push_back(failure_json(failure, subjects));
+  for (const bool foreign : {true, false}) {  // libraries first
+    for (const fuzz::LeagueFailure& failure : league.failures) {
+      if (failure.lane->foreign == foreign) failures.push_back(failure_json(failure, subjects));
+    }
+  }
   choose_drawings(failures, rows);
   return {{"seed", league.seed},
           {"pairs", league.pairs},

@@ -220,7 +220,7 @@ class Torture(unittest.TestCase):
 
     def test_nothing_attempted_is_a_failure(self):
         kinds, torture.KINDS = torture.KINDS, {"idle": lambda turn: None}
-        arguments, sys.argv = sys.argv, ["torture", "--graze", str(self.graze("good")), "--minutes", "0"]
+        arguments, sys.argv = sys.argv, ["torture", "--graze", str(self.graze("good")), "--rounds", "1"]
         said = io.StringIO()
         try:
             with contextlib.redirect_stdout(said):

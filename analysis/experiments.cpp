@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "core/exact/exact.h"
+#include "cuda/twin/twin.h"
 
 namespace graze::analysis {
 namespace {
@@ -52,7 +53,8 @@ const Lane* in_float64(const Lane& lane) {
   if (lane.scalar == Scalar::f64) return nullptr;
   LaneName other = lane.lane_name();
   other.scalar = name(Scalar::f64);
-  return find_lane(id_of(other));
+  const Lane* found = find_lane(id_of(other));
+  return found && cuda::block_on_host(*found) ? found : nullptr;
 }
 
 // All coordinates are multiples of 2^low and less than 2^high.   Requires: some coordinate is not zero.
@@ -133,7 +135,7 @@ class Trial {
  private:
   Experiment cause() {
     if (const Lane* rounded = counterpart(lane_, rounded_variant(lane_.variant));
-        rounded && rounded != &lane_ && asked(*rounded, {pair_})[0]) {
+        rounded && rounded != &lane_ && cuda::block_on_host(*rounded) && asked(*rounded, {pair_})[0]) {
       if (info_of(lane_.variant).arithmetic == Arithmetic::fast)
         return {Cause::fast_math, true, "built so that every operation rounds as written it is right"};
       return {Cause::contraction, true, "built without contraction it is right"};

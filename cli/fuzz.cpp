@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 
+#include "analysis/signature.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
@@ -17,6 +18,8 @@
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/minimise/kinds.h"
+#include "fuzz/minimise/minimised_cases.h"
 #include "reports/margin_figure.h"
 #include "reports/terminal.h"
 #include "strata/mesh.h"
@@ -38,6 +41,7 @@ struct FuzzOptions {
   bool json = false;
   bool require_device = false;
   bool discard_damaged = false;
+  std::optional<std::uint64_t> fail_above;
 };
 
 // What the live line says besides progress, where there is room.
@@ -48,6 +52,45 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
   return {reports::grouped(progress.disagreements) + " disagreements",
           reports::grouped(progress.signatures) + " signatures",
           reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
+}
+
+// The first subject of these, or of any where there are none, that is wrong on more pairs than it may be: says so in one
+// line, with its simplest case, minimised.   Returns: the exit status.
+int fail_above(const FuzzOptions& options, const fuzz::LanesUnderTest& under_test, const Json& summary) {
+  std::map<std::string, std::uint64_t> wrong;
+  for (const Json& row : summary["signatures"]) {
+    const auto signature = analysis::parse_signature(row["key"].get<std::string>());
+    if (signature) wrong[signature->subject] += row["count"].get<std::uint64_t>();
+  }
+  for (const auto& [subject, count] : wrong) {
+    const auto names_it = [&, &id = subject](const std::string& text) { return text.starts_with(id + '='); };
+    const auto& given = options.lanes.subjects;
+    if (count <= *options.fail_above || (!given.empty() && std::none_of(given.begin(), given.end(), names_it))) continue;
+    std::optional<fuzz::Simplicity> least;
+    std::filesystem::path file;
+    std::vector<corpus::Entry> entries;
+    for (const Json& row : summary["signatures"]) {
+      const auto signature = analysis::parse_signature(row["key"].get<std::string>());
+      if (!signature || signature->subject != subject) continue;
+      const std::filesystem::path of_row = fuzz::case_file(options.out, row);
+      std::vector<corpus::Entry> found = corpus::read_pairs(of_row);
+      if (found.empty() || (least && fuzz::simplicity(found[0].pair) >= *least)) continue;
+      least = fuzz::simplicity(found[0].pair);
+      file = of_row;
+      entries = std::move(found);
+    }
+    const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries);
+    Pair pair = entries.at(0).pair;
+    if (!results.empty()) {
+      pair = results[0].result.pair;
+      fuzz::write_whole(file, fuzz::with_results(fuzz::read_whole(file), entries, results));
+    }
+    fmt::print(stderr, "graze: {}: expected at most {} wrong pairs, found {}; the smallest is {}; again: graze repro {}\n",
+               subject, reports::grouped(*options.fail_above), reports::grouped(count), fuzz::pair_text(pair),
+               shell_word(file.string()));
+    return 1;
+  }
+  return 0;
 }
 
 int fuzz(const FuzzOptions& options) {
@@ -104,9 +147,13 @@ int fuzz(const FuzzOptions& options) {
     fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
     return kInterrupted;
   }
+  const auto status = [&] {
+    std::cout.flush();
+    return options.fail_above ? fail_above(options, under_test, summary) : 0;
+  };
   if (options.json) {
     std::cout << summary.dump(1) << '\n';
-    return 0;
+    return status();
   }
   reports::print_summary(std::cout, summary, oracle, output_screen());
   std::cout << fmt::format(
@@ -116,7 +163,7 @@ int fuzz(const FuzzOptions& options) {
     std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",
                              shell_word(first), shell_word(options.out));
   }
-  return 0;
+  return status();
 }
 
 }  // namespace
@@ -158,6 +205,11 @@ void add_fuzz(CLI::App& app, int& status) {
       ->option_text("auto|cpu|gpu");
   command->add_flag("--discard-damaged", options->discard_damaged,
                     "Go on with a damaged campaign from the batches that check");
+  command
+      ->add_option("--fail-above", options->fail_above,
+                   "Exit with 1 where a subject given by --subject, or any lanes where none is, is wrong on more pairs; "
+                   "with its smallest case, minimised, on standard error")
+      ->transform(whole_number(0, kMostWhole));
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("--require-device", options->require_device, "Fail when there is no CUDA device");
   command->callback([options, &status] { status = fuzz(*options); });

@@ -8,12 +8,14 @@
 #include <optional>
 
 #include "analysis/signature.h"
+#include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/kinds.h"
 #include "reports/plain_figures.h"
 #include "reports/snippet.h"
 #include "reports/ulp_map_picture.h"
+#include "subjects/subjects.h"
 
 namespace graze::reports {
 
@@ -60,9 +62,11 @@ double number_in(const std::filesystem::path& file, const corpus::Entry& entry, 
 }
 
 Verdict verdict_of(std::string_view word) {
-  return word == name(Verdict::disjoint)     ? Verdict::disjoint
-         : word == name(Verdict::intersects) ? Verdict::intersects
-                                             : Verdict::declined;
+  for (const Verdict verdict : {Verdict::disjoint, Verdict::intersects, Verdict::crashed, Verdict::timed_out,
+                                Verdict::unstable}) {
+    if (word == name(verdict)) return verdict;
+  }
+  return Verdict::declined;
 }
 
 // Of the lanes that the minimiser ran on the pair.
@@ -77,13 +81,16 @@ Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored
 }
 
 Json commands_of(const corpus::Entry& entry, const std::string& subject, const std::string& from) {
-  const std::string lanes = fmt::format("--lanes '{}/*'", subject);
+  const subjects::Opened* opened = subjects::opened(subject);
+  const std::string foreign =
+      opened ? fmt::format(" --subject {}", shell_word(subject + '=' + opened->wanted.what)) : "";
+  const std::string lanes = fmt::format("--lanes '{}/*'{}", subject, foreign);
   const std::string file = fmt::format("echo '{}' > case.pairs", fuzz::pair_text(entry.pair));
   Json rows = Json::array();
   const auto add = [&](const char* label, const std::string& text) {
     rows.push_back({{"label", label}, {"text", text}});
   };
-  add("repro", fmt::format("{}; graze repro case.pairs", file));
+  add("repro", fmt::format("{}; graze repro case.pairs{}", file, foreign));
   add("explain", fmt::format("{}; graze explain case.pairs {}", file, lanes));
   add("map", fmt::format("{}; graze map case.pairs {}", file, lanes));
   if (from.find(':') != std::string::npos) add("minimize", fmt::format("graze minimize {} {}", from, lanes));
@@ -107,6 +114,10 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
       if (!is_of_kind(lane.id) || !lane.row || !shows(language, *lane.row)) continue;
       const SnippetCase found{name, entry.pair, truth, lane.row, verdict_of(row["verdict"].get<std::string>())};
       std::string text = snippet(language, found);
+      if (lane.row->foreign) {
+        rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", text}});
+        return;
+      }
       const std::string source = amalgamated_source(kind.at("subject").get<std::string>());
       if (const std::size_t at = text.find(source); at != text.npos) text.replace(at, source.size(), kSourceMark);
       rows.push_back({{"label", kSnippetKinds[static_cast<int>(language)]}, {"text", text}});

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "corpus/pair_format.h"
+#include "reports/foreign_snippet.h"
 
 namespace graze::reports {
 namespace {
@@ -77,19 +78,21 @@ std::string flags_of(Variant variant) {
   return text;
 }
 
+#ifdef __clang__
+constexpr std::string_view kCompiler = "clang++";
+#else
+constexpr std::string_view kCompiler = "g++";
+#endif
+constexpr std::string_view kTestLibraries = " -lgtest -lgtest_main -pthread";
+
 // The line that compiles and runs the snippet; its flags are those of the lane's build.
 std::string command(SnippetKind kind, const Lane* lane) {
-#ifdef __clang__
-  constexpr std::string_view kCompiler = "clang++";
-#else
-  constexpr std::string_view kCompiler = "g++";
-#endif
   const std::string flags = lane ? flags_of(lane->variant) : "";
   switch (kind) {
     case SnippetKind::cpp:
     case SnippetKind::gtest:
       return fmt::format("{} -std=c++20 -O3 {}case.cpp{} -o case && ./case", kCompiler, flags,
-                         kind == SnippetKind::gtest ? " -lgtest -lgtest_main -pthread" : "");
+                         kind == SnippetKind::gtest ? kTestLibraries : "");
     case SnippetKind::cuda:
       return fmt::format("nvcc -std=c++20 -O3 -arch=native {}case.cu -o case && ./case", flags);
     case SnippetKind::cgal:
@@ -141,6 +144,7 @@ bool shows_lanes(SnippetKind kind) {
 }
 
 bool shows(SnippetKind kind, const Lane& lane) {
+  if (lane.foreign) return (kind == SnippetKind::cpp || kind == SnippetKind::gtest) && shows_foreign(lane);
   return shows_lanes(kind) && lane.is_cuda() == (kind == SnippetKind::cuda);
 }
 
@@ -153,15 +157,31 @@ std::string amalgamated_source(std::string_view algorithm_id) {
 }
 
 std::string snippet(SnippetKind kind, const SnippetCase& found) {
+  const bool foreign = shows_lanes(kind) && found.lane->foreign;
   std::vector<std::pair<std::string_view, std::string>> values = {
-      {"command", command(kind, found.lane)},
+      {"command", foreign ? "" : command(kind, found.lane)},
       {"case", in_comment(found.name)},
       {"truth", std::string(name(found.truth))},
       {"intersects", found.truth == Verdict::intersects ? "true" : "false"},
       {"vertices_a", vertices(kind, found.pair.a, 'a')},
       {"vertices_b", vertices(kind, found.pair.b, 'b')}};
   values.emplace_back("coordinates", values[4].second + values[5].second);
-  if (shows_lanes(kind)) {
+  if (foreign) {
+    const bool test = kind == SnippetKind::gtest;
+    ForeignCall call = foreign_call(*found.lane, found.pair, kCompiler, test ? kTestLibraries : "");
+    std::string name_of_test;
+    for (const char c : found.lane->info->id) {
+      if (std::isalnum(static_cast<unsigned char>(c))) name_of_test += c;
+    }
+    values[0].second = std::move(call.command);
+    values.insert(values.end(), {{"lane", found.lane->id},
+                                 {"verdict", std::string(name(found.verdict))},
+                                 {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
+                                 {"decide", std::move(call.decide)},
+                                 {"seconds", std::to_string(call.seconds)},
+                                 {"rounds", found.verdict == Verdict::unstable ? "1000" : "1"},
+                                 {"test", "Subject" + name_of_test}});
+  } else if (shows_lanes(kind)) {
     const std::string_view id = found.lane->info->id;
     values.insert(values.end(), {{"lane", found.lane->id},
                                  {"verdict", std::string(name(found.verdict))},
@@ -172,14 +192,16 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
                                  {"sources", amalgamated_source(id)}});
   }
   // @name@ in the text is a value.
+  const std::string_view file =
+      !foreign ? file_of(kind) : kind == SnippetKind::gtest ? "foreign_gtest.cpp.in" : "foreign.cpp.in";
   std::string text;
-  std::string_view rest = embedded(fmt::format("reports/snippets/{}", file_of(kind)));
+  std::string_view rest = embedded(fmt::format("reports/snippets/{}", file));
   for (std::size_t at; (at = rest.find('@')) != rest.npos;) {
     text += rest.substr(0, at);
     rest.remove_prefix(at + 1);
     const std::string_view key = rest.substr(0, rest.find('@'));
     const auto value = std::find_if(values.begin(), values.end(), [&](auto& v) { return v.first == key; });
-    if (value == values.end()) throw std::logic_error(fmt::format("{}: no value of '{}'", file_of(kind), key));
+    if (value == values.end()) throw std::logic_error(fmt::format("{}: no value of '{}'", file, key));
     text += value->second;
     rest.remove_prefix(key.size() + 1);
   }

@@ -38,6 +38,8 @@ struct Channel {
   std::uint32_t outside;
   std::uint32_t has_f32, has_f64, of_blocks;
   char version[256], source[512], convention[512];
+  std::uint32_t describes_itself;  // by a struct graze_subject
+  char symbol[512];                // of the library, that was taken
   char message[1024];  // why it was refused; empty, or what the worker said last
 };
 

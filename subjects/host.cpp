@@ -92,12 +92,13 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   void* found = nullptr;
   for (const std::string& candidate :
        name.empty() ? std::vector<std::string>{"graze_subject", "intersects"} : std::vector<std::string>{name}) {
-    found = found ? found : dlsym(library, candidate.c_str());
+    if (!found && (found = dlsym(library, candidate.c_str()))) put(channel->symbol, candidate.c_str());
     for (const char* type : {"f", "d"}) {  // a C++ function of two pointers
       const std::string mangled = fmt::format("_Z{}{}PK{}{}", candidate.size(), candidate, type, "S0_");
       if (!found && (found = dlsym(library, mangled.c_str()))) {
         graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
         if (*type == 'f') subject.f32 = reinterpret_cast<int (*)(const float*, const float*)>(found);
+        put(channel->symbol, mangled.c_str());
         if (*type == 'd') subject.f64 = reinterpret_cast<int (*)(const double*, const double*)>(found);
         return subject;
       }
@@ -111,6 +112,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   const ElfW(Sym)* symbol = nullptr;
   const bool known = dladdr1(found, &info, reinterpret_cast<void**>(const_cast<ElfW(Sym)**>(&symbol)), RTLD_DL_SYMENT);
   if (known && symbol && ELF64_ST_TYPE(symbol->st_info) == STT_OBJECT) {
+    channel->describes_itself = 1;
     graze_subject subject;
     std::memcpy(&subject, found, sizeof subject);
     if (subject.abi != GRAZE_SUBJECT_ABI)

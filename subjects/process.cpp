@@ -253,7 +253,8 @@ class HostProcess {
 Description describe(const Code& code) {
   const HostProcess process(code);
   const Channel& c = process.channel();
-  return {c.has_f32 != 0, c.has_f64 != 0, c.outside, c.version, c.source, c.convention};
+  return {c.has_f32 != 0, c.has_f64 != 0, c.outside, c.version, c.source, c.convention,
+          c.describes_itself != 0, c.symbol};
 }
 
 ForeignProcesses::ForeignProcesses(Code code, Scalar scalar) : code_(std::move(code)), scalar_(scalar) {

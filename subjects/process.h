@@ -28,6 +28,8 @@ struct Description {
   bool f32 = false, f64 = false;
   unsigned outside = 0;  // a sum of Outside
   std::string version, source, convention;
+  bool describes_itself = false;  // by a struct graze_subject
+  std::string symbol;             // of a library, that was taken
 };
 
 // Throws: std::runtime_error, in one line, where the code cannot be loaded.

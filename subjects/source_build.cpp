@@ -104,13 +104,15 @@ void write_atomically(const fs::path& file, std::string_view text) {
   fs::rename(part, file);
 }
 
+bool source_describes_itself(const fs::path& source) { return text_of(source).find("GRAZE_SUBJECT(") != std::string::npos; }
+
 fs::path build_source(const fs::path& source, const std::string& function, const VariantInfo& variant,
                       const std::vector<std::string>& flags) {
   const bool c = source.extension() == ".c";
   const std::string text = text_of(source);
   // In the folder of the source its own includes are found.
   const std::string name = fs::absolute(source).string();
-  const bool describes_itself = text.find("GRAZE_SUBJECT(") != text.npos;
+  const bool describes_itself = source_describes_itself(source);
   const char* chosen = std::getenv(c ? "CC" : "CXX");
   const std::string compiler = chosen && *chosen ? chosen : c ? "cc" : "c++";
   int status = 0;

@@ -17,6 +17,9 @@ std::filesystem::path cache_folder();
 // Writes the file in one step: nobody sees a part of it.   Throws: std::runtime_error.
 void write_atomically(const std::filesystem::path& file, std::string_view text);
 
+// Whether the source has a struct graze_subject of its own.
+bool source_describes_itself(const std::filesystem::path& source);
+
 // Returns: the shared object's file, built if it is not there yet: `function` of the source, or the descriptions that
 // the source makes itself (see graze/subject.h), with the variant's flags and then `flags`.
 // Throws: std::runtime_error with the compiler's first error.

@@ -53,7 +53,8 @@ std::uint64_t hash_of_file(const fs::path& file) {
 }
 
 Opened parsed(const Wanted& wanted) {
-  Opened result{wanted, "", {}, "", 0, {}};
+  Opened result;
+  result.wanted = wanted;
   if (wanted.what.starts_with(kCommand)) {
     result.kind = "command";
     result.hash = fnv1a(wanted.what);

@@ -52,7 +52,8 @@ std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& s
   const analysis::Signature blank{
       seen.truth.contact, oracle::shape(pair), oracle::margin_bucket(pair, seen.truth.verdict), "", {}};
   std::vector<analysis::Signature> result;
-  for (const Lane& lane : published_lanes()) {  // in table order
+  for (const Lane& lane : lanes()) {  // in table order
+    if (lane.exact) continue;
     const auto mark = seen.marks.find(lane.id);
     if (mark == seen.marks.end()) continue;
     const LaneName name = lane.lane_name();

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/foreign_snippet.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "core/text.h"
+#include "corpus/pair_format.h"
+#include "subjects/source_build.h"
+#include "subjects/subjects.h"
+
+namespace graze::reports {
+namespace {
+
+std::string cpp_string(std::string_view text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    if (static_cast<unsigned char>(c) < ' ') {
+      result += fmt::format("\\{:03o}", static_cast<unsigned>(c));
+    } else {
+      result += c;
+    }
+  }
+  return result + '"';
+}
+
+// By the description `subject`, a pointer, of which either one function or that of blocks is there.
+std::string by_description(std::string_view real, std::string_view scalar, std::string_view subject) {
+  return fmt::format(R"(static int decide(const {0}* a, const {0}* b) {{
+  const struct graze_subject* subject = {2};
+  if (subject->{1}) return subject->{1}(a, b);
+  {0} pair[18];
+  std::memcpy(pair, a, sizeof pair / 2);
+  std::memcpy(pair + 9, b, sizeof pair / 2);
+  signed char answer = -1;
+  subject->block_{1}(pair, 1, &answer);
+  return answer;
+}}
+)",
+                     real, scalar, subject);
+}
+
+// As graze/subject.h has it.
+constexpr std::string_view kLayout = R"(#include <dlfcn.h>
+#include <cstdint>
+struct graze_subject {  // as in graze/subject.h
+  std::uint32_t abi, outside;
+  const char *version, *source, *convention;
+  int (*f32)(const float*, const float*);
+  int (*f64)(const double*, const double*);
+  void (*block_f32)(const float*, std::size_t, signed char*);
+  void (*block_f64)(const double*, std::size_t, signed char*);
+};
+static const graze_subject* described() {
+  void* library = dlopen(LIBRARY, RTLD_NOW);
+  void* found = library ? dlsym(library, SYMBOL) : nullptr;
+  if (!found) {
+    std::puts(dlerror());
+    std::exit(2);
+  }
+  return static_cast<const graze_subject*>(found);
+}
+)";
+
+std::string calling(std::string_view real, std::string_view function) {
+  return fmt::format("static int decide(const {0}* a, const {0}* b) {{ return static_cast<int>({1}(a, b)); }}\n", real,
+                     function);
+}
+
+// Whether the C function returns bool, of which a caller must know.
+bool returns_bool(const std::filesystem::path& source, const std::string& function) {
+  std::ifstream in(source);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return std::regex_search(text.str(), std::regex("\\b(_Bool|bool)\\s+" + function + "\\s*\\("));
+}
+
+}  // namespace
+
+bool shows_foreign(const Lane& lane) { return !lane.is_cuda() && subjects::opened(lane.info->id) != nullptr; }
+
+ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view compiler, std::string_view libraries) {
+  const subjects::Opened& opened = *subjects::opened(lane.info->id);
+  const std::string_view scalar = name(lane.scalar), real = lane.scalar == Scalar::f32 ? "float" : "double";
+  ForeignCall call;
+  call.seconds = static_cast<int>(std::ceil(opened.wanted.timeout)) + 1;
+  const std::string plain = fmt::format("{} -std=c++20 case.cpp", compiler),
+                    end = fmt::format("{} -o case && ./case", libraries);
+  if (opened.kind == "command") {
+    std::string line;
+    for (int i = 0; i < kCoordinates; ++i) line += (i > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[i]);
+    call.command = plain + end;
+    call.decide = fmt::format(R"(// The program is asked about this pair alone, by its line.
+static int decide(const {}*, const {}*) {{
+  FILE* program = popen({},
+                        "r");
+  int said = program ? std::fgetc(program) : EOF;
+  while (program && std::fgetc(program) != EOF) {{  // to its end
+  }}
+  if (program) pclose(program);
+  if (said != '0' && said != '1' && said != '?') {{
+    std::puts("the program gave no answer");
+    std::exit(1);
+  }}
+  return said == '?' ? -1 : said - '0';
+}}
+)",
+                              real, real, cpp_string("echo '" + line + "' | (" + opened.wanted.what.substr(4) + ")"));
+    return call;
+  }
+  const std::string file = opened.file.string();
+  if (opened.kind == "library") {
+    if (opened.description.describes_itself) {
+      call.command = plain + end;
+      call.decide = fmt::format("#define LIBRARY {}\n#define SYMBOL {}\n{}", cpp_string(file),
+                                cpp_string(opened.description.symbol), kLayout) +
+                    by_description(real, scalar, "described()");
+      return call;
+    }
+    call.command = fmt::format("{} {} -Wl,-rpath,{}{}", plain, shell_word(file),
+                               shell_word(opened.file.parent_path().string()), end);
+    const bool mangled = opened.description.symbol.starts_with("_Z");
+    const std::string function = mangled ? (opened.function.empty() ? "intersects" : opened.function) : opened.description.symbol;
+    call.decide =
+        fmt::format("{0}int {1}(const {2}* a, const {2}* b);\n", mangled ? "" : "extern \"C\" ", function, real) +
+        calling(real, function);
+    return call;
+  }
+  const bool describes_itself = subjects::source_describes_itself(opened.file);
+  std::string flags(info_of(lane.variant).flags);
+  for (const std::string& flag : opened.wanted.flags) flags += ' ' + shell_word(flag);
+  if (describes_itself) flags += " -I" + shell_word((subjects::cache_folder() / "include").string());
+  const std::string function = opened.function.empty() ? "intersects" : opened.function;
+  if (opened.file.extension() == ".c") {
+    call.command =
+        fmt::format("cc -std=gnu11 -O2 {} -c {} -o subject.o && {} -I{} subject.o{}", flags, shell_word(file), plain,
+                    shell_word((subjects::cache_folder() / "include").string()), end);
+    if (describes_itself) {
+      call.decide = "#include <graze/subject.h>\nextern \"C\" const struct graze_subject graze_subject;\n" +
+                    by_description(real, scalar, "&::graze_subject");
+    } else {
+      call.decide = fmt::format("extern \"C\" {} {}(const {}* a, const {}* b);\n",
+                                returns_bool(opened.file, function) ? "bool" : "int", function, real, real) +
+                    calling(real, function);
+    }
+    return call;
+  }
+  call.command = fmt::format("{} -std=c++20 -O2 {} case.cpp{}", compiler, flags, end);
+  call.decide = fmt::format("#include {}\n", cpp_string(file)) +
+                (describes_itself ? by_description(real, scalar, "&::graze_subject") : calling(real, function));
+  return call;
+}
+
+}  // namespace graze::reports

@@ -141,7 +141,8 @@ void add_cuda_lanes(Entry& entry, bool on_device) {
   describe_info(entry, {});
   add_lanes(std::move(made));
   for (const cuda::CudaBuild& build : entry.builds) {
-    if (!build.twin.empty()) cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, build))), build.twin);
+    if (build.twin.empty()) continue;
+    cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, build))), build.twin, o.wanted.timeout);
   }
 }
 

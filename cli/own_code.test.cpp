@@ -160,19 +160,19 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
 TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
   shell("cat > own.cu <<'EOF'\n"
         "__device__ float product(const float* t) {\n"
-        "  return t[0] * t[1] - t[2];\n"
+        "  return t[0] * t[1] - t[3] * t[4];\n"
         "}\n"
         "__device__ bool one(const float* a, const float* b) {\n"
         "  return product(a) != 0;\n"
         "}\n"
         "__device__ bool both(const float* a, const float* b) {\n"
         "  unsigned n = 1;\n"
-        "  if ((product(a) != 0) != (product(b) != 0))\n"
+        "  if (a[2] == 1 && b[2] == 9 && a[0] < a[3] && b[0] < b[3] && (product(a) != 0) != (product(b) != 0))\n"
         "    for (unsigned i = 0; i != 4000000000u; ++i) n = n * n + i;\n"
         "  return product(a) != 0 && n != 0;\n"
         "}\nEOF\n"
-        // Far apart, and each with a product of which one rounding is all that t[2] is.
-        "echo '0x1.000002p+0 0x1.000002p+0 0x1.000004p+0 2 0 1 3 3 1  0x1.000006p+0 0x1.000006p+0 0x1.00000cp+0 2 0 9 0 2 9' > p");
+        // Each with two products that are equal once they are rounded.
+        "echo '0x1.000002p+0 0x1.000002p+0 1 0x1.000004p+0 1 1 3 3 1  0x1.000006p+0 0x1.000006p+0 9 0x1.00000cp+0 1 9 0 2 9' > p");
   const std::string explain = "export XDG_CACHE_HOME=$PWD/cache; graze explain p --subject-timeout 0.5 --lanes 'own/*/cuda-*fma' ";
   const Ran named = shell(explain + "--subject own=./own.cu:one | tr -s ' \\n' ' '");
   if (shell(explain + "--subject own=./own.cu:one").err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";

@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "cli/run_graze.h"
+#include "corpus/pair_format.h"
+#include "fuzz/minimise/simplicity.h"
 
 namespace graze::cli {
 namespace {
@@ -201,6 +203,22 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   EXPECT_NE(repro.out.find("own/f32"), std::string::npos) << repro.out << repro.err;
   EXPECT_NE(repro.out.find("!"), std::string::npos) << repro.out;
   expect_done(fuzz + "400");  // moller is wrong too, and not asked about
+  // The smallest is the smallest of all that are minimised, not that of the smallest kept pair; the file has it.
+  const auto pairs_of = [&](const std::string& command) {
+    shell(command + " > some.pairs");
+    std::vector<fuzz::Simplicity> found;
+    for (const corpus::Entry& entry : corpus::read_pairs(shell.folder / "some.pairs")) found.push_back(fuzz::simplicity(entry.pair));
+    return found;
+  };
+  const std::size_t begin = ran.err.find("smallest is ") + 12;
+  const std::string pair = ran.err.substr(begin, ran.err.find(';', begin) - begin);
+  const std::vector<fuzz::Simplicity> smallest = pairs_of("echo '" + pair + "'"),
+                                      minimised = pairs_of("grep -h kind=minimised c/cases/*.pairs");
+  ASSERT_EQ(smallest.size(), 1u);
+  EXPECT_GE(minimised.size(), 4u);
+  EXPECT_LE(minimised.size(), 8u);
+  EXPECT_EQ(smallest[0], *std::min_element(minimised.begin(), minimised.end())) << ran.err;
+  EXPECT_EQ(shell(fuzz + "0").err, ran.err);
   // Without a subject any lane counts.
   const std::string ours = "graze fuzz --pairs 400 --out d --fail-above ";
   expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, "moller_1997: expected at most 0 wrong pairs");

@@ -30,11 +30,15 @@ Set others(Set set) {
 // A kernel of which any sites can be fused.
 class Fusing {
  public:
-  Fusing(const Lane& lane, const Pair& pair) : lane_(lane), pair_(pair), sites_(cuda::contraction_sites(lane)) {}
+  Fusing(const Lane& lane, const Pair& pair, const std::function<void()>& asked)
+      : lane_(lane), pair_(pair), asked_(asked), sites_(cuda::contraction_sites(lane)) {}
 
   Set none() const { return {sites_.size()}; }
   Set all() const { return others(none()); }
-  Verdict verdict(const Set& fused) const { return cuda::decide_fusing(lane_, pair_, fused.bits); }
+  Verdict verdict(const Set& fused) const {
+    if (asked_) asked_();
+    return cuda::decide_fusing(lane_, pair_, fused.bits);
+  }
   std::vector<cuda::ContractionSite> named(const Set& set) const {
     std::vector<cuda::ContractionSite> result;
     for (std::size_t i = 0; i < set.sites; ++i) {
@@ -46,6 +50,7 @@ class Fusing {
  private:
   const Lane& lane_;
   const Pair& pair_;
+  const std::function<void()>& asked_;
   std::span<const cuda::ContractionSite> sites_;
 };
 
@@ -87,8 +92,8 @@ Set reduced(const Fusing& kernel, Set set, Verdict verdict) {
 
 }  // namespace
 
-Blame blame(const Lane& lane, const Pair& pair) {
-  const Fusing kernel(lane, pair);
+Blame blame(const Lane& lane, const Pair& pair, const std::function<void()>& asked) {
+  const Fusing kernel(lane, pair, asked);
   const Verdict verdict = kernel.verdict(kernel.all());
   if (verdict == kernel.verdict(kernel.none())) return {};
   const std::optional<Set> few = one_or_two(kernel, verdict);
@@ -99,8 +104,8 @@ Blame blame(const Lane& lane, const Pair& pair) {
     const Set more = reduced(kernel, others(needed), verdict);
     for (std::size_t i = 0; i < needed.bits.size(); ++i) needed.bits[i] |= more.bits[i];
   }
-  if (needed != set && kernel.verdict(needed) == verdict) return {kernel.named(needed), false};
-  return {kernel.named(set), few || set.size() <= 3};
+  if (needed != set && kernel.verdict(needed) == verdict) return {kernel.named(needed), false, {}};
+  return {kernel.named(set), few || set.size() <= 3, {}};
 }
 
 }  // namespace graze::analysis

@@ -4,26 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 
+#include "analysis/scales.h"
 #include "core/exact/exact.h"
 #include "cuda/twin/twin.h"
 
 namespace graze::analysis {
 namespace {
-
-struct ScalarLimits {
-  std::string_view name;
-  int digits, least,
-      most;  // bits of the mantissa; exponents of the least normal number, and of the largest power of two
-};
-
-const ScalarLimits& limits_of(Scalar scalar) {
-  static constexpr ScalarLimits kLimits[] = {{"float32", 24, -126, 127}, {"float64", 53, -1022, 1023}};
-  return kLimits[static_cast<int>(scalar)];
-}
 
 // After so many verdicts that took all of their time no more are asked for.
 constexpr int kMostLate = 3;
@@ -57,62 +46,6 @@ const Lane* in_float64(const Lane& lane) {
   return found && cuda::block_on_host(*found) ? found : nullptr;
 }
 
-// All coordinates are multiples of 2^low and less than 2^high.   Requires: some coordinate is not zero.
-struct Size {
-  int low = 1000, high = -1000;
-  int largest_difference = -1000, smallest_difference = 1000;  // their exponents, of two vertices on one axis
-
-  explicit Size(const Pair& pair) {
-    const float* c = coordinates(pair);
-    for (int i = 0; i < kCoordinates; ++i) {
-      if (c[i] == 0) continue;
-      int exponent;
-      auto mantissa = static_cast<std::uint32_t>(std::ldexp(std::frexp(std::fabs(c[i]), &exponent), 24));
-      high = std::max(high, exponent);
-      low = std::min(low, exponent - 24 + std::countr_zero(mantissa));
-      for (int j = i % 3; j < i; j += 3) add_difference(double{c[i]} - c[j]);
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool zero =
-          std::any_of(c, c + kCoordinates, [&](const float& x) { return (&x - c) % 3 == axis && x == 0; });
-      for (int i = axis; zero && i < kCoordinates; i += 3) add_difference(c[i]);
-    }
-  }
-
- private:
-  void add_difference(double difference) {
-    if (difference == 0) return;
-    largest_difference = std::max(largest_difference, std::ilogb(difference));
-    smallest_difference = std::min(smallest_difference, std::ilogb(difference));
-  }
-};
-
-// Scales 2^k.
-struct Scales {
-  int first, last;
-  bool empty() const { return first > last; }
-  bool has(int k) const { return first <= k && k <= last; }
-};
-
-Scales common(Scales l, Scales r) { return {std::max(l.first, r.first), std::min(l.last, r.last)}; }
-
-// With which all coordinates stay as they are, but for the exponents.
-Scales exact_scales(const Size& size) { return {-149 - size.low, 128 - size.high}; }
-
-// With which no product of so many coordinates, or sums of four of them, can leave the scalar's exponents: whatever
-// rounds, such a product is a multiple of 2^(factors * low), or 0.
-Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
-  const ScalarLimits& limits = limits_of(scalar);
-  // Divisions that round towards the inside of the range.
-  return common({-(-limits.least / factors) - size.low, limits.most / factors - 2 - size.high}, exact_scales(size));
-}
-
-Pair scaled(const Pair& pair, int k) {
-  Pair result = pair;
-  for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = std::ldexp(coordinates(pair)[i], k);
-  return result;
-}
-
 // A scale at which the lane is wrong and the next one to it, at which it is right.
 struct Turn {
   int wrong, right;
@@ -137,15 +70,37 @@ class Trial {
     if (const Lane* rounded = counterpart(lane_, rounded_variant(lane_.variant));
         rounded && rounded != &lane_ && cuda::block_on_host(*rounded) && asked(*rounded, {pair_})[0]) {
       if (info_of(lane_.variant).arithmetic == Arithmetic::fast)
-        return {Cause::fast_math, true, "built so that every operation rounds as written it is right"};
-      return {Cause::contraction, true, "built without contraction it is right"};
+        return by_build(*rounded, Cause::fast_math, "built so that every operation rounds as written it is right");
+      return by_build(*rounded, Cause::contraction, "built without contraction it is right");
     }
     if (size_.high > -1000) {
       if (auto found = by_scale()) return *found;
     }
     if (auto found = by_precision()) return *found;
-    const bool few_bits = kUsualFactors * (size_.high - size_.low + 1) + 5 <= limits().digits;
-    return few_bits && scale_is_no_matter_ ? without_rounding() : by_images();
+    return has_few_bits() && scale_is_no_matter_ ? without_rounding() : by_images();
+  }
+
+  // Whether no sum and no product of up to kUsualFactors differences rounds.
+  bool has_few_bits() const { return kUsualFactors * (size_.high - size_.low + 1) + 5 <= limits().digits; }
+
+  // Whether products of differences stay in the exponents, as far as that can be known: the longest ones overflow, but
+  // only the usual ones have all their factors small.
+  bool has_usual_exponents() const {
+    return kUsualFactors * size_.smallest_difference >= limits().least &&
+           kMostFactors * (size_.largest_difference + 1) < limits().most;
+  }
+
+  // Right as it may be by luck, code that is wrong here in exact arithmetic too: then float64 or another scale shows it.
+  Experiment by_build(const Lane& rounded, Cause cause, std::string evidence) const {
+    const Lane* f64 = in_float64(rounded);
+    if (f64 && !asked(*f64, {pair_})[0]) return {cause, false, evidence + ", but in float64 so built wrong"};
+    if (size_.high == -1000 || has_few_bits())
+      return {cause, false, evidence + ", though only roots and quotients round here"};
+    const Scales scales = scales_in_range(size_, lane_.scalar, kUsualFactors);
+    for (const auto& [k, right] : tried(rounded, scales, 16)) {
+      if (!right) return {cause, false, evidence + fmt::format(", but so built wrong when scaled by 2^{}", k)};
+    }
+    return {cause, true, std::move(evidence)};
   }
 
   std::vector<bool> asked(const Lane& lane, const std::vector<Pair>& pairs) const {
@@ -204,15 +159,28 @@ class Trial {
     return std::nullopt;
   }
 
+  // Whether it is right at all scales above the turn and wrong below. What adds numbers of different units, lengths and
+  // areas, turns back where these grow apart; an epsilon does not, once it is small.
+  bool turns_once(Turn turn) const {
+    if (turn.right < turn.wrong) return false;
+    auto near = tried(lane_, common(strictly_, {turn.wrong - 12, turn.right + 12}), 26);
+    const auto far = tried(lane_, strictly_, 32);
+    near.insert(near.end(), far.begin(), far.end());
+    return std::all_of(near.begin(), near.end(),
+                       [&](const auto& one) { return one.second == (one.first >= turn.right); });
+  }
+
   std::optional<Experiment> by_scale() {
     bool right = false;
     strictly_ = scales_in_range(size_, lane_.scalar, kMostFactors);
     if (!strictly_.empty()) {
       if (const auto turn = turn_within(strictly_, 16, right)) {
-        return Experiment{Cause::absolute_epsilon, true,
-                          fmt::format("{}, and no product of up to {} coordinates leaves the exponents of {} at these "
-                                      "scales",
-                                      turn->text(), kMostFactors, limits().name)};
+        std::string text = fmt::format("{}, and no product of up to {} coordinates leaves the exponents of {} at these "
+                                       "scales",
+                                       turn->text(), kMostFactors, limits().name);
+        const bool once = turns_once(*turn);
+        if (!once) text += "; but it turns at more than this scale";
+        return Experiment{Cause::absolute_epsilon, once, std::move(text)};
       }
     }
     const Scales in_range = scales_in_range(size_, lane_.scalar, kUsualFactors);
@@ -278,7 +246,12 @@ class Trial {
   std::optional<Experiment> by_precision() const {
     const Lane* f64 = in_float64(lane_);
     if (!f64 || !asked(*f64, {pair_})[0]) return std::nullopt;
-    if (!scale_is_no_matter_) return Experiment{Cause::rounding, false, "in float64 it is right"};
+    // Where sums and products are exact it may be right by luck.
+    const Lane* rounded = counterpart(*f64, rounded_variant(f64->variant));
+    const bool as_written = !rounded || !cuda::block_on_host(*rounded) || asked(*rounded, {pair_})[0];
+    if (!scale_is_no_matter_ || !has_usual_exponents() || has_few_bits() || !as_written ||
+        !right_in_float64_at_every_scale())
+      return Experiment{Cause::rounding, false, "in float64 it is right"};
     return Experiment{Cause::rounding, true, "in float64 it is right, in float32 wrong at every scale"};
   }
 
@@ -296,14 +269,22 @@ class Trial {
     const std::vector<Pair> other_orders = orders(pair_), mirror_images = mirrored(pair_);
     const int in_orders = count_of(asked(lane_, other_orders));
     const int in_mirrors = count_of(asked(lane_, mirror_images));
+    // Other multiples change how roots and quotients round.
+    std::vector<Pair> multiples;
+    for (const float factor : {3.0f, 5.0f, 7.0f, 11.0f, 13.0f}) {
+      Pair& multiple = multiples.emplace_back(pair_);
+      for (int i = 0; i < kCoordinates; ++i) coordinates(multiple)[i] *= factor;  // few bits: exact, but for overflow
+    }
+    const bool in_multiples = count_of(asked(lane_, multiples)) > 0;
     std::string where = ", and it is wrong in all orders, mirror images and scales";
+    if (in_multiples) where = ", but scaled by other numbers than powers of two it is right";
     if (in_orders + in_mirrors > 0)
       where = fmt::format(", but in {} of {} orders and {} of {} mirror images it is right", in_orders,
                           other_orders.size(), in_mirrors, mirror_images.size());
     const Cause cause = is_degenerate() ? Cause::degenerate_input
                         : in_orders > 0 ? Cause::order_dependent
                                         : Cause::logic;
-    return {cause, in_orders + in_mirrors == 0, exactly + where};
+    return {cause, in_orders + in_mirrors == 0 && !in_multiples, exactly + where};
   }
 
   // Moved so that a vertex is the origin, where that is exact.

@@ -9,13 +9,14 @@ namespace graze::analysis {
 
 // The first that holds; nothing else is claimed of it than what the experiment shows:
 //   crash, no answer in time, unstable   the verdict says so itself
-//   contraction, fast math   the same code with every operation rounded as written is right
-//   absolute epsilon   the verdict changes with the pair's scale, though no product of up to kMostFactors coordinates
-//                leaves the scalar's exponents. Scaling by a power of two changes nothing else in an algorithm whose
-//                numbers keep their units, so that a constant, or a sum of lengths and areas, makes the difference
+//   contraction, fast math   the same code with every operation rounded as written is right, at all scales and in
+//                float64 too: no luck, of code that is wrong in exact arithmetic as well
+//   absolute epsilon   the verdict changes with the pair's scale, once and for the better upwards, though no product of
+//                up to kMostFactors coordinates leaves the scalar's exponents. Scaling by a power of two changes nothing
+//                else in an algorithm whose numbers keep their units; code that adds lengths and areas turns more often
 //   underflow, overflow   right at all scales at which no product of kUsualFactors leaves the exponents, and the pair
 //                is below or above these
-//   rounding     right in float64
+//   rounding     right in float64 at every scale, and wrong in float32 at each that leaves no exponents
 //   degenerate input, order-dependent, logic   the coordinates have so few bits that no sum and no product of up to
 //                kUsualFactors differences rounds
 // Where none of them can be shown: rounding where some image of the pair is right, order-dependent where only other
@@ -30,7 +31,7 @@ struct Experiment {
   bool slow = false;     // it took all of its time on some pairs, and the others were not asked
 };
 
-// Deterministic, of deterministic code. Asks for at most some 200 verdicts.
+// Deterministic, of deterministic code. Asks for at most some 230 verdicts.
 // Requires: a foreign lane whose verdict on the pair is not the truth; finite coordinates.
 Experiment experiment(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth);
 

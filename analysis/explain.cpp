@@ -170,6 +170,11 @@ LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const Pair
   result.evidence = Evidence::none;
   result.settled = found.settled ? Settled::yes : Settled::unknown;
   result.experiment = std::move(found.evidence);
+  if (result.cause == Cause::contraction && !cuda::contraction_sites(lane).empty()) {
+    result.contractions = blame_apart(lane, pair, cuda::most_seconds(lane));
+    if (!result.contractions.why_not.empty())
+      result.experiment += "; which products matter is not known, for " + result.contractions.why_not;
+  }
   result.slow = found.slow || is_failure(verdict);
   return result;
 }

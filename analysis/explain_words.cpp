@@ -27,10 +27,14 @@ std::string phrase(const oracle::Truth& truth) {
 }
 
 std::string words(const cuda::ContractionSite& site) {
-  const std::string at = fmt::format("{}:{}", site.at.file, site.at.line);
-  const bool inlined =
-      site.from.line > 0 && *site.from.file != '\0' && std::string_view(site.from.file).starts_with("core/");
-  return inlined ? fmt::format("{} (inlined at {}:{})", at, site.from.file, site.from.line) : at;
+  // A person's own files by their names alone.
+  const auto text = [](const cuda::SourceLine& line) {
+    const std::string_view file = line.file;
+    return fmt::format("{}:{}", file.starts_with('/') ? file.substr(file.rfind('/') + 1) : file, line.line);
+  };
+  const std::string_view from = site.from.file;
+  const bool inlined = site.from.line > 0 && (from.starts_with("core/") || from.starts_with('/'));
+  return inlined ? fmt::format("{} (inlined at {})", text(site.at), text(site.from)) : text(site.at);
 }
 
 // What the compared value is: the last value of the policy's that it equals, or else what the policy was asked.
@@ -91,6 +95,13 @@ std::string list(const std::vector<cuda::ContractionSite>& sites) {
   return list(names);
 }
 
+std::string fused(const LaneExplanation& lane) {
+  const std::vector<cuda::ContractionSite>& sites = lane.contractions.sites;
+  if (sites.empty()) return "the compiler fuses products into additions";
+  const std::string_view plural = sites.size() > 1 ? "s" : "";
+  return fmt::format("nvcc fuses the product{} into the addition{} at {}", plural, plural, list(sites));
+}
+
 // Why the cause is not settled; empty where it is, and where the reason says so already.
 std::string doubt(const LaneExplanation& lane) {
   switch (lane.settled) {
@@ -110,14 +121,11 @@ std::string reason(const LaneExplanation& lane) {
   const std::string replayed = lane.evidence <= Evidence::hash ? "" : "in a replay with the same verdict ";
   const std::string then = effect_text.empty() ? "" : ", which " + replayed + effect_text;
   const std::string_view scalar = lane.lane->scalar == Scalar::f32 ? "float32" : "float64";
-  const std::string_view plural = lane.contractions.sites.size() > 1 ? "s" : "";
   switch (lane.cause) {
     case Cause::logic:
       return "the algorithm itself is wrong here, for in exact arithmetic it says the same";
     case Cause::contraction:
-      if (lane.contractions.sites.empty()) return "the compiler fuses products into additions" + then;
-      return fmt::format("nvcc fuses the product{} into the addition{} at {}{}", plural, plural,
-                         list(lane.contractions.sites), then);
+      return fused(lane) + then;
     case Cause::fast_math:
       return "the compiler may rewrite or approximate operations here, and what it computed is not known";
     case Cause::overflow:
@@ -146,10 +154,10 @@ std::string remedy(const LaneExplanation& lane) {
 
 // Of foreign code: what the experiments say, and which.
 std::string reason_of_foreign(const LaneExplanation& lane) {
-  const auto words = [&]() -> std::string_view {
+  const auto words = [&]() -> std::string {
     switch (lane.cause) {
       case Cause::contraction:
-        return "the compiler fuses products into additions";
+        return fused(lane);
       case Cause::fast_math:
         return "the compiler may rewrite or approximate operations";
       case Cause::overflow:

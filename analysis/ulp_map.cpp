@@ -46,6 +46,7 @@ class Panels {
         const bool says = intersects_[i / 64] >> i % 64 & 1, none = declined_[i / 64] >> i % 64 & 1;
         const Cell right = truth[first + i];
         cells[p].push_back(right == Cell::not_finite             ? right
+                           : says && none                        ? cell_of(failures_[i])
                            : none                                ? Cell::declined
                            : says == (right == Cell::intersects) ? right
                            : says                                ? Cell::false_positive
@@ -57,8 +58,13 @@ class Panels {
  private:
   static constexpr int kMostFailures = 3000, kOfALate = 1000;  // three that took all of their time are enough
 
-  // Word by word.   Returns: false where the panel is given up.
+  static Cell cell_of(Verdict failure) {
+    return failure == Verdict::crashed ? Cell::crashed : failure == Verdict::timed_out ? Cell::timed_out : Cell::unstable;
+  }
+
+  // Word by word; writes what failures are.   Returns: false where the panel is given up.
   bool ask_foreign(std::size_t p, std::span<const Pair> pairs) {
+    failures_.resize(pairs.size());
     for (std::size_t begin = 0; begin < pairs.size(); begin += 64) {
       if (given_up(p)) return false;
       const std::size_t count = std::min<std::size_t>(64, pairs.size() - begin);
@@ -72,8 +78,10 @@ class Panels {
         yes |= own_yes << i;
         none |= own_none << i;
         for (std::size_t j = 0; j < some; ++j) {
-          if ((own_yes & own_none) >> j & 1)
-            failed_[p] += blocks_[p].verdict_of(true, true, pairs[begin + i + j]) == Verdict::timed_out ? kOfALate : 1;
+          if (!((own_yes & own_none) >> j & 1)) continue;
+          const Verdict failure = blocks_[p].verdict_of(true, true, pairs[begin + i + j]);
+          failures_[begin + i + j] = failure;
+          failed_[p] += failure == Verdict::timed_out ? kOfALate : 1;
         }
       }
     }
@@ -90,6 +98,7 @@ class Panels {
   std::vector<DecideBlock> blocks_;
   std::vector<int> failed_;
   std::vector<std::uint64_t> intersects_, declined_;
+  std::vector<Verdict> failures_;  // of the pairs on which foreign code fails
 };
 
 // Throws: OracleApart.

@@ -31,9 +31,19 @@ struct MovedCoordinates {
 std::string name_of_coordinate(int coordinate);
 std::optional<int> coordinate_of_name(std::string_view name);
 
-// What a lane says in a cell, or of the truth the first two and the last.
-enum class Cell : std::uint8_t { disjoint, intersects, false_positive, false_negative, declined, not_finite };
-inline constexpr int kCellKinds = 6;
+// What a lane says in a cell, or of the truth the first two and not_finite; behind that what foreign code alone does.
+enum class Cell : std::uint8_t {
+  disjoint,
+  intersects,
+  false_positive,
+  false_negative,
+  declined,
+  not_finite,
+  crashed,
+  timed_out,
+  unstable
+};
+inline constexpr int kCellKinds = 9;
 
 struct UlpPanel {
   const Lane* lane;         // null for the truth

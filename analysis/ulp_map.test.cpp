@@ -43,7 +43,7 @@ TEST(UlpMap, OfAVertexOnAnEdgeIsCutAlongTheDiagonal) {
     }
   }
   const int below = kMapSize * (kMapSize - 1) / 2;
-  EXPECT_EQ(map.panels[0].counts(), (std::array<int, kCellKinds>{kMapSize * kMapSize - below, below, 0, 0, 0, 0}));
+  EXPECT_EQ(map.panels[0].counts(), (std::array<int, kCellKinds>{kMapSize * kMapSize - below, below}));
 }
 
 TEST(UlpMap, StepsAreNeighboursThroughZeroAndToTheEnds) {
@@ -89,6 +89,45 @@ TEST(UlpMap, EachCellIsWhatItsPairGets) {
     }
   }
   EXPECT_GT(wrong, 1000);
+}
+
+// Foreign code that fails on two columns and two cells.
+class Fails : public ForeignCode {
+ public:
+  void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {
+    *intersects = *declined = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint64_t fails = is_failure(failure(pairs[i]));
+      *intersects |= fails << i;
+      *declined |= fails << i;
+    }
+  }
+  Verdict failure(const Pair& pair) override {
+    const auto at = [&](int column) { return pair.b[0].x == pair_at(kOnTheDiagonal, {9, 10}, column, 0).b[0].x; };
+    const float highest = pair_at(kOnTheDiagonal, {9, 10}, 0, 0).b[0].y;
+    return at(10) ? Verdict::crashed
+           : at(12) ? Verdict::unstable
+           : (at(14) || at(16)) && pair.b[0].y == highest ? Verdict::timed_out
+                                                          : Verdict::disjoint;
+  }
+};
+
+TEST(UlpMap, FailuresOfForeignCodeHaveCellsOfTheirOwn) {
+  Fails code;
+  const AlgorithmInfo info{"fails", "test", "", "", "", false};
+  const Lane lane{"fails/f32/cpu", &info, Scalar::f32, Variant::cpu, "", -1, code, false, false, true, 0, ""};
+  const Lane* const lanes[] = {&lane};
+  const UlpMap map = ulp_map(kOnTheDiagonal, lanes, {9, 10});
+  ASSERT_EQ(map.panels.size(), 2u);
+  for (int row = 0; row < kMapSize; ++row) {
+    EXPECT_EQ(cell_at(map.panels[1], 10, row), Cell::crashed);
+    EXPECT_EQ(cell_at(map.panels[1], 12, row), Cell::unstable);
+  }
+  EXPECT_EQ(cell_at(map.panels[1], 14, 0), Cell::timed_out);
+  const auto counts = map.panels[1].counts();
+  EXPECT_EQ(counts[static_cast<std::size_t>(Cell::timed_out)], 2);
+  EXPECT_EQ(counts[static_cast<std::size_t>(Cell::declined)], 0);
+  EXPECT_EQ(counts[static_cast<std::size_t>(Cell::crashed)], kMapSize);
 }
 
 TEST(UlpMap, CoordinatesAreTheFirstThatChangeVerdictsMost) {

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "analysis/convention.h"
 #include "analysis/signature.h"
 #include "cli/cases.h"
 #include "cli/commands.h"
@@ -38,10 +39,11 @@ std::string emit(reports::SnippetKind kind, const std::string& name, const std::
     if (t.verdict == Verdict::declined) continue;
     const reports::SnippetCase found{described(name, entry, t), entry.pair, t.verdict, nullptr, t.verdict};
     const std::vector<Verdict> verdicts = decide(under_test, entry.pair);
+    const std::vector<Verdict> counted = analysis::excused(under_test.lanes, verdicts, entry.pair, t);
     const std::string* signature = corpus::field(entry, "signature");
     std::optional<std::size_t> wrong;
     for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-      if (verdicts[l] == t.verdict || (reports::shows_lanes(kind) && !reports::shows(kind, *under_test.lanes[l])))
+      if (counted[l] == t.verdict || (reports::shows_lanes(kind) && !reports::shows(kind, *under_test.lanes[l])))
         continue;
       const bool is_recorded = signature && under_test.lanes[l]->info->id == analysis::subject_of(*signature);
       if (!wrong || (is_recorded && under_test.lanes[*wrong]->info != under_test.lanes[l]->info)) wrong = l;

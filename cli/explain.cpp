@@ -95,6 +95,19 @@ void print_surroundings(const analysis::LaneExplanation& lane,
                       lane.scalings.of, analysis::kMostScaling, analysis::kMostScaling));
 }
 
+void print_contractions(const analysis::LaneExplanation& lane,
+                        const std::function<void(int indent, const std::string& text)>& line) {
+  if (lane.contractions.sites.empty()) return;
+  line(4, fmt::format("contractions, {}:", lane.contractions.smallest ? "the smallest set that makes the difference"
+                                                                      : "sets of which each is enough"));
+  for (const cuda::ContractionSite& site : lane.contractions.sites) {
+    const std::string inlined =
+        *site.from.file == '\0' ? "" : fmt::format(", inlined at {}:{}", site.from.file, site.from.line);
+    line(6, fmt::format("{}:{}{}, by {}", site.at.file, site.at.line, inlined,
+                        site.by_ptxas ? "ptxas" : "nvcc's front end"));
+  }
+}
+
 void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExplanation* before,
                 const reports::Screen& screen) {
   const auto line = [&](int indent, const std::string& text) {
@@ -104,6 +117,7 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
                       lane.settled == analysis::Settled::yes ? "" : " (not settled)"));
   if (lane.lane->foreign) {
     line(4, "experiment: " + lane.experiment);
+    print_contractions(lane, line);
     if (lane.slow) return;
     print_surroundings(lane, line);
     return;
@@ -115,14 +129,7 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
   } else {
     print_steps(lane, screen);
   }
-  if (!lane.contractions.sites.empty()) {
-    line(4, fmt::format("contractions, {}:", lane.contractions.smallest ? "the smallest set that makes the difference"
-                                                                        : "sets of which each is enough"));
-    for (const cuda::ContractionSite& site : lane.contractions.sites) {
-      line(6, fmt::format("{}:{}, inlined at {}:{}, by {}", site.at.file, site.at.line, site.from.file, site.from.line,
-                          site.by_ptxas ? "ptxas" : "nvcc's front end"));
-    }
-  }
+  print_contractions(lane, line);
   line(4, fmt::format("mantissa bits it would have needed: {}",
                       lane.cause == analysis::Cause::logic ? "no number of bits helps"
                       : lane.bits_needed == 0              ? fmt::format("more than {}", oracle::kMostBits)

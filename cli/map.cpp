@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "cli/cases.h"
 #include "cli/commands.h"
@@ -50,20 +53,34 @@ bool is_plain(const analysis::UlpMap& map) {
 
 void print_counts(const analysis::UlpMap& map) {
   using analysis::Cell;
-  reports::TextTable table({{"", reports::Align::left},
-                            {"disjoint"},
-                            {"intersects"},
-                            {"false positive"},
-                            {"false negative"},
-                            {"declined"},
-                            {"not finite"}});
+  constexpr std::pair<Cell, const char*> kColumns[] = {{Cell::disjoint, "disjoint"},
+                                                       {Cell::intersects, "intersects"},
+                                                       {Cell::false_positive, "false positive"},
+                                                       {Cell::false_negative, "false negative"},
+                                                       {Cell::declined, "declined"},
+                                                       {Cell::not_finite, "not finite"},
+                                                       {Cell::crashed, "crashed"},
+                                                       {Cell::timed_out, "timed out"},
+                                                       {Cell::unstable, "unstable"}};
+  std::array<int, analysis::kCellKinds> all{};
+  for (const analysis::UlpPanel& panel : map.panels) {
+    const auto counts = panel.counts();
+    for (std::size_t kind = 0; kind < counts.size(); ++kind) all[kind] += counts[kind];
+  }
+  std::vector<reports::Column> columns{{"", reports::Align::left}};
+  std::vector<Cell> shown;
+  for (const auto& [cell, title] : kColumns) {
+    if (cell > Cell::not_finite && all[static_cast<std::size_t>(cell)] == 0) continue;  // of foreign code that fails
+    columns.push_back({title});
+    shown.push_back(cell);
+  }
+  reports::TextTable table(columns);
   for (const analysis::UlpPanel& panel : map.panels) {
     const auto counts = panel.counts();
     std::vector<reports::Cell> row{panel.name()};
-    for (const Cell cell : {Cell::disjoint, Cell::intersects, Cell::false_positive, Cell::false_negative,
-                            Cell::declined, Cell::not_finite}) {
+    for (const Cell cell : shown) {
       const auto count = static_cast<std::uint64_t>(counts[static_cast<std::size_t>(cell)]);
-      const bool wrong = count > 0 && (cell == Cell::false_positive || cell == Cell::false_negative);
+      const bool wrong = count > 0 && cell >= Cell::false_positive && cell != Cell::declined && cell != Cell::not_finite;
       row.emplace_back(reports::grouped(count), wrong);
     }
     table.add(std::move(row));

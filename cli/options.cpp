@@ -99,7 +99,7 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
   command
       .add_option("--subject", options.subjects,
                   "Your own code as lanes NAME/…: a shared object or a C, C++ or CUDA source, each with :FUNCTION, "
-                  "or cmd:COMMAND; any number of times (subjects/README.md)")
+                  "or cmd:COMMAND; any number of times (docs/your_own_code.md)")
       ->allow_extra_args(false)
       ->option_text("NAME=WHAT");
   command.add_option("--flags", options.flags, "For the compiler, of subjects that are sources: --flags='-O3 -Iinclude'")

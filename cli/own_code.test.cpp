@@ -6,6 +6,8 @@
 #include <algorithm>
 
 #include "cli/run_graze.h"
+#include "corpus/pair_format.h"
+#include "fuzz/minimise/simplicity.h"
 
 namespace graze::cli {
 namespace {
@@ -101,9 +103,91 @@ TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
                               "--subject-timeout 0.3 > case.cpp");
     ASSERT_EQ(emitted.status, 0) << emitted.err;
     const Ran ran = shell("head -n 1 case.cpp | cut -c 4- > run.sh; rm -f case; bash run.sh");
-    EXPECT_NE(ran.status, 0) << does << ran.out;
-    EXPECT_EQ(ran.out.find("PASSED"), std::string::npos) << ran.out;
+    EXPECT_EQ(ran.status, 1) << does << ran.out;
+    EXPECT_NE(ran.out.find(" 1 FAILED TEST"), std::string::npos) << does << ran.out << ran.err;
+    shell("echo 'int intersects(const float a[9], const float b[9]) { return 1; }' > own.c");
+    const Ran mended = shell("bash run.sh");
+    EXPECT_EQ(mended.status, 0) << does << mended.out;
+    EXPECT_NE(mended.out.find("[  PASSED  ] 1 test."), std::string::npos) << mended.out;
   }
+}
+
+// A CUDA source: the test asks graze, which has the replay where there is no device.
+TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
+  const auto write = [&](const char* answer) {
+    shell("printf '__device__ bool answer(const float*) { return %s; }\\nnamespace my { __device__ bool meet(const double "
+          "a[9], const double b[9]) { return %s && a != b; } }' false " +
+          std::string(answer) + " > own.cu");
+  };
+  write("false");
+  const std::string again = "export XDG_CACHE_HOME=$PWD/cache; ", subject = " --subject own=./own.cu:my::meet ";
+  if (const Ran lanes = shell(again + "graze lanes" + subject); lanes.status != 0 && lanes.err.find("NVRTC") != std::string::npos)
+    GTEST_SKIP() << lanes.err;
+  shell("echo '" + std::string(kPair) + "' > p");
+  const auto emit = [&](const std::string& kind, const std::string& file) {
+    const Ran emitted = shell(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit " + kind + " > " + file);
+    ASSERT_EQ(emitted.status, 0) << emitted.err;
+    ASSERT_NE(contents(shell.folder / file).find("own/f64/cuda-fma"), std::string::npos);
+    shell("head -n 1 " + file + " | cut -c 4- > run.sh; rm -f case");
+  };
+  emit("gtest", "case.cpp");
+  const Ran wrong = shell(again + "bash run.sh");
+  EXPECT_EQ(wrong.status, 1) << wrong.out << wrong.err;
+  EXPECT_NE(wrong.out.find(" 1 FAILED TEST"), std::string::npos) << wrong.out << wrong.err;
+  EXPECT_NE(wrong.out.find("\"cuda\":\""), std::string::npos) << wrong.out;
+  EXPECT_NE(wrong.out.find("Which is: \"disjoint\""), std::string::npos) << wrong.out;
+  write("true");
+  const Ran right = shell(again + "./case");
+  EXPECT_NE(right.out.find("[  PASSED  ] 1 test."), std::string::npos) << right.out << right.err;
+  const Ran alone = shell("PATH=/nowhere ./case");
+  EXPECT_EQ(alone.out.find("PASSED"), std::string::npos);
+  EXPECT_NE(alone.out.find("graze, which has to be on the PATH"), std::string::npos) << alone.out << alone.err;
+  expect_error(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit cuda", 1, "one of the CUDA lanes is wrong");
+#ifdef GRAZE_NVCC_DIR
+  write("false");
+  emit("cuda", "case.cu");
+  const Ran ran = shell("PATH=$PATH:" GRAZE_NVCC_DIR "\nbash run.sh");
+  ASSERT_TRUE(std::filesystem::exists(shell.folder / "case")) << ran.err;
+  if (shell("graze lanes | grep -q 'available (device)'").status != 0) {
+    EXPECT_EQ(ran.status, 2) << ran.out;  // says that there is no device
+    return;
+  }
+  EXPECT_EQ(ran.status, 1) << ran.err;
+  EXPECT_EQ(ran.out, "own/f64/cuda-fma: disjoint; truth: intersects\n");
+#endif
+}
+
+// The products whose fusing matters are looked for in a process of its own: with only some of them fused, this code
+// counts for seconds.
+TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
+  shell("cat > own.cu <<'EOF'\n"
+        "__device__ float product(const float* t) {\n"
+        "  return t[0] * t[1] - t[3] * t[4];\n"
+        "}\n"
+        "__device__ bool one(const float* a, const float* b) {\n"
+        "  return product(a) != 0;\n"
+        "}\n"
+        "__device__ bool both(const float* a, const float* b) {\n"
+        "  unsigned n = 1;\n"
+        "  if (a[2] == 1 && b[2] == 9 && a[0] < a[3] && b[0] < b[3] && (product(a) != 0) != (product(b) != 0))\n"
+        "    for (unsigned i = 0; i != 4000000000u; ++i) n = n * n + i;\n"
+        "  return product(a) != 0 && n != 0;\n"
+        "}\nEOF\n"
+        // Each with two products that are equal once they are rounded.
+        "echo '0x1.000002p+0 0x1.000002p+0 1 0x1.000004p+0 1 1 3 3 1  0x1.000006p+0 0x1.000006p+0 9 0x1.00000cp+0 1 9 0 2 9' > p");
+  const std::string explain = "export XDG_CACHE_HOME=$PWD/cache; graze explain p --subject-timeout 0.5 --lanes 'own/*/cuda-*fma' ";
+  const Ran named = shell(explain + "--subject own=./own.cu:one | tr -s ' \\n' ' '");
+  if (shell(explain + "--subject own=./own.cu:one").err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
+  EXPECT_NE(named.out.find("nvcc fuses the product into the addition at own.cu:2 (inlined at own.cu:5) (built without "
+                           "contraction it is right)."),
+            std::string::npos)
+      << named.out << named.err;
+  EXPECT_NE(named.out.find("own.cu:2, inlined at "), std::string::npos) << named.out;
+  const Ran late = shell(explain + "--subject own=./own.cu:both | tr -s ' \\n' ' '");
+  EXPECT_NE(late.out.find("the compiler fuses products into additions (built without contraction it is right; which "
+                          "products matter is not known, for with some of its products fused it does not come back)."),
+            std::string::npos)
+      << late.out << late.err;
 }
 
 TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
@@ -119,6 +203,22 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   EXPECT_NE(repro.out.find("own/f32"), std::string::npos) << repro.out << repro.err;
   EXPECT_NE(repro.out.find("!"), std::string::npos) << repro.out;
   expect_done(fuzz + "400");  // moller is wrong too, and not asked about
+  // The smallest is the smallest of all that are minimised, not that of the smallest kept pair; the file has it.
+  const auto pairs_of = [&](const std::string& command) {
+    shell(command + " > some.pairs");
+    std::vector<fuzz::Simplicity> found;
+    for (const corpus::Entry& entry : corpus::read_pairs(shell.folder / "some.pairs")) found.push_back(fuzz::simplicity(entry.pair));
+    return found;
+  };
+  const std::size_t begin = ran.err.find("smallest is ") + 12;
+  const std::string pair = ran.err.substr(begin, ran.err.find(';', begin) - begin);
+  const std::vector<fuzz::Simplicity> smallest = pairs_of("echo '" + pair + "'"),
+                                      minimised = pairs_of("grep -h kind=minimised c/cases/*.pairs");
+  ASSERT_EQ(smallest.size(), 1u);
+  EXPECT_GE(minimised.size(), 4u);
+  EXPECT_LE(minimised.size(), 8u);
+  EXPECT_EQ(smallest[0], *std::min_element(minimised.begin(), minimised.end())) << ran.err;
+  EXPECT_EQ(shell(fuzz + "0").err, ran.err);
   // Without a subject any lane counts.
   const std::string ours = "graze fuzz --pairs 400 --out d --fail-above ";
   expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, "moller_1997: expected at most 0 wrong pairs");

@@ -108,7 +108,8 @@ void add_repro(CLI::App& app, int& status) {
       ->add_option(
           "--emit", *emitted,
           "Print a self-contained program or file instead, of the first case with a wrong lane that it can "
-          "show (choose by --lanes): cpp and gtest show a CPU lane, cuda a CUDA lane; python and cgal the truth")
+          "show (choose by --lanes): cpp and gtest show a CPU lane, cuda a CUDA lane, gtest also one of your own CUDA "
+          "code; python and cgal the truth")
       ->transform(one_of(std::vector<std::string>(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds)),
                          Chosen::word))
       ->option_text("cpp|cuda|python|obj|cgal|gtest");

@@ -82,8 +82,11 @@ Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored
 
 Json commands_of(const corpus::Entry& entry, const std::string& subject, const std::string& from) {
   const subjects::Opened* opened = subjects::opened(subject);
-  const std::string foreign =
-      opened ? fmt::format(" --subject {}", shell_word(subject + '=' + opened->wanted.what)) : "";
+  std::string foreign = opened ? fmt::format(" --subject {}", shell_word(subject + '=' + opened->wanted.what)) : "";
+  if (opened && !opened->wanted.flags.empty())
+    foreign += " --flags=" + shell_word(fmt::format("{}", fmt::join(opened->wanted.flags, " ")));
+  if (opened && opened->wanted.timeout != subjects::Wanted().timeout)
+    foreign += fmt::format(" --subject-timeout {}", opened->wanted.timeout);
   const std::string lanes = fmt::format("--lanes '{}/*'{}", subject, foreign);
   const std::string file = fmt::format("echo '{}' > case.pairs", fuzz::pair_text(entry.pair));
   Json rows = Json::array();

@@ -24,6 +24,14 @@ TEST(Answer, OfOneLaneComparesNothing) {
   EXPECT_TRUE(contains(said[5], "were not drawn"));
 }
 
+TEST(Answer, CallsAPersonsOwnCodeNotPublished) {
+  const auto said = answer_of(summary_of({"moller_1997/f32/cpu", "mine/f32/cpu"}, {"uniform"}, {}));
+  EXPECT_TRUE(said[1].starts_with("All 2 inexact lanes are wrong on none of 1,000 pairs")) << said[1];
+  const auto alone = answer_of(summary_of({"mine/f32/cpu"}, {"uniform"}, {3, 2, 0, 0}));
+  EXPECT_TRUE(alone[0].starts_with("The only inexact lane, mine/f32/cpu, is wrong")) << alone[0];
+  for (const std::string& text : alone) EXPECT_EQ(text.find("published lane"), std::string::npos) << text;
+}
+
 TEST(Answer, WithoutErrorsSaysHowMuchThatProves) {
   const auto said = answer_of(summary_of(
       {"moller_1997/f32/cpu", "moller_1997/f32/cuda-nofma", "moller_1997/f32/cuda-fma"}, {"thesis", "uniform"}, {}));

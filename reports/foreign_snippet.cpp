@@ -80,9 +80,69 @@ bool returns_bool(const std::filesystem::path& source, const std::string& functi
   return std::regex_search(text.str(), std::regex("\\b(_Bool|bool)\\s+" + function + "\\s*\\("));
 }
 
+std::string function_of(const subjects::Opened& opened) {
+  return opened.function.empty() ? "intersects" : opened.function;
+}
+
+// Each with a space before it: of the lane's variant, and of the user.
+std::string flags_of(const Lane& lane, const subjects::Opened& opened) {
+  std::string text;
+  if (const std::string_view own = info_of(lane.variant).flags; !own.empty()) text += ' ' + std::string(own);
+  for (const std::string& flag : opened.wanted.flags) text += ' ' + shell_word(flag);
+  return text;
+}
+
+std::string hex_line(const Pair& pair) {
+  std::string line;
+  for (int i = 0; i < kCoordinates; ++i) line += (i > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[i]);
+  return line;
+}
+
+// A CUDA lane in a test that runs without a device too: only Graze has the replay.
+std::string by_graze(const Lane& lane, const Pair& pair, const subjects::Opened& opened, std::string_view real) {
+  std::string command =
+      fmt::format("echo '{}' | graze check - --json --subject {} --lanes {} --subject-timeout {}", hex_line(pair),
+                  shell_word(opened.wanted.name + '=' + opened.wanted.what), lane.id, opened.wanted.timeout);
+  if (!opened.wanted.flags.empty())
+    command += " --flags=" + shell_word(fmt::format("{}", fmt::join(opened.wanted.flags, " ")));
+  return fmt::format(R"(#include <string>
+
+// Graze builds the source as it is now, and runs it on a CUDA device, or where there is none in its replay on the CPU;
+// which of the two, and how far the replay is verified, stands in its answer as "cuda".
+static int decide(const {0}*, const {0}*) {{
+  FILE* graze = popen({1},
+                      "r");
+  std::string said;
+  for (int c; graze && (c = std::fgetc(graze)) != EOF;) said += static_cast<char>(c);
+  if (graze) pclose(graze);
+  std::fputs(said.c_str(), stdout);
+  const std::string lane = {2};
+  const std::size_t at = said.find(lane);
+  if (at == said.npos) {{
+    std::puts("expected an answer of graze, which has to be on the PATH, found none");
+    std::exit(1);
+  }}
+  const std::string verdict = said.substr(at + lane.size());
+  return verdict.find("intersects\"") == 0 ? 1 : verdict.find("disjoint\"") == 0 ? 0 : -1;
+}}
+)",
+                     real, cpp_string(command), cpp_string('"' + lane.id + "\":\""));
+}
+
 }  // namespace
 
-bool shows_foreign(const Lane& lane) { return !lane.is_cuda() && subjects::opened(lane.info->id) != nullptr; }
+bool shows_foreign(const Lane& lane) { return subjects::opened(lane.info->id) != nullptr; }
+
+ForeignCall kernel_call(const Lane& lane) {
+  const subjects::Opened& opened = *subjects::opened(lane.info->id);
+  ForeignCall call;
+  call.seconds = 0;
+  call.command = fmt::format("nvcc -arch=native{} -I{} case.cu -o case && ./case", flags_of(lane, opened),
+                             shell_word(opened.file.parent_path().string()));
+  call.decide = fmt::format("#include {}\n", cpp_string(opened.file.string()));
+  call.function = function_of(opened);
+  return call;
+}
 
 ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view compiler, std::string_view libraries) {
   const subjects::Opened& opened = *subjects::opened(lane.info->id);
@@ -91,9 +151,13 @@ ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view co
   call.seconds = static_cast<int>(std::ceil(opened.wanted.timeout)) + 1;
   const std::string plain = fmt::format("{} -std=c++20 case.cpp", compiler),
                     end = fmt::format("{} -o case && ./case", libraries);
+  if (lane.is_cuda()) {
+    call.command = plain + end;
+    call.seconds += 100;  // in which it is built
+    call.decide = by_graze(lane, pair, opened, real);
+    return call;
+  }
   if (opened.kind == "command") {
-    std::string line;
-    for (int i = 0; i < kCoordinates; ++i) line += (i > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[i]);
     call.command = plain + end;
     call.decide = fmt::format(R"(// The program is asked about this pair alone, by its line.
 static int decide(const {}*, const {}*) {{
@@ -110,7 +174,7 @@ static int decide(const {}*, const {}*) {{
   return said == '?' ? -1 : said - '0';
 }}
 )",
-                              real, real, cpp_string("echo '" + line + "' | (" + opened.wanted.what.substr(4) + ")"));
+                              real, real, cpp_string("echo '" + hex_line(pair) + "' | (" + opened.wanted.what.substr(4) + ")"));
     return call;
   }
   const std::string file = opened.file.string();
@@ -125,20 +189,19 @@ static int decide(const {}*, const {}*) {{
     call.command = fmt::format("{} {} -Wl,-rpath,{}{}", plain, shell_word(file),
                                shell_word(opened.file.parent_path().string()), end);
     const bool mangled = opened.description.symbol.starts_with("_Z");
-    const std::string function = mangled ? (opened.function.empty() ? "intersects" : opened.function) : opened.description.symbol;
+    const std::string function = mangled ? function_of(opened) : opened.description.symbol;
     call.decide =
         fmt::format("{0}int {1}(const {2}* a, const {2}* b);\n", mangled ? "" : "extern \"C\" ", function, real) +
         calling(real, function);
     return call;
   }
   const bool describes_itself = subjects::source_describes_itself(opened.file);
-  std::string flags(info_of(lane.variant).flags);
-  for (const std::string& flag : opened.wanted.flags) flags += ' ' + shell_word(flag);
+  std::string flags = flags_of(lane, opened);
   if (describes_itself) flags += " -I" + shell_word((subjects::cache_folder() / "include").string());
-  const std::string function = opened.function.empty() ? "intersects" : opened.function;
+  const std::string function = function_of(opened);
   if (opened.file.extension() == ".c") {
     call.command =
-        fmt::format("cc -std=gnu11 -O2 {} -c {} -o subject.o && {} -I{} subject.o{}", flags, shell_word(file), plain,
+        fmt::format("cc -std=gnu11 -O2{} -c {} -o subject.o && {} -I{} subject.o{}", flags, shell_word(file), plain,
                     shell_word((subjects::cache_folder() / "include").string()), end);
     if (describes_itself) {
       call.decide = "#include <graze/subject.h>\nextern \"C\" const struct graze_subject graze_subject;\n" +
@@ -150,7 +213,7 @@ static int decide(const {}*, const {}*) {{
     }
     return call;
   }
-  call.command = fmt::format("{} -std=c++20 -O2 {} case.cpp{}", compiler, flags, end);
+  call.command = fmt::format("{} -std=c++20 -O2{} case.cpp{}", compiler, flags, end);
   call.decide = fmt::format("#include {}\n", cpp_string(file)) +
                 (describes_itself ? by_description(real, scalar, "&::graze_subject") : calling(real, function));
   return call;

@@ -13,12 +13,16 @@ namespace graze::reports {
 bool shows_foreign(const Lane& lane);
 
 struct ForeignCall {
-  std::string command;  // compiles and runs case.cpp; libraries of the test are to be put in for @libraries@
-  std::string decide;   // int decide(const Real* a, const Real* b): above 0 intersects, below 0 declined
-  int seconds;          // for the call
+  std::string command;   // compiles and runs case.cpp, or case.cu
+  std::string decide;    // int decide(const Real* a, const Real* b): above 0 intersects, below 0 declined
+  int seconds;           // for the call
+  std::string function;  // of a kernel: __device__, as the user has it; then `decide` includes its source
 };
 
-// Requires: shows_foreign(lane).
+// In a program for a device, by nvcc.   Requires: shows_foreign(lane), a CUDA lane.
+ForeignCall kernel_call(const Lane& lane);
+
+// On the host; a CUDA lane by the graze command, which asks a device or the lane's twin.   Requires: shows_foreign(lane).
 ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view compiler, std::string_view libraries);
 
 }  // namespace graze::reports

@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "core/lanes.h"
 #include "reports/counts.h"
 #include "reports/findings.h"
 #include "reports/terminal.h"
@@ -20,6 +23,16 @@ inline Places published(const CampaignCounts& counts) {
     if (!counts.lanes[l].exact) places.push_back(l);
   }
   return places;
+}
+
+// Whether all of them are of published algorithms, and none of a person's own code.
+inline bool all_published(const CampaignCounts& counts) {
+  const auto of_ours = [](const std::string& subject) {
+    return std::any_of(graze::published_lanes().begin(), graze::published_lanes().end(),
+                       [&](const Lane& lane) { return lane.info->id == subject; });
+  };
+  const Places lanes = published(counts);
+  return std::all_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return of_ours(counts.lanes[l].name.subject); });
 }
 
 // "12 pairs (1.2 %, 95 % interval 0.7 % to 2.1 %)"

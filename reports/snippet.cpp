@@ -144,7 +144,10 @@ bool shows_lanes(SnippetKind kind) {
 }
 
 bool shows(SnippetKind kind, const Lane& lane) {
-  if (lane.foreign) return (kind == SnippetKind::cpp || kind == SnippetKind::gtest) && shows_foreign(lane);
+  if (lane.foreign) {
+    return shows_foreign(lane) && (kind == SnippetKind::gtest || (lane.is_cuda() ? kind == SnippetKind::cuda
+                                                                                  : kind == SnippetKind::cpp));
+  }
   return shows_lanes(kind) && lane.is_cuda() == (kind == SnippetKind::cuda);
 }
 
@@ -168,7 +171,9 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
   values.emplace_back("coordinates", values[4].second + values[5].second);
   if (foreign) {
     const bool test = kind == SnippetKind::gtest;
-    ForeignCall call = foreign_call(*found.lane, found.pair, kCompiler, test ? kTestLibraries : "");
+    ForeignCall call = kind == SnippetKind::cuda
+                           ? kernel_call(*found.lane)
+                           : foreign_call(*found.lane, found.pair, kCompiler, test ? kTestLibraries : "");
     std::string name_of_test;
     for (const char c : found.lane->info->id) {
       if (std::isalnum(static_cast<unsigned char>(c))) name_of_test += c;
@@ -178,8 +183,11 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
                                  {"verdict", std::string(name(found.verdict))},
                                  {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
                                  {"decide", std::move(call.decide)},
+                                 {"function", std::move(call.function)},
                                  {"seconds", std::to_string(call.seconds)},
-                                 {"rounds", found.verdict == Verdict::unstable ? "1000" : "1"},
+                                 {"code", found.truth == Verdict::intersects ? "1" : "0"},
+                                 // Graze itself asks more than once.
+                                 {"rounds", found.verdict == Verdict::unstable && !found.lane->is_cuda() ? "1000" : "1"},
                                  {"test", "Subject" + name_of_test}});
   } else if (shows_lanes(kind)) {
     const std::string_view id = found.lane->info->id;
@@ -192,8 +200,12 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
                                  {"sources", amalgamated_source(id)}});
   }
   // @name@ in the text is a value.
-  const std::string_view file =
-      !foreign ? file_of(kind) : kind == SnippetKind::gtest ? "foreign_gtest.cpp.in" : "foreign.cpp.in";
+  const bool ends = found.verdict == Verdict::crashed || found.verdict == Verdict::timed_out;
+  const std::string_view file = !foreign                    ? file_of(kind)
+                                : kind == SnippetKind::cuda ? "foreign.cu.in"
+                                : kind == SnippetKind::cpp  ? "foreign.cpp.in"
+                                : ends                      ? "foreign_death.cpp.in"
+                                                            : "foreign_gtest.cpp.in";
   std::string text;
   std::string_view rest = embedded(fmt::format("reports/snippets/{}", file));
   for (std::size_t at; (at = rest.find('@')) != rest.npos;) {

@@ -16,7 +16,8 @@ namespace graze::reports {
 enum class SnippetKind { cpp, cuda, python, obj, cgal, gtest };
 inline constexpr std::string_view kSnippetKinds[] = {"cpp", "cuda", "python", "obj", "cgal", "gtest"};
 
-// Whether a snippet of this kind shows the lane's verdict: cpp and gtest those of the host, cuda the device's.
+// Whether a snippet of this kind shows the lane's verdict: cpp and gtest those of the host, cuda the device's;
+// of foreign code, gtest those of CUDA lanes too.
 bool shows(SnippetKind kind, const Lane& lane);
 
 // Whether it is about a lane at all.

@@ -15,13 +15,16 @@
 namespace graze::reports {
 namespace {
 
-// One colour for each kind of cell, in its order, then ink and paper. Right verdicts are greys, wrong ones vermilion
+// One colour for each kind of cell, in its order, but ink and paper before those of foreign code that fails. Right verdicts are greys, wrong ones vermilion
 // and blue of Okabe and Ito's palette, which differ in lightness as well.
 constexpr std::uint8_t kPalette[][3] = {{0xee, 0xee, 0xee}, {0xaa, 0xaa, 0xaa}, {0xd5, 0x5e, 0x00}, {0x00, 0x72, 0xb2},
-                                        {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}, {0x00, 0x00, 0x00}, {0xff, 0xff, 0xff}};
+                                        {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}, {0x00, 0x00, 0x00}, {0xff, 0xff, 0xff},
+                                        {0x00, 0x9e, 0x73}, {0x56, 0xb4, 0xe9}, {0xe6, 0x9f, 0x00}};
 constexpr std::uint8_t kInk = 6, kPaper = 7;
-constexpr const char* kCellNames[] = {"disjoint",       "intersects", "false positive",
-                                      "false negative", "declined",   "not finite"};
+constexpr const char* kCellNames[] = {"disjoint",   "intersects", "false positive", "false negative", "declined",
+                                      "not finite", "crashed",    "timed out",      "unstable"};
+
+constexpr std::uint8_t colour_of(std::size_t kind) { return static_cast<std::uint8_t>(kind < kInk ? kind : kind + 2); }
 
 constexpr int kZoom = 2;  // of a sheet: its panels' pixels and its letters'
 constexpr int kMargin = 16;
@@ -64,7 +67,9 @@ struct Image {
     image.width = static_cast<png_uint_32>(width);
     image.height = static_cast<png_uint_32>(height);
     image.format = PNG_FORMAT_RGB_COLORMAP;
-    image.colormap_entries = std::size(kPalette);
+    // Without foreign code that fails, a palette without it.
+    const bool fails = std::any_of(colours.begin(), colours.end(), [](std::uint8_t c) { return c > kPaper; });
+    image.colormap_entries = fails ? std::size(kPalette) : kPaper + 1;
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
     std::string bytes(size, '\0');
     if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, colours.data(), 0, kPalette))
@@ -77,7 +82,7 @@ struct Image {
 Image picture(const analysis::UlpPanel& panel) {
   Image image(analysis::kMapSize, analysis::kMapSize, kPaper);
   std::transform(panel.cells.begin(), panel.cells.end(), image.colours.begin(),
-                 [](analysis::Cell cell) { return static_cast<std::uint8_t>(cell); });
+                 [](analysis::Cell cell) { return colour_of(static_cast<std::size_t>(cell)); });
   constexpr int kNear = 3, kLength = 8;
   for (const int at : {analysis::kMapCentre - kNear - kLength + 1, analysis::kMapCentre + kNear}) {
     image.fill(at, analysis::kMapCentre, kLength, 1, kInk);
@@ -154,7 +159,7 @@ std::string sheet_png(const analysis::UlpMap& map) {
     if (!found[kind]) continue;
     std::string name = kCellNames[kind];
     sheet.fill(left, top, 16, 16, kInk);
-    sheet.fill(left + 1, top + 1, 14, 14, kind);
+    sheet.fill(left + 1, top + 1, 14, 14, colour_of(kind));
     sheet.write(left + kLine, top, name);
     left += 2 * kLine + kZoom * stb_easy_font_width(name.data());
   }
@@ -169,7 +174,7 @@ nlohmann::ordered_json to_json(const analysis::UlpMap& map) {
   nlohmann::ordered_json legend = nlohmann::ordered_json::array();
   const std::array<bool, analysis::kCellKinds> found = kinds_in(map);
   for (std::size_t kind = 0; kind < analysis::kCellKinds; ++kind) {
-    const auto& [red, green, blue] = kPalette[kind];
+    const auto& [red, green, blue] = kPalette[colour_of(kind)];
     if (found[kind])
       legend.push_back({{"colour", fmt::format("#{:02x}{:02x}{:02x}", red, green, blue)}, {"means", kCellNames[kind]}});
   }

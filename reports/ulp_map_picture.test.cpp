@@ -83,6 +83,25 @@ TEST(UlpMapPicture, SheetsHoldAllPanelsAtTwiceTheSize) {
   EXPECT_EQ(sheet_png(map), sheet_png(striped(8)));
 }
 
+// Without foreign code that fails, pictures are those of before.
+TEST(UlpMapPicture, FailuresOfForeignCodeHaveColoursAndALegendOnlyWhereTheyAre) {
+  analysis::UlpMap map = striped(1);
+  for (analysis::Cell& cell : map.panels[1].cells) {
+    if (cell > analysis::Cell::not_finite) cell = analysis::Cell::declined;
+  }
+  const auto palette_size = [](const std::string& png) {
+    const std::size_t at = png.find("PLTE");
+    return static_cast<unsigned char>(png.at(at - 1)) / 3;
+  };
+  EXPECT_EQ(palette_size(panel_png(map.panels[1])), 8);
+  EXPECT_EQ(to_json(map)["legend"].size(), 6u);
+  EXPECT_EQ(std::string(to_json(map)["panels"][1]["shows"]).find("crashed"), std::string::npos);
+  const nlohmann::ordered_json json = to_json(striped(1));
+  EXPECT_EQ(json["legend"].size(), 9u);
+  EXPECT_EQ(json["legend"][6], (nlohmann::ordered_json{{"colour", "#009e73"}, {"means", "crashed"}}));
+  EXPECT_NE(std::string(json["panels"][1]["shows"]).find(" timed out, "), std::string::npos);
+}
+
 TEST(UlpMapPicture, JsonIsThePairsOwn) {
   const nlohmann::ordered_json json = to_json(striped(2));
   EXPECT_EQ(json["x"], "b[0].x");

@@ -89,6 +89,42 @@ void describe_info(Entry& entry, const Description& description) {
   entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
 }
 
+// What a program says of itself when its first line is `describe`: a JSON object, {"version": "1.2", "source": "…",
+// "convention": "…", "outside": ["touching", …]}, all of it optional. Of anything else, and of nothing, nothing is taken:
+// a program need not know the question.
+void add_description(Description& description, const std::string& subject, const std::string& command) {
+  constexpr int kSeconds = 10;  // to start, and to end where it waits for more
+  FILE* program = popen(fmt::format("echo describe | timeout -s KILL {} sh -c {} 2>/dev/null", kSeconds,
+                                    shell_word(command)).c_str(), "r");
+  if (!program) throw std::runtime_error("expected a shell, found none");
+  std::string said;
+  for (int c; (c = std::fgetc(program)) != EOF && c != '\n';) said += static_cast<char>(c);
+  while (std::fgetc(program) != EOF) {  // to its end
+  }
+  pclose(program);
+  const Json json = Json::parse(said, nullptr, false);
+  if (!json.is_object()) return;
+  static const std::pair<std::string_view, unsigned> kOutside[] = {{"touching", kOutsideTouching},
+                                                                   {"coplanar", kOutsideCoplanar},
+                                                                   {"degenerate", kOutsideDegenerate},
+                                                                   {"shared", kOutsideShared}};
+  try {
+    description.version = json.value("version", "");
+    description.source = json.value("source", "");
+    description.convention = json.value("convention", "");
+    for (const std::string word : json.value("outside", Json::array())) {
+      const auto found = std::find_if(std::begin(kOutside), std::end(kOutside), [&](auto& o) { return o.first == word; });
+      if (found == std::end(kOutside))
+        throw std::runtime_error(fmt::format("--subject {}: expected touching, coplanar, degenerate or shared in \"outside\", "
+                                             "found '{}'", subject, printable(word)));
+      description.outside |= found->second;
+    }
+  } catch (const Json::exception&) {
+    throw std::runtime_error(fmt::format("--subject {}: expected texts in its description, and a list of them in \"outside\", "
+                                         "found {}", subject, printable(said)));
+  }
+}
+
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
   const auto& running = entry.running.emplace_back(fmt::format("{}/{}", name(scalar), name(variant)),
                                                    std::make_unique<ForeignProcesses>(std::move(code), scalar));
@@ -141,7 +177,8 @@ void add_cuda_lanes(Entry& entry, bool on_device) {
   describe_info(entry, {});
   add_lanes(std::move(made));
   for (const cuda::CudaBuild& build : entry.builds) {
-    if (!build.twin.empty()) cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, build))), build.twin);
+    if (build.twin.empty()) continue;
+    cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, build))), build.twin, o.wanted.timeout);
   }
 }
 
@@ -205,6 +242,7 @@ void open(const Wanted& wanted, bool on_device) {
       probe.variant = variant;
       if (!runs_on_this_cpu(probe)) continue;
       description = describe(of_variant);
+      if (wish.kind == "command") add_description(description, wanted.name, of_variant.what);
       if (description.f32) add_lane(entry, made, of_variant, Scalar::f32, variant, description.outside);
     }
     for (const auto& [variant, of_variant] : builds) {

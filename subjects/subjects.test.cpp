@@ -224,6 +224,33 @@ for line in sys.stdin:
   pairs = all;
 }
 
+// What a program says of itself, when it is asked; one that does not know the question is taken as it is.
+TEST_F(Subjects, AProgramMayDescribeItself) {
+  const std::string answers = "; while read line; do echo 1; done";
+  const auto open_program = [&](const std::string& name, const std::string& describes) {
+    open_one(name + "=cmd:" + describes + answers);
+    return find_lane(name + "/f32/cpu");
+  };
+  const Lane* lane = open_program("told", "read line; echo '{\"version\": \"1.2\", \"outside\": [\"touching\", \"shared\"], "
+                                          "\"convention\": \"its manual\"}'");
+  ASSERT_TRUE(lane);
+  EXPECT_EQ(lane->outside, unsigned{kOutsideTouching | kOutsideShared});
+  EXPECT_EQ(opened("told")->description.version, "1.2");
+  EXPECT_NE(lane->info->paper.find("version 1.2"), std::string_view::npos) << lane->info->paper;
+  for (const auto& [name, says] : {std::pair{"answers", "true"}, {"silent", "exec cat > /dev/null"}, {"ends", "exit 3"},
+                                   {"babbles", "read line; echo '{'"}, {"other", "read line; echo '[1]'"}}) {
+    lane = open_program(name, says);
+    ASSERT_TRUE(lane) << name;
+    EXPECT_EQ(lane->outside, 0u) << name;
+    EXPECT_EQ(opened(name)->description.version, "") << name;
+  }
+  EXPECT_NE(error_of([&] { open_program("odd", "read line; echo '{\"outside\": [\"nearly\"]}'"); })
+                .find("expected touching, coplanar, degenerate or shared in \"outside\", found 'nearly'"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { open_program("odd", "read line; echo '{\"version\": 12}'"); }).find("expected texts"),
+            std::string::npos);
+}
+
 // The published algorithms, pushed through a source as a stranger's code: exactly their lanes' verdicts.
 class OurOwn : public Subjects, public testing::WithParamInterface<int> {};
 

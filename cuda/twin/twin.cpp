@@ -54,6 +54,7 @@ constexpr TwinTables kTables[] = {
 struct ForeignTwin {
   std::unique_ptr<TwinLibrary> library;
   std::vector<ContractionSite> sites;
+  double most_seconds = 0;
 };
 
 std::map<std::string, ForeignTwin>& foreign_twins() {
@@ -111,12 +112,15 @@ std::string twin_evidence(const Lane& lane) {
   return "twin";
 }
 
-void add_foreign_twin(const Lane& lane, const std::filesystem::path& twin) {
+void add_foreign_twin(const Lane& lane, const std::filesystem::path& twin, double most_seconds) {
   ForeignTwin& added = foreign_twins()[lane.id];
+  added.most_seconds = most_seconds;
   added.library = std::make_unique<TwinLibrary>(twin, lane.scalar);
   for (const TwinSite& site : added.library->sites())
     added.sites.push_back({{site.file.c_str(), site.line}, {site.from_file.c_str(), site.from_line}, site.by_ptxas, 0});
 }
+
+double most_seconds(const Lane& lane) { return foreign_twins().at(lane.id).most_seconds; }
 
 std::span<const ContractionSite> contraction_sites(const Lane& lane) {
   if (!lane.foreign) return twin_row(lane).sites;

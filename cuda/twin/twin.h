@@ -50,12 +50,14 @@ struct ContractionSite {
 // The contraction sites of a lane with a twin, in program order; none without a twin, or without contraction.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
 
-// Gives a foreign CUDA lane the sites of its twin, a library of cuda/subject.   Throws: as TwinLibrary.
-void add_foreign_twin(const Lane& lane, const std::filesystem::path& twin);
+// Gives a foreign CUDA lane the sites of its twin, a library of cuda/subject; a verdict may take so many seconds.
+// Throws: as TwinLibrary.
+void add_foreign_twin(const Lane& lane, const std::filesystem::path& twin, double most_seconds);
+double most_seconds(const Lane& lane);  // of a verdict.   Requires: a foreign lane with sites
 
 // The verdict of a lane that has contraction sites, with two roundings at every site whose bit is not set: none set is
 // cuda-nofma, all set is the lane itself. Bit i % 64 of word i / 64 belongs to site i.   Requires: a word for each 64
-// sites begun.
+// sites begun. Foreign code runs in this very process, and may crash or not come back.
 Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused);
 
 }  // namespace graze::cuda

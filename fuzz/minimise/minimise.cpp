@@ -73,7 +73,7 @@ void keep_worst(Minimised& result, const Pair& pair, Verdict verdict) {
 bool may_have_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
   const bool by_range = reason.cause == analysis::Cause::overflow || reason.cause == analysis::Cause::underflow;
   if (!reason.in_range && !by_range) return true;
-  return analysis::leaves_exponents(failure.first_wrong(), pair) != reason.in_range;
+  return analysis::leaves_exponents(failure.first_wrong(pair), pair) != reason.in_range;
 }
 
 // What the moves of a kind make of the pair that is simpler than it, each pair once, the simplest first.
@@ -133,17 +133,19 @@ std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t
   return result;
 }
 
-// Whether a lane is wrong that does not differ by its convention alone.
-bool counts(const Failure& failure, const Pair& pair) {
+// The place of the first lane that is wrong and does not only differ by its convention; the number of lanes for none.
+std::size_t wrong_at(const Failure& failure, const Pair& pair) {
   const Judged& truth = failure.truth;
   const bool touches = truth.verdict == Verdict::intersects && truth.margin_sign == 0;
-  for (std::size_t l = 0; l < failure.lanes.size(); ++l) {
-    if (failure.verdicts[l] != truth.verdict && !analysis::by_convention(*failure.lanes[l], failure.verdicts[l], pair,
-                                                                         truth.contact, truth.shape, touches))
-      return true;
-  }
-  return false;
+  std::size_t l = 0;
+  while (l < failure.lanes.size() &&
+         (failure.verdicts[l] == truth.verdict || analysis::by_convention(*failure.lanes[l], failure.verdicts[l], pair,
+                                                                          truth.contact, truth.shape, touches)))
+    ++l;
+  return l;
 }
+
+bool counts(const Failure& failure, const Pair& pair) { return wrong_at(failure, pair) < failure.lanes.size(); }
 
 struct Walk {
   const Failure& failure;
@@ -164,7 +166,7 @@ struct Walk {
 
   bool has_cause(const Pair& pair) {
     result.moved += kMovedPerCause;
-    const analysis::Cause cause = analysis::cause_of(failure.first_wrong(), pair, failure.truth.verdict);
+    const analysis::Cause cause = analysis::cause_of(failure.first_wrong(pair), pair, failure.truth.verdict);
     return cause == result.reason.cause ||
            (cause == analysis::Cause::order_dependent && result.reason.cause == analysis::Cause::rounding);
   }
@@ -175,7 +177,7 @@ struct Walk {
     if (!may_have_reason(failure, result.reason, candidate)) return false;
     if (ask_all && !has_cause(candidate)) return false;
     way.push_back(candidate);
-    result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(), candidate);
+    result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(candidate), candidate);
     keep_worst(result, candidate, failure.truth.verdict);
     return true;
   }
@@ -206,7 +208,7 @@ struct Walk {
     const std::vector<Pair> simpler = simpler_moves(way.back(), kind, result.moved);
     for (auto first = simpler.begin(); first != simpler.end();) {
       if (spent()) return false;
-      const auto at_once = failure.first_wrong().foreign ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs};
+      const auto at_once = failure.lanes.front()->foreign ? kForeignAtOnce : std::ptrdiff_t{kBlockPairs};
       const auto last = first + std::min(at_once, simpler.end() - first);
       for (const Pair& candidate : decided_alike(failure, {first, last}, &late)) {
         if (spent()) return false;
@@ -252,26 +254,23 @@ struct Walk {
       (has_cause(way[middle]) ? has : lacks) = middle;
     }
     way.resize(has + 1);
-    result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(), way.back());
+    result.reason.in_range = !analysis::leaves_exponents(failure.first_wrong(way.back()), way.back());
     ask_all = true;
   }
 };
 
 }  // namespace
 
-const Lane& Failure::first_wrong() const {
-  const auto wrong = std::find_if(verdicts.begin(), verdicts.end(), [&](Verdict v) { return v != truth.verdict; });
-  return *lanes.at(static_cast<std::size_t>(wrong - verdicts.begin()));
-}
+const Lane& Failure::first_wrong(const Pair& pair) const { return *lanes.at(wrong_at(*this, pair)); }
 
 Reason reason_of(const Failure& failure, const Pair& pair) {
-  const Lane& lane = failure.first_wrong();
+  const Lane& lane = failure.first_wrong(pair);
   return {analysis::cause_of(lane, pair, failure.truth.verdict), !analysis::leaves_exponents(lane, pair)};
 }
 
 bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& pair) {
   return fails_alike(failure, pair) && may_have_reason(failure, reason, pair) &&
-         analysis::cause_of(failure.first_wrong(), pair, failure.truth.verdict) == reason.cause;
+         analysis::cause_of(failure.first_wrong(pair), pair, failure.truth.verdict) == reason.cause;
 }
 
 Judged judged(const Pair& pair) {
@@ -338,7 +337,7 @@ Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Min
     walk.go_down();
   }
   walk.result.pair = walk.way.back();
-  const Lane& lane = failure.first_wrong();
+  const Lane& lane = failure.first_wrong(walk.result.pair);
   if (lane.foreign) walk.result.reason.cause = analysis::cause_of(lane, walk.result.pair, failure.truth.verdict);
   return walk.result;
 }

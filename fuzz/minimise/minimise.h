@@ -37,7 +37,8 @@ struct Failure {
   std::vector<Verdict> verdicts;     // of each
   bool operator==(const Failure&) const = default;
 
-  const Lane& first_wrong() const;
+  // The first that is wrong on the pair, and does not only differ by its convention.   Requires: one is.
+  const Lane& first_wrong(const Pair& pair) const;
 };
 
 // The failures of a pair, one for each algorithm of the under_test that is wrong on it; none for coordinates that are

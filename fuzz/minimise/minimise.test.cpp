@@ -283,7 +283,7 @@ TEST(Minimise, TheCauseStays) {
     for (const Case& c : cases_of(stratum, 6)) {
       SCOPED_TRACE(c.name);
       const Minimised found = minimise(c.failure, c.pair);
-      const Lane* first = &c.failure.first_wrong();
+      const Lane* first = &c.failure.first_wrong(c.pair);
       const analysis::Explanation before = analysis::explain(c.pair, {&first, 1}),
                                   after = analysis::explain(found.pair, {&first, 1});
       ASSERT_EQ(before.lanes.size(), 1u);
@@ -295,6 +295,23 @@ TEST(Minimise, TheCauseStays) {
   }
   EXPECT_GE(seen.size(), 4u);
   EXPECT_GT(out_of_range, 0);
+}
+
+// What a lane's convention leaves open is not what the failure is about, though the lane comes first.
+TEST(Minimise, TheFirstWrongLaneIsNotExcused) {
+  const Pair touching = pair_of({0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 0, 1, 1, 1, 3, 3, 1});
+  static const AlgorithmInfo info{"excused", "test", "", "", "", false};
+  Lane excused{"excused/f32/cpu", &info, Scalar::f32, Variant::cpu, "", -1, nullptr, false, false, true, kOutsideTouching, ""};
+  Lane crashes = excused;
+  crashes.id = "excused/f64/cpu";
+  const Failure failure{judged(touching), {&excused, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
+  EXPECT_EQ(failure.first_wrong(touching).id, "excused/f64/cpu");
+  const Failure both{judged(touching), {&crashes, &excused}, {}, {Verdict::crashed, Verdict::disjoint}};
+  EXPECT_EQ(both.first_wrong(touching).id, "excused/f64/cpu");
+  Lane strict = excused;
+  strict.outside = 0;
+  const Failure wrong{judged(touching), {&strict, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
+  EXPECT_EQ(&wrong.first_wrong(touching), &strict);
 }
 
 TEST(Minimise, ConfirmRefusesAnotherFailure) {

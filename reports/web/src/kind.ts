@@ -84,11 +84,13 @@ function margins_histogram(kind: FailureKind) {
   }));
 }
 
-function worst({ kind, pair }: Card) {
+function worst({ kind, pair, commands }: Card) {
   const { margin_ulps, from } = kind.worst;
   const margin = margin_ulps === 0 ? 'margin 0' : `${figure(Math.abs(margin_ulps))} ulps ${margin_ulps < 0 ? 'deep' : 'apart'}`;
   if (kind.worst.pair === pair.hex.join(' ')) return h('p', { class: 'worst' }, `The pair shown is also the worst one looked at: ${margin}.`);
-  const command = `echo '${kind.worst.pair}' > worst.pairs; graze explain worst.pairs --lanes '${kind.subject}/*'`;
+  // As the card's own: it says where foreign code is.
+  const explain = commands.find(({ label }) => label === 'explain')!.text.replace(/^.*graze explain case.pairs/, 'graze explain worst.pairs');
+  const command = `echo '${kind.worst.pair}' > worst.pairs; ${explain}`;
   return h('div', { class: 'worst' }, h('p', {}, `Its worst pair of those looked at: ${margin}, from `, h('code', {}, from), '.'), code_block(command, 'the command that explains the worst pair'));
 }
 

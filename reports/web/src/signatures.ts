@@ -26,7 +26,7 @@ export function signature_table(report: Report, pair_of: (signature: Signature) 
     const lanes = report.lanes.filter((lane) => lane.algorithm === algorithm);
     const f64 = lanes.findIndex((lane) => lane.scalar === 'f64');
     return h('span', { class: 'marks' }, [...text].map((mark, i) =>
-      h('span', { class: `${{ '+': 'plus', '-': 'minus' }[mark] ?? ''} ${i === f64 ? 'apart' : ''}`, title: `${lanes[i]?.id}: ${{ '+': 'false positive', '-': 'false negative', '?': 'declined', '.': 'right' }[mark] ?? 'did not run'}` }, mark === '-' ? '−' : mark)));
+      h('span', { class: `${{ '+': 'plus', '-': 'minus' }[mark] ?? ''} ${i === f64 ? 'apart' : ''}`, title: `${lanes[i]?.id}: ${{ '+': 'false positive', '-': 'false negative', '?': 'declined', '!': 'crashed', '@': 'timed out', '%': 'unstable', '.': 'right' }[mark] ?? 'did not run'}` }, mark === '-' ? '−' : mark)));
   }
 
   const kinds = ({ cards }: Signature) => cards.map((place, i) => [i > 0 && ' ', h('a', { class: 'link', href: `#${kind_id(place)}` }, `kind ${place + 1}`)]);

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Powers of two by which a pair can be scaled, and with which no product of its coordinates leaves a scalar's exponents.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "core/lanes.h"
+#include "core/pair.h"
+
+namespace graze::analysis {
+
+struct ScalarLimits {
+  std::string_view name;
+  int digits, least,
+      most;  // bits of the mantissa; exponents of the least normal number, and of the largest power of two
+};
+
+inline const ScalarLimits& limits_of(Scalar scalar) {
+  static constexpr ScalarLimits kLimits[] = {{"float32", 24, -126, 127}, {"float64", 53, -1022, 1023}};
+  return kLimits[static_cast<int>(scalar)];
+}
+
+// All coordinates are multiples of 2^low and less than 2^high.   Requires: some coordinate is not zero.
+struct Size {
+  int low = 1000, high = -1000;
+  int largest_difference = -1000, smallest_difference = 1000;  // their exponents, of two vertices on one axis
+
+  explicit Size(const Pair& pair) {
+    const float* c = coordinates(pair);
+    for (int i = 0; i < kCoordinates; ++i) {
+      if (c[i] == 0) continue;
+      int exponent;
+      auto mantissa = static_cast<std::uint32_t>(std::ldexp(std::frexp(std::fabs(c[i]), &exponent), 24));
+      high = std::max(high, exponent);
+      low = std::min(low, exponent - 24 + std::countr_zero(mantissa));
+      for (int j = i % 3; j < i; j += 3) add_difference(double{c[i]} - c[j]);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool zero =
+          std::any_of(c, c + kCoordinates, [&](const float& x) { return (&x - c) % 3 == axis && x == 0; });
+      for (int i = axis; zero && i < kCoordinates; i += 3) add_difference(c[i]);
+    }
+  }
+
+ private:
+  void add_difference(double difference) {
+    if (difference == 0) return;
+    largest_difference = std::max(largest_difference, std::ilogb(difference));
+    smallest_difference = std::min(smallest_difference, std::ilogb(difference));
+  }
+};
+
+// Scales 2^k.
+struct Scales {
+  int first, last;
+  bool empty() const { return first > last; }
+  bool has(int k) const { return first <= k && k <= last; }
+};
+
+inline Scales common(Scales l, Scales r) { return {std::max(l.first, r.first), std::min(l.last, r.last)}; }
+
+// With which all coordinates stay as they are, but for the exponents.
+inline Scales exact_scales(const Size& size) { return {-149 - size.low, 128 - size.high}; }
+
+// With which no product of so many coordinates, or sums of four of them, can leave the scalar's exponents: whatever
+// rounds, such a product is a multiple of 2^(factors * low), or 0.
+inline Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
+  const ScalarLimits& limits = limits_of(scalar);
+  // Divisions that round towards the inside of the range.
+  return common({-(-limits.least / factors) - size.low, limits.most / factors - 2 - size.high}, exact_scales(size));
+}
+
+inline Pair scaled(const Pair& pair, int k) {
+  Pair result = pair;
+  for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = std::ldexp(coordinates(pair)[i], k);
+  return result;
+}
+
+}  // namespace graze::analysis

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "fuzz/campaign/campaign_scene.h"
+#include "fuzz/campaign/store_file.h"
 #include "fuzz/lanes_under_test.h"
 
 namespace graze::cli {
@@ -23,6 +25,7 @@ void add_league(CLI::App& app, int& status);
 void add_map(CLI::App& app, int& status);
 void add_dump(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
+void add_scene(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
 void add_prove_twin(CLI::App& app, int& status);
@@ -52,6 +55,17 @@ fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::fil
 
 // Patterns, separated by commas, in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
+
+// --scene, of every verb that draws from one.
+void add_scene_option(CLI::App& command, std::string& file);
+
+// What the verb draws then, and what its results record under "scene".
+// Throws: as fuzz::open_scene and strata::scene_sources.
+strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
+                                      const std::vector<std::string>& globs, fuzz::Json& recorded);
+
+// Which strata the scene cannot contain, and why: a line for each, below a heading; empty for none.
+std::string left_out_text(const std::vector<strata::LeftOut>& left_out);
 
 // The most of any number of pairs, and of seeds: 2^53, up to which all are whole in every reader of JSON.
 inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;

@@ -112,8 +112,8 @@ Kind kind_of(Stratum stratum) {
 }
 
 std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
-  const Grid exact = resolved(scene).exact;
-  const double steps = longest_in_steps(scene, exact);
+  const Scene numbers = resolved(scene);
+  const double steps = longest_in_steps(scene, numbers.exact);
   const double factor = scene.edges.back() / scene.edges.front();
   switch (stratum) {
     case Stratum::thesis:
@@ -138,6 +138,11 @@ std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
       if (steps < kLeastSteps)
         return fmt::format("your longest edge takes {:.3g} {}, fewer than {}", steps,
                            scene.grid ? "grid steps" : "ulps of your largest coordinate", kLeastSteps);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (component(numbers.first, axis) > component(numbers.last, axis))
+          return fmt::format("your extent holds no multiple of {}, an ulp of your largest coordinate, in {}",
+                             numbers.exact.scale, "xyz"[axis]);
+      }
       break;
     case Stratum::lattice:
       if (!scene.grid) return "your coordinates are on no grid";

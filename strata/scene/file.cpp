@@ -11,6 +11,7 @@
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "strata/mesh_readers/soup.h"
+#include "strata/scene/envelope.h"
 
 // Parse errors are values here, and nothing is linked.
 #define TOML_HEADER_ONLY 1
@@ -27,6 +28,7 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 constexpr double kMostCoordinate = 0x1p126;
+constexpr double kLeastUlps = 8;  // so that float32 does not make points of all triangles
 constexpr double kLeastAspect = 1.1547;  // of an equilateral triangle, 2 / sqrt(3), to five digits
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
@@ -139,8 +141,9 @@ class Reader {
     }
     double squares = 0;
     for (const auto& [low, high] : scene.extent) {
-      const double size = static_cast<double>(static_cast<float>(high)) - static_cast<double>(static_cast<float>(low));
+      const double size = as_float32(high) - as_float32(low);
       squares += size * size;
+      largest_ = std::max({largest_, std::fabs(low), std::fabs(high)});
     }
     diagonal_ = std::sqrt(squares);
     if (diagonal_ == 0) fail(*node, "an extent of some size", "a point");
@@ -168,6 +171,10 @@ class Reader {
     if (scene.edges.back() > diagonal_ * 1.00001)
       fail(*edges, fmt::format("edges of at most {:.6g}, the diagonal of the extent", diagonal_),
            fmt::format("{}", scene.edges.back()));
+    const double ulp = std::ldexp(1.0, std::max(floor_log2(largest_) - 23, -149));
+    if (scene.edges.back() < kLeastUlps * ulp)
+      fail(*edges, fmt::format("a longest edge of at least {}, {} ulps of the largest coordinate", kLeastUlps * ulp, kLeastUlps),
+           fmt::format("{}", scene.edges.back()));
     if (const toml::node* node = root_.get("aspect")) scene.aspect = quantiles(*node, kLeastAspect, 1e12);
   }
 
@@ -181,17 +188,20 @@ class Reader {
     scene.grid = GridSpec{decimal, decimal ? whole(places, 0, 15) : whole(places, -149, 126)};
     // Numbers of grid points must be exact in double, with room to spare; and there must be some.
     const double step = decimal ? std::pow(10.0, -scene.grid->places) : std::ldexp(1.0, scene.grid->places);
-    std::size_t wide = 0;
     for (const auto& [low, high] : scene.extent) {
-      if (std::max(std::fabs(low), std::fabs(high)) / step > 0x1p48)
-        fail(node, "a grid of at most 2^48 steps from the origin to the ends of the extent",
-             fmt::format("{:.3g}", std::max(std::fabs(low), std::fabs(high)) / step));
-      const double inside = std::floor(high / step) - std::ceil(low / step);
-      if (inside < 0 && std::round(low / step) != std::round(high / step))
-        fail(node, "a point of the grid in each axis of the extent", fmt::format("none from {} to {}", low, high));
-      wide += inside >= 1;
+      const double steps = std::max(std::fabs(low), std::fabs(high)) / step;
+      if (steps > 0x1p48)
+        fail(node, "a grid of at most 2^48 steps from the origin to the ends of the extent", fmt::format("{:.3g}", steps));
     }
-    if (wide == 0) fail(node, "a grid of several points in the extent", "one");
+    const Scene numbers = resolved(scene);
+    bool several = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double first = component(numbers.low, axis), last = component(numbers.high, axis);
+      if (first > last)
+        fail(node, "a point of the grid in each axis of the extent", fmt::format("none in {}", "xyz"[axis]));
+      several = several || first < last;
+    }
+    if (!several) fail(node, "a grid of several points in the extent", "one");
     if (scene.edges.back() < step)
       fail(node, fmt::format("steps of at most {}, the longest edge", scene.edges.back()), fmt::format("{}", step));
   }
@@ -244,7 +254,7 @@ class Reader {
 
   const std::string& name_;
   const toml::table& root_;
-  double diagonal_ = 0;
+  double diagonal_ = 0, largest_ = 0;  // of the extent
 };
 
 std::string list_of(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }

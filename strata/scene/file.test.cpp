@@ -104,7 +104,12 @@ TEST(SceneFile, MistakesAreNamedByTheirLine) {
   EXPECT_EQ(error_of(extent + edges + "grid = { power_of_two = 20 }"),
             "s.toml:3: expected a grid of several points in the extent, found one");
   EXPECT_EQ(error_of("extent = [[0.4, 0.6], [0, 90], [0, 90]]\n" + edges + "grid = { decimals = 0 }"),
-            "s.toml:3: expected a point of the grid in each axis of the extent, found none from 0.4 to 0.6");
+            "s.toml:3: expected a point of the grid in each axis of the extent, found none in x");
+  EXPECT_EQ(error_of("extent = [[0, 90], [0.2, 0.3], [0, 90]]\n" + edges + "grid = { decimals = 0 }"),
+            "s.toml:3: expected a point of the grid in each axis of the extent, found none in y");
+  EXPECT_EQ(error_of("extent = [[0, 90], [0.1, 0.1], [0, 90]]\n" + edges + "grid = { decimals = 1 }"), "none");
+  EXPECT_EQ(error_of("extent = [1e6, 2e6]\nedges = [0.125, 0.5]"),
+            "s.toml:2: expected a longest edge of at least 1, 8 ulps of the largest coordinate, found 0.5");
   EXPECT_EQ(error_of(extent + edges + "[mix]\ngeneral = 0\n"), "s.toml:3: expected a share above 0, found none");
   EXPECT_NE(error_of(extent + edges + "[mix]\ncoplaner = 1\n").find("did you mean 'coplanar'?"), std::string::npos);
   EXPECT_NE(error_of(extent + edges + "[mix]\ngeneral = -1\n").find("s.toml:4: expected a number from 0 to 1"),

@@ -36,6 +36,7 @@ const std::pair<const char*, const char*> kScenes[] = {
     {"terrain", "extent = [[0, 40000], [0, 40000], [180, 240]]\nedges = [20, 60]"},
     {"plane", "extent = [[0, 10], [0, 10], [2.5, 2.5]]\nedges = [0.01, 3]"},
     {"free", "extent = [-1, 1]\nedges = [0.001, 0.2]\naspect = [1.2, 3, 5000]"},
+    {"uneven", "extent = [[1e6, 2e6], [0.01, 0.02], [-7, 5]]\nedges = [2, 3000]"},
     {"tiny", "extent = [-1e-40, 3e-40]\nedges = [1e-41, 1e-40]"},
     {"huge", "extent = [-8e37, 8e37]\nedges = [1e30, 6e37]"},
 };
@@ -182,6 +183,8 @@ TEST(Scene, WhatItCannotContainIsLeftOutWithTheReason) {
   EXPECT_EQ(why(mm, Stratum::exact_contact), "drawn");
   EXPECT_EQ(why("extent = [90000, 99000]\nedges = [0.1, 0.3]", Stratum::exact_contact),
             "your longest edge takes 38.4 ulps of your largest coordinate, fewer than 64");
+  EXPECT_EQ(why(kScenes[6].second, Stratum::exact_contact),
+            "your extent holds no multiple of 0.125, an ulp of your largest coordinate, in y");
   EXPECT_EQ(why(kScenes[1].second, Stratum::coplanar_wide), "your longest edge takes 18 grid steps, fewer than 64");
   EXPECT_EQ(why(kScenes[1].second, Stratum::lattice), "drawn");
   EXPECT_EQ(why(kScenes[2].second, Stratum::lattice), "your longest edge takes 2.4e+03 grid steps, more than 64");

@@ -82,17 +82,19 @@ double ulp_of(float x) { return static_cast<double>(std::nextafterf(x, INFINITY)
 
 std::optional<GridSpec> grid_of(const std::vector<float>& values) {
   const auto is_evident = [&](double step) {
+    if (static_cast<double>(values.back()) / step > 0x1p48) return false;  // what a scene takes
     double bits = 0;
     for (const float x : values) bits += std::max(std::floor(std::log2(step / ulp_of(x))), 0.0);
     return bits >= kEvidence;
   };
+  if (values.empty()) return std::nullopt;
   int places = 127;
   for (const float x : values) {
     int exponent;
     const auto digits = static_cast<std::uint32_t>(std::ldexp(std::frexp(x, &exponent), 24));
     places = std::min(places, exponent - 24 + __builtin_ctz(digits));
   }
-  if (!values.empty() && places <= 126 && is_evident(std::ldexp(1.0, places))) return GridSpec{false, places};
+  if (places <= 126 && is_evident(std::ldexp(1.0, places))) return GridSpec{false, places};
   double scale = 1;
   for (int decimals = 0; decimals <= 9; ++decimals, scale *= 10) {
     const bool all = std::all_of(values.begin(), values.end(), [&](float x) {

@@ -73,6 +73,9 @@ inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 // Accepts whole numbers in [least, most], also as 1e6, 10M or 1_000_000, and nothing else. To be used by transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
+// Throws: UsageError for a file's name that results, which are UTF-8, could not record.
+void expect_utf8(const std::string& what, const std::string& file);
+
 // Accepts any text but an empty one, which names no file.
 CLI::Validator not_empty();
 

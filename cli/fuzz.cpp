@@ -113,11 +113,7 @@ int fuzz(const FuzzOptions& options) {
   }
   Json mesh_spec;
   if (!options.mesh.empty()) {
-    for (const std::string& file : options.mesh) {
-      const std::string shown = Json(file).dump(-1, ' ', false, Json::error_handler_t::replace);
-      if (Json::parse(shown) != file)
-        throw UsageError("--mesh: expected a file name in UTF-8, which the results record, found " + shown);
-    }
+    for (const std::string& file : options.mesh) expect_utf8("--mesh", file);
     const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
         options.mesh[0],
         options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));

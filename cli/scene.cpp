@@ -39,6 +39,8 @@ analysis::SceneSample sample_of_pairs(const std::string& file) {
 }
 
 void scene(const SceneVerb& options) {
+  for (const std::string& file : options.files) expect_utf8("graze scene", file);
+  expect_utf8("--poses", options.poses);
   const bool pairs = fs::path(options.files[0]).extension() == ".pairs";
   if (pairs && options.files.size() > 1)
     throw UsageError(fmt::format("expected one file of pairs, found {} files", options.files.size()));
@@ -64,7 +66,11 @@ void scene(const SceneVerb& options) {
   std::string text = "# Where graze draws pairs from. Edit it as you like: extent and edges are needed, all else has a default.\n";
   text += fmt::format("# Of {} triangles, {} pairs whose boxes overlap.\n", sample.triangles.size(), sample.pairs);
   text += strata::scene_text(measured);
-  strata::parse_scene(options.out.empty() ? "scene" : options.out, text);  // units and names that it would not take
+  try {
+    strata::parse_scene("scene", text);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: expected what a scene can hold, found {}", options.files[0], error.what()));
+  }
   if (options.out.empty()) {
     std::cout << text;
     return;
@@ -103,6 +109,7 @@ void add_scene_option(CLI::App& command, std::string& file) {
 
 strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
                                       const std::vector<std::string>& globs, fuzz::Json& recorded) {
+  expect_utf8("--scene", file);
   const fuzz::NamedScene scene = fuzz::open_scene(file);
   strata::SceneSources drawn = fuzz::sources_of(scene, seed, pairs, globs);
   for (const std::string& note : drawn.notes) fmt::print(stderr, "graze: {}\n", note);

@@ -121,6 +121,9 @@ TEST_F(SceneVerb, PosesAndSeveralMeshes) {
 
 TEST_F(SceneVerb, WrongUseIsOneLine) {
   expect_error("graze scene missing.off", 1, "missing.off: expected a mesh file");
+  expect_error("cp hills.off $'\\xff.off'; graze scene $'\\xff.off'", 2, "expected a file name in UTF-8");
+  expect_error("printf '1 0 0 0 0 1 0 0 0 0 1 0\\n1 0 0 9e37 0 1 0 0 0 0 1 0\\n' > p.csv; graze scene hills.off --poses p.csv", 1,
+               "hills.off: expected");
   expect_error("graze scene mm.toml", 1, "expected a file of extension .off, .obj, .stl or .ply, found .toml");
   expect_error("graze fuzz --scene missing.toml", 1, "missing.toml: expected a scene's file, found none that can be opened");
   expect_error("graze fuzz --scene .", 1, ".: expected a scene's file");

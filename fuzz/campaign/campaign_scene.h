@@ -18,7 +18,7 @@ struct NamedScene {
   std::string name() const { return strata::scene_name(file, scene); }  // arm.toml#0123456789abcdef
 };
 
-// Throws: as strata::read_scene; UsageError for a name that JSON does not take.
+// Throws: as strata::read_scene.
 NamedScene open_scene(const std::string& file);
 
 // As strata::scene_sources; meshes are looked for beside the scene's file.

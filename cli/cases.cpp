@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "fuzz/campaign/campaign_scene.h"
 #include "oracle/written.h"
 #include "strata/pair_source.h"
 
@@ -31,8 +32,21 @@ std::string words(const oracle::Truth& truth) {
 
 std::vector<corpus::Entry> read_cases(const std::string& name) {
   const std::size_t first = name.find(':'), last = name.rfind(':');
-  const bool three_numbers = first != std::string::npos && first != last && name.find('/') == std::string::npos;
+  // A scene is named by a path, which may hold slashes and colons.
+  const std::size_t at = std::min(name.find('@'), name.size());
+  const std::size_t middle = last == std::string::npos || last == 0 ? std::string::npos : name.rfind(':', last - 1);
   std::error_code ignored;
+  if (at < name.size() && middle != std::string::npos && at < middle && name.find('/') > at &&
+      !std::filesystem::exists(name, ignored)) {
+    const fuzz::SceneCase named{name.substr(0, at), name.substr(at + 1, middle - at - 1),
+                                number(name.substr(middle + 1, last - middle - 1), name),
+                                number(name.substr(last + 1), name)};
+    return {{fuzz::draw_again(named),
+             {{"stratum", named.id}, {"seed", std::to_string(named.seed)}, {"index", std::to_string(named.index)},
+              {"scene", named.scene}},
+             0}};
+  }
+  const bool three_numbers = first != std::string::npos && first != last && name.find('/') == std::string::npos;
   if (!three_numbers || std::filesystem::exists(name, ignored)) {
     std::vector<corpus::Entry> entries = corpus::read_pairs(name);
     if (entries.empty()) throw std::runtime_error(name + ": expected at least one case, found none");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user names a case by: a file of pairs, or a stratum's pair as STRATUM:SEED:INDEX.
+// What a user names a case by: a file of pairs, or a stratum's pair as STRATUM:SEED:INDEX,
+// or STRATUM@SCENE:SEED:INDEX of a scene.
 #pragma once
 
 #include <CLI/CLI.hpp>

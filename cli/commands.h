@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "fuzz/campaign/campaign_scene.h"
+#include "fuzz/campaign/store_file.h"
 #include "fuzz/lanes_under_test.h"
 
 namespace graze::cli {
@@ -23,6 +25,7 @@ void add_league(CLI::App& app, int& status);
 void add_map(CLI::App& app, int& status);
 void add_dump(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
+void add_scene(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
 void add_prove_twin(CLI::App& app, int& status);
@@ -53,11 +56,25 @@ fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::fil
 // Patterns, separated by commas, in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 
+// --scene, of every verb that draws from one.
+void add_scene_option(CLI::App& command, std::string& file);
+
+// What the verb draws then, and what its results record under "scene".
+// Throws: as fuzz::open_scene and strata::scene_sources.
+strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
+                                      const std::vector<std::string>& globs, fuzz::Json& recorded);
+
+// Which strata the scene cannot contain, and why: a line for each, below a heading; empty for none.
+std::string left_out_text(const std::vector<strata::LeftOut>& left_out);
+
 // The most of any number of pairs, and of seeds: 2^53, up to which all are whole in every reader of JSON.
 inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
 // Accepts whole numbers in [least, most], also as 1e6, 10M or 1_000_000, and nothing else. To be used by transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
+
+// Throws: UsageError for a file's name that results, which are UTF-8, could not record.
+void expect_utf8(const std::string& what, const std::string& file);
 
 // Accepts any text but an empty one, which names no file.
 CLI::Validator not_empty();

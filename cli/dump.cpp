@@ -33,6 +33,7 @@ struct DumpOptions {
 struct Dumped {
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
+  std::string scene;  // that they were drawn from; may be empty
 };
 
 // STRATUM or STRATUM:SEED; the stratum may be a pattern.
@@ -62,6 +63,10 @@ Dumped of_campaign(const DumpOptions& options) {
     const Json& spec = summary.at("spec");
     dumped.seed = spec.at("seed");
     std::uint64_t pairs = spec.at("pairs");
+    if (spec.contains("scene")) {
+      dumped.sources = fuzz::recorded_sources(spec).sources;
+      dumped.scene = spec["scene"].at("name");
+    }
     std::optional<strata::PairSource> of_mesh;
     if (spec.contains("mesh")) {
       const std::vector<std::string> files = spec.at("mesh").at("files");
@@ -74,7 +79,7 @@ Dumped of_campaign(const DumpOptions& options) {
     }
     std::vector<std::string> strata = spec.at("strata");
     std::erase(strata, "mesh");
-    if (!strata.empty()) dumped.sources = strata::stratum_sources(dumped.seed, pairs, strata);
+    if (!strata.empty() && dumped.sources.empty()) dumped.sources = strata::stratum_sources(dumped.seed, pairs, strata);
     if (of_mesh) dumped.sources.push_back(*of_mesh);
   } catch (const Json::exception&) {
     throw std::runtime_error(file.string() + ": expected a campaign's summary, found something else");
@@ -124,6 +129,7 @@ void dump(const DumpOptions& options) {
       corpus::Entry entry{
           source.pair(index),
           {{"stratum", source.id}, {"seed", std::to_string(dumped.seed)}, {"index", std::to_string(index)}}};
+      if (!dumped.scene.empty() && options.format == Format::pairs) entry.fields.emplace_back("scene", dumped.scene);
       for (auto& field : fuzz::truth_fields(oracle::truth(entry.pair))) entry.fields.push_back(std::move(field));
       if (!under_test.lanes.empty()) {
         const std::vector<Verdict> verdicts = decide(under_test, entry.pair);

@@ -36,7 +36,7 @@ struct FuzzOptions {
   std::uint64_t pairs = 1'000'000;
   std::uint64_t seed = 1;
   int threads = 0;
-  std::string out = "campaign";
+  std::string out = "campaign", scene;
   std::vector<std::string> strata, mesh;
   LaneOptions lanes;
   fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
@@ -119,16 +119,19 @@ int fuzz(const FuzzOptions& options) {
   campaign.under_test = &under_test;
   campaign.threads = options.threads;
   campaign.directory = options.out;
-  // A mesh stands alone unless strata are asked for as well.
-  if (options.mesh.empty() || !options.strata.empty())
+  Json scene_spec;
+  std::vector<strata::LeftOut> left_out;
+  if (!options.scene.empty()) {
+    strata::SceneSources drawn =
+        drawn_from_scene(options.scene, options.seed, options.pairs, options.strata, scene_spec);
+    campaign.sources = std::move(drawn.sources);
+    left_out = std::move(drawn.left_out);
+  } else if (options.mesh.empty() || !options.strata.empty()) {  // a mesh stands alone unless strata are asked for as well
     campaign.sources = strata::stratum_sources(options.seed, options.pairs, options.strata);
+  }
   Json mesh_spec;
   if (!options.mesh.empty()) {
-    for (const std::string& file : options.mesh) {
-      const std::string shown = Json(file).dump(-1, ' ', false, Json::error_handler_t::replace);
-      if (Json::parse(shown) != file)
-        throw UsageError("--mesh: expected a file name in UTF-8, which the results record, found " + shown);
-    }
+    for (const std::string& file : options.mesh) expect_utf8("--mesh", file);
     const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
         options.mesh[0],
         options.mesh.size() > 1 ? std::optional<std::filesystem::path>(options.mesh[1]) : std::nullopt));
@@ -137,6 +140,7 @@ int fuzz(const FuzzOptions& options) {
     mesh_spec = {{"files", options.mesh}, {"content", fmt::format("{:016x}", mesh->content_hash)}};
   }
   campaign.spec = fuzz::campaign_spec(campaign);
+  if (!scene_spec.is_null()) campaign.spec["scene"] = scene_spec;
   if (!mesh_spec.is_null()) campaign.spec["mesh"] = mesh_spec;
   if (const Json subjects = subjects::record(campaign.spec["lanes"].get<std::vector<std::string>>()); !subjects.is_null())
     campaign.spec["subjects"] = subjects;
@@ -174,6 +178,7 @@ int fuzz(const FuzzOptions& options) {
     return status();
   }
   reports::print_summary(std::cout, summary, oracle, output_screen());
+  std::cout << left_out_text(left_out);
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
   if (!summary["signatures"].empty()) {
@@ -207,11 +212,13 @@ void add_fuzz(CLI::App& app, int& status) {
       ->capture_default_str();
   add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
   add_lane_options(*command, options->lanes);
+  add_scene_option(*command, options->scene);
   command
       ->add_option("--mesh", options->mesh,
                    "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]; alone unless "
                    "--strata is given too")
-      ->expected(1, 2);
+      ->expected(1, 2)
+      ->excludes("--scene");
   static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
                 static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   command

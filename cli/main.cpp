@@ -51,6 +51,7 @@ int main(int argc, char** argv) {
   graze::cli::add_map(app, status);
   graze::cli::add_dump(app, status);
   graze::cli::add_report(app, status);
+  graze::cli::add_scene(app, status);
   graze::cli::add_lanes(app, status);
   graze::cli::add_strata(app, status);
   graze::cli::add_prove_twin(app, status);

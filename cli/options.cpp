@@ -89,6 +89,12 @@ CLI::Validator one_of(std::vector<std::string> words, Chosen chosen) {
   return CLI::Validator(check, "");
 }
 
+void expect_utf8(const std::string& what, const std::string& file) {
+  const std::string text = fuzz::Json(file).dump(-1, ' ', false, fuzz::Json::error_handler_t::replace);
+  if (fuzz::Json::parse(text) != file)
+    throw UsageError(what + ": expected a file name in UTF-8, which the results record, found " + text);
+}
+
 CLI::Validator not_empty() {
   return CLI::Validator([](std::string& text) { return text.empty() ? "expected a name, found ''" : std::string(); },
                         "");

@@ -353,7 +353,8 @@ std::string origin_of(const Entry& entry) { return numbers_of(entry).value_or(te
 std::optional<std::string> numbers_of(const Entry& entry) {
   const std::string *stratum = field(entry, "stratum"), *seed = field(entry, "seed"), *index = field(entry, "index");
   if (!stratum || !seed || !index) return std::nullopt;
-  return *stratum + ':' + *seed + ':' + *index;
+  const std::string* scene = field(entry, "scene");
+  return *stratum + (scene ? '@' + *scene : "") + ':' + *seed + ':' + *index;
 }
 
 }  // namespace graze::corpus

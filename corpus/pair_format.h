@@ -77,7 +77,7 @@ const std::string* field(const Entry& entry, std::string_view key);
 // The same, or an empty text.
 std::string text_of(const Entry& entry, std::string_view key);
 
-// STRATUM:SEED:INDEX of a case that has these fields.
+// STRATUM:SEED:INDEX of a case that has these fields; STRATUM@SCENE:SEED:INDEX of one drawn in a scene.
 std::optional<std::string> numbers_of(const Entry& entry);
 
 // The same, or else what the field `from` says: where a minimised case came from.

@@ -36,6 +36,10 @@ std::string campaign_command(const Json& summary) {
     pairs -= summary.at("strata").at("mesh").at("pairs").get<std::uint64_t>();
     std::erase(strata, "mesh");
   }
+  if (spec.contains("scene")) {
+    command += " --scene " + quoted(spec.at("scene").at("file").get<std::string>());
+    pairs = spec.at("scene").at("pairs");
+  }
   if (!strata.empty()) command += fmt::format(" --pairs {} --seed {}", pairs, spec.at("seed").dump());
   const bool all_strata = strata.size() == strata::kStrataCount && !spec.contains("mesh");
   if (!strata.empty() && !all_strata) command += fmt::format(" --strata {}", joined(strata));

@@ -114,7 +114,8 @@ def fuzz():
 if out == "":
     print("graze: --out: expected a name, found ''", file=sys.stderr)
     sys.exit(2)
-if words[0] == "fuzz" and "--mesh" not in words:
+reads = "--mesh" in words or "--scene" in words
+if words[0] == "fuzz" and not reads:
     if MODE == "replaces" and os.path.islink(out):
         os.unlink(out)
     fuzz()
@@ -129,7 +130,7 @@ elif words[0] == "report" and words[1] != "--from":
     write(f"{words[1]}/report.json", '{"format": 1}\n')
 elif words[:2] == ["corpus", "add"] and os.path.isdir(words[2]) and MODE == "good":
     pass
-elif out and "--mesh" not in words and (words[1] == "pair.txt" or words[0] == "report"):
+elif out and not reads and (words[1] == "pair.txt" or words[0] == "report"):
     write(out, "result\n")
 elif words[0] == "corpus" and words[1] != "add":
     damaged(f"{option('--corpus')}/cases.pairs")
@@ -183,6 +184,7 @@ class Torture(unittest.TestCase):
                 ("forged", "crashes", "expected exit status 0, 1 or 2, found -11"),
                 ("pairs", "crashes", "expected exit status 0, 1 or 2, found -11"),
                 ("meshes", "mumbles", "expected a line that names"),
+                ("scenes", "mumbles", "expected a line that names"),
                 ("json", "crashes", "expected exit status 0, 1 or 2, found -11"),
                 ("outputs", "replaces", "found otherwise")):
             with self.subTest(f"{kind} {mode}"):

@@ -7,12 +7,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
 
 #include "core/fnv1a.h"
-#include "strata/mesh_readers/soup.h"
+#include "strata/mesh_readers/lines.h"
 
 namespace graze::strata {
 namespace {
@@ -77,6 +79,65 @@ std::vector<Box> boxes_of(const std::vector<Triangle>& triangles, std::size_t be
   return boxes;
 }
 
+using Pose = std::array<double, 12>;
+
+constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // of all poses together: 2.25 GiB
+
+// Adds the file's bytes to the hash.
+std::vector<Pose> read_poses(const std::filesystem::path& file, std::uint64_t& hash) {
+  std::string bytes = read_bytes(file);
+  hash = fnv1a(bytes, hash);
+  std::replace(bytes.begin(), bytes.end(), ',', ' ');
+  Lines lines({file.string(), bytes}, '#');
+  std::vector<Pose> poses;
+  while (lines.next()) {
+    Pose pose;
+    for (std::size_t i = 0; i < pose.size(); ++i) {
+      const std::string expected = "12 numbers, the rows of a matrix (R | t)";
+      lines.number(i, expected);
+      const std::string_view word = lines.words()[i].substr(lines.words()[i].starts_with('+'));
+      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), pose[i]);
+      if (error != std::errc{} || !std::isfinite(pose[i])) lines.fail_at(i, expected);
+    }
+    if (lines.words().size() > pose.size()) lines.fail_at(pose.size(), "the end of the line after 12 numbers");
+    poses.push_back(pose);
+  }
+  if (poses.empty()) fail(file.string(), "at least one pose", "none");
+  return poses;
+}
+
+Vec3<float> moved(const Pose& m, const Vec3<float>& v) {
+  float to[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double x = m[4 * i] * static_cast<double>(v.x), y = m[4 * i + 1] * static_cast<double>(v.y),
+                 z = m[4 * i + 2] * static_cast<double>(v.z);
+    to[i] = static_cast<float>(x + y + z + m[4 * i + 3]);
+  }
+  return {to[0], to[1], to[2]};
+}
+
+// A body of each pose in place of the mesh.   Returns: where each ends.
+std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path& file,
+                                   const std::vector<Pose>& poses) {
+  const std::vector<Triangle> mesh = std::move(pairs.triangles);
+  if (poses.size() > kMostTriangles / mesh.size())
+    fail(file.string(), "poses of at most 2^26 triangles in all",
+         std::to_string(poses.size()) + " of " + std::to_string(mesh.size()));
+  pairs.triangles.clear();
+  std::vector<std::size_t> ends;
+  for (const Pose& pose : poses) {
+    for (const Triangle& t : mesh) {
+      pairs.triangles.push_back({moved(pose, t[0]), moved(pose, t[1]), moved(pose, t[2])});
+      for (const Vec3<float>& v : pairs.triangles.back()) {
+        if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+          fail(file.string(), "poses that keep coordinates finite in float32", "pose " + std::to_string(ends.size() + 1));
+      }
+    }
+    ends.push_back(pairs.triangles.size());
+  }
+  return ends;
+}
+
 }  // namespace
 
 Pair MeshPairs::pair(std::size_t index) const {
@@ -85,29 +146,37 @@ Pair MeshPairs::pair(std::size_t index) const {
   return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
 }
 
-MeshPairs read_mesh_pairs(const std::filesystem::path& file, const std::optional<std::filesystem::path>& other) {
+MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses) {
   MeshPairs result;
   result.content_hash = fnv1a("");
-  add_mesh(result, file);
-  const std::size_t first_count = result.triangles.size();
-  if (other) add_mesh(result, *other);
+  std::vector<std::size_t> ends;
+  for (const std::filesystem::path& file : files) {
+    add_mesh(result, file);
+    ends.push_back(result.triangles.size());
+  }
+  if (!poses.empty()) ends = put_poses(result, poses, read_poses(poses, result.content_hash));
 
   const auto add = [&](const Box& p, const Box& q) {
     if (result.candidates.size() == kMostCandidates) {
-      fail(file.string(), "at most 2^28 pairs of triangles whose boxes overlap", "more");
+      fail(files[0].string(), "at most 2^28 pairs of triangles whose boxes overlap", "more");
     }
     result.candidates.push_back(std::minmax({p.info(), q.info()}));
   };
-  std::vector<Box> boxes = boxes_of(result.triangles, 0, first_count);
-  if (other) {
-    std::vector<Box> other_boxes = boxes_of(result.triangles, first_count, result.triangles.size());
-    CGAL::box_intersection_d(boxes.begin(), boxes.end(), other_boxes.begin(), other_boxes.end(), add);
-  } else {
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), add);
+  std::vector<Box> boxes = boxes_of(result.triangles, 0, ends[0]);
+  if (ends.size() == 1) CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), add);
+  // Each body with all before it.
+  for (std::size_t body = 1; body < ends.size(); ++body) {
+    std::vector<Box> others = boxes_of(result.triangles, ends[body - 1], ends[body]);
+    CGAL::box_intersection_d(boxes.begin(), boxes.end(), others.begin(), others.end(), add);
+    boxes.insert(boxes.end(), others.begin(), others.end());
   }
-  if (result.candidates.empty()) fail(file.string(), "at least one pair of triangles whose boxes overlap", "none");
+  if (result.candidates.empty()) fail(files[0].string(), "at least one pair of triangles whose boxes overlap", "none");
   std::sort(result.candidates.begin(), result.candidates.end());
   return result;
+}
+
+MeshPairs read_mesh_pairs(const std::filesystem::path& file, const std::optional<std::filesystem::path>& other) {
+  return other ? read_bodies({file, *other}) : read_bodies({file});
 }
 
 }  // namespace graze::strata

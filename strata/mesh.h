@@ -36,4 +36,9 @@ struct MeshPairs {
 MeshPairs read_mesh_pairs(const std::filesystem::path& file,
                           const std::optional<std::filesystem::path>& other = std::nullopt);
 
+// The same of bodies: of one its own pairs, of several the pairs between them. Poses, a CSV file with a row of twelve
+// numbers for each, the three rows of a matrix (R | t), make a body of each pose of the one mesh.
+// Requires: at least one file, and one alone where there are poses.
+MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});
+
 }  // namespace graze::strata

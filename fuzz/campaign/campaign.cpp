@@ -101,7 +101,7 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
       hindrance = campaign.under_test->lanes[l]->id;
   }
   for (const strata::PairSource& source : campaign.sources) {
-    if (source.stratum < 0) hindrance = source.id;
+    if (source.stratum < 0) hindrance = source.id + (campaign.spec.contains("scene") ? " in a scene" : "");
   }
   if (hindrance.empty()) return cuda::open_engines(campaign.under_test->lanes);
   if (choice == EngineChoice::automatic) return {};

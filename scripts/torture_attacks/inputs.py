@@ -71,6 +71,36 @@ def meshes(turn):
         file.unlink()
 
 
+SCENE = b"""units = "mm"
+extent = [[120000, 120800], [-5400, -5000.5], [300, 9e2]]
+edges = [0.5, 4, 40]  # shortest to longest
+grid = { decimals = 3 }
+[mix]
+general = 0.75
+coplanar = 0.25
+[margins]
+"0" = 0.5
+"+2^5" = 0.5
+"""
+
+
+def scenes(turn):
+    """Scenes, and poses of a mesh."""
+    for attempt in range(ATTEMPTS):
+        poses = attempt % 4 == 3
+        file, name = named(turn, "csv" if poses else "toml")
+        data = b"1,0,0,0, 0,1,0,0, 0,0,1,0\n1 0 0 0.5 0 1 0 0.25 0 0 1 0\n" if poses else SCENE
+        file.write_bytes(mutate.any_of(turn.random, data, mutate.TEXT))
+        out = turn.folder / "out"
+        mesh = turn.folder / "two.off"
+        mesh.write_bytes(mesh_files()["off"])
+        ran = turn.run("scene", mesh, "--poses", file) if poses else turn.run("fuzz", "--scene", file, "--pairs", "200", *LANES, "--out", out)
+        # Poses that put bodies apart leave no pairs, which is said of the mesh.
+        judge(turn, ran, name, "two.off")
+        shutil.rmtree(out, ignore_errors=True)
+        file.unlink()
+
+
 def pairs(turn):
     """Files of pairs as every verb reads them, and the regression corpus."""
     sources = sorted((PROJECT / "corpus").glob("*/*.pairs"))

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze scene`: a scene's file from meshes or pairs; and --scene of the verbs that draw from one.
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "analysis/measure_scene.h"
+#include "cli/commands.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "corpus/pair_format.h"
+#include "fuzz/files.h"
+#include "reports/terminal.h"
+#include "strata/mesh.h"
+
+namespace graze::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SceneVerb {
+  std::vector<std::string> files;
+  std::string out, poses, units = "units";
+};
+
+std::string relative_to(const fs::path& folder, const std::string& file) {
+  const fs::path path(file);
+  return path.is_absolute() ? file : path.lexically_normal().lexically_proximate(folder.lexically_normal()).string();
+}
+
+analysis::SceneSample sample_of_pairs(const std::string& file) {
+  std::vector<Pair> pairs;
+  for (const corpus::Entry& entry : corpus::read_pairs(file)) {
+    if (!is_finite(entry.pair))
+      throw std::runtime_error(fmt::format("{}:{}: expected finite coordinates, found others", file, entry.line));
+    pairs.push_back(entry.pair);
+  }
+  return analysis::sample_of(pairs);
+}
+
+void scene(const SceneVerb& options) {
+  for (const std::string& file : options.files) expect_utf8("graze scene", file);
+  expect_utf8("--poses", options.poses);
+  const bool pairs = fs::path(options.files[0]).extension() == ".pairs";
+  if (pairs && options.files.size() > 1)
+    throw UsageError(fmt::format("expected one file of pairs, found {} files", options.files.size()));
+  if (!options.poses.empty() && (pairs || options.files.size() > 1))
+    throw UsageError("--poses: expected one mesh, found " + (pairs ? "pairs" : fmt::format("{} files", options.files.size())));
+  analysis::SceneSample sample;
+  strata::SceneMeshes meshes;
+  if (pairs) {
+    sample = sample_of_pairs(options.files[0]);
+  } else {
+    auto found = std::make_shared<strata::MeshPairs>(
+        strata::read_bodies({options.files.begin(), options.files.end()}, options.poses));
+    for (const std::string& note : found->notes) fmt::print(stderr, "graze: {}\n", note);
+    sample = {found->triangles, found->size(), [found](std::uint64_t index) { return found->pair(index); }};
+    const fs::path folder = fs::path(options.out).parent_path();
+    for (const std::string& file : options.files) meshes.files.push_back(relative_to(folder, file));
+    if (!options.poses.empty()) meshes.poses = relative_to(folder, options.poses);
+    meshes.content = found->content_hash;
+  }
+  strata::SceneFile measured = analysis::measure_scene(sample, options.files[0]);
+  measured.units = options.units;
+  measured.meshes = meshes;
+  std::string text = "# Where graze draws pairs from. Edit it as you like: extent and edges are needed, all else has a default.\n";
+  text += fmt::format("# Of {} triangles, {} pairs whose boxes overlap.\n", sample.triangles.size(), sample.pairs);
+  text += strata::scene_text(measured);
+  try {
+    strata::parse_scene("scene", text);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: expected what a scene can hold, found {}", options.files[0], error.what()));
+  }
+  if (options.out.empty()) {
+    std::cout << text;
+    return;
+  }
+  fuzz::write_whole(options.out, text);
+  fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", options.out,
+             reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
+  fmt::print("Next: graze fuzz --scene {}\n", shell_word(options.out));
+}
+
+}  // namespace
+
+void add_scene(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand("scene", "Measure meshes or pairs: extent, sizes, grid, kinds of pairs; a scene to draw from");
+  command->footer("Example: graze scene arm.off table.stl --units mm --out arm.toml");
+  auto options = std::make_shared<SceneVerb>();
+  command
+      ->add_option("files", options->files,
+                   "Meshes (OFF, OBJ, STL, PLY): of one its own pairs count, of several the pairs between them; or one "
+                   "file of pairs (.pairs)")
+      ->required();
+  command->add_option("--poses", options->poses,
+                      "The mesh at each of these poses: CSV, twelve numbers a line, the three rows of a matrix (R | t)")
+      ->check(not_empty())
+      ->option_text("FILE");
+  command->add_option("--units", options->units, "What the coordinates are in")->check(not_empty())->capture_default_str();
+  command->add_option("--out", options->out, "The scene's file; without it, standard output")->check(not_empty());
+  command->callback([options] { scene(*options); });
+}
+
+void add_scene_option(CLI::App& command, std::string& file) {
+  command.add_option("--scene", file, "Draw within this scene, a file that `graze scene` makes or a person writes")
+      ->check(not_empty())
+      ->option_text("FILE");
+}
+
+strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
+                                      const std::vector<std::string>& globs, fuzz::Json& recorded) {
+  expect_utf8("--scene", file);
+  const fuzz::NamedScene scene = fuzz::open_scene(file);
+  strata::SceneSources drawn = fuzz::sources_of(scene, seed, pairs, globs);
+  for (const std::string& note : drawn.notes) fmt::print(stderr, "graze: {}\n", note);
+  recorded = fuzz::scene_spec(scene, pairs, drawn);
+  return drawn;
+}
+
+std::string left_out_text(const std::vector<strata::LeftOut>& left_out) {
+  std::string text;
+  for (const strata::LeftOut& row : left_out)
+    text += fmt::format("{}  {}: {}\n", text.empty() ? "\nLeft out, as the scene has none such:\n" : "", row.id, row.why);
+  return text;
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes as a user meets them: measured, edited, drawn from, gone on with, named by cases, refused in one line.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class SceneVerb : public CommandTest {
+ protected:
+  void SetUp() override {
+    std::ofstream off(shell.folder / "hills.off");
+    off << "OFF\n100 162 0\n";
+    for (int i = 0; i < 100; ++i)
+      off << 50 + i % 10 * 1.25 << ' ' << i / 10 * 1.5 << ' ' << 200 + (i * i * 7 + i) % 11 * 0.125 << '\n';
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j < 9; ++j) {
+        const int v = 10 * i + j;
+        off << "3 " << v << ' ' << v + 1 << ' ' << v + 11 << "\n3 " << v << ' ' << v + 11 << ' ' << v + 10 << '\n';
+      }
+    }
+    std::ofstream(shell.folder / "mm.toml") << "extent = [[120000, 120800], [-5400, -5000], [300, 900]]\n"
+                                               "edges = [0.5, 40]\nunits = \"mm\"\n";
+  }
+
+  Json json(const std::string& file) const { return Json::parse(contents(shell.folder / file)); }
+};
+
+TEST_F(SceneVerb, AMeshBecomesAPageThatIsRead) {
+  const Ran ran = shell("graze scene hills.off --units mm --out hills.toml");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_TRUE(ran.out.starts_with("Wrote hills.toml: 162 triangles, ")) << ran.out;
+  EXPECT_TRUE(ran.out.ends_with("Next: graze fuzz --scene hills.toml\n")) << ran.out;
+  const std::string text = contents(shell.folder / "hills.toml");
+  for (const char* line : {"\nunits = \"mm\"\n", "\nextent = [[50, 61.25], [0, 13.5], [200, 201.125]]\n",
+                           "\ngrid = { power_of_two = -3 }\n", "\n[mix]\n", "\n[margins]\n", "\nfiles = [\"hills.off\"]\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line << text;
+  EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 100);
+  expect_done("graze scene hills.off --units mm > again.toml && cmp hills.toml again.toml");
+  expect_done("mkdir sub && graze scene hills.off --out sub/s.toml && grep -q '\"../hills.off\"' sub/s.toml");
+  expect_done("graze fuzz --scene sub/s.toml --pairs 300 --strata mesh --lanes 'moller*/f32/cpu' --out sub/c");
+  // Its pairs as a file, measured, have the same sizes.
+  expect_done("graze fuzz --scene hills.toml --pairs 1000 --strata mesh --lanes 'moller*/f32/cpu' --out m && "
+              "graze dump m --format pairs > m.pairs && graze scene m.pairs --out m.toml && grep -q '^edges' m.toml");
+}
+
+TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
+  const std::string fuzz = "graze fuzz --scene hills.toml --pairs 20000 --lanes '*/f32/cpu' ";
+  expect_done("graze scene hills.off --out hills.toml");
+  const Ran ran = shell(fuzz + "--threads 1 --out one");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("\nLeft out, as the scene has none such:\n  thesis: its triangles are fixed numbers"),
+            std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\n  extreme_scale: your coordinates stay within 0 … 201.125 units, your triangles' longest edges within "),
+            std::string::npos) << ran.out;
+  expect_done(fuzz + "--threads 2 --out two && diff one/summary.json two/summary.json && diff -r one/cases two/cases");
+  const Json summary = json("one/summary.json");
+  EXPECT_EQ(summary["spec"]["scene"]["left_out"]["far_from_origin"], "your coordinates stay within 0 … 201.125 units");
+  for (const char* id : {"near_edge_edge", "shared_edge", "mesh", "mesh_ulps", "mesh_moved"})
+    EXPECT_GT(summary["strata"][id]["pairs"], 0) << id;
+  // A case's name draws the same pair again, by the file and by the campaign.
+  const std::string text = contents(shell.folder / "one" / summary["signatures"][0]["case"].get<std::string>());
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(text, found, std::regex("stratum=(\\w+) seed=(\\d+) index=(\\d+) scene=(\\S+) "))) << text;
+  const std::string numbers = ":" + found[2].str() + ":" + found[3].str(), id = found[1].str(), of = found[4].str();
+  EXPECT_TRUE(of.starts_with("hills.toml#")) << of;
+  const auto vertices_of = [&](const std::string& name) {
+    const Ran repro = shell("graze repro '" + name + "' --emit obj");
+    EXPECT_EQ(repro.status, 0) << name << repro.err;
+    return repro.out.substr(std::min(repro.out.find("\nv "), repro.out.size()));
+  };
+  const std::string vertices = vertices_of("one/" + summary["signatures"][0]["case"].get<std::string>());
+  EXPECT_GT(vertices.size(), 60u);
+  for (const std::string& scene : {of, std::string("hills.toml"), std::string("one")})
+    EXPECT_EQ(vertices_of(id + "@" + scene + numbers), vertices) << scene;
+  // What follows a campaign works on one in a scene.
+  expect_done("graze minimize one > minimised && graze kinds one > kinds && graze report one > report");
+  EXPECT_NE(contents(shell.folder / "one/kinds.json").find("@hills.toml#"), std::string::npos);
+  EXPECT_NE(contents(shell.folder / "one/report.json").find("--scene 'hills.toml' --pairs 20000"), std::string::npos);
+  const Ran dumped = shell("graze dump one --pairs 40 --format pairs");
+  EXPECT_NE(dumped.out.find("scene=" + of), std::string::npos) << dumped.err;
+  // The same scene with a comment goes on; another scene is another campaign, and its names are not these.
+  expect_done("sed -i '1i # mine' hills.toml && " + fuzz + "--out one");
+  expect_done("sed -i 's/^units.*/units = \"m\"/' hills.toml");
+  expect_error(fuzz + "--out one", 2, "one");
+  expect_error("graze explain '" + id + "@" + of + numbers + "'", 1, "hills.toml: expected the scene " + of + ", found hills.toml#");
+  EXPECT_EQ(vertices_of(id + "@one" + numbers), vertices);
+}
+
+TEST_F(SceneVerb, ThreeLinesAreACampaign) {
+  const Ran ran = shell("graze fuzz --scene mm.toml --pairs 2000 --strata 'near_*,extreme_scale' --lanes '*/f32/cpu' --out c");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.out.find("  extreme_scale: your coordinates stay within -5400 … 120800 mm, your triangles' longest edges within 0.5 … 40\n"),
+            std::string::npos) << ran.out;
+  EXPECT_EQ(json("c/summary.json")["spec"]["strata"].size(), 4u);
+}
+
+TEST_F(SceneVerb, TheExamplesAreDrawnFrom) {
+  const std::string root = GRAZE_SOURCE_DIR;
+  expect_done("graze fuzz --scene " + root + "/docs/scenes/millimetres.toml --pairs 2000 --lanes '*/f32/cpu' --out mm");
+  expect_done("python3 " + root + "/scripts/terrain_mesh 16 > terrain.off && graze scene terrain.off --units m --out t.toml");
+  const std::string text = contents(shell.folder / "t.toml");
+  EXPECT_NE(text.find("\nextent = [[0, 400], [0, 400], [128.58, 155.46]]\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\ngrid = { decimals = 2 }\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\ncontent = \"3794dafeca051a06\"\n"), std::string::npos) << text;  // the script's bytes
+}
+
+TEST_F(SceneVerb, PosesAndSeveralMeshes) {
+  expect_done("printf '1,0,0,0,0,1,0,0,0,0,1,0\\n1,0,0,0.5,0,1,0,0.25,0,0,1,0.125\\n' > p.csv");
+  expect_done("graze scene hills.off --poses p.csv --out p.toml && grep -q '^poses = \"p.csv\"' p.toml");
+  expect_done("graze fuzz --scene p.toml --pairs 500 --strata 'mesh*' --lanes 'moller*/f32/cpu' --out p");
+  expect_done("cp hills.off b.off && graze scene hills.off b.off --out two.toml && grep -q '\"hills.off\", \"b.off\"' two.toml");
+  expect_error("graze scene hills.off b.off --poses p.csv", 2, "--poses: expected one mesh, found 2 files");
+}
+
+TEST_F(SceneVerb, WrongUseIsOneLine) {
+  expect_error("graze scene missing.off", 1, "missing.off: expected a mesh file");
+  expect_error("cp hills.off $'\\xff.off'; graze scene $'\\xff.off'", 2, "expected a file name in UTF-8");
+  expect_error("printf '1 0 0 0 0 1 0 0 0 0 1 0\\n1 0 0 9e37 0 1 0 0 0 0 1 0\\n' > p.csv; graze scene hills.off --poses p.csv", 1,
+               "hills.off: expected");
+  expect_error("graze scene mm.toml", 1, "expected a file of extension .off, .obj, .stl or .ply, found .toml");
+  expect_error("graze fuzz --scene missing.toml", 1, "missing.toml: expected a scene's file, found none that can be opened");
+  expect_error("graze fuzz --scene .", 1, ".: expected a scene's file");
+  expect_error("printf 'extent = [0, 1]\\nedges = [1, nan]\\n' > bad.toml; graze fuzz --scene bad.toml", 1,
+               "bad.toml:2: expected a number from ");
+  expect_error("printf 'extnt = [0, 1]\\n' > bad.toml; graze fuzz --scene bad.toml", 1, "did you mean 'extent'?");
+  expect_error("graze fuzz --scene mm.toml --strata 'nearly_*'", 2, "found 'nearly_*'");
+  expect_error("graze fuzz --scene mm.toml --strata thesis", 2,
+               "expected a stratum that the scene can contain, found thesis: its triangles are fixed numbers");
+  expect_error("graze fuzz --scene mm.toml --mesh hills.off", 2, "--scene");
+  expect_error("graze scene hills.off --out hills.toml > /dev/null; sed -i '$d' hills.off; echo 3 0 1 3 >> hills.off; graze fuzz "
+               "--scene hills.toml", 1, "hills.off: expected the content ");
+  expect_error("graze explain near_edge_edge@mm.toml:x:1", 2, "expected a whole number");
+}
+
+}  // namespace
+}  // namespace graze::cli

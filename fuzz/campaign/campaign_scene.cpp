@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/campaign_scene.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "fuzz/files.h"
+
+namespace graze::fuzz {
+
+using Json = nlohmann::ordered_json;
+namespace {
+
+namespace fs = std::filesystem;
+
+NamedScene scene_of_campaign(const fs::path& directory) {
+  const Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
+  if (!summary.is_object() || !summary.contains("spec") || !summary["spec"].contains("scene"))
+    throw std::runtime_error(directory.string() + ": expected a campaign in a scene, found none");
+  return recorded_scene(summary["spec"]["scene"]);
+}
+
+}  // namespace
+
+NamedScene open_scene(const std::string& file) {
+  return {file, strata::read_scene(file)};
+}
+
+strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
+                                const std::vector<std::string>& globs) {
+  return strata::scene_sources(scene.scene, fs::path(scene.file).parent_path(), seed, pairs, globs);
+}
+
+Json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn) {
+  Json left_out = Json::object();
+  for (const strata::LeftOut& row : drawn.left_out) left_out[row.id] = row.why;
+  return {{"file", scene.file},
+          {"name", scene.name()},
+          {"pairs", pairs},
+          {"text", strata::scene_text(scene.scene)},
+          {"left_out", left_out}};
+}
+
+NamedScene recorded_scene(const Json& recorded) {
+  const std::string file = recorded.at("file");
+  return {file, strata::parse_scene(file, recorded.at("text").get<std::string>())};
+}
+
+strata::SceneSources recorded_sources(const Json& spec) {
+  const Json& scene = spec.at("scene");
+  return sources_of(recorded_scene(scene), spec.at("seed"), scene.at("pairs"),
+                    spec.at("strata").get<std::vector<std::string>>());
+}
+
+Pair draw_again(const SceneCase& named) {
+  const std::size_t hash = named.scene.rfind('#');
+  const bool whole = hash == std::string::npos || fs::exists(named.scene);
+  const std::string file = whole ? named.scene : named.scene.substr(0, hash);
+  const NamedScene scene = fs::is_directory(file) ? scene_of_campaign(file) : open_scene(file);
+  if (!whole && scene.name().substr(scene.name().rfind('#')) != named.scene.substr(hash))
+    throw std::runtime_error(fmt::format("{}: expected the scene {}, found {}; a campaign's directory has its own: {}@DIR:{}:{}",
+                                         file, named.scene, scene.name(), named.id, named.seed, named.index));
+  const strata::SceneSources drawn = sources_of(scene, named.seed, 1, {named.id});
+  if (drawn.sources.size() != 1)
+    throw UsageError(named.id + ": expected one stratum of the scene, found a pattern of several");
+  return drawn.sources.front().pair(named.index);
+}
+
+}  // namespace graze::fuzz

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "strata/scene/envelope.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace graze::strata {
+namespace {
+
+// Between quantiles that stand in the file: the geometric mean, again and again, by roots, which are the same
+// everywhere.
+Quantiles spread(const std::vector<double>& values) {
+  Quantiles quantiles{};
+  if (values.size() == 1) {
+    std::fill(std::begin(quantiles.at), std::end(quantiles.at), values[0]);
+    return quantiles;
+  }
+  std::size_t step = (kQuantiles - 1) / (values.size() - 1);
+  for (std::size_t i = 0; i < values.size(); ++i) quantiles.at[i * step] = values[i];
+  for (; step > 1; step /= 2) {
+    for (std::size_t i = 0; i + step < kQuantiles; i += step) {
+      const double low = quantiles.at[i], high = quantiles.at[i + step];
+      quantiles.at[i + step / 2] = std::clamp(std::sqrt(low) * std::sqrt(high), low, high);
+    }
+  }
+  return quantiles;
+}
+
+double largest_of(const SceneFile& scene) {
+  double largest = 0;
+  for (const auto& [low, high] : scene.extent)
+    largest = std::max({largest, std::fabs(as_float32(low)), std::fabs(as_float32(high))});
+  return largest;
+}
+
+// What a stratum needs of the longest edge, in steps of the exact grid.
+constexpr double kLeastSteps = 64, kMostLatticeSteps = 64, kLeastFactor = 16;
+
+double longest_in_steps(const SceneFile& scene, const Grid& grid) {
+  return grid.decimal ? scene.edges.back() * grid.scale : scene.edges.back() / grid.scale;
+}
+
+std::string coordinates_stay_within(const SceneFile& scene) {
+  double low = scene.extent[0][0], high = scene.extent[0][1];
+  for (const auto& axis : scene.extent) {
+    low = std::min(low, axis[0]);
+    high = std::max(high, axis[1]);
+  }
+  return fmt::format("your coordinates stay within {} … {} {}", low, high, scene.units);
+}
+
+}  // namespace
+
+Scene resolved(const SceneFile& file) {
+  Scene scene{};
+  scene.edges = spread(file.edges);
+  scene.aspect = spread(file.aspect);
+  const double largest = largest_of(file);
+  const int ulp = std::max(floor_log2(largest) - 23, -149);
+  scene.exact = {std::ldexp(1.0, ulp), false};
+  if (file.grid) {
+    scene.on_grid = true;
+    double scale = 1;
+    for (int i = 0; i < file.grid->places && file.grid->decimal; ++i) scale *= 10;
+    scene.grid = file.grid->decimal ? Grid{scale, true} : Grid{std::ldexp(1.0, file.grid->places), false};
+    if (file.grid->decimal || scene.grid.scale > scene.exact.scale) scene.exact = scene.grid;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto& [from, to] = file.extent[static_cast<std::size_t>(axis)];
+    double low = as_float32(from), high = as_float32(to);
+    // The first and the last point of a grid that is, as float32 stores it, within them.
+    const auto first_on = [&](const Grid& grid) {
+      const double n = in_scene::number_of(grid, low);
+      return as_float32(in_scene::point_of(grid, n)) < low ? n + 1 : n;
+    };
+    const auto last_on = [&](const Grid& grid) {
+      const double n = in_scene::number_of(grid, high);
+      return as_float32(in_scene::point_of(grid, n)) > high ? n - 1 : n;
+    };
+    component(scene.first, axis) = first_on(scene.exact);
+    component(scene.last, axis) = last_on(scene.exact);
+    if (scene.on_grid) {
+      const double n = first_on(scene.grid), m = last_on(scene.grid);
+      low = in_scene::point_of(scene.grid, n);
+      high = in_scene::point_of(scene.grid, m);
+    }
+    component(scene.low, axis) = low;
+    component(scene.high, axis) = high;
+  }
+  return scene;
+}
+
+Kind kind_of(Stratum stratum) {
+  switch (stratum) {
+    case Stratum::shared_vertex:
+      return Kind::shared_vertex;
+    case Stratum::shared_edge:
+      return Kind::shared_edge;
+    case Stratum::coplanar_lattice:
+    case Stratum::coplanar_wide:
+    case Stratum::coplanar_rounded:
+    case Stratum::parallel:
+      return Kind::coplanar;
+    case Stratum::degenerate:
+    case Stratum::lattice:
+      return Kind::degenerate;
+    default:
+      return Kind::general;
+  }
+}
+
+std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {
+  const Scene numbers = resolved(scene);
+  const double steps = longest_in_steps(scene, numbers.exact);
+  const double factor = scene.edges.back() / scene.edges.front();
+  switch (stratum) {
+    case Stratum::thesis:
+      return "its triangles are fixed numbers, not those of a scene";
+    case Stratum::far_from_origin:
+      return coordinates_stay_within(scene);
+    case Stratum::extreme_scale:
+      return fmt::format("{}, your triangles' longest edges within {} … {}", coordinates_stay_within(scene),
+                         scene.edges.front(), scene.edges.back());
+    case Stratum::mixed_scale:
+      if (factor < kLeastFactor)
+        return fmt::format("your triangles' longest edges differ by a factor of {:.3g}, less than {}", factor,
+                           kLeastFactor);
+      break;
+    case Stratum::sliver:
+      if (scene.aspect.back() < in_scene::kSliver)
+        return fmt::format("your aspect ratios stay within {} … {}, below {}", scene.aspect.front(),
+                           scene.aspect.back(), in_scene::kSliver);
+      break;
+    case Stratum::exact_contact:
+    case Stratum::coplanar_wide:
+      if (steps < kLeastSteps)
+        return fmt::format("your longest edge takes {:.3g} {}, fewer than {}", steps,
+                           scene.grid ? "grid steps" : "ulps of your largest coordinate", kLeastSteps);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (component(numbers.first, axis) > component(numbers.last, axis))
+          return fmt::format("your extent holds no multiple of {}, an ulp of your largest coordinate, in {}",
+                             numbers.exact.scale, "xyz"[axis]);
+      }
+      break;
+    case Stratum::lattice:
+      if (!scene.grid) return "your coordinates are on no grid";
+      if (steps > kMostLatticeSteps)
+        return fmt::format("your longest edge takes {:.3g} grid steps, more than {}", steps, kMostLatticeSteps);
+      break;
+    default:
+      break;
+  }
+  const Kind kind = kind_of(stratum);
+  if (scene.mix[static_cast<std::size_t>(kind)] == 0)
+    return fmt::format("your mix has no pairs of the kind {}", kKindIds[static_cast<std::size_t>(kind)]);
+  return std::nullopt;
+}
+
+}  // namespace graze::strata

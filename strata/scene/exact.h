@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contacts and coplanar pairs that are exact on a scene's grid of powers of two, or on the ulps of its largest
+// coordinate; on a grid of decimals they are exact as written, before float32 rounds them.
+#pragma once
+
+#include "strata/coplanar.h"
+#include "strata/scene/place.h"
+
+namespace graze::strata::in_scene {
+inline namespace GRAZE_FP {
+
+// How far whole numbers may reach, by axis.
+struct Reach {
+  int axis[3];
+};
+
+// `most`, or less where `widths` of them must fit the extent.
+GRAZE_HD inline Reach reach_within(const Scene& scene, int most, double widths) {
+  Reach reach{{most, most, most}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double room = (component(scene.last, axis) - component(scene.first, axis)) / widths;
+    if (room < most) reach.axis[axis] = static_cast<int>(room);
+  }
+  return reach;
+}
+
+GRAZE_HD inline Vec draw_whole(Draws& draws, const Reach& reach, int times = 1) {
+  return {static_cast<double>(draws.integer(reach.axis[0] * times)),
+          static_cast<double>(draws.integer(reach.axis[1] * times)),
+          static_cast<double>(draws.integer(reach.axis[2] * times))};
+}
+
+// A longest edge in grid steps.
+GRAZE_HD inline double draw_edge_in_steps(Draws& draws, const Scene& scene) {
+  const double edge = draw_from(draws, scene.edges, {});
+  return scene.exact.decimal ? edge * scene.exact.scale : edge / scene.exact.scale;
+}
+
+// Moves whole numbers to anywhere in the extent.
+GRAZE_HD inline Pair finished_on_grid(Draws& draws, const Scene& scene, const Draft& draft) {
+  Vec to{0, 0, 0};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Interval span = span_of(draft, axis);
+    const double low = component(scene.first, axis) - span.low, high = component(scene.last, axis) - span.high;
+    component(to, axis) = clamped(nearest_whole(low + (high - low) * draws.positive()), low, high);
+  }
+  Draft placed;
+  for (int i = 0; i < 3; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      component(placed.a[i], axis) = point_of(scene.exact, component(draft.a[i], axis) + component(to, axis));
+      component(placed.b[i], axis) = point_of(scene.exact, component(draft.b[i], axis) + component(to, axis));
+    }
+  }
+  return shuffled(draws, rounded(placed));
+}
+
+inline constexpr int kWeight = 8;        // multiples of a step
+inline constexpr double kEdgeSteps = 42;  // an edge is at most so many times the reach of a step: 24 * sqrt(3)
+
+GRAZE_HD inline double draw_weight(Draws& draws) { return 1.0 + draws.below(kWeight); }
+
+// An edge through the origin along e, or a vertex at it, and the rest on that side.
+GRAZE_HD inline void put_exact_edge(Draws& draws, const Reach& reach, const Vec& e, const Vec& side,
+                                    Vec (&triangle)[3]) {
+  const double back = draw_weight(draws);
+  const double forth = draw_weight(draws);
+  triangle[0] = e * -back;
+  triangle[1] = e * forth;
+  triangle[2] = toward(side, draw_whole(draws, reach, kWeight));
+}
+
+GRAZE_HD inline void put_exact_vertex(Draws& draws, const Reach& reach, const Vec& side, Vec (&triangle)[3]) {
+  triangle[0] = {0, 0, 0};
+  triangle[1] = toward(side, draw_whole(draws, reach, kWeight));
+  triangle[2] = toward(side, draw_whole(draws, reach, kWeight));
+}
+
+// Half touch exactly; a quarter each has one coordinate of b[0] one step above or below.
+GRAZE_HD inline Pair exact_contact(Draws& draws, const Scene& scene) {
+  const Touch touch = static_cast<Touch>(draws.below(3));
+  // Up to 2^14, so that the products that tell sides are exact.
+  const double most = clamped(draw_edge_in_steps(draws, scene) / kEdgeSteps, 1, 0x1p14);
+  const Reach reach = reach_within(scene, static_cast<int>(most), 4 * kWeight + 2);
+  const Vec u = draw_whole(draws, reach);
+  const Vec v = draw_whole(draws, reach);
+  const Vec away = cross(u, v), back = away * -1.0;
+  Draft draft;
+  if (touch == Touch::vertex_face) {
+    const double w0 = draw_weight(draws);
+    const double w1 = draw_weight(draws);
+    const double w2 = draw_weight(draws);
+    draft.a[0] = u * w1 - v * w2;
+    draft.a[1] = u * -w0;
+    draft.a[2] = v * w0;
+  } else {
+    put_exact_edge(draws, reach, u, back, draft.a);
+  }
+  if (touch == Touch::edge_edge) {
+    put_exact_edge(draws, reach, v, away, draft.b);
+  } else {
+    put_exact_vertex(draws, reach, away, draft.b);
+  }
+  if (draws.coin()) {
+    const double step = draws.sign();
+    const int axis = draws.between(0, 2);
+    if (reach.axis[axis] > 0) component(draft.b[0], axis) += step;
+  }
+  return finished_on_grid(draws, scene, draft);
+}
+
+// Tilted planes: the bits of an edge are split between the chart and the grid pair on it at random.
+GRAZE_HD inline Pair coplanar_wide(Draws& draws, const Scene& scene) {
+  const int most = static_cast<int>(clamped(draw_edge_in_steps(draws, scene) / 8, 8, 0x1p22));
+  int bits = 3;
+  while (bits < 19 && (2 << bits) <= most) ++bits;
+  bits = draws.between(3, bits);
+  const Reach reach = reach_within(scene, most >> bits, 4.0 * ((1 << bits) + 1));
+  const Chart chart{{0, 0, 0}, draw_whole(draws, reach), draw_whole(draws, reach)};
+  return finished_on_grid(draws, scene, laid(chart, draw_grid_pair(draws, 1 << bits)));
+}
+
+// Six points of the grid in a cube.
+GRAZE_HD inline Pair lattice(Draws& draws, const Scene& scene) {
+  const double edge = scene.edges.at[kQuantiles - 1] * 0.57735;  // a cube's over its diagonal
+  const double steps = scene.exact.decimal ? edge * scene.exact.scale : edge / scene.exact.scale;
+  const Reach reach = reach_within(scene, static_cast<int>(steps), 1);
+  Draft draft;
+  for (int i = 0; i < 6; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double n = draws.below(static_cast<std::uint32_t>(reach.axis[axis]) + 1);
+      component(i < 3 ? draft.a[i] : draft.b[i - 3], axis) = n;
+    }
+  }
+  return finished_on_grid(draws, scene, draft);
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze::strata::in_scene

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes as files: what is written is read, a person's few lines are enough, and every mistake is named by its line.
+#include "strata/scene/file.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "strata/scene/envelope.h"
+
+namespace graze::strata {
+namespace {
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_scene("s.toml", text);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+const std::string kThree = "extent = [[-400, 400], [-400, 400], [0, 900]]\nedges = [0.5, 40]\nunits = \"mm\"\n";
+
+TEST(SceneFile, ThreeLinesAreEnough) {
+  const SceneFile scene = parse_scene("s.toml", kThree);
+  EXPECT_EQ(scene.units, "mm");
+  EXPECT_EQ(scene.extent[2], (std::array<double, 2>{0, 900}));
+  EXPECT_EQ(scene.edges, (std::vector<double>{0.5, 40}));
+  const SceneFile defaults;
+  EXPECT_EQ(scene.aspect, defaults.aspect);
+  EXPECT_EQ(scene.mix, defaults.mix);
+  EXPECT_FALSE(scene.grid);
+  const Scene numbers = resolved(scene);
+  EXPECT_EQ(numbers.high.z, 900);
+  EXPECT_EQ(numbers.edges.at[0], 0.5);
+  EXPECT_NEAR(numbers.edges.at[16], std::sqrt(0.5 * 40), 1e-12);  // log-spaced between those that stand in the file
+  EXPECT_EQ(numbers.edges.at[32], 40);
+}
+
+TEST(SceneFile, OneIntervalStandsForThreeAndANumberForAllQuantiles) {
+  const SceneFile scene = parse_scene("s.toml", "extent = [-1, 1]\nedges = 0.25");
+  for (const auto& axis : scene.extent) EXPECT_EQ(axis, (std::array<double, 2>{-1, 1}));
+  EXPECT_EQ(resolved(scene).edges.at[7], 0.25);
+}
+
+TEST(SceneFile, WhatIsWrittenIsRead) {
+  SceneFile scene = parse_scene("s.toml", kThree);
+  scene.units = "\"µm\"\\";
+  scene.extent[0] = {-0.1, 0x1.fffffep90};
+  scene.edges = {0x1p-149, 1e-5, 1, 40, 1e20};
+  scene.grid = GridSpec{true, 3};
+  scene.mix = {0.25, 0, 0.125, 1e-7, 0.6};
+  scene.margins = {{Bucket{0}, 0.5}, {Bucket{5}, 1e-6}, {Bucket{-64}, 0.25}};
+  scene.meshes = {{"a \"b\".off", "ü.ply"}, "", 0x0123456789abcdefu};
+  for (const bool bare : {false, true}) {
+    if (bare) {
+      scene.grid = std::nullopt;
+      scene.margins.clear();
+      scene.meshes = {};
+    } else {
+      scene.extent[0] = {-0.1, 1e9};  // a grid of thousandths has its limits
+      scene.edges = {0x1p-149, 1e-5, 1, 40, 1e8};
+    }
+    const std::string text = scene_text(scene);
+    EXPECT_EQ(parse_scene("s.toml", text), scene) << text;
+    EXPECT_EQ(scene_text(parse_scene("s.toml", text)), text);
+  }
+  EXPECT_EQ(scene_name("a/s.toml", scene), scene_name("a/s.toml", parse_scene("b", "# a comment\n" + scene_text(scene))));
+  const std::string before = scene_name("s.toml", scene);
+  scene.edges[1] *= 2;
+  EXPECT_NE(before, scene_name("s.toml", scene));
+}
+
+TEST(SceneFile, MistakesAreNamedByTheirLine) {
+  const std::string edges = "edges = [0.5, 40]\n";
+  const std::string extent = "extent = [-400, 400]\n";
+  EXPECT_EQ(error_of(extent), "s.toml:1: expected edges = [shortest, longest], found no edges");
+  EXPECT_EQ(error_of(edges), "s.toml:1: expected extent = [[least, greatest], …] by axis, found no extent");
+  EXPECT_EQ(error_of(kThree + "\nextend = 3\n"),
+            "s.toml:5: expected a key of a scene: units, extent, edges, aspect, grid, mix, margins, meshes, found "
+            "\"extend\"; did you mean 'extent'?");
+  EXPECT_EQ(error_of("extent = [[0, 1], [3, 2], [0, 1]]\n" + edges),
+            "s.toml:1: expected the least coordinate, then the greatest, found 3, then 2");
+  EXPECT_EQ(error_of("extent = [[0, 1], [0, 2]]\n" + edges),
+            "s.toml:1: expected three intervals [least, greatest], for x, y and z, or one for all, found an array of 2");
+  EXPECT_NE(error_of("extent = [nan, 1]\n" + edges).find("s.toml:1: expected a number from "), std::string::npos);
+  EXPECT_NE(error_of("extent = [0, inf]\n" + edges).find("found inf"), std::string::npos);
+  EXPECT_EQ(error_of("extent = [0, 0]\n" + edges), "s.toml:1: expected an extent of some size, found a point");
+  EXPECT_EQ(error_of("extent = [0, 3]\n" + edges),
+            "s.toml:2: expected edges of at most 5.19615, the diagonal of the extent, found 40");
+  EXPECT_EQ(error_of(extent + "edges = [1, 2, 3, 4]"),
+            "s.toml:2: expected a number, or 1, 2, 3, 5, 9, 17 or 33 of them, from least to greatest, found an array of 4");
+  EXPECT_EQ(error_of(extent + "edges = [1,\n 0.5]"), "s.toml:3: expected a number from 1 on, found 0.5");
+  EXPECT_NE(error_of(extent + "edges = \"long\"").find("found \"long\""), std::string::npos);
+  EXPECT_NE(error_of(extent + edges + "aspect = [0.5, 3]").find("s.toml:3: expected a number from 1.1547 to "),
+            std::string::npos);
+  EXPECT_EQ(error_of(extent + edges + "grid = { decimals = 3.5 }"),
+            "s.toml:3: expected a whole number from 0 to 15, found 3.5");
+  EXPECT_EQ(error_of(extent + edges + "grid = 3"),
+            "s.toml:3: expected { power_of_two = k } or { decimals = n }, found 3");
+  EXPECT_EQ(error_of(extent + edges + "grid = { decimals = 15 }"),
+            "s.toml:3: expected a grid of at most 2^48 steps from the origin to the ends of the extent, found 4e+17");
+  EXPECT_EQ(error_of(extent + edges + "grid = { power_of_two = 20 }"),
+            "s.toml:3: expected a grid of several points in the extent, found one");
+  EXPECT_EQ(error_of("extent = [[0.4, 0.6], [0, 90], [0, 90]]\n" + edges + "grid = { decimals = 0 }"),
+            "s.toml:3: expected a point of the grid in each axis of the extent, found none in x");
+  EXPECT_EQ(error_of("extent = [[0, 90], [0.2, 0.3], [0, 90]]\n" + edges + "grid = { decimals = 0 }"),
+            "s.toml:3: expected a point of the grid in each axis of the extent, found none in y");
+  EXPECT_EQ(error_of("extent = [[0, 90], [0.1, 0.1], [0, 90]]\n" + edges + "grid = { decimals = 1 }"), "none");
+  EXPECT_EQ(error_of("extent = [1e6, 2e6]\nedges = [0.125, 0.5]"),
+            "s.toml:2: expected a longest edge of at least 1, 8 ulps of the largest coordinate, found 0.5");
+  EXPECT_EQ(error_of(extent + edges + "[mix]\ngeneral = 0\n"), "s.toml:3: expected a share above 0, found none");
+  EXPECT_NE(error_of(extent + edges + "[mix]\ncoplaner = 1\n").find("did you mean 'coplanar'?"), std::string::npos);
+  EXPECT_NE(error_of(extent + edges + "[mix]\ngeneral = -1\n").find("s.toml:4: expected a number from 0 to 1"),
+            std::string::npos);
+  EXPECT_NE(error_of(extent + edges + "[margins]\n\"2^3\" = 1\n").find("s.toml:4: expected a margin"),
+            std::string::npos);
+  EXPECT_EQ(error_of(extent + edges + "[meshes]\nfiles = [\"a.off\"]\n"),
+            "s.toml:3: expected content: 16 hexadecimal digits, as `graze scene` writes them, found none");
+  EXPECT_EQ(error_of("extent = [1, 2\nedges"), error_of("extent = [1, 2\nedges"));
+  EXPECT_EQ(error_of(extent + extent).rfind("s.toml:2: expected TOML, found ", 0), 0u) << error_of(extent + extent);
+}
+
+TEST(SceneFile, HostileTextsAreOneLine) {
+  std::string keys = kThree;
+  for (int i = 0; i < 40'000; ++i) keys += "k" + std::to_string(i) + " = 1\n";
+  EXPECT_EQ(error_of(keys).rfind("s.toml:4: expected a key of a scene", 0), 0u) << error_of(keys);
+  keys.append(1 << 20, '#');
+  EXPECT_EQ(error_of(keys), "s.toml: expected a scene of at most 1048576 bytes, found " + std::to_string(keys.size()));
+  for (const std::string& text : {std::string(100'000, '['), "a = " + std::string(100'000, '['), std::string("\0\0", 2),
+                                  std::string("\xff\xfe"), "a." + std::string(500'000, 'b'), std::string("units = \"\n")}) {
+    const std::string error = error_of(text);
+    EXPECT_EQ(error.rfind("s.toml:1: expected ", 0), 0u) << error.substr(0, 300);
+    EXPECT_LT(error.size(), 400u);
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace graze::strata

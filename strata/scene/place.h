@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// A pair's place in a scene: drafts around the origin are moved into the extent, rounded to the grid, and pushed by
+// ulps or grid steps, in this order, so that near contacts are near in the scene's own ulps.
+#pragma once
+
+#include "strata/contact.h"
+#include "strata/scene.h"
+
+namespace graze::strata::in_scene {
+inline namespace GRAZE_FP {
+
+// Requires: |x| < 2^51.
+GRAZE_INLINE double nearest_whole(double x) { return (x + 0x1.8p52) - 0x1.8p52; }
+
+GRAZE_INLINE double clamped(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
+
+GRAZE_INLINE double point_of(const Grid& grid, double n) { return grid.decimal ? n / grid.scale : n * grid.scale; }
+GRAZE_INLINE double number_of(const Grid& grid, double x) {
+  return nearest_whole(grid.decimal ? x * grid.scale : x / grid.scale);
+}
+
+// The coordinate as the scene stores it.
+GRAZE_INLINE float stored(const Scene& scene, int axis, double x) {
+  const double inside = clamped(x, component(scene.low, axis), component(scene.high, axis));
+  return static_cast<float>(scene.on_grid ? point_of(scene.grid, number_of(scene.grid, inside)) : inside);
+}
+
+// The coordinate so many grid steps away, or ulps where the grid is finer or there is none; but within the extent.
+GRAZE_INLINE float pushed(const Scene& scene, int axis, float x, int steps) {
+  if (scene.on_grid) {
+    const double n = number_of(scene.grid, static_cast<double>(x)) + steps;
+    const float y = stored(scene, axis, point_of(scene.grid, n));
+    if (y != x) return y;
+  }
+  return stored(scene, axis, static_cast<double>(nudged(x, steps)));
+}
+
+GRAZE_INLINE Vec3<float> pushed(const Scene& scene, const Vec3<float>& v, int axis, int steps) {
+  return {axis == 0 ? pushed(scene, 0, v.x, steps) : v.x, axis == 1 ? pushed(scene, 1, v.y, steps) : v.y,
+          axis == 2 ? pushed(scene, 2, v.z, steps) : v.z};
+}
+
+GRAZE_INLINE Vec3<float> stored(const Scene& scene, const Vec& v) {
+  return {stored(scene, 0, v.x), stored(scene, 1, v.y), stored(scene, 2, v.z)};
+}
+
+GRAZE_INLINE Pair stored(const Scene& scene, const Draft& draft) {
+  return {{stored(scene, draft.a[0]), stored(scene, draft.a[1]), stored(scene, draft.a[2])},
+          {stored(scene, draft.b[0]), stored(scene, draft.b[1]), stored(scene, draft.b[2])}};
+}
+
+struct Interval {
+  double low, high;
+};
+
+GRAZE_INLINE Interval span_of(const Vec (&v)[3], int axis) {
+  const double x = component(v[0], axis), y = component(v[1], axis), z = component(v[2], axis);
+  const double low = x < y ? x : y, high = x < y ? y : x;
+  return {z < low ? z : low, z > high ? z : high};
+}
+
+GRAZE_INLINE Interval span_of(const Draft& draft, int axis) {
+  const Interval a = span_of(draft.a, axis), b = span_of(draft.b, axis);
+  return {a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
+}
+
+// Moves the draft to anywhere in the extent; flattens it first along the axes in which there is no room for it.
+GRAZE_HD inline void place(Draws& draws, const Scene& scene, Draft& draft) {
+  Vec by{1, 1, 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Interval span = span_of(draft, axis);
+    const double room = component(scene.high, axis) - component(scene.low, axis);
+    if (span.high - span.low > room) component(by, axis) = room / (span.high - span.low);
+  }
+  scale(draft.a, by);
+  scale(draft.b, by);
+  Vec to{0, 0, 0};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Interval span = span_of(draft, axis);
+    const double low = component(scene.low, axis) - span.low, high = component(scene.high, axis) - span.high;
+    component(to, axis) = low + (high - low) * draws.positive();
+  }
+  move(draft.a, to);
+  move(draft.b, to);
+}
+
+// As `finished` of strata/contact.h, in the scene.
+GRAZE_HD inline Pair finished(Draws& draws, const Scene& scene, Draft& draft, const Push& push) {
+  place(draws, scene, draft);
+  Pair pair = stored(scene, draft);
+  pair.b[0] = pushed(scene, pair.b[0], push.axis, push.ulps);
+  return shuffled(draws, pair);
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze::strata::in_scene

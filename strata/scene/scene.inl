@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// The strata in a scene, and the choice among all. Exact ones: exact.h.
+#include "strata/scene/triangles.h"
+
+#include "strata/scene/exact.h"
+
+namespace graze::strata {
+namespace in_scene {
+inline namespace GRAZE_FP {
+
+GRAZE_HD inline Pair near_contact(Draws& draws, const Scene& scene, Touch touch, const Space& space,
+                                  const Sizes& sizes_a = {}, const Sizes& sizes_b = {}) {
+  const Form a = draw_form(draws, scene, sizes_a);
+  const Form b = draw_form(draws, scene, sizes_b);
+  Draft draft;
+  const Vec away = put_contact(draws, touch, space, a, b, draft);
+  const Push push = draw_push(draws);
+  move(draft.b, away * (push.gap * (a.length < b.length ? a.length : b.length)));
+  return finished(draws, scene, draft, push);
+}
+
+// Anywhere, as long as the boxes overlap.
+GRAZE_HD inline Pair uniform(Draws& draws, const Scene& scene) {
+  Draft draft;
+  const Space plane_a = draw_plane(draws);
+  put_face(draws, plane_a, draw_form(draws, scene), draft.a);
+  const Space plane_b = draw_plane(draws);
+  put_face(draws, plane_b, draw_form(draws, scene), draft.b);
+  Vec by{0, 0, 0};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Interval a = span_of(draft.a, axis), b = span_of(draft.b, axis);
+    component(by, axis) = (a.low - b.high) + ((a.high - a.low) + (b.high - b.low)) * draws.positive();
+  }
+  move(draft.b, by);
+  return finished(draws, scene, draft, {});
+}
+
+// Two triangles in a plane: half touch, or nearly, half overlap or lie apart.
+GRAZE_HD inline Pair coplanar(Draws& draws, const Scene& scene, const Space& plane) {
+  if (draws.coin()) {
+    const Touch touch = draws.coin() ? Touch::vertex_edge : draws.coin() ? Touch::edge_edge : Touch::vertex_vertex;
+    const Form a = draw_form(draws, scene);
+    const Form b = draw_form(draws, scene);
+    Draft draft;
+    const Vec away = put_contact(draws, touch, plane, a, b, draft);
+    // A gap lies in the plane; ulps would leave it.
+    const Push push = draw_push(draws);
+    move(draft.b, away * (push.gap * (a.length < b.length ? a.length : b.length)));
+    return finished(draws, scene, draft, {});
+  }
+  Draft draft;
+  const Form form = draw_form(draws, scene);
+  put_face(draws, plane, form, draft.a);
+  const Vec turned = draw_direction(draws, plane);
+  put_face(draws, {true, turned, draw_across(draws, plane, turned)}, draw_form(draws, scene), draft.b);
+  const double x = draws.real();
+  const double y = draws.real();
+  move(draft.b, plane.x * (x * form.length) + plane.y * (y * form.length));
+  return finished(draws, scene, draft, {});
+}
+
+// Half tilted, and parallel until rounding: by up to 2^-40 of the size; half along two axes, by up to 4 steps or ulps.
+GRAZE_HD inline Pair parallel(Draws& draws, const Scene& scene) {
+  const bool tilted = draws.coin();
+  const int normal = draws.between(0, 2);
+  const Space plane = tilted ? draw_plane(draws) : axis_plane(normal);
+  Draft draft;
+  const Form form = draw_form(draws, scene);
+  put_face(draws, plane, form, draft.a);
+  const Vec turned = draw_direction(draws, plane);
+  put_face(draws, {true, turned, draw_across(draws, plane, turned)}, draw_form(draws, scene), draft.b);
+  const double gap = draws.sign();
+  const int halvings = draws.between(0, 40);
+  const int steps = draws.integer(4);
+  if (tilted) move(draft.b, cross(plane.x, plane.y) * (gap * power_of_two(-halvings) * form.length));
+  place(draws, scene, draft);
+  Pair pair = stored(scene, draft);
+  if (!tilted) {
+    for (Vec3<float>& vertex : pair.b) vertex = pushed(scene, vertex, normal, steps);
+  }
+  return shuffled(draws, pair);
+}
+
+// A segment through or from the origin; its third vertex is an end or, along an axis, where rounding cannot part it
+// from the line, anywhere on it.
+GRAZE_HD inline void put_segment(Draws& draws, const Vec& e, bool along_axis, double length, Vec (&triangle)[3]) {
+  const double back = draws.coin() ? length * draws.positive() : 0;
+  const double third = length * draws.positive();
+  const bool end = draws.coin();
+  triangle[0] = e * -back;
+  triangle[1] = e * (length - back);
+  triangle[2] = along_axis ? e * (third - back) : end ? triangle[0] : triangle[1];
+}
+
+// B is a segment or a point, A anything; both at one point, then half of the time B is a few steps or ulps off.
+GRAZE_HD inline Pair degenerate(Draws& draws, const Scene& scene) {
+  const Form a = draw_form(draws, scene);
+  const Form b = draw_form(draws, scene);
+  const bool along_axis = draws.coin();
+  const int axis = draws.between(0, 2);
+  const Vec any = draw_direction(draws, {});
+  const Vec e = along_axis ? unit_axis(axis) : any;
+  const Vec across = draw_across(draws, {}, e);
+  Draft draft{};
+  const std::uint32_t kind = draws.below(5);
+  if (kind == 1) put_segment(draws, e, along_axis, a.length, draft.a);
+  if (kind == 2) put_vertex(draws, {}, a, across, draft.a);
+  if (kind == 3) put_edge(draws, {}, a, e, across, draft.a);
+  if (kind == 4) put_face(draws, {true, e, across}, a, draft.a);
+  if (draws.below(4) != 0) {
+    const bool same = draws.below(3) == 0;  // collinear segments, a segment along an edge or in the plane of a face
+    const int other = draws.between(0, 2);
+    put_segment(draws, same ? e : unit_axis(other), same ? along_axis : true, b.length, draft.b);
+  }
+  const int push_axis = draws.between(0, 2);
+  const int steps = draws.coin() ? draws.integer(8) : 0;
+  place(draws, scene, draft);
+  Pair pair = stored(scene, draft);
+  for (Vec3<float>& vertex : pair.b) vertex = pushed(scene, vertex, push_axis, steps);
+  return shuffled(draws, pair);
+}
+
+// How a neighbour's plane is turned out of the first triangle's: half not at all, half by 2^0 … 2^-30.
+GRAZE_HD inline double draw_lift(Draws& draws) {
+  const double sign = draws.sign();
+  const double lift = sign * power_of_two(-draws.between(0, 30));
+  return draws.coin() ? lift : 0;
+}
+
+GRAZE_HD inline Pair shared_vertex(Draws& draws, const Scene& scene) {
+  const Space plane = draw_plane(draws);
+  const double lift = draw_lift(draws);
+  const Space other{true, plane.x, unit(plane.y + cross(plane.x, plane.y) * lift)};
+  Draft draft;
+  const Vec side_a = draw_direction(draws, plane);
+  put_vertex(draws, plane, draw_form(draws, scene), side_a, draft.a);
+  const Vec side_b = draw_direction(draws, other);
+  put_vertex(draws, other, draw_form(draws, scene), side_b, draft.b);
+  return finished(draws, scene, draft, {});
+}
+
+// The neighbour is the triangle itself, mirrored, so that its edges are as long.
+GRAZE_HD inline Pair shared_edge(Draws& draws, const Scene& scene) {
+  const Space plane = draw_plane(draws);
+  const double lift = draw_lift(draws);
+  const bool folded = draws.coin(), mirrored = draws.coin();
+  const Form form = draw_form(draws, scene);
+  const Form seen = seen_from(form, draws.below(3));
+  const Vec up = unit(plane.y * (folded ? 1.0 : -1.0) + cross(plane.x, plane.y) * lift);
+  const double foot = folded || mirrored ? seen.length - seen.foot : seen.foot;
+  const Vec end = plane.x * seen.length;
+  Draft draft{{{0, 0, 0}, end, plane.x * seen.foot + plane.y * seen.height},
+              {{0, 0, 0}, end, plane.x * foot + up * seen.height}};
+  return finished(draws, scene, draft, {});
+}
+
+}  // namespace GRAZE_FP
+}  // namespace in_scene
+
+inline namespace GRAZE_FP {
+
+GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, const Scene& scene, std::uint64_t index) {
+  Draws draws(seed, 0x100u + static_cast<std::uint32_t>(stratum), index);  // not those of strata without a scene
+  switch (stratum) {
+    case Stratum::uniform:
+      return in_scene::uniform(draws, scene);
+    case Stratum::near_vertex_face:
+      return in_scene::near_contact(draws, scene, Touch::vertex_face, {});
+    case Stratum::near_edge_edge:
+      return in_scene::near_contact(draws, scene, Touch::edge_edge, {});
+    case Stratum::near_vertex_edge:
+      return in_scene::near_contact(draws, scene, Touch::vertex_edge, {});
+    case Stratum::near_vertex_vertex:
+      return in_scene::near_contact(draws, scene, Touch::vertex_vertex, {});
+    case Stratum::coplanar_lattice: {
+      const int normal = draws.between(0, 2);
+      return in_scene::coplanar(draws, scene, in_scene::axis_plane(normal));
+    }
+    case Stratum::coplanar_wide:
+      return in_scene::coplanar_wide(draws, scene);
+    case Stratum::exact_contact:
+      return in_scene::exact_contact(draws, scene);
+    case Stratum::coplanar_rounded: {
+      const in_scene::Space plane = in_scene::draw_plane(draws);
+      return in_scene::coplanar(draws, scene, plane);
+    }
+    case Stratum::parallel:
+      return in_scene::parallel(draws, scene);
+    case Stratum::sliver: {
+      const Touch touch = draw_touch(draws);
+      const std::uint32_t which = draws.below(3);  // A, B or both
+      const in_scene::Sizes sliver{{}, {in_scene::sliver_from(scene), 1}};
+      return in_scene::near_contact(draws, scene, touch, {}, which != 1 ? sliver : in_scene::Sizes{},
+                                    which != 0 ? sliver : in_scene::Sizes{});
+    }
+    case Stratum::degenerate:
+      return in_scene::degenerate(draws, scene);
+    case Stratum::shared_vertex:
+      return in_scene::shared_vertex(draws, scene);
+    case Stratum::shared_edge:
+      return in_scene::shared_edge(draws, scene);
+    case Stratum::mixed_scale: {  // the longest eighth against the shortest
+      const Touch touch = draw_touch(draws);
+      return in_scene::near_contact(draws, scene, touch, {}, {{0.875, 1}, {}}, {{0, 0.125}, {}});
+    }
+    case Stratum::lattice:
+      return in_scene::lattice(draws, scene);
+    case Stratum::thesis:
+    case Stratum::far_from_origin:
+    case Stratum::extreme_scale:
+      break;  // never in a scene
+  }
+  return {};
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze::strata

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is drawn in a scene: every pair within the extent, on the grid and of the scene's sizes; strata keep what they
+// promise; sources are shared by the mix, and what a scene cannot contain is left out with its reason.
+#include "strata/scene.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "core/error.h"
+#include "strata/golden.h"
+#include "strata/mesh.h"
+#include "strata/scene/envelope.h"
+#include "strata/scene/sources.h"
+#include "strata/testing.h"
+
+namespace graze::strata {
+namespace {
+
+using testing::converted;
+using testing::edge;
+using testing::length;
+using testing::normal;
+
+// A scene in millimetres far from the origin, on thousandths; one on a coarse grid; a flat one; and one without a grid.
+const std::pair<const char*, const char*> kScenes[] = {
+    {"millimetres", "extent = [[120000, 120800], [-5400, -5000], [300, 900.5]]\nedges = [0.5, 40]\n"
+                    "aspect = [1.2, 4, 3000]\ngrid = { decimals = 3 }"},
+    {"coarse", "extent = [-20, 20]\nedges = [1, 9]\ngrid = { power_of_two = -1 }"},
+    {"eighths", "extent = [[-3000.1, 4000.7], [0.125, 9000], [5, 700]]\nedges = [2, 300]\ngrid = { power_of_two = -3 }"},
+    {"terrain", "extent = [[0, 40000], [0, 40000], [180, 240]]\nedges = [20, 60]"},
+    {"plane", "extent = [[0, 10], [0, 10], [2.5, 2.5]]\nedges = [0.01, 3]"},
+    {"free", "extent = [-1, 1]\nedges = [0.001, 0.2]\naspect = [1.2, 3, 5000]"},
+    {"uneven", "extent = [[1e6, 2e6], [0.01, 0.02], [-7, 5]]\nedges = [2, 3000]"},
+    {"tiny", "extent = [-1e-40, 3e-40]\nedges = [1e-41, 1e-40]"},
+    {"huge", "extent = [-8e37, 8e37]\nedges = [1e30, 6e37]"},
+};
+
+double longest(const Vec3<float> (&v)[3]) {
+  const auto t = converted<double>(v);
+  return std::max({length(edge(t, 0)), length(edge(t, 1)), length(edge(t, 2))});
+}
+
+bool is_on(const Grid& grid, float x) {
+  const double n = in_scene::number_of(grid, static_cast<double>(x));
+  return static_cast<float>(in_scene::point_of(grid, n)) == x;
+}
+
+TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
+  constexpr std::uint64_t kPairs = 100'000;
+  for (const auto& [name, text] : kScenes) {
+    const SceneFile file = parse_scene(name, text);
+    const Scene scene = resolved(file);
+    double ulp = 0;
+    for (const auto& [low, high] : file.extent)
+      ulp = std::max(ulp, std::ldexp(1.0, log2_ulp({{{static_cast<float>(low), static_cast<float>(high), 0}, {}, {}}, {}})));
+    const double step = std::max(ulp, scene.on_grid ? (scene.grid.decimal ? 1 / scene.grid.scale : scene.grid.scale) : 0);
+    const double most = scene.edges.at[kQuantiles - 1] * 1.00001 + 20 * step;  // rounding, and pushes by 8 steps
+    int drawn = 0;
+    for (const StratumInfo& row : kStrata) {
+      if (left_out(file, row.stratum)) continue;
+      ++drawn;
+      std::set<std::uint64_t> kinds;
+      for (std::uint64_t i = 0; i < kPairs; ++i) {
+        const Pair pair = generate(3, row.stratum, scene, i);
+        for (int k = 0; k < kCoordinates; ++k) {
+          const float x = coordinates(pair)[k];
+          const auto& [low, high] = file.extent[static_cast<std::size_t>(k % 3)];
+          ASSERT_TRUE(static_cast<float>(low) <= x && x <= static_cast<float>(high))
+              << name << ' ' << row.id << ':' << i << ' ' << x << " not in " << low << " " << high;
+          ASSERT_TRUE(!file.grid || is_on(scene.grid, x)) << name << ' ' << row.id << ':' << i << ' ' << x;
+        }
+        ASSERT_LE(longest(pair.a), most) << name << ' ' << row.id << ':' << i;
+        ASSERT_LE(longest(pair.b), most) << name << ' ' << row.id << ':' << i;
+        if (i < 1000) kinds.insert(hash_bits(pair));
+      }
+      EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // not one pair again and again
+    }
+    EXPECT_GE(drawn, 11) << name;
+  }
+}
+
+TEST(Scene, SizesAreThoseOfTheQuantiles) {
+  const Scene scene = resolved(parse_scene("s", "extent = [-100, 100]\nedges = [0.1, 1, 2, 4, 9]\naspect = [1.2, 1.5, 40]"));
+  for (const Stratum stratum : {Stratum::uniform, Stratum::near_vertex_face, Stratum::near_edge_edge,
+                                Stratum::near_vertex_edge, Stratum::near_vertex_vertex, Stratum::coplanar_rounded,
+                                Stratum::shared_vertex, Stratum::shared_edge}) {
+    std::vector<double> edges, aspects;
+    for (std::uint64_t i = 0; i < 100'000; ++i) {
+      const Pair pair = generate(1, stratum, scene, i);
+      for (const auto* v : {&pair.a, &pair.b}) {
+        const double l = longest(*v);
+        edges.push_back(l);
+        aspects.push_back(l * l / length(normal(converted<double>(*v))));
+      }
+    }
+    std::sort(edges.begin(), edges.end());
+    std::sort(aspects.begin(), aspects.end());
+    for (std::size_t q = 1; q < 8; ++q) {
+      EXPECT_NEAR(edges[edges.size() * q / 8] / scene.edges.at[4 * q], 1, 0.05) << static_cast<int>(stratum) << ' ' << q;
+      EXPECT_NEAR(aspects[aspects.size() * q / 8] / scene.aspect.at[4 * q], 1, 0.05) << static_cast<int>(stratum) << ' ' << q;
+    }
+  }
+}
+
+TEST(Scene, SliversAreSlivers) {
+  const Scene scene = resolved(parse_scene("s", "extent = [-100, 100]\nedges = [1, 9]\naspect = [1.2, 2, 20000]"));
+  for (std::uint64_t i = 0; i < 10'000; ++i) {
+    const Pair pair = generate(1, Stratum::sliver, scene, i);
+    double most = 0;
+    for (const auto* v : {&pair.a, &pair.b}) most = std::max(most, longest(*v) * longest(*v) / length(normal(converted<double>(*v))));
+    ASSERT_GT(most, 950) << i;  // 1024, rounded to ulps of 100
+  }
+}
+
+TEST(Scene, ExactStrataAreExact) {
+  const SceneFile file = parse_scene("s", kScenes[2].second);
+  const Scene scene = resolved(file);
+  const auto whole = [&](const Vec3<float>(&v)[3]) {
+    testing::Triangle<testing::Int> t;
+    for (std::size_t i = 0; i < 3; ++i)
+      t[i] = {static_cast<testing::Int>(v[i].x * 8), static_cast<testing::Int>(v[i].y * 8), static_cast<testing::Int>(v[i].z * 8)};
+    return t;
+  };
+  int touching = 0, coplanar = 0, axis_plane = 0, tilted = 0;
+  for (std::uint64_t i = 0; i < 10'000; ++i) {
+    const Pair contact = generate(1, Stratum::exact_contact, scene, i);
+    touching += !testing::disjoint(whole(contact.a), whole(contact.b));
+    const Pair wide = generate(1, Stratum::coplanar_wide, scene, i);
+    coplanar += testing::is_coplanar(whole(wide.a), whole(wide.b));
+    tilted += testing::extent_along(wide, 0) > 0 && testing::extent_along(wide, 1) > 0 && testing::extent_along(wide, 2) > 0;
+    const Pair lattice = generate(1, Stratum::coplanar_lattice, scene, i);
+    axis_plane += testing::extent_along(lattice, 0) == 0 || testing::extent_along(lattice, 1) == 0 || testing::extent_along(lattice, 2) == 0;
+  }
+  EXPECT_EQ(coplanar, 10'000);
+  EXPECT_GT(tilted, 7'000);
+  EXPECT_EQ(axis_plane, 10'000);
+  testing::expect_between(5'000, 9'000, touching);  // half, and of those pushed by a step some
+}
+
+TEST(Scene, NeighboursShareTheirVerticesBitForBit) {
+  for (const auto& [name, text] : kScenes) {
+    const Scene scene = resolved(parse_scene(name, text));
+    const auto shared = [](const Pair& pair) {
+      int count = 0;
+      for (const auto& u : pair.a) count += std::count(std::begin(pair.b), std::end(pair.b), u) > 0;
+      return count;
+    };
+    for (std::uint64_t i = 0; i < 5'000; ++i) {
+      ASSERT_GE(shared(generate(1, Stratum::shared_vertex, scene, i)), 1) << name << ' ' << i;
+      ASSERT_GE(shared(generate(1, Stratum::shared_edge, scene, i)), 2) << name << ' ' << i;
+    }
+  }
+}
+
+TEST(Scene, SameBytesAsEver) {
+  const Scene scene = resolved(parse_scene(kScenes[0].first, kScenes[0].second));
+  std::uint64_t hash = kHashStart;
+  for (const StratumInfo& row : kStrata) {
+    if (left_out(parse_scene(kScenes[0].first, kScenes[0].second), row.stratum)) continue;
+    for (std::uint64_t i = 0; i < 1000; ++i) hash = hash_bits(generate(kGoldenSeed, row.stratum, scene, i), hash);
+  }
+  EXPECT_EQ(hash, 0x7f8ed81904122499u) << std::hex << hash;  // a change here changes what every case of a scene means
+}
+
+std::string why(const char* text, Stratum stratum) { return left_out(parse_scene("s", text), stratum).value_or("drawn"); }
+
+TEST(Scene, WhatItCannotContainIsLeftOutWithTheReason) {
+  const char* mm = "extent = [[0.003, 410], [5, 80], [7, 9]]\nedges = [0.5, 4]\nunits = \"mm\"";
+  EXPECT_EQ(why(mm, Stratum::far_from_origin), "your coordinates stay within 0.003 … 410 mm");
+  EXPECT_EQ(why(mm, Stratum::extreme_scale),
+            "your coordinates stay within 0.003 … 410 mm, your triangles' longest edges within 0.5 … 4");
+  EXPECT_EQ(why(mm, Stratum::thesis), "its triangles are fixed numbers, not those of a scene");
+  EXPECT_EQ(why(mm, Stratum::mixed_scale), "your triangles' longest edges differ by a factor of 8, less than 16");
+  EXPECT_EQ(why("extent = [0, 99]\nedges = [0.5, 40]", Stratum::mixed_scale), "drawn");
+  EXPECT_EQ(why(mm, Stratum::sliver), "your aspect ratios stay within 1.2 … 10, below 1024");
+  EXPECT_EQ(why(mm, Stratum::lattice), "your coordinates are on no grid");
+  EXPECT_EQ(why(mm, Stratum::exact_contact), "drawn");
+  EXPECT_EQ(why("extent = [90000, 99000]\nedges = [0.1, 0.3]", Stratum::exact_contact),
+            "your longest edge takes 38.4 ulps of your largest coordinate, fewer than 64");
+  EXPECT_EQ(why(kScenes[6].second, Stratum::exact_contact),
+            "your extent holds no multiple of 0.125, an ulp of your largest coordinate, in y");
+  EXPECT_EQ(why(kScenes[1].second, Stratum::coplanar_wide), "your longest edge takes 18 grid steps, fewer than 64");
+  EXPECT_EQ(why(kScenes[1].second, Stratum::lattice), "drawn");
+  EXPECT_EQ(why(kScenes[2].second, Stratum::lattice), "your longest edge takes 2.4e+03 grid steps, more than 64");
+  EXPECT_EQ(why("extent = [0, 9]\nedges = 1\n[mix]\ngeneral = 1", Stratum::degenerate),
+            "your mix has no pairs of the kind degenerate");
+}
+
+TEST(SceneSources, AreSharedByTheMix) {
+  const SceneFile file = parse_scene("s", "extent = [0, 9]\nedges = 1\n[mix]\ngeneral = 0.6\nshared_edge = 0.4");
+  const SceneSources all = scene_sources(file, "", 1, 100'000, {});
+  std::map<std::string, std::uint64_t> pairs;
+  std::uint64_t sum = 0;
+  for (const PairSource& source : all.sources) {
+    pairs[source.id] = source.pairs;
+    sum += source.pairs;
+    EXPECT_EQ(source.stratum, -1);
+  }
+  EXPECT_EQ(sum, 100'000u);
+  EXPECT_EQ(pairs.size(), 7u);  // uniform, four near ones, exact_contact; shared_edge
+  EXPECT_EQ(pairs["uniform"], 10'000u);
+  EXPECT_EQ(pairs["shared_edge"], 40'000u);
+  EXPECT_EQ(all.left_out.size(), kStrataCount - 7u);
+  const SceneSources one = scene_sources(file, "", 1, 7, {"near_*", "sliver"});
+  EXPECT_EQ(one.sources.size(), 4u);
+  EXPECT_EQ(one.left_out.size(), 1u);
+  EXPECT_THROW(scene_sources(file, "", 1, 7, {"nearly"}), UsageError);
+  EXPECT_THROW(scene_sources(file, "", 1, 7, {"sliver", "mesh"}), UsageError);
+}
+
+class SceneMesh : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    std::ofstream off(folder_ / "m.off");
+    off << "OFF\n36 50 0\n";  // a bumpy sheet of 6 * 6 vertices
+    for (int i = 0; i < 36; ++i) off << 100 + i % 6 << ' ' << i / 6 << ' ' << i * i % 7 << '\n';
+    for (int i = 0; i < 5; ++i) {
+      for (int j = 0; j < 5; ++j) {
+        const int v = 6 * i + j;
+        off << "3 " << v << ' ' << v + 1 << ' ' << v + 7 << "\n3 " << v << ' ' << v + 7 << ' ' << v + 6 << '\n';
+      }
+    }
+    off.close();
+    file_ = parse_scene("s", "extent = [[100, 105], [0, 5], [0, 6]]\nedges = [1, 6]");
+    file_.meshes = {{"m.off"}, "", read_bodies({folder_ / "m.off"}).content_hash};
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / ("graze_scene_" + std::to_string(getpid()));
+  SceneFile file_;
+};
+
+TEST_F(SceneMesh, ItsPairsAreDrawnAsTheyAreByUlpsAndByMotions) {
+  const MeshPairs own = read_bodies({folder_ / "m.off"});
+  const SceneSources drawn = scene_sources(file_, folder_, 5, 30'000, {"mesh*"});
+  ASSERT_EQ(drawn.sources.size(), 3u);
+  EXPECT_EQ(drawn.sources[0].pairs, own.size());  // each once, in another order
+  std::set<std::uint64_t> seen, all;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    seen.insert(hash_bits(drawn.sources[0].pair(i)));
+    all.insert(hash_bits(own.pair(i)));
+  }
+  EXPECT_EQ(seen, all);
+  int moved = 0;
+  for (std::uint64_t i = 0; i < 10'000; ++i) {
+    const Pair by_ulps = drawn.sources[1].pair(i), by_motion = drawn.sources[2].pair(i);
+    for (const Pair& pair : {by_ulps, by_motion}) {
+      for (int k = 0; k < kCoordinates; ++k) {
+        const auto& [low, high] = file_.extent[static_cast<std::size_t>(k % 3)];
+        ASSERT_TRUE(low <= coordinates(pair)[k] && coordinates(pair)[k] <= high) << i;
+      }
+      // Rigid, but for rounding: each triangle is one of the mesh.
+      ASSERT_TRUE(std::any_of(own.triangles.begin(), own.triangles.end(), [&](const auto& t) {
+        double d[2][3];
+        for (std::size_t e = 0; e < 3; ++e) {
+          d[0][e] = length(edge(converted<double>(pair.a), e));
+          d[1][e] = length(edge(testing::Triangle<double>{converted<double>(t[0]), converted<double>(t[1]), converted<double>(t[2])}, e));
+        }
+        for (auto& lengths : d) std::sort(std::begin(lengths), std::end(lengths));
+        return std::equal(d[0], d[0] + 3, d[1], [](double x, double y) { return std::fabs(x - y) < 1e-3; });
+      })) << i;
+    }
+    moved += !all.count(hash_bits(by_motion));
+  }
+  EXPECT_GT(moved, 9'900);
+}
+
+TEST_F(SceneMesh, AnotherMeshOrOneOutsideIsRefused) {
+  file_.meshes.content ^= 1;
+  EXPECT_THROW(scene_sources(file_, folder_, 1, 10, {}), std::runtime_error);
+  file_.meshes.content ^= 1;
+  file_.extent[1] = {0, 4.5};
+  try {
+    scene_sources(file_, folder_, 1, 10, {});
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("m.off: expected coordinates within the scene's extent, 0 to 4.5 in y, found 5"),
+              std::string::npos) << error.what();
+  }
+}
+
+TEST_F(SceneMesh, PosesMakeBodies) {
+  const auto write = [&](const char* text) { std::ofstream(folder_ / "p.csv") << text; };
+  write("1,0,0,0, 0,1,0,0, 0,0,1,0\n# half a step aside\n1 0 0 0.5 0 1 0 0 0 0 1 0\n");
+  const MeshPairs pairs = read_bodies({folder_ / "m.off"}, folder_ / "p.csv");
+  EXPECT_EQ(pairs.triangles.size(), 100u);
+  EXPECT_EQ(pairs.triangles[50][0].x, pairs.triangles[0][0].x + 0.5f);
+  for (const auto& [i, j] : pairs.candidates) ASSERT_TRUE(i < 50 && 50 <= j);
+  EXPECT_NE(pairs.content_hash, file_.meshes.content);
+  const auto error = [&](const char* text) -> std::string {
+    write(text);
+    try {
+      read_bodies({folder_ / "m.off"}, folder_ / "p.csv");
+    } catch (const std::runtime_error& thrown) {
+      return std::string(thrown.what()).substr(folder_.string().size() + 1);
+    }
+    return "none";
+  };
+  EXPECT_EQ(error("1 0 0 0\n"), "p.csv:1: expected 12 numbers, the rows of a matrix (R | t), found the end of the line");
+  EXPECT_EQ(error("1 0 0 0 0 1 0 0 0 0 nan 0\n"), "p.csv:1: expected 12 numbers, the rows of a matrix (R | t), found \"nan\"");
+  EXPECT_EQ(error("1 0 0 0 0 1 0 0 0 0 1 0 9\n"), "p.csv:1: expected the end of the line after 12 numbers, found \"9\"");
+  EXPECT_EQ(error("1 0 0 1e39 0 1 0 0 0 0 1 0\n"), "p.csv: expected poses that keep coordinates finite in float32, found pose 1");
+  EXPECT_EQ(error("\n"), "p.csv: expected at least one pose, found none");
+}
+
+TEST_F(SceneMesh, BodiesArePairedWithEachOtherOnly) {
+  std::filesystem::copy(folder_ / "m.off", folder_ / "n.off");
+  std::filesystem::copy(folder_ / "m.off", folder_ / "o.off");
+  const MeshPairs two = read_bodies({folder_ / "m.off", folder_ / "n.off"});
+  EXPECT_EQ(two.candidates, read_mesh_pairs(folder_ / "m.off", folder_ / "n.off").candidates);
+  const MeshPairs three = read_bodies({folder_ / "m.off", folder_ / "n.off", folder_ / "o.off"});
+  EXPECT_EQ(three.candidates.size(), 3 * two.candidates.size());
+  for (const auto& [i, j] : three.candidates) ASSERT_NE(i / 50, j / 50);
+}
+
+}  // namespace
+}  // namespace graze::strata

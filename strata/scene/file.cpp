@@ -17,6 +17,7 @@
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_WINDOWS_COMPAT 0
+#define TOML_ASSERT(expr) static_cast<void>(0)  // its parser asserts what "[[[" breaks, then refuses it
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"

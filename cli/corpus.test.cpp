@@ -130,7 +130,7 @@ TEST_F(CorpusVerb, NoRecordOfTheLanesThatRunIsAFailure) {
 
 // kill -9 at many moments: the file is the old or the new one, and the same command ends with the same bytes.
 TEST_F(CorpusVerb, KilledWhileAddingLosesNothing) {
-  campaign("c", "--pairs 150000 --strata 'near_*,coplanar_*'");
+  campaign("c", "--pairs 30000 --strata 'near_*,coplanar_*'");
   ASSERT_EQ(shell("graze corpus add c --corpus whole --top 3 && graze corpus add c --corpus whole").status, 0);
   ASSERT_EQ(shell("graze corpus add c --corpus killed --top 3 && cp killed/cases.pairs old").status, 0);
   int killed = 0;
@@ -155,7 +155,7 @@ TEST_F(CorpusVerb, TwoAtOnceLoseNothing) {
 }
 
 TEST_F(CorpusVerb, AFullDiskLosesNothing) {
-  campaign("c", "--pairs 40000");
+  campaign("c", "--pairs 10000");
   ASSERT_EQ(shell("graze corpus add c --top 2 --corpus r; cp r/cases.pairs old").status, 0);
   expect_error("ulimit -f 40; graze corpus add c --corpus r", 1, "r/cases.pairs");
   EXPECT_EQ(shell("cmp r/cases.pairs old").status, 0);

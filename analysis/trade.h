@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Errors against what they cost: lanes on the same pairs, the front that none of them beats, and how far from ordinary
+// pairs each stays right.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/tuning.h"
+
+namespace graze::analysis {
+
+// Nanoseconds a pair on one core: the median of passes in which all lanes take turns, and the quartiles.
+struct Cost {
+  double low = 0, middle = 0, high = 0;
+};
+
+// Requires: pairs.
+std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes);
+
+// The sources' first pairs, so many in all, in turn.
+std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
+
+// A lane of the trade: what it gets wrong, and what it takes.
+struct Offer {
+  std::string lane;
+  PolicyErrors errors;
+  Cost in_cache, from_memory;  // of pairs that lie in a core's cache, and of pairs that do not
+  bool dominated = false;      // another one costs no more and errs no more, and one of both less
+};
+
+// Marks the dominated ones, by their costs in cache. What a lane declines counts as an error: it gives no verdict.
+void mark_dominated(std::vector<Offer>& offers);
+
+// What makes pairs extreme. Each takes the sources' own pairs; truth is that of the pairs as they then are.
+enum class Extreme {
+  scale,     // times 2^k, exactly
+  offset,    // 2^k times their size away from the origin, along (1, 1, 1)
+  flatness,  // z times 2^-k: planes at angles of about 2^-k
+  aspect     // x and y times 2^-k: needles
+};
+inline constexpr Extreme kExtremes[] = {Extreme::scale, Extreme::offset, Extreme::flatness, Extreme::aspect};
+std::string_view name(Extreme extreme);
+
+// The exponents at which an extreme is measured, from ordinary to most extreme in each direction.
+std::vector<int> exponents(Extreme extreme);
+
+std::vector<strata::PairSource> made_extreme(std::span<const strata::PairSource> sources, Extreme extreme,
+                                             int exponent);
+
+// A lane's errors at each exponent.
+struct ExtremeCurve {
+  std::string lane;
+  Extreme extreme;
+  std::vector<std::pair<int, PolicyErrors>> points;
+
+  // The last exponent before the share of errors exceeds twice that at exponent 0 and a thousandth, going up or down;
+  // nothing where it never does.
+  std::optional<int> right_to(int direction) const;
+};
+
+}  // namespace graze::analysis

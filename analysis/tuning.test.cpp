@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/tuning.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/exact/exact.h"
+#include "strata/strata.h"
+
+namespace graze::analysis {
+namespace {
+
+std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs) {
+  return strata::stratum_sources(seed, pairs, globs);
+}
+
+const Lane& moller() { return *find_lane("moller_1997/f32/cpu"); }
+
+TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
+  const auto sources = drawn(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
+  const std::vector<std::string> policies = {"", "abs:1e-6", "rel:100", "bound"};
+  const std::vector<PolicyErrors> found = sweep(policies_of(moller()), policies, sources);
+  for (std::size_t p = 0; p < policies.size(); ++p) {
+    PolicyErrors expected;
+    const DecideBlock zero = moller().decide, under = p == 0 ? zero : lane_under(moller(), policies[p]).decide;
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      for (std::uint64_t i = 0; i < sources[s].pairs; ++i) {
+        const Pair pair = sources[s].pair(i);
+        const Verdict truth = exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects : Verdict::disjoint;
+        const Verdict with = decide_one(under, pair), without = decide_one(zero, pair);
+        ++expected.pairs;
+        expected.declined += with == Verdict::declined;
+        expected.misses += with == Verdict::disjoint && truth == Verdict::intersects;
+        expected.false_hits += with == Verdict::intersects && truth == Verdict::disjoint;
+        const PairPlace place{static_cast<int>(s), i};
+        if (with == truth && without != truth && expected.mended++ == 0) expected.first_mended = place;
+        if (with != truth && without == truth && expected.broken++ == 0) expected.first_broken = place;
+      }
+    }
+    EXPECT_EQ(found[p].policy, policies[p]);
+    EXPECT_EQ(found[p].pairs, expected.pairs);
+    EXPECT_EQ(found[p].misses, expected.misses) << policies[p];
+    EXPECT_EQ(found[p].false_hits, expected.false_hits) << policies[p];
+    EXPECT_EQ(found[p].declined, expected.declined) << policies[p];
+    EXPECT_EQ(found[p].mended, expected.mended) << policies[p];
+    EXPECT_EQ(found[p].broken, expected.broken) << policies[p];
+    EXPECT_EQ(found[p].first_mended, expected.first_mended) << policies[p];
+    EXPECT_EQ(found[p].first_broken, expected.first_broken) << policies[p];
+  }
+  EXPECT_TRUE(found[0].changes_nothing());
+  EXPECT_GT(found[1].mended, 0u);  // relocation: an epsilon mends some and breaks others
+  EXPECT_GT(found[1].broken, 0u);
+  EXPECT_EQ(found[3].wrong(), 0u);
+  EXPECT_GT(found[3].declined, 0u);
+  for (const int threads : {1, 3}) {
+    const std::vector<PolicyErrors> again = sweep(policies_of(moller()), policies, sources, threads);
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      EXPECT_EQ(again[p].false_hits, found[p].false_hits);
+      EXPECT_EQ(again[p].first_broken, found[p].first_broken);
+    }
+  }
+}
+
+TEST(UpperBound, IsClopperAndPearsons) {
+  EXPECT_NEAR(upper_bound(0, 1'000'000), 2.9957e-6, 1e-9);
+  EXPECT_NEAR(upper_bound(0, 59), 0.0495, 1e-4);
+  // R: binom.test(3, 100, alternative = "less")
+  EXPECT_NEAR(upper_bound(3, 100), 0.07571, 1e-5);
+  EXPECT_EQ(upper_bound(5, 5), 1);
+}
+
+TEST(Scaled, IsExactOrLeftAlone) {
+  const auto sources = drawn(1, 200, {"extreme_scale"});
+  const auto moved = scaled(sources, 3);
+  int changed = 0;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const Pair was = sources[0].pair(i), is = moved[0].pair(i);
+    const bool same = is.a[0] == was.a[0] && is.b[2] == was.b[2];
+    changed += !same;
+    for (int c = 0; c < kCoordinates && !same; ++c) EXPECT_EQ(coordinates(is)[c], coordinates(was)[c] * 8);
+  }
+  EXPECT_GT(changed, 100);
+  EXPECT_LT(changed, 200);
+}
+
+TEST(Tune, ChoosesForWhatIsForbidden) {
+  TuneSpec spec;
+  spec.decide = policies_of(moller());
+  spec.sources = drawn(5, 6000, {"near_*"});
+  spec.others = drawn(6, 20'000, {"near_*"});
+  spec.sites = sites_asked(moller(), spec.sources);
+  EXPECT_EQ(spec.sites, (std::vector<std::string>{"plane_distance", "separation"}));
+  spec.max_rate = 1e-3;
+  spec.forbid = Forbid::miss;
+  const Tuned no_miss = tune(spec);
+  EXPECT_EQ(no_miss.result, TuneResult::satisfied) << no_miss.chosen << " " << no_miss.bound;
+  EXPECT_GT(no_miss.zero_confirmed.misses, 100u);
+  EXPECT_LE(no_miss.bound, 1e-3);
+  EXPECT_LT(no_miss.confirmed.false_hits, 20'000u * 3 / 4);  // not simply all of them
+  spec.forbid = Forbid::false_hit;
+  const Tuned no_false_hit = tune(spec);
+  EXPECT_LE(no_false_hit.confirmed.false_hits * 4, no_miss.confirmed.false_hits);
+  spec.forbid = Forbid::any;
+  spec.max_rate = 1e-6;
+  const Tuned neither = tune(spec);  // no epsilon can
+  EXPECT_EQ(neither.result, TuneResult::not_satisfiable);
+  EXPECT_LE(neither.confirmed.wrong(), neither.zero_confirmed.wrong());
+  EXPECT_EQ(tune(spec).chosen, neither.chosen);
+}
+
+TEST(Tune, SaysWhenPairsAreTooFew) {
+  TuneSpec spec;
+  spec.decide = policies_of(*find_lane("guigue_devillers_2003/f64/cpu"));
+  spec.sources = drawn(5, 500, {"uniform"});
+  spec.others = drawn(6, 2000, {"uniform"});
+  spec.max_rate = 1e-4;
+  const Tuned tuned = tune(spec);
+  EXPECT_EQ(tuned.result, TuneResult::too_few_pairs);
+  EXPECT_EQ(tuned.chosen, "");
+  EXPECT_NEAR(tuned.bound, 1.5e-3, 1e-4);
+}
+
+// A knob that nothing is connected to is called dead, and one that decides is not.
+TEST(Tune, FindsDeadKnobs) {
+  TuneSpec spec;
+  const DecideUnder real = policies_of(moller());
+  spec.decide = [&](const std::string& policy) {
+    return policy.starts_with("orientation=")            ? real("")
+           : policy.find(",orientation=") != policy.npos ? real(policy.substr(0, policy.find(',')))
+                                                         : real(policy);
+  };
+  spec.sources = drawn(5, 3000, {"near_vertex_face"});
+  spec.others = drawn(6, 3000, {"near_vertex_face"});
+  spec.sites = {"plane_distance", "orientation"};
+  EXPECT_EQ(tune(spec).dead, std::vector<std::string>{"orientation"});
+}
+
+// An absolute epsilon serves one scale; a relative one all.
+TEST(Tune, FindsWhereTheScaleBreaksAPolicy) {
+  TuneSpec spec;
+  // As if only absolute ones could be had.
+  const DecideUnder real = policies_of(moller());
+  spec.sources = drawn(5, 4000, {"near_vertex_face"});
+  spec.others = drawn(6, 4000, {"near_vertex_face"});
+  spec.forbid = Forbid::miss;
+  spec.max_rate = 1e-2;
+  spec.decide = [&](const std::string& policy) { return policy.find("rel:") == policy.npos ? real(policy) : real(""); };
+  const Tuned absolute = tune(spec);
+  ASSERT_TRUE(absolute.chosen.starts_with("abs:")) << absolute.chosen;
+  EXPECT_LT(absolute.scale.down, 0);
+  EXPECT_GE(absolute.scale.down, -8);
+  EXPECT_GT(absolute.scale.at_down.wrong(), absolute.confirmed.wrong() / 2);
+  spec.decide = real;
+  const Tuned relative = tune(spec);
+  ASSERT_TRUE(relative.chosen.find("rel:") != std::string::npos) << relative.chosen;
+  EXPECT_EQ(relative.scale.up, 0);
+  EXPECT_EQ(relative.scale.down, 0);
+}
+
+}  // namespace
+}  // namespace graze::analysis

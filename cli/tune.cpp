@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze tune`: which epsilon policy serves a lane on given pairs, and what no error count shows of epsilons.
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "analysis/trade.h"
+#include "cli/commands.h"
+#include "cli/screen.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "corpus/pair_format.h"
+#include "cuda/twin/twin.h"
+#include "fuzz/files.h"
+#include "fuzz/minimise/minimise.h"
+#include "reports/snippet.h"
+#include "reports/terminal.h"
+#include "reports/tuning.h"
+
+namespace graze::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct TuneOptions {
+  std::string lane, scene, out = "tuned";
+  std::vector<std::string> strata;
+  std::uint64_t pairs = 1'000'000, seed = 1;
+  int threads = 0;
+  int forbid = 2;
+  double max_rate = 1e-6;
+};
+
+// The smallest pair that the policy mends, or breaks: the verdicts of both lanes stay as they are.
+std::string smallest(const Lane& zero, const Lane& under, const Pair& pair) {
+  fuzz::LanesUnderTest both;
+  both.lanes = {&zero, &under};
+  both.on_host = {cuda::block_on_host(zero), cuda::block_on_host(under)};
+  const fuzz::Failure failure = fuzz::failures_of(both, pair).at(0);
+  const Pair small = fuzz::minimise(failure, pair).pair;
+  std::ostringstream text;
+  corpus::write_header(text);
+  corpus::write_entry(text, {small, {{"lanes", zero.id + "," + under.id}}});
+  return text.str();
+}
+
+int tune(const TuneOptions& options) {
+  const Lane* lane = find_lane(options.lane);
+  if (!lane || lane->algorithm < 0) {
+    std::vector<std::string> ids;
+    for (const Lane& row : published_lanes()) ids.push_back(row.id);
+    throw UsageError("expected a published lane (see `graze lanes`), found '" + printable(options.lane) + "'" +
+                     did_you_mean(options.lane, ids));
+  }
+  if (!cuda::block_on_host(*lane) || (!lane->is_cuda() && !runs_on_this_cpu(*lane)))
+    throw UsageError(lane->id + ": expected a lane of this processor, or one with a twin");
+  analysis::TuneSpec spec;
+  spec.decide = analysis::policies_of(*lane);
+  // Chosen on a tenth of the pairs, judged on all of the next seed's.
+  strata::SceneSources others = drawn(options.scene, options.seed + 1, options.pairs, options.strata);
+  spec.others = std::move(others.sources);
+  spec.sources =
+      drawn(options.scene, options.seed, std::max<std::uint64_t>(options.pairs / 10, 1), options.strata).sources;
+  // A mesh's own pairs do not change with the seed: the choice is judged on them, and not made on them.
+  std::erase_if(spec.sources, [](const strata::PairSource& source) { return source.id == "mesh"; });
+  if (spec.sources.empty()) throw UsageError("expected pairs that a seed draws, found only a mesh's own");
+  spec.sites = analysis::sites_asked(*lane, spec.sources);
+  spec.forbid = static_cast<analysis::Forbid>(options.forbid);
+  spec.max_rate = options.max_rate;
+  spec.threads = options.threads;
+  const analysis::Tuned tuned = analysis::tune(spec);
+
+  const reports::TuneQuestion question{lane->id, spec.forbid, spec.max_rate};
+  const fs::path out = options.out;
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw std::runtime_error(out.string() + ": expected a folder, found: " + error.message());
+  const reports::Screen screen = output_screen();
+  for (const std::string& sentence : reports::tuning_sentences(question, tuned))
+    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  fmt::print("{}", left_out_text(others.left_out));
+  const Lane chosen = tuned.chosen.empty() ? *lane : lane_under(*lane, tuned.chosen);
+  if (!lane->is_cuda()) {
+    const std::vector<analysis::Cost> costs = analysis::costs_of(
+        std::vector{chosen.decide, find_lane("exact/f32/cpu")->decide}, analysis::first_pairs(spec.others, 8192), 9);
+    fmt::print(
+        "{}",
+        reports::wrapped(
+            fmt::format("Cost: {:.0f} ns a pair on one core here; the exact lane, which is never wrong, {:.0f} ns.",
+                        costs[0].middle, costs[1].middle),
+            screen.columns));
+  }
+  std::vector<std::string> written = {"tune.json", "curves.svg", "policy.h"};
+  fuzz::write_whole(out / "tune.json", reports::tuning_json(question, tuned).dump(1) + "\n");
+  fuzz::write_whole(out / "curves.svg", reports::tuning_figure(question, tuned));
+  fuzz::write_whole(out / "policy.h", reports::policy_header(chosen));
+  for (const auto& [place, name] :
+       {std::pair{tuned.confirmed.first_mended, "mended.pairs"}, {tuned.confirmed.first_broken, "broken.pairs"}}) {
+    if (!place) continue;
+    const Pair pair = spec.others[static_cast<std::size_t>(place->source)].pair(place->index);
+    fuzz::write_whole(out / name, smallest(*lane, chosen, pair));
+    written.emplace_back(name);
+  }
+  fmt::print("Wrote {}/{{{}}}\n", out.string(), fmt::join(written, ","));
+  fmt::print("Next: graze check {}/broken.pairs --lanes {}\n", shell_word(out.string()),
+             shell_word(lane->id + (tuned.chosen.empty() ? "" : "," + chosen.id)));
+  return 0;
+}
+
+}  // namespace
+
+void add_tune(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "tune", "Find the epsilon policy that serves a lane: sweep tolerances on some pairs, judge the best on others");
+  command->footer(
+      "Example: graze tune moller_1997/f32/cpu --strata 'near_*' --forbid miss --max-rate 1e-3 --pairs 20k");
+  const auto options = std::make_shared<TuneOptions>();
+  command->add_option("lane", options->lane, "The lane, without a policy")->required()->option_text("LANE");
+  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  add_scene_option(*command, options->scene);
+  command
+      ->add_option("--pairs", options->pairs, "Pairs to judge the choice on; it is made on a tenth of as many others")
+      ->transform(whole_number(10, kMostWhole))
+      ->capture_default_str()
+      ->option_text("N");
+  command->add_option("--seed", options->seed, "Seed of the pairs; those to judge on have the next one")
+      ->transform(whole_number(0, kMostWhole - 1))
+      ->capture_default_str()
+      ->option_text("N");
+  command->add_option("--forbid", options->forbid, "What must not be: misses, false hits, or any wrong verdict")
+      ->transform(one_of({"miss", "false", "any"}, Chosen::place))
+      ->option_text("miss|false|any");
+  command->add_option("--max-rate", options->max_rate, "How often it may be at most")
+      ->check(CLI::Range(1e-15, 1.0))
+      ->capture_default_str()
+      ->option_text("RATE");
+  command->add_option("--threads", options->threads, "Threads; 0: one on each core")
+      ->transform(whole_number(0, 4096))
+      ->option_text("N");
+  command->add_option("--out", options->out, "Folder for tune.json, curves.svg, policy.h and the smallest cases")
+      ->check(not_empty())
+      ->capture_default_str()
+      ->option_text("DIR");
+  command->callback([options, &status] { status = tune(*options); });
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// Policies as users meet them: lanes under a policy on every verb, `graze tune` and `graze trade`.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+class Policies : public CommandTest {};
+class TuneCommand : public CommandTest {};
+class TradeCommand : public CommandTest {};
+
+nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
+
+TEST_F(Policies, AreLanesOnEveryVerb) {
+  const std::string lanes =
+      " --lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/paper,moller_1997/f32/cuda-fma/rel:16,"
+      "moller_1997/f64/cpu/plane_distance=abs:1e-6,separation=rel:2,moller_1997/f32/cpu/bound'";
+  std::ofstream(shell.folder / "small.pairs") << "0 0 0 .01 0 0 0 .01 0  0 0 .005 .01 0 .005 0 .01 .005\n";
+  const Ran check = shell("graze check small.pairs" + lanes);
+  EXPECT_NE(check.out.find("moller_1997/f32 paper"), std::string::npos) << check.out << check.err;
+  EXPECT_NE(check.out.find("moller_1997/f64 plane_distance=abs:1e-6,separation=rel:2"), std::string::npos) << check.out;
+  const Ran explained = shell("graze explain small.pairs" + lanes);
+  EXPECT_NE(explained.out.find("the policy (without paper it is right)"), std::string::npos)
+      << explained.out << explained.err;
+  expect_done("graze fuzz --strata 'near_vertex_face,shared_edge,extreme_scale' --pairs 900 --out c" + lanes +
+              " > fuzz");
+  const auto summary = json_of(shell.folder / "c/summary.json");
+  EXPECT_EQ(summary["spec"]["lanes"].size(), 5u);
+  EXPECT_GT(summary["strata"]["extreme_scale"]["lanes"]["moller_1997/f32/cpu/paper"]["false_positive"], 50);
+  EXPECT_EQ(summary["strata"]["extreme_scale"]["lanes"]["moller_1997/f32/cpu/bound"]["false_positive"], 0);
+  expect_done("graze minimize c && graze kinds c > kinds && graze report c --out r && graze dump c > /dev/null");
+  EXPECT_NE(contents(shell.folder / "kinds").find("moller_1997: policy"), std::string::npos)
+      << contents(shell.folder / "kinds");
+  // A case of a lane under a policy, as a program that shows it.
+  const Ran emitted = shell(
+      "graze repro small.pairs --lanes moller_1997/f32/cpu/paper --emit cpp > case.cpp && g++ -std=c++20 -O2 "
+      "-ffp-contract=off case.cpp -o case && ./case");
+  EXPECT_NE(emitted.out.find("moller_1997/f32: intersects; truth: disjoint"), std::string::npos)
+      << emitted.out << emitted.err;
+  expect_done("graze map small.pairs --lanes moller_1997/f32/cpu/paper --out map.png");
+}
+
+TEST_F(Policies, RefusedOnesGetOneLine) {
+  expect_error("graze check uniform:1:1 --lanes 'moller_1997/f32/cpu/rel:x'", 2, "\"rel:x\"");
+  expect_error("graze check uniform:1:1 --lanes 'projected_sat/f32/cpu/bound'", 2,
+               "projected_sat is wrong on some pairs without any rounding");
+  expect_error("graze check uniform:1:1 --lanes 'nothing/f32/cpu/rel:1'", 2, "nothing/f32/cpu/rel:1");
+}
+
+TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
+  const std::string tune =
+      "graze tune moller_1997/f32/cpu --strata 'near_*' --pairs 20k --forbid miss --max-rate 1e-3 ";
+  const Ran ran = shell(tune + "--out t");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(ran.out.find("Use "), 0u) << ran.out;
+  const auto json = json_of(shell.folder / "t/tune.json");
+  ASSERT_EQ(json["result"], "satisfied") << ran.out;
+  const std::string policy = json["chosen"];
+  // Ten times the pairs, another seed: the rate stays under the bound that was stated.
+  expect_done("graze fuzz --strata 'near_*' --pairs 200k --seed 99 --lanes 'moller_1997/f32/cpu/" + policy +
+              "' --out c > /dev/null");
+  double misses = 0;
+  const auto summary = json_of(shell.folder / "c/summary.json");
+  for (const auto& [stratum, row] : summary["strata"].items())
+    misses += row["lanes"]["moller_1997/f32/cpu/" + policy]["false_negative"].get<double>();
+  EXPECT_LE(misses / 200'000, json["bound"].get<double>());
+  // The same bytes again, whatever the threads.
+  expect_done(tune + "--threads 1 --out u > /dev/null && diff -r t u");
+  // Smallest cases of what it mends and breaks, as it says.
+  for (const auto& [file, zero_wrong] : {std::pair{"mended", true}, {"broken", false}}) {
+    const Ran check = shell(std::string("graze check t/") + file +
+                            ".pairs --lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/" + policy + "' | grep moller");
+    const std::string first = check.out.substr(0, check.out.find('\n')), second = check.out.substr(first.size() + 1);
+    EXPECT_EQ(first.find(" !") != std::string::npos, zero_wrong) << check.out;
+    EXPECT_EQ(second.find(" !") != std::string::npos, !zero_wrong) << check.out;
+  }
+}
+
+// The header decides as the lane: compiled by itself, on the smallest cases.
+TEST_F(TuneCommand, TheHeaderDecidesAsTheLane) {
+  expect_done(
+      "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 5k --forbid miss --max-rate 1e-2 --out t > "
+      "/dev/null");
+  std::ofstream(shell.folder / "main.cpp") << R"(#include "t/policy.h"
+#include <cstdio>
+int main() {
+  float x[18];
+  while (true) {
+    for (float& c : x) {
+      if (std::scanf("%f", &c) != 1) return 0;
+    }
+    float a[9], b[9];
+    for (int i = 0; i < 9; ++i) a[i] = x[i], b[i] = x[9 + i];
+    std::puts(triangles_intersect(a, b) ? "intersects" : "disjoint");
+  }
+}
+)";
+  const std::string chosen = json_of(shell.folder / "t/tune.json")["chosen"];
+  ASSERT_NE(chosen, "zero");
+  expect_done("g++ -std=c++20 -O2 -Wall -Wextra -Werror -ffp-contract=off main.cpp -o main");
+  expect_done(
+      "for i in $(seq 0 40); do graze dump near_vertex_face:5:$i; done | grep -v '^#' | cut -d' ' -f1-18 > pairs");
+  expect_done("./main < pairs > by_header; test $(wc -l < by_header) -ge 40");
+  expect_done("for i in $(seq 0 40); do graze check near_vertex_face:5:$i --lanes 'moller_1997/f32/cpu/" + chosen +
+              "' | grep 'moller_1997/f32 ' | sed 's/ !//' | grep -o '[a-z]*$'; done > by_lane; "
+              "head -41 by_header | cmp - by_lane");
+}
+
+TEST_F(TuneCommand, BadInputGetsOneLine) {
+  expect_error("graze tune", 2, "lane");
+  expect_error("graze tune moller_1997/f32/cp", 2, "did you mean 'moller_1997/f32/cpu'?");
+  expect_error("graze tune exact/f32/cpu", 2, "expected a published lane");
+  expect_error("graze tune moller_1997/f32/cpu --max-rate 0", 2, "--max-rate");
+  expect_error("graze tune moller_1997/f32/cpu --strata nothing", 2, "nothing");
+  expect_error("graze tune moller_1997/f32/cuda-fast", 2, "twin");
+}
+
+TEST_F(TuneCommand, HelpHasAnExampleThatRuns) {
+  const Ran help = shell("graze tune --help");
+  const std::size_t at = help.out.find("Example: ");
+  ASSERT_NE(at, std::string::npos);
+  expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9));
+}
+
+}  // namespace
+}  // namespace graze::cli

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers that certify what is asked of them, the policy `bound`: a value, computed as always, and a bound of its
+// forward error. A comparison that the bounds leave open raises a doubt. Without doubt, every comparison went as it
+// does in exact arithmetic, and so did the algorithm.
+// Derivation: running error analysis, N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition
+// (2002), section 3.3. With u the unit roundoff and t half the smallest number, fl(x op y) = (x op y)(1 + d) + e, where
+// |d| <= u, and |e| <= t for products and quotients, 0 for sums. Let X, Y be the exact quantities that x, y stand for,
+// with |X - x| <= ex and |Y - y| <= ey. Then
+//   |X + Y - fl(x + y)|  <= ex + ey + u |fl(x + y)|
+//   |X Y   - fl(x y)|    <= |x| ey + |y| ex + ex ey + u |fl(x y)| + t
+//   |X / Y - fl(x / y)|  <= (ex + (|q| + u |q| + t) ey) / (|y| - ey) + u |q| + t   for q = fl(x / y), |y| > ey
+//   |sqrt X - fl(sqrt x)|  <= ex / sqrt x + u |fl(sqrt x)|   for x > ex
+// The bounds are themselves computed with roundings: at most eight in a row, each of at most u, so a factor of
+// 1 + 32 u covers them while they are normal numbers; the smallest normal number covers what subnormal steps may lose.
+// Contraction rounds once where these formulas count two roundings, in values as in bounds: both stay below. Overflow
+// makes a bound infinite or not a number, and then every comparison is open.
+#pragma once
+
+#include <cmath>
+
+#include "core/algorithms/range.h"
+#include "core/vec3.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+
+template <class Real>
+struct Bounded {
+  static constexpr bool kIsFloat = sizeof(Real) == sizeof(float);
+  static constexpr Real kUnit = kIsFloat ? Real(0x1p-24) : Real(0x1p-53);
+  static constexpr Real kTiny = kIsFloat ? Real(0x1p-126f) : Real(0x1p-1022);  // normal: subnormal ones are slow
+  static constexpr Real kSlack = Real(1) + 32 * kUnit;
+
+  Real value = 0;
+  Real error = 0;
+  bool* doubt = nullptr;  // of constants null
+
+  Bounded() = default;
+  GRAZE_IN_PLACE GRAZE_HD explicit Bounded(Real exact) : value(exact) {}
+  GRAZE_IN_PLACE GRAZE_HD Bounded(Real exact, bool* in_doubt) : value(exact), doubt(in_doubt) {}
+
+  GRAZE_IN_PLACE GRAZE_HD bool is_exact() const { return error == Real(0); }
+  GRAZE_IN_PLACE GRAZE_HD bool is_exact_zero() const { return value == Real(0) && is_exact(); }
+  // Whether the exact quantity is certainly less than the other's.
+  GRAZE_IN_PLACE GRAZE_HD bool is_below(const Bounded& y) const { return value < y.value && is_settled(*this, y); }
+  // Whether the exact quantity is certainly not zero.
+  GRAZE_IN_PLACE GRAZE_HD bool is_nonzero() const { return magnitude(value) > error; }
+
+  GRAZE_IN_PLACE GRAZE_HD Bounded operator-() const {
+    Bounded result = *this;
+    result.value = -value;
+    return result;
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend Bounded operator+(const Bounded& x, const Bounded& y) {
+    return sum(x, y, x.value + y.value);
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend Bounded operator-(const Bounded& x, const Bounded& y) {
+    return sum(x, y, x.value - y.value);
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend Bounded operator*(const Bounded& x, const Bounded& y) {
+    Bounded result = either(x, y);
+    result.value = x.value * y.value;
+    if (!x.is_exact_zero() && !y.is_exact_zero())
+      result.error =
+          ((magnitude(x.value) + x.error) * y.error + magnitude(y.value) * x.error + kUnit * magnitude(result.value)) *
+              kSlack +
+          kTiny;
+    return result;
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend Bounded operator/(const Bounded& x, const Bounded& y) {
+    Bounded result = either(x, y);
+    const Real q = result.value = x.value / y.value;
+    const Real size = magnitude(q) * kSlack + kTiny, divisor = (magnitude(y.value) - y.error) / kSlack;
+    if (divisor > Real(0)) {
+      if (!x.is_exact_zero())
+        result.error = ((x.error + size * y.error + kTiny) / divisor + kUnit * size) * kSlack + kTiny;
+    } else {
+      result.error = HUGE_VAL;  // not used where an algorithm guards the division
+    }
+    return result;
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend Bounded sqrt(const Bounded& x) {
+    using std::sqrt;
+    Bounded result = x;
+    result.value = sqrt(x.value);
+    if (!x.is_exact_zero())
+      result.error = x.value > x.error ? ((x.error / result.value) * kSlack + kUnit * result.value) * kSlack + kTiny
+                                       : Real(HUGE_VAL);
+    return result;
+  }
+
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator<(const Bounded& x, const Bounded& y) {
+    return settled(x, y), x.value < y.value;
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator>(const Bounded& x, const Bounded& y) {
+    return settled(x, y), x.value > y.value;
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator<=(const Bounded& x, const Bounded& y) {
+    return settled(x, y), x.value <= y.value;
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator>=(const Bounded& x, const Bounded& y) {
+    return settled(x, y), x.value >= y.value;
+  }
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator==(const Bounded& x, const Bounded& y) {
+    return settled(x, y), x.value == y.value;
+  }
+
+ private:
+  GRAZE_IN_PLACE GRAZE_HD static Bounded either(const Bounded& x, const Bounded& y) {
+    Bounded result;
+    result.doubt = x.doubt ? x.doubt : y.doubt;
+    return result;
+  }
+
+  GRAZE_IN_PLACE GRAZE_HD static Bounded sum(const Bounded& x, const Bounded& y, Real computed) {
+    Bounded result = either(x, y);
+    result.value = computed;
+    // Of exact numbers a sum that is zero is exact: no two different numbers have a difference that rounds to zero.
+    if (!(computed == Real(0) && x.is_exact() && y.is_exact()))
+      result.error = (x.error + y.error + kUnit * magnitude(computed)) * kSlack + kTiny;
+    return result;
+  }
+
+  // Whether the two exact quantities compare as the values do. Values that are equal do where both are exact; others,
+  // where they are further apart than their bounds and the rounding of these sums.
+  GRAZE_IN_PLACE GRAZE_HD static bool is_settled(const Bounded& x, const Bounded& y) {
+    const Real gap = magnitude(x.value - y.value), errors = (x.error + y.error) * kSlack;
+    return (gap * (Real(1) - 4 * kUnit) > errors + kTiny && gap <= kLargest) ||
+           (x.is_exact() && y.is_exact() && x.value == x.value && y.value == y.value);
+  }
+
+  GRAZE_IN_PLACE GRAZE_HD static void settled(const Bounded& x, const Bounded& y) {
+    if (is_settled(x, y)) return;
+    if (bool* const doubt = x.doubt ? x.doubt : y.doubt) *doubt = true;
+  }
+
+  static constexpr Real kLargest = kIsFloat ? Real(0x1.fffffep127) : Real(0x1.fffffffffffffp1023);
+};
+
+// Any component that is certainly not zero serves as an axis: a doubt is raised only where the chosen one is not.
+template <class Real>
+GRAZE_HD int dominant_axis(const Vec3<Bounded<Real>>& v) {
+  const int axis = dominant_axis(Vec3<Real>{v.x.value, v.y.value, v.z.value});
+  const Bounded<Real>& chosen = component(v, axis);
+  if (!chosen.is_nonzero() && chosen.doubt) *chosen.doubt = true;
+  return axis;
+}
+
+// The least and the greatest of three quantities lie within the largest bound of the least and the greatest value:
+// which one it is need not be settled.
+template <class Real>
+GRAZE_HD Range<Bounded<Real>> project(const Vec3<Bounded<Real>>& direction, const Vec3<Bounded<Real>> (&v)[3]) {
+  const Bounded<Real> first = dot(direction, v[0]);
+  Range<Bounded<Real>> range{first, first};
+  Real error = first.error;
+  for (int i = 1; i < 3; ++i) {
+    const Bounded<Real> t = dot(direction, v[i]);
+    range.lo.value = t.value < range.lo.value ? t.value : range.lo.value;
+    range.hi.value = t.value > range.hi.value ? t.value : range.hi.value;
+    if (error == error && !(t.error <= error)) error = t.error;  // NaN stays
+  }
+  range.lo.error = range.hi.error = error;
+  return range;
+}
+
+// False only where it is certain; where nothing is, true, with a doubt.
+template <class Real>
+GRAZE_HD bool overlap(const Range<Bounded<Real>>& s, const Range<Bounded<Real>>& t, const ExactZero&) {
+  if (s.hi.is_below(t.lo) || t.hi.is_below(s.lo)) return false;
+  static_cast<void>(s.hi < t.lo || t.hi < s.lo);  // raises the doubt
+  return true;
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/policies.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace graze {
+namespace {
+
+constexpr std::string_view kForms = "zero, abs:E, rel:K, SITE=abs:E,…, paper, bound or filtered";
+
+[[noreturn]] void refuse(std::string_view text, const std::string& why = "") {
+  throw UsageError("expected a policy (" + std::string(kForms) + "), found " + shown(text) + why);
+}
+
+// Published codes that ship an epsilon.
+struct Shipped {
+  std::string_view algorithm;
+  Site site;
+  double epsilon;
+};
+constexpr Shipped kShipped[] = {
+    // T. Moller's code beside the paper (opttritri.txt and tritri_isectline.txt): #define EPSILON 0.000001, and
+    // if(FABS(du0)<EPSILON) du0=0.0; of each plane distance, not normalised.
+    {"moller_1997", Site::plane_distance, 1e-6},
+};
+
+std::optional<Site> site_of(std::string_view name) {
+  for (int s = 0; s < kSiteCount; ++s) {
+    if (graze::name(static_cast<Site>(s)) == name) return static_cast<Site>(s);
+  }
+  return std::nullopt;
+}
+
+std::string site_names() {
+  std::string names;
+  for (int s = 0; s < kSiteCount; ++s) names += (s ? ", " : "") + std::string(name(static_cast<Site>(s)));
+  return names;
+}
+
+// Sets the sites' numbers by "abs:E" or "rel:K"; of all sites without a site.
+void set(std::string_view whole, std::string_view text, std::optional<Site> site, Epsilons& epsilons) {
+  const bool relative = text.starts_with("rel:");
+  if (!relative && !text.starts_with("abs:")) refuse(whole);
+  const std::string_view number = text.substr(4);
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error != std::errc() || end != number.data() + number.size() || !std::isfinite(value) || std::signbit(value))
+    refuse(whole, ": " + shown(number) + " is no number of at least 0");
+  double(&of_sites)[kSiteCount] = relative ? epsilons.relative : epsilons.absolute;
+  for (int s = 0; s < kSiteCount; ++s) {
+    if (!site || static_cast<int>(*site) == s) of_sites[s] = value;
+  }
+}
+
+}  // namespace
+
+Policy parse_policy(std::string_view text, const AlgorithmInfo& info) {
+  Policy policy;
+  if (text == "bound" || text == "filtered") {
+    if (!info.right_without_rounding)
+      refuse(text, ": " + std::string(info.id) + " is wrong on some pairs without any rounding, so no bound helps it");
+    policy.kind = text == "bound" ? Policy::Kind::bound : Policy::Kind::filtered;
+    return policy;
+  }
+  if (text == "paper") {
+    bool any = false;
+    for (const Shipped& shipped : kShipped) {
+      if (shipped.algorithm != info.id) continue;
+      policy.epsilons.absolute[static_cast<int>(shipped.site)] = shipped.epsilon;
+      any = true;
+    }
+    if (!any)
+      refuse(text, ": the paper of " + std::string(info.id) + " compares with zero, as the lane without a policy");
+    return policy;
+  }
+  if (text.find('=') == text.npos) {
+    set(text, text, std::nullopt, policy.epsilons);
+    return policy;
+  }
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string_view part = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(part.size() + 1, rest.size()));
+    const std::size_t equals = part.find('=');
+    if (equals == part.npos) refuse(text);
+    const std::optional<Site> site = site_of(part.substr(0, equals));
+    if (!site) refuse(text, ": the sites are " + site_names());
+    set(text, part.substr(equals + 1), site, policy.epsilons);
+  }
+  return policy;
+}
+
+}  // namespace graze

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The policies abs, rel and paper: at each site a number is held for zero when it is smaller than a tolerance.
+#pragma once
+
+#include "core/policy.h"
+#include "core/sized.h"
+
+namespace graze {
+
+// At each site absolute, in the quantity's own unit, plus relative times machine epsilon times the quantity's size.
+struct Epsilons {
+  double absolute[kSiteCount] = {};
+  double relative[kSiteCount] = {};
+
+  bool operator==(const Epsilons&) const = default;
+  GRAZE_HD bool any_relative() const {
+    for (const double k : relative) {
+      if (k != 0) return true;
+    }
+    return false;
+  }
+};
+
+inline namespace GRAZE_FP {
+
+// Of plain numbers the absolute tolerance counts alone. Tolerances of zero are ExactZero, value by value.
+template <class Real>
+struct Tolerances {
+  Real absolute[kSiteCount];
+  Real relative[kSiteCount];  // machine epsilon included
+
+  GRAZE_HD explicit Tolerances(const Epsilons& epsilons) {
+    constexpr Real epsilon = sizeof(Real) == sizeof(float) ? Real(0x1p-23) : Real(0x1p-52);
+    for (int s = 0; s < kSiteCount; ++s) {
+      absolute[s] = static_cast<Real>(epsilons.absolute[s]);
+      relative[s] = static_cast<Real>(epsilons.relative[s]) * epsilon;
+    }
+  }
+
+  // Strictly: |x| < epsilon, as published codes have it. False for NaN.
+  GRAZE_HD bool near_zero(Site site, const Real& x) const { return magnitude(x) < absolute[static_cast<int>(site)]; }
+  GRAZE_HD bool near_zero(Site site, const Sized<Real>& x) const {
+    const int s = static_cast<int>(site);
+    return magnitude(x.value) < absolute[s] + relative[s] * x.size;
+  }
+
+  template <class Number>
+  GRAZE_HD Number snap(Site site, const Number& x) const {
+    return near_zero(site, x) ? Number(0) : x;
+  }
+
+  template <class Number>
+  GRAZE_HD bool less(Site site, const Number& l, const Number& r) const {
+    return l < r && !near_zero(site, r - l);
+  }
+
+  template <class Number>
+  GRAZE_HD bool at_most(Site site, const Number& l, const Number& r) const {
+    return l <= r || near_zero(site, l - r);
+  }
+};
+
+}  // namespace GRAZE_FP
+}  // namespace graze

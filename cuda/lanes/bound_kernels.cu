@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device lanes under the policy bound. Compiled once for each device variant that keeps error bounds, each time
+// with its flags and in its own namespace GRAZE_FP; nothing else may be defined here, or the linker would mix the
+// variants. They have no twins: what they decide is the exact verdict anyway, and their PTX is ten times as long.
+#include "core/decide_under.h"
+#include "cuda/lanes/kernels.cuh"
+#include "cuda/lanes/vote.cuh"
+
+namespace graze::cuda {
+inline namespace GRAZE_FP {
+
+template <int algorithm, class Real>
+__global__ void bound_pairs(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined) {
+  vote<Real>(pairs, intersects, declined, [](const auto& a, const auto& b) {
+    return decide_bounded<std::tuple_element_t<algorithm, Algorithms>>(a, b);
+  });
+}
+
+template <int algorithm, class Real>
+void launch_bound(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {
+  bound_pairs<algorithm, Real><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, intersects, declined);
+}
+
+// Null of algorithms that are wrong without rounding.
+template <int algorithm, class Real>
+constexpr LaunchDecide launch() {
+  if constexpr (std::tuple_element_t<algorithm, Algorithms>::kInfo.right_without_rounding) {
+    return launch_bound<algorithm, Real>;
+  } else {
+    return nullptr;
+  }
+}
+
+template <int... algorithm>
+constexpr DeviceKernels<LaunchDecide> launchers(std::integer_sequence<int, algorithm...>) {
+  return {std::array<LaunchDecide, 2>{launch<algorithm, float>(), launch<algorithm, double>()}...};
+}
+
+extern const DeviceKernels<LaunchDecide> kBoundKernels = launchers(std::make_integer_sequence<int, kAlgorithmCount>());
+
+}  // namespace GRAZE_FP
+}  // namespace graze::cuda

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The device lanes under tolerances, the policies abs, rel and paper. Compiled once for each device variant, each time
+// with its flags and in its own namespace GRAZE_FP; nothing else may be defined here, or the linker would mix the
+// variants. The twins are generated from the PTX of this file.
+#include "core/decide_under.h"
+#include "cuda/lanes/kernels.cuh"
+#include "cuda/lanes/vote.cuh"
+
+namespace graze::cuda {
+inline namespace GRAZE_FP {
+
+// One thread for each pair. An algorithm is its place in Algorithms, so that the twin generator knows a kernel by name.
+template <int algorithm, class Real>
+__global__ void absolute_pairs(DevicePairs pairs, Tolerances<Real> tolerances, std::uint32_t* intersects,
+                               std::uint32_t* declined) {
+  vote<Real>(pairs, intersects, declined, [&](const auto& a, const auto& b) {
+    return decide_within<std::tuple_element_t<algorithm, Algorithms>, Real>(a, b, tolerances);
+  });
+}
+
+template <int algorithm, class Real>
+__global__ void relative_pairs(DevicePairs pairs, Tolerances<Real> tolerances, std::uint32_t* intersects,
+                               std::uint32_t* declined) {
+  vote<Real>(pairs, intersects, declined, [&](const auto& a, const auto& b) {
+    return decide_within<std::tuple_element_t<algorithm, Algorithms>, Sized<Real>>(a, b, tolerances);
+  });
+}
+
+template <int algorithm, class Real>
+void launch_within(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
+                   cudaStream_t stream) {
+  const Tolerances<Real> tolerances(epsilons);
+  if (epsilons.any_relative()) {
+    relative_pairs<algorithm, Real>
+        <<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, tolerances, intersects, declined);
+  } else {
+    absolute_pairs<algorithm, Real>
+        <<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, tolerances, intersects, declined);
+  }
+}
+
+template <int... algorithm>
+constexpr DeviceKernels<LaunchWithin> launchers(std::integer_sequence<int, algorithm...>) {
+  return {std::array<LaunchWithin, 2>{launch_within<algorithm, float>, launch_within<algorithm, double>}...};
+}
+
+extern const DeviceKernels<LaunchWithin> kPolicyKernels = launchers(std::make_integer_sequence<int, kAlgorithmCount>());
+
+}  // namespace GRAZE_FP
+}  // namespace graze::cuda

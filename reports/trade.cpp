@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/trade.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "reports/findings.h"
+#include "reports/terminal.h"
+#include "reports/text_table.h"
+
+namespace graze::reports {
+namespace {
+
+using analysis::Cost;
+using analysis::Extreme;
+using analysis::ExtremeCurve;
+using analysis::Offer;
+using analysis::PolicyErrors;
+using Json = nlohmann::ordered_json;
+
+constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7;
+constexpr std::array<const char*, 8> kColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7",
+                                                 "#e69f00", "#56b4e9", "#8c6bb1", "#a6761d"};  // Okabe and Ito 2008
+
+double share(const PolicyErrors& e) {
+  return e.pairs == 0 ? 0 : static_cast<double>(e.wrong() + e.declined) / static_cast<double>(e.pairs);
+}
+
+double y_of(double rate) {
+  return kBottom + (kTop - kBottom) * (std::log10(std::max(rate, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
+}
+
+std::string text(double x, double y, const char* anchor, const std::string& what, const char* more = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more, what);
+}
+
+std::string begin(const std::string& title) {
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 420\" width=\"900\" height=\"420\" "
+      "font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n<title>{}</title>\n",
+      title);
+  for (int power = -7; power <= 0; ++power) {
+    const double y = y_of(std::pow(10.0, power));
+    svg += fmt::format(
+        "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", kLeft,
+        kRight, y);
+    svg += text(kLeft - 8, y + 4, "end", power == -7 ? "none seen" : power == 0 ? "all" : fmt::format("1e{}", power));
+  }
+  return svg + text(kLeft, 18, "start", title);
+}
+
+Json cost_json(const Cost& cost) {
+  const auto rounded = [](double x) { return std::round(x * 10) / 10; };
+  return {{"low", rounded(cost.low)}, {"middle", rounded(cost.middle)}, {"high", rounded(cost.high)}};
+}
+
+Json errors_json(const PolicyErrors& e) {
+  return {{"pairs", e.pairs}, {"misses", e.misses}, {"false_hits", e.false_hits}, {"declined", e.declined}};
+}
+
+std::vector<Offer> cheapest_first(std::vector<Offer> offers) {
+  std::stable_sort(offers.begin(), offers.end(),
+                   [](const Offer& l, const Offer& r) { return l.in_cache.middle < r.in_cache.middle; });
+  return offers;
+}
+
+}  // namespace
+
+std::string trade_table(const std::vector<Offer>& offers, const Screen& screen) {
+  TextTable table({{"lane", Align::left},
+                   {"ns a pair", Align::point},
+                   {"from memory", Align::point},
+                   {"misses"},
+                   {"false hits"},
+                   {"declined"},
+                   {"", Align::left}});
+  for (const Offer& offer : cheapest_first(offers)) {
+    const PolicyErrors& e = offer.errors;
+    const std::string words = offer.dominated ? "dominated"
+                              : share(e) == 0 ? fmt::format("none: under {:.1g}", analysis::upper_bound(0, e.pairs))
+                                              : "front";
+    table.add({{offer.lane},
+               {fmt::format("{:.1f}", offer.in_cache.middle)},
+               {fmt::format("{:.1f}", offer.from_memory.middle)},
+               {grouped(e.misses), e.misses > 0},
+               {grouped(e.false_hits), e.false_hits > 0},
+               {grouped(e.declined)},
+               {words}});
+  }
+  return table.text(screen);
+}
+
+std::vector<std::string> extreme_sentences(const std::vector<ExtremeCurve>& curves) {
+  std::vector<std::string> result;
+  for (const Extreme extreme : analysis::kExtremes) {
+    std::vector<std::string> lanes;
+    for (const ExtremeCurve& curve : curves) {
+      if (curve.extreme != extreme) continue;
+      const auto up = curve.right_to(1), down = extreme == Extreme::scale ? curve.right_to(-1) : std::nullopt;
+      if (!up && !down) continue;
+      lanes.push_back(fmt::format("{} {}{}{}", curve.lane, down ? fmt::format("down to 2^{}", *down) : "",
+                                  up && down ? " and " : "", up ? fmt::format("up to 2^{}", *up) : ""));
+    }
+    const std::string_view what = extreme == Extreme::scale      ? "Scale, as right as at the scene's own"
+                                  : extreme == Extreme::offset   ? "Offset in sizes, as right as at the first"
+                                  : extreme == Extreme::flatness ? "Flattened by 2^k, as right as before"
+                                                                 : "Made needles by 2^k, as right as before";
+    result.push_back(lanes.empty()
+                         ? fmt::format("{}: all lanes, as far as was measured.", what)
+                         : fmt::format("{}: {}; the others as far as was measured.", what, fmt::join(lanes, "; ")));
+  }
+  return result;
+}
+
+Json trade_json(const std::vector<Offer>& offers, const std::vector<ExtremeCurve>& curves) {
+  Json rows = Json::array(), extremes = Json::array();
+  for (const Offer& offer : cheapest_first(offers)) {
+    rows.push_back({{"lane", offer.lane},
+                    {"errors", errors_json(offer.errors)},
+                    {"bound", analysis::upper_bound(offer.errors.wrong() + offer.errors.declined, offer.errors.pairs)},
+                    {"in_cache", cost_json(offer.in_cache)},
+                    {"from_memory", cost_json(offer.from_memory)},
+                    {"dominated", offer.dominated}});
+  }
+  for (const ExtremeCurve& curve : curves) {
+    Json points = Json::array();
+    for (const auto& [k, e] : curve.points) {
+      Json point = {{"log2", k}};
+      point.update(errors_json(e));
+      points.push_back(std::move(point));
+    }
+    extremes.push_back({{"lane", curve.lane}, {"extreme", name(curve.extreme)}, {"points", std::move(points)}});
+  }
+  return {{"lanes", std::move(rows)}, {"extremes", std::move(extremes)}, {"sentences", extreme_sentences(curves)}};
+}
+
+std::string trade_figure(const std::vector<Offer>& offers) {
+  std::string svg = begin("Share of pairs without a right verdict, against nanoseconds a pair on one core");
+  double low = 1e300, high = 0;
+  for (const Offer& offer : offers) {
+    low = std::min(low, offer.in_cache.middle);
+    high = std::max(high, offer.in_cache.middle);
+  }
+  low = std::log10(low) - 0.1;
+  high = std::max(std::log10(high) + 0.35, low + 0.5);
+  const auto x_of = [&](double ns) { return kLeft + (kRight - kLeft) * (std::log10(ns) - low) / (high - low); };
+  for (double decade = std::floor(low); decade <= high; ++decade) {
+    for (const int step : {1, 2, 5}) {
+      const double ns = step * std::pow(10.0, decade);
+      if (std::log10(ns) >= low && std::log10(ns) <= high)
+        svg += text(x_of(ns), 370, "middle", fmt::format("{:g}", ns));
+    }
+  }
+  svg += text((kLeft + kRight) / 2, 396, "middle", "nanoseconds a pair, pairs in cache");
+  std::string front;
+  for (const Offer& offer : cheapest_first(offers)) {
+    const double x = x_of(offer.in_cache.middle), y = y_of(share(offer.errors));
+    const char* colour = offer.dominated ? "#999" : "#d55e00";
+    svg += fmt::format(
+        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {:.1f} ns, {} of {} "
+        "pairs</title></circle>\n",
+        x, y, offer.dominated ? 3 : 5, colour, offer.lane, offer.in_cache.middle,
+        grouped(offer.errors.wrong() + offer.errors.declined), grouped(offer.errors.pairs));
+    if (offer.dominated) continue;
+    front += fmt::format("{:.1f},{:.1f} ", x, y);
+    svg += text(x + 8, y - 6, "start", offer.lane, " fill=\"#d55e00\"");
+  }
+  svg += fmt::format("<polyline fill=\"none\" stroke=\"#d55e00\" stroke-opacity=\"0.5\" points=\"{}\"/>\n", front);
+  return svg + "</svg>\n";
+}
+
+std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extreme) {
+  std::string svg = begin(fmt::format("Share of pairs without a right verdict, against {}: 2^k", name(extreme)));
+  const std::vector<int> at = analysis::exponents(extreme);
+  const auto x_of = [&](int k) {
+    return kLeft + (kRight - kLeft - 190) * (k - at.front()) / std::max(1, at.back() - at.front());
+  };
+  for (std::size_t i = 0; i < at.size(); i += std::max<std::size_t>(1, at.size() / 8))
+    svg += text(x_of(at[i]), 370, "middle", std::to_string(at[i]));
+  std::size_t row = 0;
+  for (const ExtremeCurve& curve : curves) {
+    if (curve.extreme != extreme) continue;
+    std::string points;
+    for (const auto& [k, errors] : curve.points) points += fmt::format("{:.1f},{:.1f} ", x_of(k), y_of(share(errors)));
+    const char* colour = kColours[row % kColours.size()];
+    const char* dashes = row < kColours.size()       ? ""
+                         : row < 2 * kColours.size() ? " stroke-dasharray=\"6 3\""
+                                                     : " stroke-dasharray=\"2 2\"";
+    svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"{} points=\"{}\"/>\n", colour, dashes,
+                       points);
+    const double y = kTop + 6 + 15.0 * static_cast<double>(row);
+    svg += fmt::format(
+        "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"{3}\" stroke-width=\"3\"{4}/>\n",
+        kRight - 176, kRight - 156, y, colour, dashes);
+    svg += text(kRight - 150, y + 4, "start", curve.lane, " font-size=\"10\"");
+    ++row;
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace graze::reports

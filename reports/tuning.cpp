@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/tuning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "reports/findings.h"
+#include "reports/terminal.h"
+
+namespace graze::reports {
+namespace {
+
+using analysis::Forbid;
+using analysis::PolicyErrors;
+using analysis::Tuned;
+using analysis::TuneResult;
+using Json = nlohmann::ordered_json;
+
+std::string_view words(Forbid forbid) {
+  return forbid == Forbid::miss ? "misses" : forbid == Forbid::false_hit ? "false hits" : "wrong verdicts";
+}
+
+std::string policy_words(const std::string& policy) { return policy.empty() ? "no policy" : policy; }
+
+std::string rate(std::uint64_t count, std::uint64_t of) {
+  return rate_words(of == 0 ? 0 : static_cast<double>(count) / static_cast<double>(of));
+}
+
+// "12 misses (0.012 %) and 0 false hits of 100,000 pairs"
+std::string errors(const PolicyErrors& e) {
+  const auto part = [&](std::uint64_t count, std::string_view what) {
+    return fmt::format("{} {}{}", grouped(count), what, count == 0 ? "" : fmt::format(" ({})", rate(count, e.pairs)));
+  };
+  return fmt::format("{} and {} of {} pairs", part(e.misses, "misses"), part(e.false_hits, "false hits"),
+                     grouped(e.pairs));
+}
+
+std::string answer(const TuneQuestion& q, const Tuned& t) {
+  const std::string of =
+      fmt::format("{}: on pairs other than those it was chosen on, {}", policy_words(t.chosen), errors(t.confirmed));
+  const std::string trust = fmt::format("at 95 % confidence {} are under {:.2g}", words(q.forbid), t.bound);
+  switch (t.result) {
+    case TuneResult::satisfied:
+      return fmt::format("Use {}; {}.", of, trust);
+    case TuneResult::too_few_pairs:
+      return fmt::format(
+          "Not settled: {}; {}, and {:.2g} was asked for. Without an error it takes {} pairs to say so (--pairs).", of,
+          trust, q.max_rate, grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
+    case TuneResult::not_satisfiable:
+      break;
+  }
+  return fmt::format("No policy of {} keeps {} under {:.2g} here. The best is {}; the exact lane has none of either.",
+                     q.lane, words(q.forbid), q.max_rate, of);
+}
+
+std::string power(int k) { return k > 0 ? fmt::format("grow by 2^{}", k) : fmt::format("shrink by 2^{}", -k); }
+
+// Points of a line: x by log2 of the tolerance from low to high, y by log10 of the rate.
+struct Frame {
+  double left, right, low, high;
+  static constexpr double kTop = 64, kBottom = 350, kLeast = -7;
+
+  double x(double tolerance) const { return left + (right - left) * (std::log2(tolerance) - low) / (high - low); }
+  static double y(double rate) {
+    return kBottom + (kTop - kBottom) * (std::log10(std::max(rate, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
+  }
+};
+
+double value_of(const std::string& policy) { return std::stod(policy.substr(policy.rfind(':') + 1)); }
+
+std::string text(double x, double y, const char* anchor, const std::string& what) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, what);
+}
+
+std::string line(const Frame& frame, const analysis::Curve& curve, const char* colour,
+                 std::uint64_t PolicyErrors::*count) {
+  std::string points;
+  for (const PolicyErrors& e : curve.points)
+    points +=
+        fmt::format("{:.1f},{:.1f} ", frame.x(value_of(e.policy)),
+                    Frame::y(static_cast<double>(e.*count) / static_cast<double>(std::max<std::uint64_t>(e.pairs, 1))));
+  return fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", colour, points);
+}
+
+Json errors_json(const PolicyErrors& e) {
+  return {{"policy", e.policy},     {"pairs", e.pairs},   {"misses", e.misses}, {"false_hits", e.false_hits},
+          {"declined", e.declined}, {"mended", e.mended}, {"broken", e.broken}};
+}
+
+}  // namespace
+
+std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tuned& tuned) {
+  std::vector<std::string> result = {answer(question, tuned)};
+  if (!tuned.chosen.empty()) {
+    result.push_back(fmt::format("Without a policy the same pairs show {}.", errors(tuned.zero_confirmed)));
+    const PolicyErrors& e = tuned.confirmed;
+    result.push_back(fmt::format("Relocation: {} mends {} of these pairs and breaks {} others.", tuned.chosen,
+                                 grouped(e.mended), grouped(e.broken)));
+  }
+  for (const std::string& site : tuned.dead)
+    result.push_back(fmt::format("Dead knob: at {} no tolerance changes any verdict here.", site));
+  const analysis::ScaleBreak& scale = tuned.scale;
+  for (const auto& [k, at] : {std::pair{scale.up, scale.at_up}, {scale.down, scale.at_down}}) {
+    if (k != 0)
+      result.push_back(
+          fmt::format("Scale break: if the scene should {}, errors more than double: {}.", power(k), errors(at)));
+  }
+  if (!tuned.chosen.empty() && scale.up == 0 && scale.down == 0)
+    result.push_back(
+        fmt::format("Scale: from 2^-{0} to 2^{0} times the scene's size errors do not double.", analysis::kMostScale));
+  for (const analysis::Interaction& i : tuned.interactions) {
+    result.push_back(fmt::format("Two sites: {} alone has {} wrong, {} alone {}, both {}.", i.first,
+                                 grouped(i.of_first.wrong()), i.second, grouped(i.of_second.wrong()),
+                                 grouped(i.together.wrong())));
+  }
+  return result;
+}
+
+Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
+  constexpr std::string_view kResults[] = {"satisfied", "too few pairs", "not satisfiable"};
+  constexpr std::string_view kForbid[] = {"miss", "false", "any"};
+  Json json = {{"lane", question.lane},
+               {"forbid", kForbid[static_cast<int>(question.forbid)]},
+               {"max_rate", question.max_rate},
+               {"chosen", tuned.chosen.empty() ? "zero" : tuned.chosen},
+               {"result", kResults[static_cast<int>(tuned.result)]},
+               {"bound", tuned.bound},
+               {"confirmed", errors_json(tuned.confirmed)},
+               {"zero_confirmed", errors_json(tuned.zero_confirmed)},
+               {"dead", tuned.dead},
+               {"scale_break", Json::object()},
+               {"interactions", Json::array()},
+               {"zero", errors_json(tuned.zero)},
+               {"curves", Json::array()},
+               {"sentences", tuning_sentences(question, tuned)}};
+  if (tuned.scale.up)
+    json["scale_break"]["up"] = {{"log2", tuned.scale.up}, {"errors", errors_json(tuned.scale.at_up)}};
+  if (tuned.scale.down)
+    json["scale_break"]["down"] = {{"log2", tuned.scale.down}, {"errors", errors_json(tuned.scale.at_down)}};
+  for (const analysis::Interaction& i : tuned.interactions)
+    json["interactions"].push_back({{"first", errors_json(i.of_first)},
+                                    {"second", errors_json(i.of_second)},
+                                    {"together", errors_json(i.together)}});
+  for (const analysis::Curve& curve : tuned.curves) {
+    Json points = Json::array();
+    for (const PolicyErrors& point : curve.points) points.push_back(errors_json(point));
+    json["curves"].push_back({{"site", curve.site.empty() ? "all" : curve.site},
+                              {"tolerance", curve.relative ? "rel" : "abs"},
+                              {"points", std::move(points)}});
+  }
+  return json;
+}
+
+std::string tuning_figure(const TuneQuestion& question, const Tuned& tuned) {
+  constexpr const char *kMiss = "#0072b2", *kFalseHit = "#d55e00";
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 420\" width=\"900\" height=\"420\" "
+      "font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n<title>Errors of {} against its tolerance</title>\n",
+      question.lane);
+  for (int power = -7; power <= 0; ++power) {
+    const double y = Frame::y(std::pow(10.0, power));
+    svg += fmt::format(
+        "<line x1=\"64\" x2=\"880\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", y);
+    svg += text(56, y + 4, "end", power == -7 ? "none" : power == 0 ? "all" : fmt::format("1e{}", power));
+  }
+  for (const analysis::Curve& curve : tuned.curves) {
+    if (!curve.site.empty() || curve.points.empty()) continue;
+    const double low = std::log2(value_of(curve.points.front().policy)),
+                 high = std::log2(value_of(curve.points.back().policy));
+    const Frame frame = curve.relative ? Frame{64, 460, low, high} : Frame{484, 880, low, high};
+    svg += line(frame, curve, kMiss, &PolicyErrors::misses) + line(frame, curve, kFalseHit, &PolicyErrors::false_hits);
+    for (const PolicyErrors& point : curve.points) {
+      if (point.policy == tuned.chosen)
+        svg += fmt::format(
+            "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"64\" y2=\"350\" stroke=\"#777\" stroke-dasharray=\"4 3\"/>\n",
+            frame.x(value_of(point.policy)));
+    }
+    for (const double at : {low, (low + high) / 2, high})
+      svg += text(frame.x(std::exp2(at)), 370,
+                  at == low    ? "start"
+                  : at == high ? "end"
+                               : "middle",
+                  fmt::format("{}:{:.2g}", curve.relative ? "rel" : "abs", std::exp2(at)));
+  }
+  svg += text(262, 396, "middle", "K, in machine epsilons times the quantity’s size");
+  svg += text(682, 396, "middle", "E, in the quantity’s own unit");
+  svg += text(
+      64, 18, "start",
+      fmt::format("Share of wrong verdicts of {} against its tolerance at all sites; dashed: chosen", question.lane));
+  const auto legend = [&](double x, const char* colour, const char* what) {
+    svg += fmt::format("<line x1=\"{0}\" x2=\"{1}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n", x,
+                       x + 16, colour);
+    svg += text(x + 21, 40, "start", what);
+  };
+  legend(64, kMiss, "misses");
+  legend(232, kFalseHit, "false hits");
+  return svg + "</svg>\n";
+}
+
+}  // namespace graze::reports

@@ -67,7 +67,7 @@ const Lane& add_lane(const std::string& subject, Scalar scalar, Variant variant,
     found = std::prev(subjects().end());
   }
   Stranger& code = found->code.emplace_back(std::move(function));
-  add_lanes({{"", &found->info, scalar, variant, "", -1, code, false, false, true, outside, ""}});
+  add_lanes({{"", &found->info, scalar, variant, "", {}, -1, code, false, false, true, outside, ""}});
   return lanes().back();
 }
 

@@ -179,6 +179,33 @@ LaneExplanation account_of_foreign(const Lane& lane, Verdict verdict, const Pair
   return result;
 }
 
+const Lane& without_policy(const Lane& lane) {
+  LaneName zero = lane.lane_name();
+  zero.policy.clear();
+  return *find_lane(id_of(zero));
+}
+
+LaneExplanation account_of_policy(const Lane& lane, Verdict verdict, const Pair& pair, Verdict truth) {
+  const Lane& zero = without_policy(lane);
+  LaneExplanation result{};
+  result.lane = &lane;
+  result.verdict = verdict;
+  result.exactly.verdict = Verdict::declined;
+  result.evidence = Evidence::none;
+  result.settled = Settled::yes;
+  result.cause = Cause::policy;
+  if (verdict == Verdict::declined) {
+    result.experiment = "its error bounds leave a comparison open, and then it may decline";
+  } else if (decide_lane(zero, pair) == truth) {
+    result.experiment = fmt::format("without {} it is right", lane.policy);
+  } else {
+    result.cause = cause_of(zero, pair, truth);
+    result.settled = Settled::unknown;
+    result.experiment = fmt::format("without {} it is wrong as well, by this cause", lane.policy);
+  }
+  return result;
+}
+
 // Requires: finite coordinates; the verdict is not the truth.
 bool is_by_convention(const Lane& lane, Verdict verdict, const Pair& pair) {
   if (lane.outside == 0) return false;
@@ -190,7 +217,7 @@ bool is_by_convention(const Lane& lane, Verdict verdict, const Pair& pair) {
 // Lanes with the same run: the same source, every operation rounded as written.
 bool same_run(const Lane& l, const Lane& r) {
   const auto rounded = [](const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; };
-  return !l.foreign && l.info == r.info && l.scalar == r.scalar && rounded(l) && rounded(r);
+  return !l.foreign && l.policy == r.policy && l.info == r.info && l.scalar == r.scalar && rounded(l) && rounded(r);
 }
 
 void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, const Neighbours& neighbours) {
@@ -210,6 +237,7 @@ void add_surroundings(LaneExplanation& result, Verdict truth, int bits_needed, c
 
 Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
   if (lane.foreign) return experiment(lane, decide_lane(lane, pair), pair, truth).cause;
+  if (lane.under) return account_of_policy(lane, decide_lane(lane, pair), pair, truth).cause;
   LaneExplanation result{};
   result.lane = &lane;
   result.exactly = oracle::decide_exactly(lane.algorithm, pair);
@@ -221,7 +249,7 @@ Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
 }
 
 bool leaves_exponents(const Lane& lane, const Pair& pair) {
-  if (lane.foreign) return false;  // not known
+  if (lane.foreign || lane.under) return false;  // not known
   const DecideBlock block = block_of(rounded_counterpart(lane));
   std::uint64_t intersects, declined;
   std::feclearexcept(FE_OVERFLOW | FE_UNDERFLOW);
@@ -235,9 +263,9 @@ std::string_view name(Settled settled) {
 }
 
 std::string_view name(Cause cause) {
-  constexpr std::string_view kNames[] = {"rounding",       "contraction",      "fast math",     "overflow",
-                                         "underflow",      "logic",            "absolute epsilon", "order-dependent",
-                                         "degenerate input", "crash",          "no answer in time", "unstable"};
+  constexpr std::string_view kNames[] = {
+      "rounding",        "contraction",      "fast math", "overflow",          "underflow", "logic", "absolute epsilon",
+      "order-dependent", "degenerate input", "crash",     "no answer in time", "unstable",  "policy"};
   return kNames[static_cast<int>(cause)];
 }
 
@@ -250,8 +278,11 @@ std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span
     const Verdict verdict = decide_lane(*lane, pair);
     if (verdict == truth) continue;
     if (lane->foreign) {
-      if (!is_by_convention(*lane, verdict, pair))
-        result.push_back(account_of_foreign(*lane, verdict, pair, truth));
+      if (!is_by_convention(*lane, verdict, pair)) result.push_back(account_of_foreign(*lane, verdict, pair, truth));
+      continue;
+    }
+    if (lane->under) {
+      result.push_back(account_of_policy(*lane, verdict, pair, truth));
       continue;
     }
     const auto same = std::find_if(result.begin(), result.end(), [&](const LaneExplanation& other) {
@@ -284,7 +315,7 @@ Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
   const Neighbours neighbours(pair, truth);
   std::map<const AlgorithmInfo*, int> bits;
   for (LaneExplanation& lane : result.lanes) {
-    if (lane.lane->foreign) {
+    if (lane.lane->foreign || lane.lane->under) {
       // Where each verdict may take all of its time, or a new process, the pair's own is enough.
       if (!lane.slow) add_surroundings(lane, truth, 0, neighbours);
       continue;

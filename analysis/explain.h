@@ -29,7 +29,10 @@ namespace graze::analysis {
 //                neither do, the limit that is exceeded first. Also where a longer mantissa is needed as well, but the
 //                limit made the comparison go wrong.
 //   rounding     otherwise
-// Of foreign code by experiments, see experiments.h; the causes from absolute_epsilon on are of foreign code alone.
+// Of foreign code by experiments, see experiments.h; the causes from absolute_epsilon on are of foreign code alone, but
+// for the last:
+//   policy       of a lane under a policy: the same lane under none is right, or the policy may decline. Where that lane
+//                is wrong too, its cause; not settled.
 enum class Cause {
   rounding,
   contraction,
@@ -42,7 +45,8 @@ enum class Cause {
   degenerate_input,
   crash,
   no_answer,
-  unstable
+  unstable,
+  policy
 };
 std::string_view name(Cause cause);
 
@@ -88,7 +92,7 @@ struct LaneExplanation {
                     // kMostBits it is right; 0 without one, and where it would be luck (see explain.cpp)
   std::array<bool, kCoordinates> matters;  // false: all its nudges leave the truth and the lane's verdict as they are
   WrongOf orders, mirrored, scalings;      // see neighbours.h
-  std::string experiment;                  // of foreign code, which has no steps: what shows the cause
+  std::string experiment;                  // of lanes without steps, foreign or under a policy: what shows the cause
   bool slow = false;                       // the same: it takes all of its time on other pairs; nothing around is asked
 
   // The comparison to tell of, the first that decides; null without one, and where the algorithm itself is to blame.

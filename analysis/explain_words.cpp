@@ -152,9 +152,17 @@ std::string remedy(const LaneExplanation& lane) {
   return bits + (lane.bits_needed == 0 ? ", even with" : " with") + " exponents without limits";
 }
 
-// Of foreign code: what the experiments say, and which.
-std::string reason_of_foreign(const LaneExplanation& lane) {
-  const auto words = [&]() -> std::string {
+// Whether experiments gave the account, for want of steps.
+bool by_experiment(const Lane& lane) { return lane.foreign || lane.under; }
+
+// "cuda-fma", "cpu/rel:8".
+std::string variant_of(const Lane& lane) {
+  return std::string(name(lane.variant)) + (lane.policy.empty() ? "" : "/" + lane.policy);
+}
+
+// What the experiments say, and which.
+std::string reason_by_experiment(const LaneExplanation& lane) {
+  const auto words = [&]() -> std::string_view {
     switch (lane.cause) {
       case Cause::contraction:
         return fused(lane);
@@ -178,6 +186,8 @@ std::string reason_of_foreign(const LaneExplanation& lane) {
         return "the code does not come back";
       case Cause::unstable:
         return "its verdict changes";
+      case Cause::policy:
+        return "the policy";
       default:
         return "rounding";
     }
@@ -189,8 +199,9 @@ std::string reason_of_foreign(const LaneExplanation& lane) {
 // Lanes that one account fits.
 bool alike(const LaneExplanation& l, const LaneExplanation& r) {
   const auto line = [](const LaneExplanation& lane) { return lane.told() ? lane.told()->line : ""; };
-  return l.lane->scalar == r.lane->scalar && l.verdict == r.verdict && l.cause == r.cause && l.settled == r.settled &&
-         line(l) == line(r) && l.contractions.sites.empty() == r.contractions.sites.empty();
+  return l.lane->scalar == r.lane->scalar && l.lane->policy == r.lane->policy && l.verdict == r.verdict &&
+         l.cause == r.cause && l.settled == r.settled && line(l) == line(r) &&
+         l.contractions.sites.empty() == r.contractions.sites.empty();
 }
 
 nlohmann::ordered_json number(double x) {
@@ -236,7 +247,7 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
   std::string same, others;
   for (const LaneExplanation& lane : explanation.lanes) {
     if (lane.lane->info != subject) continue;
-    const std::string_view variant = name(lane.lane->variant);
+    const std::string variant = variant_of(*lane.lane);
     if (alike(*first, lane)) {
       same += fmt::format("{}{}", same.empty() ? "" : ", ", variant);
     } else {
@@ -246,9 +257,9 @@ std::string sentence(const Explanation& explanation, const AlgorithmInfo* subjec
   }
   const Lane& lane = *first->lane;
   const std::string also = others.empty() ? "" : "; also wrong: " + others;
-  if (lane.foreign)
+  if (by_experiment(lane))
     return fmt::format("{}/{} ({}) says {}, but the triangles {}: {}{}.", lane.info->id, name(lane.scalar), same,
-                       name(first->verdict), phrase(explanation.truth), reason_of_foreign(*first), also);
+                       name(first->verdict), phrase(explanation.truth), reason_by_experiment(*first), also);
   return fmt::format("{}/{} ({}) says {}, but the triangles {}: {}; {}{}.", lane.info->id, name(lane.scalar), same,
                      name(first->verdict), phrase(explanation.truth), reason(*first) + doubt(*first), remedy(*first),
                      also);
@@ -268,9 +279,10 @@ std::vector<std::string> sentences(const Explanation& explanation) {
   for (const auto& [subject, list] : lanes_outside) {
     const auto lane = std::find_if(explanation.outside.begin(), explanation.outside.end(),
                                    [&](const Lane* l) { return l->info->id == subject; });
-    result.push_back(fmt::format("{} ({}) says otherwise, and is not wrong: the pair is not in its contract, which "
-                                 "leaves out {}.",
-                                 subject, list, outside_in_words((*lane)->outside)));
+    result.push_back(
+        fmt::format("{} ({}) says otherwise, and is not wrong: the pair is not in its contract, which "
+                    "leaves out {}.",
+                    subject, list, outside_in_words((*lane)->outside)));
   }
   return result;
 }
@@ -300,7 +312,7 @@ nlohmann::ordered_json to_json(const LaneExplanation& lane) {
   json["orders"] = to_json(lane.orders);
   json["mirrored"] = to_json(lane.mirrored);
   json["scalings"] = to_json(lane.scalings);
-  if (lane.lane->foreign) json["experiment"] = lane.experiment;
+  if (by_experiment(*lane.lane)) json["experiment"] = lane.experiment;
   return json;
 }
 

@@ -52,7 +52,7 @@ TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
     }
   }
   EXPECT_GE(lanes_asked, 16);
-  const bool open = GetParam().id.starts_with("coplanar_w") || GetParam().stratum == strata::Stratum::shared_edge ||
+  const bool open = GetParam().id.starts_with("coplanar_w") || GetParam().id.starts_with("shared_") ||
                     GetParam().stratum == strata::Stratum::degenerate;
   EXPECT_TRUE(open || decided > 10'000u) << decided;  // else it is no filter
 }
@@ -83,7 +83,7 @@ TEST(PolicyLanes, AnAlgorithmThatIsWrongWithoutRoundingIsFound) {
   for (const Pair& pair : drawn(strata::Stratum::uniform, 300)) {
     const Lane& row = *find_lane("projected_sat/f32/cpu");
     const oracle::Exactly found = oracle::decide_exactly(row.algorithm, pair);
-    wrong += found.certain && found.verdict != oracle::cgal_verdict(pair);
+    wrong += found.verdict != oracle::cgal_verdict(pair);
   }
   EXPECT_GT(wrong, 5);
 }
@@ -114,8 +114,8 @@ TEST(PolicyLanes, AreExplainedByTheLaneWithoutPolicy) {
   EXPECT_GT(declined, 10);
   Pair pair{{{0, 0, 0}, {0.01f, 0, 0}, {0, 0.01f, 0}}, {{0, 0, 0.005f}, {0.01f, 0, 0.005f}, {0, 0.01f, 0.005f}}};
   EXPECT_EQ(sentences(explain(pair, std::vector{paper})).at(0),
-            "moller_1997/f32 (cpu/paper) says intersects, but the triangles are disjoint, 0.005 apart (5.37e+06 ulps): "
-            "the policy (without paper it is right).");
+            "moller_1997/f32 (cpu/paper) says intersects, but the triangles are 0.005 apart (5.37e+06 ulps of the "
+            "largest coordinate): the policy (without paper it is right).");
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ class Fails : public ForeignCode {
 TEST(UlpMap, FailuresOfForeignCodeHaveCellsOfTheirOwn) {
   Fails code;
   const AlgorithmInfo info{"fails", "test", "", "", "", false};
-  const Lane lane{"fails/f32/cpu", &info, Scalar::f32, Variant::cpu, "", -1, code, false, false, true, 0, ""};
+  const Lane lane{"fails/f32/cpu", &info, Scalar::f32, Variant::cpu, "", {}, -1, code, false, false, true, 0, ""};
   const Lane* const lanes[] = {&lane};
   const UlpMap map = ulp_map(kOnTheDiagonal, lanes, {9, 10});
   ASSERT_EQ(map.panels.size(), 2u);

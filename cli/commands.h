@@ -28,6 +28,8 @@ void add_report(CLI::App& app, int& status);
 void add_scene(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
+void add_trade(CLI::App& app, int& status);
+void add_tune(CLI::App& app, int& status);
 void add_prove_twin(CLI::App& app, int& status);
 
 // --lanes, --subject and --executor, which every verb that runs lanes has; the last not where twins stand for devices.
@@ -63,6 +65,10 @@ void add_scene_option(CLI::App& command, std::string& file);
 // Throws: as fuzz::open_scene and strata::scene_sources.
 strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
                                       const std::vector<std::string>& globs, fuzz::Json& recorded);
+
+// The same of a scene, or without one (an empty name) of strata; recorded nowhere.
+strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
+                           const std::vector<std::string>& globs);
 
 // Which strata the scene cannot contain, and why: a line for each, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);

@@ -102,6 +102,8 @@ TEST(Docs, TourPrintsWhatItSays) { expect_true_commands("docs/tour.md", 20); }
 
 TEST(Docs, YourOwnCodePrintsWhatItSays) { expect_true_commands("docs/your_own_code.md", 15); }
 
+TEST(Docs, TuningPrintsWhatItSays) { expect_true_commands("docs/tuning.md", 8); }
+
 TEST(Docs, AbridgesAsBefore) {
   EXPECT_EQ(abridged({"a", "…", "z"}, {"a", "b", "c", "y"}), (Lines{"a", "…", "y"}));
   EXPECT_EQ(abridged({"a", "…"}, {"b", "c"}), (Lines{"b", "…"}));

@@ -115,7 +115,7 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
   };
   line(2, fmt::format("{}: {}, cause: {}{}", lane.lane->id, name(lane.verdict), name(lane.cause),
                       lane.settled == analysis::Settled::yes ? "" : " (not settled)"));
-  if (lane.lane->foreign) {
+  if (lane.lane->foreign || lane.lane->under) {
     line(4, "experiment: " + lane.experiment);
     print_contractions(lane, line);
     if (lane.slow) return;

@@ -22,6 +22,7 @@ void print_lanes(bool json, const std::vector<std::string>& globs) {
   std::set<std::string> twins;
   const AlgorithmInfo* last = nullptr;
   const reports::Screen screen = output_screen();
+  for (const std::string& glob : globs) add_policy_lanes(glob);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
     const std::string here = fuzz::status(lane, device.get(), why_no_device);

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 constexpr double kStartOfAProgram = 10;  // seconds; it is part of what it takes for its first pair
 
 struct LeagueOptions {
-  std::string subjects, out = "league";
+  std::string subjects, scene, out = "league";
   std::uint64_t pairs = 100'000, seed = 1;
   std::vector<std::string> strata;
   double timeout = 0.1;
@@ -97,7 +97,8 @@ int league(const LeagueOptions& options) {
   std::vector<reports::LeagueSubject> subjects = read_subjects(options.subjects, most);
   for (reports::LeagueSubject& subject : subjects) open(subject, options.timeout);
   const fuzz::LanesUnderTest lanes = fuzz::league_lanes({"*/cpu", "*/cpu-fma"});
-  const std::vector<strata::PairSource> sources = strata::stratum_sources(options.seed, options.pairs, options.strata);
+  const strata::SceneSources drawn_pairs = drawn(options.scene, options.seed, options.pairs, options.strata);
+  const std::vector<strata::PairSource>& sources = drawn_pairs.sources;
   const std::atomic<bool>& interrupted = catch_interrupts();
   const auto start = std::chrono::steady_clock::now();
   Progress progress("pairs", options.pairs, isatty(STDERR_FILENO), error_screen());
@@ -116,6 +117,7 @@ int league(const LeagueOptions& options) {
                            fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
   std::string command = fmt::format("graze league --subjects {} --pairs {} --seed {}", shell_word(options.subjects),
                                     options.pairs, options.seed);
+  if (!options.scene.empty()) command += " --scene " + shell_word(options.scene);
   for (const std::string& glob : options.strata) command += " --strata " + shell_word(glob);
   const fs::path out = options.out;
   fs::remove_all(out / "league");  // drawings of another run
@@ -152,6 +154,7 @@ void add_league(CLI::App& app, int& status) {
       ->capture_default_str()
       ->option_text("SECONDS");
   add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  add_scene_option(*command, options->scene);
   command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
       ->take_last()
       ->check(not_empty())

@@ -28,6 +28,19 @@ class LeagueCommand : public CommandTest {
 
 constexpr const char* kRun = "graze league --subjects subjects.txt --pairs 1000 --strata lattice,uniform --out found";
 
+// Within a scene all pairs are the scene's: none is so wide that its boxes do not fit the extent.
+TEST_F(LeagueCommand, DrawsWithinAScene) {
+  std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
+  expect_done("graze league --subjects subjects.txt --pairs 600 --scene hall.toml --strata uniform --out found");
+  const std::string page = contents(shell.folder / "found/league.md");
+  EXPECT_NE(page.find("--scene hall.toml"), std::string::npos);
+  const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
+  const std::string all = league.dump();
+  EXPECT_EQ(all.find("extreme_scale"), std::string::npos);
+  EXPECT_GT(league["failures"].size(), 0u);
+  expect_error("graze league --subjects subjects.txt --scene nowhere.toml", 1, "nowhere.toml");
+}
+
 TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
   const Ran ran = shell(kRun);
   ASSERT_EQ(ran.status, 0) << ran.err;

@@ -56,7 +56,13 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
         end = std::min(text.find(',', begin), text.size());
         if (begin == end)
           throw UsageError(fmt::format("{}: expected patterns with commas between, found '{}'", name, text));
-        globs.push_back(text.substr(begin, end - begin));
+        std::string part = text.substr(begin, end - begin);
+        // Of a lane's policy for several sites: "moller_1997/f32/cpu/plane_distance=abs:1e-6,separation=rel:8".
+        if (const bool goes_on = part.find('=') < part.find('/') && !globs.empty(); goes_on) {
+          globs.back() += ',' + part;
+        } else {
+          globs.push_back(std::move(part));
+        }
       }
     }
   };
@@ -108,7 +114,8 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
                   "or cmd:COMMAND; any number of times (docs/your_own_code.md)")
       ->allow_extra_args(false)
       ->option_text("NAME=WHAT");
-  command.add_option("--flags", options.flags, "For the compiler, of subjects that are sources: --flags='-O3 -Iinclude'")
+  command
+      .add_option("--flags", options.flags, "For the compiler, of subjects that are sources: --flags='-O3 -Iinclude'")
       ->allow_extra_args(false)
       ->option_text("TEXT");
   command.add_option("--subject-timeout", options.timeout, "Seconds that a subject may take for a pair")

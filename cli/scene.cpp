@@ -45,7 +45,8 @@ void scene(const SceneVerb& options) {
   if (pairs && options.files.size() > 1)
     throw UsageError(fmt::format("expected one file of pairs, found {} files", options.files.size()));
   if (!options.poses.empty() && (pairs || options.files.size() > 1))
-    throw UsageError("--poses: expected one mesh, found " + (pairs ? "pairs" : fmt::format("{} files", options.files.size())));
+    throw UsageError("--poses: expected one mesh, found " +
+                     (pairs ? "pairs" : fmt::format("{} files", options.files.size())));
   analysis::SceneSample sample;
   strata::SceneMeshes meshes;
   if (pairs) {
@@ -63,13 +64,15 @@ void scene(const SceneVerb& options) {
   strata::SceneFile measured = analysis::measure_scene(sample, options.files[0]);
   measured.units = options.units;
   measured.meshes = meshes;
-  std::string text = "# Where graze draws pairs from. Edit it as you like: extent and edges are needed, all else has a default.\n";
+  std::string text =
+      "# Where graze draws pairs from. Edit it as you like: extent and edges are needed, all else has a default.\n";
   text += fmt::format("# Of {} triangles, {} pairs whose boxes overlap.\n", sample.triangles.size(), sample.pairs);
   text += strata::scene_text(measured);
   try {
     strata::parse_scene("scene", text);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(fmt::format("{}: expected what a scene can hold, found {}", options.files[0], error.what()));
+    throw std::runtime_error(
+        fmt::format("{}: expected what a scene can hold, found {}", options.files[0], error.what()));
   }
   if (options.out.empty()) {
     std::cout << text;
@@ -84,7 +87,8 @@ void scene(const SceneVerb& options) {
 }  // namespace
 
 void add_scene(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("scene", "Measure meshes or pairs: extent, sizes, grid, kinds of pairs; a scene to draw from");
+  CLI::App* command =
+      app.add_subcommand("scene", "Measure meshes or pairs: extent, sizes, grid, kinds of pairs; a scene to draw from");
   command->footer("Example: graze scene arm.off table.stl --units mm --out arm.toml");
   auto options = std::make_shared<SceneVerb>();
   command
@@ -92,11 +96,14 @@ void add_scene(CLI::App& app, int&) {
                    "Meshes (OFF, OBJ, STL, PLY): of one its own pairs count, of several the pairs between them; or one "
                    "file of pairs (.pairs)")
       ->required();
-  command->add_option("--poses", options->poses,
-                      "The mesh at each of these poses: CSV, twelve numbers a line, the three rows of a matrix (R | t)")
+  command
+      ->add_option("--poses", options->poses,
+                   "The mesh at each of these poses: CSV, twelve numbers a line, the three rows of a matrix (R | t)")
       ->check(not_empty())
       ->option_text("FILE");
-  command->add_option("--units", options->units, "What the coordinates are in")->check(not_empty())->capture_default_str();
+  command->add_option("--units", options->units, "What the coordinates are in")
+      ->check(not_empty())
+      ->capture_default_str();
   command->add_option("--out", options->out, "The scene's file; without it, standard output")->check(not_empty());
   command->callback([options] { scene(*options); });
 }
@@ -117,10 +124,18 @@ strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t see
   return drawn;
 }
 
+strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
+                           const std::vector<std::string>& globs) {
+  fuzz::Json recorded;
+  if (!scene.empty()) return drawn_from_scene(scene, seed, pairs, globs, recorded);
+  return {strata::stratum_sources(seed, pairs, globs), {}, {}};
+}
+
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out) {
   std::string text;
   for (const strata::LeftOut& row : left_out)
-    text += fmt::format("{}  {}: {}\n", text.empty() ? "\nLeft out, as the scene has none such:\n" : "", row.id, row.why);
+    text +=
+        fmt::format("{}  {}: {}\n", text.empty() ? "\nLeft out, as the scene has none such:\n" : "", row.id, row.why);
   return text;
 }
 

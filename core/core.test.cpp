@@ -122,7 +122,7 @@ TEST(LaneTable, IsTheProductOfAlgorithmsScalarsAndVariantsAndTheExactLanes) {
     EXPECT_EQ(find_lane(lane.id), &lane);
     EXPECT_EQ(id_of(lane.lane_name()), lane.id);
     EXPECT_EQ(parse_lane_name(lane.id), lane.lane_name());
-    EXPECT_EQ(lane.decide == nullptr, lane.is_cuda()) << lane.id;
+    EXPECT_NE(static_cast<bool>(lane.decide), lane.is_cuda()) << lane.id;
   }
   const auto built = std::count_if(std::begin(kVariants), std::end(kVariants), builds_published);
   EXPECT_EQ(built, 6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host lanes' block functions, one table for each host variant, in that variant's namespace: [algorithm][scalar].
+// The host lanes' block functions, tables for each host variant, in that variant's namespace: [algorithm][scalar].
 #pragma once
 
 #include <array>
@@ -9,11 +9,21 @@
 
 namespace graze {
 
-using HostBlocks = std::array<std::array<DecideBlock::Function, 2>, kAlgorithmCount>;
+template <class Block>
+using BlockTable = std::array<std::array<Block, 2>, kAlgorithmCount>;
+using HostBlocks = BlockTable<DecideBlock::Function>;
 
-#define GRAZE_DECLARE_host(name)       \
-  namespace name {                     \
-  extern const HostBlocks kHostBlocks; \
+// Of each kind of policy; null where the algorithm or the variant does not have it.
+struct PolicyBlocks {
+  DecideBlock::Within absolute = nullptr, relative = nullptr;  // by tolerances, with relative ones or without
+  DecideBlock::Function bound = nullptr;
+};
+using HostPolicyBlocks = BlockTable<PolicyBlocks>;
+
+#define GRAZE_DECLARE_host(name)                   \
+  namespace name {                                 \
+  extern const HostBlocks kHostBlocks;             \
+  extern const HostPolicyBlocks kHostPolicyBlocks; \
   }
 #define GRAZE_DECLARE_device(name)
 #define GRAZE_VARIANT(name, id, runs_on, ...) GRAZE_DECLARE_##runs_on(name)

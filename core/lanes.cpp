@@ -4,8 +4,12 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <bit>
+#include <exception>
+#include <iterator>
 #include <stdexcept>
 
+#include "core/error.h"
 #include "core/exact/exact.h"
 #include "core/host_blocks.h"
 
@@ -19,6 +23,7 @@ constexpr AlgorithmInfo kExactInfo{"exact",
                                    "exact",
                                    "exact: segments and points",
                                    "does not depend on it",
+                                   true,
                                    true};
 
 void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
@@ -41,11 +46,18 @@ std::vector<const AlgorithmInfo*> infos(const std::tuple<Algorithm...>*) {
 }
 
 // The block functions of a variant; null for a device's.
-const HostBlocks* host_blocks(Variant variant) {
-#define GRAZE_BLOCKS_host(name) &name::kHostBlocks
-#define GRAZE_BLOCKS_device(name) nullptr
+struct Tables {
+  const HostBlocks* blocks = nullptr;
+  const HostPolicyBlocks* policies = nullptr;
+};
+
+const Tables& tables_of(Variant variant) {
+#define GRAZE_BLOCKS_host(name) \
+  Tables { &name::kHostBlocks, &name::kHostPolicyBlocks }
+#define GRAZE_BLOCKS_device(name) \
+  Tables {}
 #define GRAZE_VARIANT(name, id, runs_on, ...) GRAZE_BLOCKS_##runs_on(name),
-  static constexpr const HostBlocks* kTables[] = {
+  static constexpr Tables kTables[] = {
 #include "core/variants.inc"
   };
 #undef GRAZE_VARIANT
@@ -54,8 +66,26 @@ const HostBlocks* host_blocks(Variant variant) {
   return kTables[static_cast<int>(variant)];
 }
 
+// Block functions of the algorithm and scalar of a lane.
+template <class Table>
+const auto& of_lane(const Table& table, const Lane& lane) {
+  return table.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));
+}
+
+DecideBlock block_under(const Policy& policy, const PolicyBlocks& blocks) {
+  switch (policy.kind) {
+    case Policy::Kind::bound:
+      return blocks.bound;
+    case Policy::Kind::filtered:
+      return blocks.bound ? DecideBlock(blocks.bound, decide_exactly) : nullptr;
+    case Policy::Kind::tolerances:
+      break;
+  }
+  return {policy.epsilons.any_relative() ? blocks.relative : blocks.absolute, policy.epsilons};
+}
+
 Lane lane_of(const AlgorithmInfo* info, Scalar scalar, Variant variant) {
-  Lane lane{"", info, scalar, variant, "", -1, nullptr, false, false, false, 0, ""};
+  Lane lane{"", info, scalar, variant, "", {}, -1, nullptr, false, false, false, 0, ""};
   lane.id = id_of(lane.lane_name());
   return lane;
 }
@@ -71,8 +101,7 @@ std::vector<Lane> make_lanes() {
         Lane& lane = table.emplace_back(lane_of(info, scalar, row.variant));
         lane.algorithm = algorithm;
         lane.explainable = row.arithmetic != Arithmetic::fast;
-        if (const HostBlocks* blocks = host_blocks(row.variant))
-          lane.decide = (*blocks)[static_cast<std::size_t>(algorithm)][static_cast<std::size_t>(scalar)];
+        if (const HostBlocks* blocks = tables_of(row.variant).blocks) lane.decide = of_lane(*blocks, lane);
       }
     }
     ++algorithm;
@@ -88,6 +117,12 @@ std::vector<Lane> make_lanes() {
 std::vector<Lane>& table() {
   static std::vector<Lane> all = make_lanes();
   return all;
+}
+
+void append(std::vector<Lane> added) {
+  if (table().size() + added.size() > kMostLanes)
+    throw std::runtime_error("expected at most " + std::to_string(kMostLanes) + " lanes, found more");
+  std::move(added.begin(), added.end(), std::back_inserter(table()));
 }
 
 }  // namespace
@@ -121,13 +156,47 @@ LaneName Lane::lane_name() const {
 std::span<const Lane> lanes() { return table(); }
 
 void add_lanes(std::vector<Lane> foreign) {
-  if (table().size() + foreign.size() > kMostLanes)
-    throw std::runtime_error("expected at most " + std::to_string(kMostLanes) + " lanes, found more");
   for (Lane& lane : foreign) {
     lane.foreign = true;
     lane.id = id_of(lane.lane_name());
-    table().push_back(std::move(lane));
   }
+  append(std::move(foreign));
+}
+
+Lane lane_under(const Lane& lane, std::string_view policy) {
+  Lane result = lane;
+  result.policy = policy;
+  result.id = id_of(result.lane_name());
+  result.under = parse_policy(policy, *lane.info);
+  if (info_of(lane.variant).arithmetic == Arithmetic::fast && result.under->kind != Policy::Kind::tolerances)
+    throw UsageError("expected another policy than " + result.policy + " for " + lane.id +
+                     ": the compiler's fast math keeps no error bound");
+  result.explainable = false;
+  result.decide =
+      lane.is_cuda() ? nullptr : block_under(*result.under, of_lane(*tables_of(lane.variant).policies, lane));
+  return result;
+}
+
+void add_policy_lanes(std::string_view pattern) {
+  const std::optional<LaneName> wanted = parse_lane_name(pattern);
+  if (!wanted || wanted->policy.empty()) return;
+  LaneName zero = *wanted;
+  zero.policy.clear();
+  std::vector<Lane> added;
+  std::exception_ptr refused;
+  bool any = false;
+  for (const Lane& lane : published_lanes()) {
+    if (!matches_any({id_of(zero)}, lane.id)) continue;
+    try {
+      Lane under = lane_under(lane, wanted->policy);
+      any = true;
+      if (!find_lane(under.id)) added.push_back(std::move(under));
+    } catch (const UsageError&) {
+      refused = std::current_exception();
+    }
+  }
+  if (!any && refused) std::rethrow_exception(refused);
+  append(std::move(added));
 }
 
 std::span<const Lane> published_lanes() {
@@ -144,6 +213,23 @@ const Lane* counterpart(const Lane& lane, Variant variant) {
   LaneName other = lane.lane_name();
   other.variant = name(variant);
   return find_lane(id_of(other));
+}
+
+void DecideBlock::operator()(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
+                             std::uint64_t* declined) const {
+  if (foreign_) return foreign_->decide(pairs, count, intersects, declined);
+  if (within_) return within_(epsilons_, pairs, count, intersects, declined);
+  function_(pairs, count, intersects, declined);
+  if (!otherwise_) return;
+  for (std::size_t word = 0; word * 64 < count; ++word) {
+    for (std::uint64_t left = declined[word]; left != 0; left &= left - 1) {
+      const std::uint64_t bit = left & -left;
+      std::uint64_t yes = 0, no_answer = 0;
+      otherwise_(pairs + word * 64 + std::countr_zero(left), 1, &yes, &no_answer);
+      intersects[word] |= yes ? bit : 0;
+      declined[word] &= no_answer ? ~std::uint64_t{0} : ~bit;
+    }
+  }
 }
 
 Verdict decide_one(const DecideBlock& block, const Pair& pair) {

@@ -13,6 +13,7 @@
 
 #include "core/algorithms/algorithm.h"
 #include "core/pair.h"
+#include "core/policies.h"
 #include "core/variants.h"
 
 namespace graze {
@@ -48,15 +49,19 @@ class ForeignCode {
 class DecideBlock {
  public:
   using Function = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined);
+  using Within = void (*)(const Epsilons& epsilons, const Pair* pairs, std::size_t count, std::uint64_t* intersects,
+                          std::uint64_t* declined);
 
   constexpr DecideBlock(Function function = nullptr) : function_(function) {}
+  DecideBlock(Within within, const Epsilons& epsilons) : within_(within), epsilons_(epsilons) {}
+  // What the bound leaves open, the other decides.
+  DecideBlock(Function bound, Function otherwise) : function_(bound), otherwise_(otherwise) {}
   DecideBlock(ForeignCode& foreign) : foreign_(&foreign) {}
 
-  void operator()(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) const {
-    foreign_ ? foreign_->decide(pairs, count, intersects, declined) : function_(pairs, count, intersects, declined);
-  }
-  constexpr explicit operator bool() const { return function_ || foreign_; }
+  void operator()(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) const;
+  constexpr explicit operator bool() const { return function_ || within_ || foreign_; }
   bool operator==(const DecideBlock&) const = default;
+  constexpr bool operator==(std::nullptr_t) const { return !*this; }
 
   // What a pair's two bits say.
   Verdict verdict_of(bool intersects, bool declined, const Pair& pair) const {
@@ -65,7 +70,9 @@ class DecideBlock {
   }
 
  private:
-  Function function_ = nullptr;
+  Function function_ = nullptr, otherwise_ = nullptr;
+  Within within_ = nullptr;
+  Epsilons epsilons_;
   ForeignCode* foreign_ = nullptr;
 };
 
@@ -85,7 +92,8 @@ struct Lane {
   const AlgorithmInfo* info;  // of the subject
   Scalar scalar;
   Variant variant;
-  std::string policy;  // empty: zero
+  std::string policy;           // empty: zero
+  std::optional<Policy> under;  // what it says, unless that is zero
   // Of a published algorithm its place in Algorithms, by which code that is compiled for each of them is found; else
   // -1.
   int algorithm;
@@ -109,7 +117,16 @@ std::span<const Lane> lanes();
 // Throws: std::runtime_error where there are too many.
 void add_lanes(std::vector<Lane> foreign);
 
-// Those of published algorithms.
+// The published lane under another policy, which no table holds.
+// Throws: UsageError where it cannot have the policy.
+Lane lane_under(const Lane& lane, std::string_view policy);
+
+// Adds a lane under the policy for each published lane that the pattern's parts before the policy match: of
+// "*/f32/cpu/rel:8" for all f32/cpu lanes. Nothing where the pattern has no policy; a lane that is there stays.
+// Requires: as add_lanes.   Throws: UsageError, unless some lane that matches can have the policy.
+void add_policy_lanes(std::string_view pattern);
+
+// Those of published algorithms, without a policy.
 std::span<const Lane> published_lanes();
 
 // The lane of that name; null for none.

@@ -2,6 +2,8 @@
 // Epsilon policies: every comparison that a paper or a library guards with an epsilon passes through one.
 #pragma once
 
+#include <string_view>
+
 #include "core/vec3.h"
 
 namespace graze {
@@ -13,10 +15,16 @@ enum class Site {
   orientation,     // an orientation determinant
   separation,      // the gap between two intervals: projections on an axis, or sections of a line
 };
+inline constexpr int kSiteCount = 4;
+
+constexpr std::string_view name(Site site) {
+  constexpr std::string_view kNames[] = {"plane_distance", "parallel", "orientation", "separation"};
+  return kNames[static_cast<int>(site)];
+}
 
 inline namespace GRAZE_FP {
 
-// The default policy: exact comparison. Other policies sweep an epsilon per site; a tracing one records.
+// The default policy: exact comparison. Other policies hold for zero what is small; a tracing one records.
 struct ExactZero {
   // x itself, or zero where the policy holds x for zero.
   template <class Real>

@@ -5,8 +5,10 @@
 
 #ifdef __CUDACC__
 #define GRAZE_HD __host__ __device__
+#define GRAZE_IN_PLACE __forceinline__
 #else
 #define GRAZE_HD
+#define GRAZE_IN_PLACE [[gnu::always_inline]]
 #endif
 
 // The namespace of everything that computes in floating point. A template compiled under two sets of

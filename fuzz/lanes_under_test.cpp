@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -13,6 +15,24 @@ namespace graze::fuzz {
 namespace {
 
 std::string twin_evidence_of(const Lane& lane) { return lane.exact ? "twin, exact" : cuda::twin_evidence(lane); }
+
+// Lanes under a policy stand at the table's end; here they stand beside the others of their subject.
+void sort_by_subject(LanesUnderTest& under_test) {
+  std::map<const AlgorithmInfo*, std::size_t> places;
+  for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());
+  std::vector<std::size_t> order(under_test.lanes.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
+    return places.at(under_test.lanes[l]->info) < places.at(under_test.lanes[r]->info);
+  });
+  LanesUnderTest sorted;
+  for (const std::size_t l : order) {
+    sorted.lanes.push_back(under_test.lanes[l]);
+    sorted.on_host.push_back(under_test.on_host[l]);
+  }
+  under_test.lanes = std::move(sorted.lanes);
+  under_test.on_host = std::move(sorted.on_host);
+}
 
 }  // namespace
 
@@ -44,6 +64,7 @@ std::string status(const Lane& lane, const cuda::Device* device, const std::stri
 
 LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device) {
   for (const std::string& glob : globs) {
+    add_policy_lanes(glob);
     if (std::none_of(lanes().begin(), lanes().end(), [&](const Lane& lane) { return matches_any({glob}, lane.id); })) {
       std::vector<std::string> ids;
       for (const Lane& lane : lanes()) ids.push_back(lane.id);
@@ -68,6 +89,7 @@ LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor exec
       why_not = status(lane, under_test.device.get(), why_not);
     }
   }
+  sort_by_subject(under_test);
   if (under_test.lanes.empty()) throw UsageError("expected a lane that runs here, found only some that are " + why_not);
   return under_test;
 }

@@ -2,6 +2,7 @@
 #include "reports/snippet.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -137,6 +138,40 @@ std::string in_comment(std::string text) {
   return text;
 }
 
+// The call that decides a and b, and what it needs before.
+struct Call {
+  std::string call, before;
+};
+
+Call call_of(const Lane& lane, std::string_view algorithm) {
+  if (!lane.under) return {fmt::format("{}::decide(a, b)", algorithm), ""};
+  const Epsilons& epsilons = lane.under->epsilons;
+  const std::string_view real = lane.scalar == Scalar::f32 ? "float" : "double";
+  return {fmt::format("graze::decide_within<{}, {}>(a, b, graze::Tolerances<{}>(graze::Epsilons{{{{{}}}, {{{}}}}}))",
+                      algorithm, epsilons.any_relative() ? fmt::format("graze::Sized<{}>", real) : real, real,
+                      fmt::join(epsilons.absolute, ", "), fmt::join(epsilons.relative, ", ")),
+          fmt::format(
+              "// The policy {}: absolute and relative tolerances at plane distances, parallel planes, orientations "
+              "and separations.\n",
+              lane.policy)};
+}
+
+// @name@ in the text is a value.
+std::string filled(std::string_view file, const std::vector<std::pair<std::string_view, std::string>>& values) {
+  std::string text;
+  std::string_view rest = embedded(fmt::format("reports/snippets/{}", file));
+  for (std::size_t at; (at = rest.find('@')) != rest.npos;) {
+    text += rest.substr(0, at);
+    rest.remove_prefix(at + 1);
+    const std::string_view key = rest.substr(0, rest.find('@'));
+    const auto value = std::find_if(values.begin(), values.end(), [&](auto& v) { return v.first == key; });
+    if (value == values.end()) throw std::logic_error(fmt::format("{}: no value of '{}'", file, key));
+    text += value->second;
+    rest.remove_prefix(key.size() + 1);
+  }
+  return text.append(rest);
+}
+
 }  // namespace
 
 bool shows_lanes(SnippetKind kind) {
@@ -145,15 +180,17 @@ bool shows_lanes(SnippetKind kind) {
 
 bool shows(SnippetKind kind, const Lane& lane) {
   if (lane.foreign) {
-    return shows_foreign(lane) && (kind == SnippetKind::gtest || (lane.is_cuda() ? kind == SnippetKind::cuda
-                                                                                  : kind == SnippetKind::cpp));
+    return shows_foreign(lane) &&
+           (kind == SnippetKind::gtest || (lane.is_cuda() ? kind == SnippetKind::cuda : kind == SnippetKind::cpp));
   }
+  if (lane.under && lane.under->kind != Policy::Kind::tolerances) return false;  // it is never wrong
   return shows_lanes(kind) && lane.is_cuda() == (kind == SnippetKind::cuda);
 }
 
-std::string amalgamated_source(std::string_view algorithm_id) {
+std::string amalgamated_source(std::string_view algorithm_id, bool with_policy) {
   Amalgamation all;
   all.add(header_of(algorithm_id));
+  if (with_policy) all.add("core/decide_under.h");
   std::string text = "// SPDX-License-Identifier: Apache-2.0\n";
   for (const std::string& line : all.system) text += line + '\n';
   return text + all.text;
@@ -179,45 +216,48 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
       if (std::isalnum(static_cast<unsigned char>(c))) name_of_test += c;
     }
     values[0].second = std::move(call.command);
-    values.insert(values.end(), {{"lane", found.lane->id},
-                                 {"verdict", std::string(name(found.verdict))},
-                                 {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
-                                 {"decide", std::move(call.decide)},
-                                 {"function", std::move(call.function)},
-                                 {"seconds", std::to_string(call.seconds)},
-                                 {"code", found.truth == Verdict::intersects ? "1" : "0"},
-                                 // Graze itself asks more than once.
-                                 {"rounds", found.verdict == Verdict::unstable && !found.lane->is_cuda() ? "1000" : "1"},
-                                 {"test", "Subject" + name_of_test}});
+    values.insert(values.end(),
+                  {{"lane", found.lane->id},
+                   {"verdict", std::string(name(found.verdict))},
+                   {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
+                   {"decide", std::move(call.decide)},
+                   {"function", std::move(call.function)},
+                   {"seconds", std::to_string(call.seconds)},
+                   {"code", found.truth == Verdict::intersects ? "1" : "0"},
+                   // Graze itself asks more than once.
+                   {"rounds", found.verdict == Verdict::unstable && !found.lane->is_cuda() ? "1000" : "1"},
+                   {"test", "Subject" + name_of_test}});
   } else if (shows_lanes(kind)) {
     const std::string_view id = found.lane->info->id;
-    values.insert(values.end(), {{"lane", found.lane->id},
-                                 {"verdict", std::string(name(found.verdict))},
-                                 {"algorithm", std::string(id)},
-                                 {"scalar", std::string(name(found.lane->scalar))},
-                                 {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
-                                 {"type", type_name(id)},
-                                 {"sources", amalgamated_source(id)}});
+    values.insert(
+        values.end(),
+        {{"lane", found.lane->id},
+         {"verdict", std::string(name(found.verdict))},
+         {"algorithm", std::string(id)},
+         {"scalar", std::string(name(found.lane->scalar))},
+         {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
+         {"type", type_name(id)},
+         {"decide", call_of(*found.lane, kind == SnippetKind::cuda ? "graze::" + type_name(id) : "Algorithm").call},
+         {"sources", amalgamated_source(id, found.lane->under.has_value())}});
   }
-  // @name@ in the text is a value.
   const bool ends = found.verdict == Verdict::crashed || found.verdict == Verdict::timed_out;
   const std::string_view file = !foreign                    ? file_of(kind)
                                 : kind == SnippetKind::cuda ? "foreign.cu.in"
                                 : kind == SnippetKind::cpp  ? "foreign.cpp.in"
                                 : ends                      ? "foreign_death.cpp.in"
                                                             : "foreign_gtest.cpp.in";
-  std::string text;
-  std::string_view rest = embedded(fmt::format("reports/snippets/{}", file));
-  for (std::size_t at; (at = rest.find('@')) != rest.npos;) {
-    text += rest.substr(0, at);
-    rest.remove_prefix(at + 1);
-    const std::string_view key = rest.substr(0, rest.find('@'));
-    const auto value = std::find_if(values.begin(), values.end(), [&](auto& v) { return v.first == key; });
-    if (value == values.end()) throw std::logic_error(fmt::format("{}: no value of '{}'", file, key));
-    text += value->second;
-    rest.remove_prefix(key.size() + 1);
-  }
-  return text.append(rest);
+  return filled(file, values);
+}
+
+std::string policy_header(const Lane& lane) {
+  const std::string_view id = lane.info->id;
+  const Call call = call_of(lane, "graze::" + type_name(id));
+  return filled("policy.h.in", {{"lane", lane.id},
+                                {"flags", flags_of(lane.variant)},
+                                {"real", lane.scalar == Scalar::f32 ? "float" : "double"},
+                                {"call", call.call},
+                                {"before", call.before},
+                                {"sources", amalgamated_source(id, lane.under.has_value())}});
 }
 
 }  // namespace graze::reports

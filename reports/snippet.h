@@ -34,7 +34,12 @@ struct SnippetCase {
 // Requires: finite coordinates; truth is not declined; a lane that the kind shows, if it shows any.
 std::string snippet(SnippetKind kind, const SnippetCase& found);
 
-// The text of core/algorithms/ID.h and all it includes as one source, without includes and guards of its own.
-std::string amalgamated_source(std::string_view algorithm_id);
+// The text of core/algorithms/ID.h and all it includes as one source, without includes and guards of its own; with what
+// decides under a policy, if asked for.
+std::string amalgamated_source(std::string_view algorithm_id, bool with_policy = false);
+
+// A header for C++ and CUDA with one function, triangles_intersect, that decides as the lane does.
+// Requires: a published algorithm, under tolerances or none.
+std::string policy_header(const Lane& lane);
 
 }  // namespace graze::reports

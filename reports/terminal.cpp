@@ -144,7 +144,7 @@ void print_summary(std::ostream& out, const Json& summary, const Json& oracle, c
 
 namespace {
 
-// One row for each subject and scalar, one column for each variant among the lanes; '-' where a lane did not run, '!'
+// One row for each subject, scalar and policy, one column for each variant among the lanes; '-' where a lane did not run, '!'
 // where it is wrong. The exact CUDA lane stands in the columns of all device variants: it is the same in each.
 void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& true_of_pair, std::span<const Lane* const> lanes,
                     std::span<const Verdict> verdicts, const Screen& screen) {
@@ -166,8 +166,11 @@ void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& tr
   TextTable table(columns);
   for (std::size_t first = 0, end; first < lanes.size(); first = end) {
     const Lane& lane = *lanes[first];
-    for (end = first; end < lanes.size() && lanes[end]->info == lane.info && lanes[end]->scalar == lane.scalar;) ++end;
-    std::vector<Cell> cells{fmt::format("{}/{}", lane.info->id, name(lane.scalar))};
+    for (end = first; end < lanes.size() && lanes[end]->info == lane.info && lanes[end]->scalar == lane.scalar &&
+                      lanes[end]->policy == lane.policy;)
+      ++end;
+    std::vector<Cell> cells{fmt::format("{}/{}{}{}", lane.info->id, name(lane.scalar), lane.policy.empty() ? "" : " ",
+                                        lane.policy)};
     for (const VariantInfo* variant : variants) {
       Cell& cell = cells.emplace_back("-");
       for (std::size_t l = first; l < end && cell.text == "-"; ++l) {

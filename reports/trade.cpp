@@ -21,7 +21,7 @@ using analysis::Offer;
 using analysis::PolicyErrors;
 using Json = nlohmann::ordered_json;
 
-constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7;
+constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7, kLegend = 240;
 constexpr std::array<const char*, 8> kColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7",
                                                  "#e69f00", "#56b4e9", "#8c6bb1", "#a6761d"};  // Okabe and Ito 2008
 
@@ -37,7 +37,7 @@ std::string text(double x, double y, const char* anchor, const std::string& what
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more, what);
 }
 
-std::string begin(const std::string& title) {
+std::string begin(const std::string& title, double right = kRight) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 420\" width=\"900\" height=\"420\" "
       "font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n<title>{}</title>\n",
@@ -173,10 +173,11 @@ std::string trade_figure(const std::vector<Offer>& offers) {
 }
 
 std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extreme) {
-  std::string svg = begin(fmt::format("Share of pairs without a right verdict, against {}: 2^k", name(extreme)));
+  std::string svg =
+      begin(fmt::format("Share of pairs without a right verdict, against {}: 2^k", name(extreme)), kRight - kLegend);
   const std::vector<int> at = analysis::exponents(extreme);
   const auto x_of = [&](int k) {
-    return kLeft + (kRight - kLeft - 190) * (k - at.front()) / std::max(1, at.back() - at.front());
+    return kLeft + (kRight - kLeft - kLegend) * (k - at.front()) / std::max(1, at.back() - at.front());
   };
   for (std::size_t i = 0; i < at.size(); i += std::max<std::size_t>(1, at.size() / 8))
     svg += text(x_of(at[i]), 370, "middle", std::to_string(at[i]));
@@ -194,8 +195,8 @@ std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extr
     const double y = kTop + 6 + 15.0 * static_cast<double>(row);
     svg += fmt::format(
         "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"{3}\" stroke-width=\"3\"{4}/>\n",
-        kRight - 176, kRight - 156, y, colour, dashes);
-    svg += text(kRight - 150, y + 4, "start", curve.lane, " font-size=\"10\"");
+        kRight - kLegend + 14, kRight - kLegend + 34, y, colour, dashes);
+    svg += text(kRight - kLegend + 40, y + 4, "start", curve.lane, " font-size=\"10\"");
     ++row;
   }
   return svg + "</svg>\n";

@@ -128,7 +128,7 @@ void add_description(Description& description, const std::string& subject, const
 void add_lane(Entry& entry, std::vector<Lane>& lanes, Code code, Scalar scalar, Variant variant, unsigned outside) {
   const auto& running = entry.running.emplace_back(fmt::format("{}/{}", name(scalar), name(variant)),
                                                    std::make_unique<ForeignProcesses>(std::move(code), scalar));
-  lanes.push_back({"", &entry.info, scalar, variant, "", -1, *running.processes, false, false, true, outside, ""});
+  lanes.push_back({"", &entry.info, scalar, variant, "", {}, -1, *running.processes, false, false, true, outside, ""});
 }
 
 LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
@@ -167,7 +167,7 @@ void add_cuda_lanes(Entry& entry, bool on_device) {
       write_atomically(code.what, build.ptx);
     }
     if (code.what.empty()) {
-      made.push_back({"", &entry.info, build.scalar, build.variant, "", -1, nullptr, false, false, true, 0, ""});
+      made.push_back({"", &entry.info, build.scalar, build.variant, "", {}, -1, nullptr, false, false, true, 0, ""});
     } else {
       add_lane(entry, made, std::move(code), build.scalar, build.variant, 0);
     }

@@ -18,15 +18,21 @@ inline namespace GRAZE_FP {
 using Algorithms = std::tuple<ProjectedSat, IntervalOverlap, Moller1997, GuigueDevillers2003, SeparatingAxes>;
 inline constexpr int kAlgorithmCount = std::tuple_size_v<Algorithms>;
 
-// The pair's stored bits, widened; a decision by one algorithm in one scalar.
-template <class Algorithm, class Real>
-GRAZE_HD Verdict decide_widened(const Pair& pair) {
+// The pair's stored bits, widened, decided by decide(a, b).
+template <class Real, class Decide>
+GRAZE_HD Verdict decide_widened(const Pair& pair, const Decide& decide) {
   Vec3<Real> a[3], b[3];
   for (int i = 0; i < 3; ++i) {
     a[i] = {Real(pair.a[i].x), Real(pair.a[i].y), Real(pair.a[i].z)};
     b[i] = {Real(pair.b[i].x), Real(pair.b[i].y), Real(pair.b[i].z)};
   }
-  return Algorithm::decide(a, b);
+  return decide(a, b);
+}
+
+// A decision by one algorithm in one scalar.
+template <class Algorithm, class Real>
+GRAZE_HD Verdict decide_widened(const Pair& pair) {
+  return decide_widened<Real>(pair, [](const auto& a, const auto& b) { return Algorithm::decide(a, b); });
 }
 
 }  // namespace GRAZE_FP

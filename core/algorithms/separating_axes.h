@@ -41,6 +41,10 @@ struct SeparatingAxes {
                                  const Policy& policy) {
     return !overlap(project(axis, a), project(axis, b), policy);
   }
+
+ public:
+  // No other comparison matters to a verdict of disjoint than those of the axis that separates.
+  static constexpr bool kDisjointByOneAxis = true;
 };
 
 }  // namespace GRAZE_FP

@@ -11,9 +11,11 @@
 
 namespace graze::cuda {
 
-#define GRAZE_DECLARE(name)             \
-  namespace name {                      \
-  extern const VariantKernels kKernels; \
+#define GRAZE_DECLARE(name)                                \
+  namespace name {                                         \
+  extern const VariantKernels kKernels;                    \
+  extern const DeviceKernels<LaunchWithin> kPolicyKernels; \
+  extern const DeviceKernels<LaunchDecide> kBoundKernels;  \
   }
 #define GRAZE_DECLARE_host_rounded(name)
 #define GRAZE_DECLARE_host_contracted(name)
@@ -27,37 +29,65 @@ namespace graze::cuda {
 #include "core/variants.inc"
 #undef GRAZE_VARIANT
 
-const VariantKernels& kernels_of(Variant variant) {
-#define GRAZE_KERNELS_host_rounded(name) nullptr
-#define GRAZE_KERNELS_host_contracted(name) nullptr
-#define GRAZE_KERNELS_host_fast(name) nullptr
-#define GRAZE_KERNELS_device_exact(name) nullptr
-#define GRAZE_KERNELS_device_flushed(name) nullptr
-#define GRAZE_KERNELS_device_rounded(name) &name::kKernels
-#define GRAZE_KERNELS_device_contracted(name) &name::kKernels
-#define GRAZE_KERNELS_device_fast(name) &name::kKernels
+namespace {
+
+struct KernelTables {
+  const VariantKernels* kernels = nullptr;
+  const DeviceKernels<LaunchWithin>* within = nullptr;
+  const DeviceKernels<LaunchDecide>* bound = nullptr;  // null of fast math, which keeps no error bound
+};
+
+const KernelTables& tables_of(Variant variant) {
+#define GRAZE_KERNELS_host_rounded(name) \
+  KernelTables {}
+#define GRAZE_KERNELS_host_contracted(name) \
+  KernelTables {}
+#define GRAZE_KERNELS_host_fast(name) \
+  KernelTables {}
+#define GRAZE_KERNELS_device_exact(name) \
+  KernelTables {}
+#define GRAZE_KERNELS_device_flushed(name) \
+  KernelTables {}
+#define GRAZE_KERNELS_device_rounded(name) \
+  KernelTables { &name::kKernels, &name::kPolicyKernels, &name::kBoundKernels }
+#define GRAZE_KERNELS_device_contracted(name) GRAZE_KERNELS_device_rounded(name)
+#define GRAZE_KERNELS_device_fast(name) \
+  KernelTables { &name::kKernels, &name::kPolicyKernels, nullptr }
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, ...) GRAZE_KERNELS_##runs_on##_##arithmetic(name),
-  static constexpr const VariantKernels* kBuilt[] = {
+  static constexpr KernelTables kBuilt[] = {
 #include "core/variants.inc"
   };
 #undef GRAZE_VARIANT
-  const VariantKernels* kernels = kBuilt[static_cast<int>(variant)];
-  if (!kernels) throw std::logic_error(std::string(graze::name(variant)) + ": expected a variant with device kernels");
-  return *kernels;
+  const KernelTables& tables = kBuilt[static_cast<int>(variant)];
+  if (!tables.kernels)
+    throw std::logic_error(std::string(graze::name(variant)) + ": expected a variant with device kernels");
+  return tables;
 }
 
-namespace {
+template <class Launch>
+Launch of_lane(const DeviceKernels<Launch>& table, const Lane& lane) {
+  return table[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)];
+}
 
 std::string version(int packed) { return std::to_string(packed / 1000) + "." + std::to_string(packed % 1000 / 10); }
 
 }  // namespace
 
+const VariantKernels& kernels_of(Variant variant) { return *tables_of(variant).kernels; }
+
 void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream) {
-  if (lane.exact) return exact.decide(pairs, intersects, declined, nullptr, stream);
-  kernels_of(lane.variant)
-      .decide[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pairs, intersects,
-                                                                                               declined, stream);
+  if (lane.algorithm < 0) return exact.decide(pairs, intersects, declined, nullptr, stream);
+  const KernelTables& tables = tables_of(lane.variant);
+  if (!lane.under) {
+    of_lane(tables.kernels->decide, lane)(pairs, intersects, declined, stream);
+  } else if (lane.under->kind == Policy::Kind::tolerances) {
+    of_lane(*tables.within, lane)(lane.under->epsilons, pairs, intersects, declined, stream);
+  } else {
+    of_lane(*tables.bound, lane)(pairs, intersects, declined, stream);
+    check(cudaGetLastError());
+    if (lane.under->kind == Policy::Kind::filtered) exact.decide_declined(pairs, intersects, declined, stream);
+  }
   check(cudaGetLastError());
 }
 

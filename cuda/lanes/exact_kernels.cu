@@ -51,6 +51,25 @@ __global__ void __launch_bounds__(kThreads, 3) decide_most(DevicePairs pairs, Pl
   count(stages, Stage::bounded, static_cast<std::uint32_t>(__popc(decided)));
 }
 
+// Lists the finite pairs that a filter declined, and takes their bits back.
+__global__ void __launch_bounds__(kThreads)
+    list_declined(DevicePairs pairs, Places left, std::uint32_t* intersects, std::uint32_t* declined) {
+  const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
+  bool finite = true;
+  if (i < pairs.count && (declined[i / 32] >> i % 32 & 1)) {
+    float c[kCoordinates];
+    load(pairs, i, c);
+    for (float x : c) finite = finite && is_finite(x);
+    if (finite && exact::detail::shared_vertex(c, c + 9) >= 0) {
+      set_bit(intersects, i);
+    } else if (finite) {
+      left.add(i);
+    }
+  }
+  const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
+  if (threadIdx.x % 32 == 0) declined[i / 32] = declined_word;
+}
+
 __global__ void __launch_bounds__(kThreads, 2)
     decide_left(DevicePairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
   using Numbers = NumberKinds<exact::detail::SingleNumbers, exact::detail::DoubleNumbers>;
@@ -109,20 +128,34 @@ constexpr int kBlocksForLeft = 1024;
 
 }  // namespace
 
+void DeviceExact::empty_lists(std::uint32_t pairs, cudaStream_t stream) {
+  std::uint32_t* counts = counts_.at_least(std::size(left_));
+  for (std::size_t k = 0; k < std::size(left_); ++k) left_[k] = {places_[k].at_least(pairs), counts + k};
+  check(cudaMemsetAsync(counts, 0, std::size(left_) * sizeof *counts, stream));
+}
+
+void DeviceExact::decide_listed(DevicePairs pairs, std::uint32_t* intersects, unsigned long long* stages,
+                                cudaStream_t stream) {
+  decide_left<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left_[0], left_[1], intersects, stages);
+  decide_on_int128<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left_[1], left_[2], intersects, stages);
+  decide_on_wide<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left_[2], intersects, stages);
+  check(cudaGetLastError());
+}
+
 void DeviceExact::decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
                          unsigned long long* stages, cudaStream_t stream) {
   if (pairs.count == 0) return;
-  constexpr int kLists = 3;
-  std::uint32_t* counts = counts_.at_least(kLists);
-  Places left[kLists];
-  for (int k = 0; k < kLists; ++k) left[k] = {places_[k].at_least(pairs.count), counts + k};
-  check(cudaMemsetAsync(counts, 0, kLists * sizeof *counts, stream));
-  decide_most<<<(pairs.count + kThreads - 1) / kThreads, kThreads, 0, stream>>>(pairs, left[0], intersects, declined,
-                                                                                stages);
-  decide_left<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);
-  decide_on_int128<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);
-  decide_on_wide<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[2], intersects, stages);
-  check(cudaGetLastError());
+  empty_lists(pairs.count, stream);
+  decide_most<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], intersects, declined, stages);
+  decide_listed(pairs, intersects, stages, stream);
+}
+
+void DeviceExact::decide_declined(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
+                                  cudaStream_t stream) {
+  if (pairs.count == 0) return;
+  empty_lists(pairs.count, stream);
+  list_declined<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], intersects, declined);
+  decide_listed(pairs, intersects, nullptr, stream);
 }
 
 }  // namespace graze::cuda

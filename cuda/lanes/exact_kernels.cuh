@@ -7,9 +7,12 @@
 #include <cstdint>
 
 #include "core/exact/exact.h"
-#include "core/lanes.h"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/places.h"
+
+namespace graze {
+struct Lane;
+}
 
 namespace graze::cuda {
 
@@ -20,9 +23,15 @@ class DeviceExact {
   // written. Adds to stages[s], unless null, the pairs that stage s decided.
   void decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
               cudaStream_t stream);
+  // Decides those pairs alone whose bit in `declined` is set: what a filter left. Those that are not finite stay so.
+  void decide_declined(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
 
  private:
+  void empty_lists(std::uint32_t pairs, cudaStream_t stream);
+  void decide_listed(DevicePairs pairs, std::uint32_t* intersects, unsigned long long* stages, cudaStream_t stream);
+
   DeviceArray<std::uint32_t> places_[3], counts_;
+  Places left_[3];
 };
 
 // Starts the kernels of a CUDA lane, which write as DeviceExact::decide does.

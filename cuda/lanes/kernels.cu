@@ -4,40 +4,16 @@
 // the variants. The twins are generated from the PTX of this file: see cuda/twin/twin.h.
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/trace.h"
+#include "cuda/lanes/vote.cuh"
 
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-template <class Real>
-struct Triangles {
-  Vec3<Real> a[3], b[3];
-};
-
-template <class Real>
-__device__ Triangles<Real> widened(const DevicePairs& pairs, std::uint32_t i) {
-  const float* c = pairs.coordinates + i;
-  const auto vertex = [&](int v) {
-    return Vec3<Real>{Real(c[(3 * v) * pairs.stride]), Real(c[(3 * v + 1) * pairs.stride]),
-                      Real(c[(3 * v + 2) * pairs.stride])};
-  };
-  return {{vertex(0), vertex(1), vertex(2)}, {vertex(3), vertex(4), vertex(5)}};
-}
-
 // One thread per pair. An algorithm is its place in Algorithms, so that the twin generator knows a kernel by name.
 template <int algorithm, class Real>
 __global__ void decide_pairs(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined) {
-  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
-  Verdict verdict = Verdict::disjoint;
-  if (i < pairs.count) {
-    const Triangles<Real> t = widened<Real>(pairs, i);
-    verdict = std::tuple_element_t<algorithm, Algorithms>::decide(t.a, t.b);
-  }
-  const std::uint32_t yes = __ballot_sync(0xffffffffu, verdict == Verdict::intersects);
-  const std::uint32_t no_answer = __ballot_sync(0xffffffffu, verdict == Verdict::declined);
-  if (threadIdx.x % 32 == 0) {
-    intersects[i / 32] = yes;
-    declined[i / 32] = no_answer;
-  }
+  vote<Real>(pairs, intersects, declined,
+             [](const auto& a, const auto& b) { return std::tuple_element_t<algorithm, Algorithms>::decide(a, b); });
 }
 
 template <int algorithm, class Real>
@@ -49,8 +25,6 @@ __global__ void trace_pairs(DevicePairs pairs, std::uint64_t* hashes) {
   const Verdict verdict = std::tuple_element_t<algorithm, Algorithms>::decide(t.a, t.b, TracePolicy{&hash});
   hashes[i] = hash ^ static_cast<std::uint64_t>(verdict);
 }
-
-constexpr std::uint32_t thread_blocks(const DevicePairs& pairs) { return (pairs.count + kThreads - 1) / kThreads; }
 
 template <int algorithm, class Real>
 void launch_decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream) {

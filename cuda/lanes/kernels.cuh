@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "core/algorithms/algorithms.h"
+#include "core/tolerances.h"
 #include "core/variants.h"
 #include "cuda/lanes/device_pairs.h"
 
@@ -23,6 +24,10 @@ using LaunchDecide = void (*)(DevicePairs pairs, std::uint32_t* intersects, std:
 // Starts a kernel that writes each pair's trace hash; see cuda/lanes/trace.h.
 using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream);
 
+// As LaunchDecide, of lanes under tolerances.
+using LaunchWithin = void (*)(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects,
+                              std::uint32_t* declined, cudaStream_t stream);
+
 template <class Launch>
 using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;
 
@@ -30,6 +35,8 @@ struct VariantKernels {
   DeviceKernels<LaunchDecide> decide;
   DeviceKernels<LaunchTrace> trace;
 };
+
+constexpr std::uint32_t thread_blocks(const DevicePairs& pairs) { return (pairs.count + kThreads - 1) / kThreads; }
 
 // Throws: std::logic_error for a variant that no kernel is built in.
 const VariantKernels& kernels_of(Variant variant);

@@ -28,6 +28,7 @@ constexpr Proof kProofs[] = {
 // A variant's tables: for processors with FMA instructions, and for others. Null without a twin.
 struct TwinTables {
   const TwinTable *table = nullptr, *portable = nullptr;
+  const PolicyTwinTable* policies = nullptr;
 };
 
 #define GRAZE_TABLES_no_twin_rounded(name) \
@@ -41,9 +42,9 @@ struct TwinTables {
 #define GRAZE_TABLES_no_twin_exact(name) \
   {}
 #define GRAZE_TABLES_twin_rounded(name) \
-  { &twin_##name::kTwinTable, &twin_##name::kTwinTable }
+  { &twin_##name::kTwinTable, &twin_##name::kTwinTable, &policy_twin_##name::kPolicyTwins }
 #define GRAZE_TABLES_twin_contracted(name) \
-  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable }
+  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, &policy_twin_##name::kPolicyTwins }
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_TABLES_##twin##_##arithmetic(name),
 constexpr TwinTables kTables[] = {
 #include "core/variants.inc"
@@ -77,15 +78,26 @@ const TwinTable* twin_table(Variant variant) {
 const TwinRow& twin_row(const Lane& lane) {
   static const TwinRow kNone;
   const TwinTable* table = twin_table(lane.variant);
-  return table && lane.algorithm >= 0
+  return table && lane.algorithm >= 0 && !lane.under
              ? table->rows.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar))
              : kNone;
 }
 
 DecideBlock::Function twin_block(const Lane& lane) { return twin_row(lane).decide; }
 
+// The twin of a lane under tolerances; null under other policies, and without a twin.
+DecideBlock policy_twin(const Lane& lane) {
+  const PolicyTwinTable* table = kTables[static_cast<int>(lane.variant)].policies;
+  if (!table || lane.under->kind != Policy::Kind::tolerances) return nullptr;
+  const PolicyTwinRow& row =
+      table->at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));
+  return {lane.under->epsilons.any_relative() ? row.relative : row.absolute, lane.under->epsilons};
+}
+
 DecideBlock block_on_host(const Lane& lane) {
   if (lane.decide) return lane.decide;
+  if (lane.foreign) return nullptr;
+  if (lane.under) return policy_twin(lane);
   if (!lane.exact) return twin_block(lane);
   const Lane* on_cpu = counterpart(lane, Variant::cpu);
   return on_cpu ? on_cpu->decide : nullptr;

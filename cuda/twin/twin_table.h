@@ -27,18 +27,30 @@ struct TwinTable {
   std::array<std::array<TwinRow, 2>, kAlgorithmCount> rows;
 };
 
-// twin_NAME of the variants with a twin, and twin_NAME_portable of those with contraction.
+// Of lanes under tolerances: with relative ones or without.
+struct PolicyTwinRow {
+  DecideBlock::Within absolute = nullptr, relative = nullptr;
+};
+using PolicyTwinTable = std::array<std::array<PolicyTwinRow, 2>, kAlgorithmCount>;
+
+// twin_NAME of the variants with a twin, and twin_NAME_portable of those with contraction; policy_twin_NAME for all
+// processors.
 #define GRAZE_DECLARE(name)          \
   namespace name {                   \
   extern const TwinTable kTwinTable; \
+  }
+#define GRAZE_DECLARE_POLICY(name)             \
+  namespace policy_##name {                    \
+    extern const PolicyTwinTable kPolicyTwins; \
   }
 #define GRAZE_DECLARE_no_twin_rounded(name)
 #define GRAZE_DECLARE_no_twin_contracted(name)
 #define GRAZE_DECLARE_no_twin_fast(name)
 #define GRAZE_DECLARE_no_twin_flushed(name)
 #define GRAZE_DECLARE_no_twin_exact(name)
-#define GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name)
-#define GRAZE_DECLARE_twin_contracted(name) GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(twin_##name##_portable)
+#define GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name) GRAZE_DECLARE_POLICY(twin_##name)
+#define GRAZE_DECLARE_twin_contracted(name) \
+  GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(twin_##name##_portable) GRAZE_DECLARE_POLICY(twin_##name)
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_DECLARE_##twin##_##arithmetic(name)
 #include "core/variants.inc"
 #undef GRAZE_VARIANT

@@ -56,6 +56,37 @@ TEST_F(DeviceTest, GpuEngineCpuEngineAndTwinsLeaveTheSameBytesOverAllStrata) {
   }
 }
 
+TEST_F(DeviceTest, LanesUnderTolerancesLeaveTheSameBytesByTheirTwins) {
+  const std::vector<std::string> globs = {"*/cuda-nofma/abs:1e-6", "*/cuda-nofma/rel:16", "*/cuda-fma/abs:1e-6",
+                                          "*/cuda-fma/rel:16", "*/cuda-fma/plane_distance=rel:3,separation=abs:1e-9"};
+  const LanesUnderTest by_twins = select_lanes(globs, Executor::twin),
+                       by_device = select_lanes(globs, Executor::device);
+  ASSERT_EQ(by_twins.lanes.size(), globs.size() * 10);
+  run(campaign(by_twins, "twins", 60'007, 0));
+  run(campaign(by_device, "cpu", 60'007, 0));
+  const Json summary = run(campaign(by_device, "gpu", 60'007, 1));
+  expect_same_bytes("twins", "cpu");
+  expect_same_bytes("twins", "gpu");
+  EXPECT_GT(summary["signatures"].size(), 1000u);
+}
+
+TEST_F(DeviceTest, BoundsDecideNothingWrongly) {
+  const LanesUnderTest lanes =
+      select_lanes({"*/cuda-nofma/bound", "*/cuda-fma/bound", "*/cuda-fma/filtered"}, Executor::device);
+  ASSERT_EQ(lanes.lanes.size(), 3u * 4 * 2);
+  const Json summary = run(campaign(lanes, "bounds", 200'003, 1));
+  std::uint64_t declined = 0;
+  for (const auto& [stratum, row] : summary["strata"].items()) {
+    for (const auto& [lane, counts] : row["lanes"].items()) {
+      EXPECT_EQ(counts["false_positive"], 0) << lane << " " << stratum;
+      EXPECT_EQ(counts["false_negative"], 0) << lane << " " << stratum;
+      if (lane.ends_with("filtered")) EXPECT_EQ(counts["declined"], 0) << lane << " " << stratum;
+      declined += counts["declined"].get<std::uint64_t>();
+    }
+  }
+  EXPECT_GT(declined, 10'000u);
+}
+
 TEST_F(DeviceTest, BothEnginesLeaveTheSameBytesOfLanesWithoutATwin) {
   const LanesUnderTest all = select_lanes({"*/cuda*"}, Executor::device);
   ASSERT_GT(all.lanes.size(), on_device_.lanes.size());

@@ -162,7 +162,7 @@ std::string variant_of(const Lane& lane) {
 
 // What the experiments say, and which.
 std::string reason_by_experiment(const LaneExplanation& lane) {
-  const auto words = [&]() -> std::string_view {
+  const auto words = [&]() -> std::string {
     switch (lane.cause) {
       case Cause::contraction:
         return fused(lane);

@@ -2,8 +2,11 @@
 // Lanes under policies over the strata: what bounds certify is the truth, and what explanations say of policies holds.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "analysis/explain.h"
 #include "core/exact/exact.h"
+#include "cuda/twin/twin.h"
 #include "oracle/precise.h"
 #include "oracle/truth.h"
 #include "strata/strata.h"
@@ -116,6 +119,32 @@ TEST(PolicyLanes, AreExplainedByTheLaneWithoutPolicy) {
   EXPECT_EQ(sentences(explain(pair, std::vector{paper})).at(0),
             "moller_1997/f32 (cpu/paper) says intersects, but the triangles are 0.005 apart (5.37e+06 ulps of the "
             "largest coordinate): the policy (without paper it is right).");
+}
+
+// Twins of lanes under tolerances: without contraction they are the CPU lanes; with it they are not.
+TEST(PolicyLanes, TwinsWithoutContractionAreTheCpuLanes) {
+  std::uint64_t contracted_apart = 0;
+  for (const Lane& zero : published_lanes()) {
+    if (zero.variant != Variant::cpu) continue;
+    for (const char* policy : {"abs:1e-6", "rel:16", "plane_distance=rel:3,separation=abs:1e-9"}) {
+      const Lane on_cpu = lane_under(zero, policy),
+                 without = lane_under(*counterpart(zero, Variant::cuda_nofma), policy),
+                 with = lane_under(*counterpart(zero, Variant::cuda_fma), policy);
+      const DecideBlock contracted = cuda::block_on_host(with);
+      EXPECT_EQ(!contracted, zero.id == "interval_overlap/f32/cpu" && with.under->epsilons.any_relative()) << with.id;
+      for (const strata::StratumInfo& row : strata::kStrata) {
+        const std::vector<Pair> pairs = drawn(row.stratum, 192);
+        std::array<std::uint64_t, 3> expected, yes, none;
+        on_cpu.decide(pairs.data(), pairs.size(), expected.data(), none.data());
+        cuda::block_on_host(without)(pairs.data(), pairs.size(), yes.data(), none.data());
+        ASSERT_EQ(yes, expected) << without.id << " on " << row.id;
+        if (!contracted) continue;
+        contracted(pairs.data(), pairs.size(), yes.data(), none.data());
+        contracted_apart += yes != expected;
+      }
+    }
+  }
+  EXPECT_GT(contracted_apart, 50u);
 }
 
 }  // namespace

@@ -177,16 +177,38 @@ Lane lane_under(const Lane& lane, std::string_view policy) {
   return result;
 }
 
+namespace {
+
+// A pattern's parts: of the lanes without a policy, and the policy. It is the fourth part and what follows, or, where a
+// star stands for several parts ("*/cpu/rel:8"), the last one if it is the name of a policy.
+struct PolicyPattern {
+  std::string zero, policy;
+};
+
+std::optional<PolicyPattern> split(std::string_view pattern) {
+  if (std::optional<LaneName> wanted = parse_lane_name(pattern); wanted && !wanted->policy.empty()) {
+    std::string policy = std::move(wanted->policy);
+    wanted->policy.clear();
+    return PolicyPattern{id_of(*wanted), std::move(policy)};
+  }
+  const std::size_t slash = pattern.rfind('/');
+  if (slash == pattern.npos) return std::nullopt;
+  const std::string_view last = pattern.substr(slash + 1);
+  const bool is_policy = last.find(':') != last.npos || last == "paper" || last == "bound" || last == "filtered";
+  if (!is_policy) return std::nullopt;
+  return PolicyPattern{std::string(pattern.substr(0, slash)), std::string(last)};
+}
+
+}  // namespace
+
 void add_policy_lanes(std::string_view pattern) {
-  const std::optional<LaneName> wanted = parse_lane_name(pattern);
-  if (!wanted || wanted->policy.empty()) return;
-  LaneName zero = *wanted;
-  zero.policy.clear();
+  const std::optional<PolicyPattern> wanted = split(pattern);
+  if (!wanted) return;
   std::vector<Lane> added;
   std::exception_ptr refused;
   bool any = false;
   for (const Lane& lane : published_lanes()) {
-    if (!matches_any({id_of(zero)}, lane.id)) continue;
+    if (!matches_any({wanted->zero}, lane.id)) continue;
     try {
       Lane under = lane_under(lane, wanted->policy);
       any = true;

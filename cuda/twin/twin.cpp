@@ -85,10 +85,17 @@ const TwinRow& twin_row(const Lane& lane) {
 
 DecideBlock::Function twin_block(const Lane& lane) { return twin_row(lane).decide; }
 
-// The twin of a lane under tolerances; null under other policies, and without a twin.
+// Whether a device is known to contract the lane's kernel otherwise than its twin does: an H200 gave other verdicts on
+// some hundreds of 60,007 pairs, for this one kernel of forty. Why it does is not known.
+bool contracts_otherwise(const Lane& lane) {
+  return lane.info->id == "interval_overlap" && lane.scalar == Scalar::f32 && lane.under->epsilons.any_relative() &&
+         info_of(lane.variant).arithmetic == Arithmetic::contracted;
+}
+
+// The twin of a lane under tolerances; null under other policies, and without a twin that is right.
 DecideBlock policy_twin(const Lane& lane) {
   const PolicyTwinTable* table = kTables[static_cast<int>(lane.variant)].policies;
-  if (!table || lane.under->kind != Policy::Kind::tolerances) return nullptr;
+  if (!table || lane.under->kind != Policy::Kind::tolerances || contracts_otherwise(lane)) return nullptr;
   const PolicyTwinRow& row =
       table->at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));
   return {lane.under->epsilons.any_relative() ? row.relative : row.absolute, lane.under->epsilons};

@@ -96,14 +96,19 @@ int tune(const TuneOptions& options) {
   fuzz::write_whole(out / "policy.h", reports::policy_header(chosen));
   for (const auto& [place, name] :
        {std::pair{tuned.confirmed.first_mended, "mended.pairs"}, {tuned.confirmed.first_broken, "broken.pairs"}}) {
+    fs::remove(out / name);  // of another run
     if (!place) continue;
     const Pair pair = spec.others[static_cast<std::size_t>(place->source)].pair(place->index);
     fuzz::write_whole(out / name, smallest(*lane, chosen, pair));
     written.emplace_back(name);
   }
   fmt::print("Wrote {}/{{{}}}\n", out.string(), fmt::join(written, ","));
-  fmt::print("Next: graze check {}/broken.pairs --lanes {}\n", shell_word(out.string()),
-             shell_word(lane->id + (tuned.chosen.empty() ? "" : "," + chosen.id)));
+  if (written.back().ends_with(".pairs")) {
+    fmt::print("Next: graze check {} --lanes {}\n", shell_word((out / written.back()).string()),
+               shell_word(lane->id + "," + chosen.id));
+  } else {
+    fmt::print("Next: graze trade\n");
+  }
   return 0;
 }
 

@@ -81,6 +81,19 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   }
 }
 
+TEST_F(TuneCommand, NextIsACommandThatRuns) {
+  // Something is mended and broken; then, in the same folder, nothing is.
+  for (const char* lane : {"moller_1997/f32/cpu --strata near_vertex_face --forbid miss --max-rate 1e-2",
+                           "guigue_devillers_2003/f64/cpu --strata uniform --max-rate 1e-2"}) {
+    const Ran ran = shell(std::string("graze tune --pairs 3k --out t ") + lane);
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    const std::size_t at = ran.out.find("\nNext: ");
+    ASSERT_NE(at, std::string::npos) << ran.out;
+    expect_done(ran.out.substr(at + 7));
+  }
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/mended.pairs"));
+}
+
 // The header decides as the lane: compiled by itself, on the smallest cases.
 TEST_F(TuneCommand, TheHeaderDecidesAsTheLane) {
   expect_done(

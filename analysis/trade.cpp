@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace graze::analysis {
 namespace {
@@ -48,23 +49,27 @@ std::string_view name(Extreme extreme) {
   return kNames[static_cast<int>(extreme)];
 }
 
+double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs) {
+  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
+  const auto start = std::chrono::steady_clock::now();
+  lane(pairs.data(), pairs.size(), intersects.data(), declined.data());
+  const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
+  return taken.count() / static_cast<double>(pairs.size());
+}
+
+Cost quartiles(std::vector<double> nanoseconds) {
+  std::sort(nanoseconds.begin(), nanoseconds.end());
+  const std::size_t quarter = nanoseconds.size() / 4;
+  return {nanoseconds[quarter], nanoseconds[nanoseconds.size() / 2], nanoseconds[nanoseconds.size() - 1 - quarter]};
+}
+
 std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes) {
-  std::vector<std::uint64_t> yes(pairs.size() / 64 + 1), none(yes.size());
   std::vector<std::vector<double>> taken(lanes.size());
   for (int pass = 0; pass < passes; ++pass) {
-    for (std::size_t l = 0; l < lanes.size(); ++l) {
-      const auto start = std::chrono::steady_clock::now();
-      lanes[l](pairs.data(), pairs.size(), yes.data(), none.data());
-      const std::chrono::duration<double, std::nano> passed = std::chrono::steady_clock::now() - start;
-      taken[l].push_back(passed.count() / static_cast<double>(pairs.size()));
-    }
+    for (std::size_t l = 0; l < lanes.size(); ++l) taken[l].push_back(nanoseconds_a_pair(lanes[l], pairs));
   }
   std::vector<Cost> costs;
-  for (std::vector<double>& of : taken) {
-    std::sort(of.begin(), of.end());
-    const std::size_t quarter = of.size() / 4;
-    costs.push_back({of[quarter], of[of.size() / 2], of[of.size() - 1 - quarter]});
-  }
+  for (std::vector<double>& of : taken) costs.push_back(quartiles(std::move(of)));
   return costs;
 }
 

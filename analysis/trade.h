@@ -16,6 +16,12 @@ struct Cost {
   double low = 0, middle = 0, high = 0;
 };
 
+// The lane's time for the pairs, once.   Requires: pairs.
+double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs);
+
+// Requires: some.
+Cost quartiles(std::vector<double> nanoseconds);
+
 // Requires: pairs.
 std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector<Pair>& pairs, int passes);
 

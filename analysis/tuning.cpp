@@ -143,12 +143,10 @@ class Tuner {
         if (!known) points.push_back(errors[p]);
       }
       std::stable_sort(points.begin(), points.end(), [](const PolicyErrors& l, const PolicyErrors& r) {
-        return value_of(l.policy) < value_of(r.policy);
+        return tolerance_of(l.policy) < tolerance_of(r.policy);
       });
     }
   }
-
-  static double value_of(const std::string& policy) { return std::stod(policy.substr(policy.rfind(':') + 1)); }
 
   // Low enough first, then by the other errors, then by those forbidden.
   std::tuple<bool, std::uint64_t, std::uint64_t> rank(const PolicyErrors& errors) const {
@@ -244,6 +242,8 @@ PolicyErrors& PolicyErrors::operator+=(const PolicyErrors& other) {
   keep_first(first_broken, other.first_broken);
   return *this;
 }
+
+double tolerance_of(const std::string& policy) { return std::stod(policy.substr(policy.rfind(':') + 1)); }
 
 DecideUnder policies_of(const Lane& lane) {
   return [&lane](const std::string& policy) {

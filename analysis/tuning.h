@@ -37,6 +37,9 @@ struct PolicyErrors {
 // What decides under a policy; the empty one is zero.
 using DecideUnder = std::function<DecideBlock(const std::string& policy)>;
 
+// The number in the name of one tolerance, "rel:24" or "separation=abs:1e-6".
+double tolerance_of(const std::string& policy);
+
 // That of a published lane: on the host, or by its twin.   Throws: UsageError for a policy that it cannot have.
 DecideUnder policies_of(const Lane& lane);
 

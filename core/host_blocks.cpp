@@ -3,25 +3,11 @@
 // own contraction flags; nothing else may be defined here, or the linker would mix the variants.
 #include "core/host_blocks.h"
 #include "core/algorithms/algorithms.h"
+#include "core/decide_each.h"
 #include "core/decide_under.h"
 
 namespace graze {
 inline namespace GRAZE_FP {
-
-template <class Decide>
-void decide_each(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined,
-                 const Decide& decide) {
-  for (std::size_t word = 0; word * 64 < count; ++word) {
-    std::uint64_t yes = 0, no_answer = 0;
-    for (std::size_t bit = 0; bit < 64 && word * 64 + bit < count; ++bit) {
-      const Verdict verdict = decide(pairs[word * 64 + bit]);
-      yes |= std::uint64_t{verdict == Verdict::intersects} << bit;
-      no_answer |= std::uint64_t{verdict == Verdict::declined} << bit;
-    }
-    intersects[word] = yes;
-    declined[word] = no_answer;
-  }
-}
 
 template <class Algorithm, class Real>
 void decide_block(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "core/decide_each.h"
 #include "core/error.h"
 #include "core/exact/exact.h"
 #include "core/host_blocks.h"
@@ -27,17 +28,11 @@ constexpr AlgorithmInfo kExactInfo{"exact",
                                    true};
 
 void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  for (std::size_t word = 0; word * 64 < count; ++word) {
-    std::uint64_t yes = 0, no_answer = 0;
-    for (std::size_t bit = 0; bit < 64 && word * 64 + bit < count; ++bit) {
-      const Pair& pair = pairs[word * 64 + bit];
-      const bool finite = is_finite(pair);
-      yes |= std::uint64_t{finite && exact::intersects(&pair.a[0].x, &pair.b[0].x)} << bit;
-      no_answer |= std::uint64_t{!finite} << bit;
-    }
-    intersects[word] = yes;
-    declined[word] = no_answer;
-  }
+  decide_each(pairs, count, intersects, declined, [](const Pair& pair) {
+    return !is_finite(pair)                                ? Verdict::declined
+           : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects
+                                                           : Verdict::disjoint;
+  });
 }
 
 template <class... Algorithm>

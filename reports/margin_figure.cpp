@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/margin/bucket.h"
+#include "reports/svg_text.h"
 
 namespace graze::reports {
 namespace {
@@ -39,29 +40,25 @@ double x_of(int p) {
 
 double y_of(double share) { return kHeight - kBottom - (kHeight - kTop - kBottom) * share; }
 
-std::string text(double x, double y, const char* anchor, const std::string& what) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, what);
-}
-
 std::string axes() {
   std::string svg;
   for (int percent = 0; percent <= 100; percent += 25) {
     svg +=
         fmt::format("<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n",
                     kLeft, kWidth - kRight, y_of(percent / 100.0), y_of(percent / 100.0));
-    svg += text(kLeft - 8, y_of(percent / 100.0) + 4, "end", fmt::format("{} %", percent));
+    svg += svg_text(kLeft - 8, y_of(percent / 100.0) + 4, "end", fmt::format("{} %", percent));
   }
   for (const int k : {24, 12, 0, -12}) {
     const int bucket = k - kBucketLowest + 1;
-    svg += text(x_of(place(bucket)), kHeight - kBottom + 18, "middle",
-                fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
-    svg += text(x_of(place(-bucket)), kHeight - kBottom + 18, "middle",
-                fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
+    svg += svg_text(x_of(place(bucket)), kHeight - kBottom + 18, "middle",
+                    fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
+    svg += svg_text(x_of(place(-bucket)), kHeight - kBottom + 18, "middle",
+                    fmt::format("2<tspan dy=\"-5\" font-size=\"9\">{}</tspan>", k));
   }
-  svg += text(x_of(0), kHeight - kBottom + 18, "middle", "0");
-  svg += text(x_of(-20), kHeight - 14, "middle", "intersecting, by depth in ulps");
-  svg += text(x_of(0), kHeight - 30, "middle", "touching");
-  svg += text(x_of(20), kHeight - 14, "middle", "disjoint, by distance in ulps");
+  svg += svg_text(x_of(0), kHeight - kBottom + 18, "middle", "0");
+  svg += svg_text(x_of(-20), kHeight - 14, "middle", "intersecting, by depth in ulps");
+  svg += svg_text(x_of(0), kHeight - 30, "middle", "touching");
+  svg += svg_text(x_of(20), kHeight - 14, "middle", "disjoint, by distance in ulps");
   return svg;
 }
 
@@ -100,10 +97,11 @@ std::string margin_figure(const Json& summary) {
     const double x = kLeft + 168.0 * static_cast<double>(row);
     svg += fmt::format("<line x1=\"{0:.1f}\" x2=\"{1:.1f}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n",
                        x, x + 16, colour);
-    svg += text(x + 21, 40, "start", id.substr(0, id.find('/')));
+    svg += svg_text(x + 21, 40, "start", id.substr(0, id.find('/')));
     ++row;
   }
-  svg += text(kLeft, 18, "start", "Share of wrong verdicts, float32 on the CPU, against the exact margin (all strata)");
+  svg += svg_text(kLeft, 18, "start",
+                  "Share of wrong verdicts, float32 on the CPU, against the exact margin (all strata)");
   return svg + "</svg>\n";
 }
 

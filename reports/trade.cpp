@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "reports/findings.h"
+#include "reports/svg_text.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 
@@ -33,10 +34,6 @@ double y_of(double rate) {
   return kBottom + (kTop - kBottom) * (std::log10(std::max(rate, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
 }
 
-std::string text(double x, double y, const char* anchor, const std::string& what, const char* more = "") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more, what);
-}
-
 std::string begin(const std::string& title, double right = kRight) {
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 420\" width=\"900\" height=\"420\" "
@@ -46,10 +43,13 @@ std::string begin(const std::string& title, double right = kRight) {
     const double y = y_of(std::pow(10.0, power));
     svg += fmt::format(
         "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", kLeft,
-        kRight, y);
-    svg += text(kLeft - 8, y + 4, "end", power == -7 ? "none seen" : power == 0 ? "all" : fmt::format("1e{}", power));
+        right, y);
+    svg += svg_text(kLeft - 8, y + 4, "end",
+                    power == -7  ? "none seen"
+                    : power == 0 ? "all"
+                                 : fmt::format("1e{}", power));
   }
-  return svg + text(kLeft, 18, "start", title);
+  return svg + svg_text(kLeft, 18, "start", title);
 }
 
 Json cost_json(const Cost& cost) {
@@ -151,10 +151,10 @@ std::string trade_figure(const std::vector<Offer>& offers) {
     for (const int step : {1, 2, 5}) {
       const double ns = step * std::pow(10.0, decade);
       if (std::log10(ns) >= low && std::log10(ns) <= high)
-        svg += text(x_of(ns), 370, "middle", fmt::format("{:g}", ns));
+        svg += svg_text(x_of(ns), 370, "middle", fmt::format("{:g}", ns));
     }
   }
-  svg += text((kLeft + kRight) / 2, 396, "middle", "nanoseconds a pair, pairs in cache");
+  svg += svg_text((kLeft + kRight) / 2, 396, "middle", "nanoseconds a pair, pairs in cache");
   std::string front;
   for (const Offer& offer : cheapest_first(offers)) {
     const double x = x_of(offer.in_cache.middle), y = y_of(share(offer.errors));
@@ -166,7 +166,7 @@ std::string trade_figure(const std::vector<Offer>& offers) {
         grouped(offer.errors.wrong() + offer.errors.declined), grouped(offer.errors.pairs));
     if (offer.dominated) continue;
     front += fmt::format("{:.1f},{:.1f} ", x, y);
-    svg += text(x + 8, y - 6, "start", offer.lane, " fill=\"#d55e00\"");
+    svg += svg_text(x + 8, y - 6, "start", offer.lane, " fill=\"#d55e00\"");
   }
   svg += fmt::format("<polyline fill=\"none\" stroke=\"#d55e00\" stroke-opacity=\"0.5\" points=\"{}\"/>\n", front);
   return svg + "</svg>\n";
@@ -180,7 +180,7 @@ std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extr
     return kLeft + (kRight - kLeft - kLegend) * (k - at.front()) / std::max(1, at.back() - at.front());
   };
   for (std::size_t i = 0; i < at.size(); i += std::max<std::size_t>(1, at.size() / 8))
-    svg += text(x_of(at[i]), 370, "middle", std::to_string(at[i]));
+    svg += svg_text(x_of(at[i]), 370, "middle", std::to_string(at[i]));
   std::size_t row = 0;
   for (const ExtremeCurve& curve : curves) {
     if (curve.extreme != extreme) continue;
@@ -196,7 +196,7 @@ std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extr
     svg += fmt::format(
         "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"{3}\" stroke-width=\"3\"{4}/>\n",
         kRight - kLegend + 14, kRight - kLegend + 34, y, colour, dashes);
-    svg += text(kRight - kLegend + 40, y + 4, "start", curve.lane, " font-size=\"10\"");
+    svg += svg_text(kRight - kLegend + 40, y + 4, "start", curve.lane, " font-size=\"10\"");
     ++row;
   }
   return svg + "</svg>\n";

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "reports/findings.h"
+#include "reports/svg_text.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {
@@ -68,18 +69,12 @@ struct Frame {
   }
 };
 
-double value_of(const std::string& policy) { return std::stod(policy.substr(policy.rfind(':') + 1)); }
-
-std::string text(double x, double y, const char* anchor, const std::string& what) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, what);
-}
-
 std::string line(const Frame& frame, const analysis::Curve& curve, const char* colour,
                  std::uint64_t PolicyErrors::*count) {
   std::string points;
   for (const PolicyErrors& e : curve.points)
     points +=
-        fmt::format("{:.1f},{:.1f} ", frame.x(value_of(e.policy)),
+        fmt::format("{:.1f},{:.1f} ", frame.x(analysis::tolerance_of(e.policy)),
                     Frame::y(static_cast<double>(e.*count) / static_cast<double>(std::max<std::uint64_t>(e.pairs, 1))));
   return fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", colour, points);
 }
@@ -163,36 +158,36 @@ std::string tuning_figure(const TuneQuestion& question, const Tuned& tuned) {
     const double y = Frame::y(std::pow(10.0, power));
     svg += fmt::format(
         "<line x1=\"64\" x2=\"880\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", y);
-    svg += text(56, y + 4, "end", power == -7 ? "none" : power == 0 ? "all" : fmt::format("1e{}", power));
+    svg += svg_text(56, y + 4, "end", power == -7 ? "none" : power == 0 ? "all" : fmt::format("1e{}", power));
   }
   for (const analysis::Curve& curve : tuned.curves) {
     if (!curve.site.empty() || curve.points.empty()) continue;
-    const double low = std::log2(value_of(curve.points.front().policy)),
-                 high = std::log2(value_of(curve.points.back().policy));
+    const double low = std::log2(analysis::tolerance_of(curve.points.front().policy)),
+                 high = std::log2(analysis::tolerance_of(curve.points.back().policy));
     const Frame frame = curve.relative ? Frame{64, 460, low, high} : Frame{484, 880, low, high};
     svg += line(frame, curve, kMiss, &PolicyErrors::misses) + line(frame, curve, kFalseHit, &PolicyErrors::false_hits);
     for (const PolicyErrors& point : curve.points) {
       if (point.policy == tuned.chosen)
         svg += fmt::format(
             "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"64\" y2=\"350\" stroke=\"#777\" stroke-dasharray=\"4 3\"/>\n",
-            frame.x(value_of(point.policy)));
+            frame.x(analysis::tolerance_of(point.policy)));
     }
     for (const double at : {low, (low + high) / 2, high})
-      svg += text(frame.x(std::exp2(at)), 370,
-                  at == low    ? "start"
-                  : at == high ? "end"
-                               : "middle",
-                  fmt::format("{}:{:.2g}", curve.relative ? "rel" : "abs", std::exp2(at)));
+      svg += svg_text(frame.x(std::exp2(at)), 370,
+                      at == low    ? "start"
+                      : at == high ? "end"
+                                   : "middle",
+                      fmt::format("{}:{:.2g}", curve.relative ? "rel" : "abs", std::exp2(at)));
   }
-  svg += text(262, 396, "middle", "K, in machine epsilons times the quantity’s size");
-  svg += text(682, 396, "middle", "E, in the quantity’s own unit");
-  svg += text(
+  svg += svg_text(262, 396, "middle", "K, in machine epsilons times the quantity’s size");
+  svg += svg_text(682, 396, "middle", "E, in the quantity’s own unit");
+  svg += svg_text(
       64, 18, "start",
       fmt::format("Share of wrong verdicts of {} against its tolerance at all sites; dashed: chosen", question.lane));
   const auto legend = [&](double x, const char* colour, const char* what) {
     svg += fmt::format("<line x1=\"{0}\" x2=\"{1}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n", x,
                        x + 16, colour);
-    svg += text(x + 21, 40, "start", what);
+    svg += svg_text(x + 21, 40, "start", what);
   };
   legend(64, kMiss, "misses");
   legend(232, kFalseHit, "false hits");

@@ -27,8 +27,7 @@ constexpr Proof kProofs[] = {
 
 // A variant's tables: for processors with FMA instructions, and for others. Null without a twin.
 struct TwinTables {
-  const TwinTable *table = nullptr, *portable = nullptr;
-  const PolicyTwinTable* policies = nullptr;
+  const TwinTable *table = nullptr, *portable = nullptr, *policies = nullptr;
 };
 
 #define GRAZE_TABLES_no_twin_rounded(name) \
@@ -42,9 +41,9 @@ struct TwinTables {
 #define GRAZE_TABLES_no_twin_exact(name) \
   {}
 #define GRAZE_TABLES_twin_rounded(name) \
-  { &twin_##name::kTwinTable, &twin_##name::kTwinTable, &policy_twin_##name::kPolicyTwins }
+  { &twin_##name::kTwinTable, &twin_##name::kTwinTable, &policy_twin_##name::kTwinTable }
 #define GRAZE_TABLES_twin_contracted(name) \
-  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, &policy_twin_##name::kPolicyTwins }
+  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, &policy_twin_##name::kTwinTable }
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_TABLES_##twin##_##arithmetic(name),
 constexpr TwinTables kTables[] = {
 #include "core/variants.inc"
@@ -73,17 +72,9 @@ const TwinTable* twin_table(Variant variant) {
   return has_fma ? tables.table : tables.portable;
 }
 
-}  // namespace
-
-const TwinRow& twin_row(const Lane& lane) {
-  static const TwinRow kNone;
-  const TwinTable* table = twin_table(lane.variant);
-  return table && lane.algorithm >= 0 && !lane.under
-             ? table->rows.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar))
-             : kNone;
+const TwinRow& row_of(const TwinTable& table, const Lane& lane) {
+  return table.rows.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));
 }
-
-DecideBlock::Function twin_block(const Lane& lane) { return twin_row(lane).decide; }
 
 // Whether a device is known to contract the lane's kernel otherwise than its twin does: an H200 gave other verdicts on
 // some hundreds of 60,007 pairs, for this one kernel of forty. Why it does is not known.
@@ -94,12 +85,21 @@ bool contracts_otherwise(const Lane& lane) {
 
 // The twin of a lane under tolerances; null under other policies, and without a twin that is right.
 DecideBlock policy_twin(const Lane& lane) {
-  const PolicyTwinTable* table = kTables[static_cast<int>(lane.variant)].policies;
+  const TwinTable* table = kTables[static_cast<int>(lane.variant)].policies;
   if (!table || lane.under->kind != Policy::Kind::tolerances || contracts_otherwise(lane)) return nullptr;
-  const PolicyTwinRow& row =
-      table->at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));
+  const TwinRow& row = row_of(*table, lane);
   return {lane.under->epsilons.any_relative() ? row.relative : row.absolute, lane.under->epsilons};
 }
+
+}  // namespace
+
+const TwinRow& twin_row(const Lane& lane) {
+  static const TwinRow kNone;
+  const TwinTable* table = twin_table(lane.variant);
+  return table && lane.algorithm >= 0 && !lane.under ? row_of(*table, lane) : kNone;
+}
+
+DecideBlock::Function twin_block(const Lane& lane) { return twin_row(lane).decide; }
 
 DecideBlock block_on_host(const Lane& lane) {
   if (lane.decide) return lane.decide;

@@ -4,7 +4,9 @@
 // would mix the variants.
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 
+#include "core/decide_each.h"
 #include "cuda/lanes/device_pairs.h"
 #include "cuda/twin/twin_ops_bits.h"
 #include "cuda/twin/twin_ops_rounding.h"
@@ -23,29 +25,29 @@ namespace ptx {
 
 const unsigned char* bytes(const void* object) { return static_cast<const unsigned char*>(object); }
 
-// One pair as a block of one: stride 1, so that its coordinates are the 18 arrays.
-template <class Kernel, class Fuse>
-Verdict decide_one(const Pair& pair, const Fuse& fuse) {
+// One pair as a block of one: stride 1, so that its coordinates are the 18 arrays. `more`: the kernel's parameters
+// between the block and the words that it writes.
+template <class Kernel, class Fuse, class... More>
+Verdict decide_one(const Pair& pair, const Fuse& fuse, const More&... more) {
   const DevicePairs block{coordinates(pair), 1, 1};
   u32 yes = 0, no_answer = 0;
   const u32 *yes_at = &yes, *no_answer_at = &no_answer;
-  const unsigned char* const parameters[] = {bytes(&block), bytes(&yes_at), bytes(&no_answer_at)};
+  const unsigned char* const parameters[] = {bytes(&block), bytes(&more)..., bytes(&yes_at), bytes(&no_answer_at)};
   Kernel::run(parameters, fuse);
   return yes ? Verdict::intersects : no_answer ? Verdict::declined : Verdict::disjoint;
 }
 
 template <class Kernel>
 void decide_block(const Pair* pairs, std::size_t count, u64* intersects, u64* declined) {
-  for (std::size_t word = 0; word * 64 < count; ++word) {
-    u64 yes = 0, no_answer = 0;
-    for (std::size_t bit = 0; bit < 64 && word * 64 + bit < count; ++bit) {
-      const Verdict verdict = decide_one<Kernel>(pairs[word * 64 + bit], AllFused{});
-      yes |= u64{verdict == Verdict::intersects} << bit;
-      no_answer |= u64{verdict == Verdict::declined} << bit;
-    }
-    intersects[word] = yes;
-    declined[word] = no_answer;
-  }
+  decide_each(pairs, count, intersects, declined,
+              [](const Pair& pair) { return decide_one<Kernel>(pair, AllFused{}); });
+}
+
+template <class Kernel>
+void decide_within(const Epsilons& epsilons, const Pair* pairs, std::size_t count, u64* intersects, u64* declined) {
+  const Tolerances<std::conditional_t<Kernel::kScalar == Scalar::f32, float, double>> tolerances(epsilons);
+  decide_each(pairs, count, intersects, declined,
+              [&](const Pair& pair) { return decide_one<Kernel>(pair, AllFused{}, tolerances); });
 }
 
 template <class Kernel>
@@ -74,6 +76,10 @@ constexpr void enter(TwinTable& table) {
       row.decide_fusing = decide_fusing<Kernel>;
       row.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
     }
+  } else if constexpr (Kernel::kName == "absolute_pairs") {
+    row.absolute = decide_within<Kernel>;
+  } else if constexpr (Kernel::kName == "relative_pairs") {
+    row.relative = decide_within<Kernel>;
   } else {
     row.trace = trace_block<Kernel>;
     row.trace_hash = Kernel::kHash;

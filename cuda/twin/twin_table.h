@@ -20,6 +20,7 @@ struct TwinRow {
   const char* symbol = "";  // of the kernel that it replays
   const char* trace_symbol = "";
   std::span<const ContractionSite> sites = {};
+  DecideBlock::Within absolute = nullptr, relative = nullptr;  // under tolerances, without relative ones or with
 };
 
 struct TwinTable {
@@ -27,14 +28,8 @@ struct TwinTable {
   std::array<std::array<TwinRow, 2>, kAlgorithmCount> rows;
 };
 
-// Of lanes under tolerances: with relative ones or without.
-struct PolicyTwinRow {
-  DecideBlock::Within absolute = nullptr, relative = nullptr;
-};
-using PolicyTwinTable = std::array<std::array<PolicyTwinRow, 2>, kAlgorithmCount>;
-
-// twin_NAME of the variants with a twin, and twin_NAME_portable of those with contraction; policy_twin_NAME for all
-// processors.
+// twin_NAME of the variants with a twin, and twin_NAME_portable of those with contraction; policy_twin_NAME, of
+// lanes under tolerances, for all processors.
 #define GRAZE_DECLARE(name)          \
   namespace name {                   \
   extern const TwinTable kTwinTable; \
@@ -48,9 +43,9 @@ using PolicyTwinTable = std::array<std::array<PolicyTwinRow, 2>, kAlgorithmCount
 #define GRAZE_DECLARE_no_twin_fast(name)
 #define GRAZE_DECLARE_no_twin_flushed(name)
 #define GRAZE_DECLARE_no_twin_exact(name)
-#define GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name) GRAZE_DECLARE_POLICY(twin_##name)
+#define GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(policy_twin_##name)
 #define GRAZE_DECLARE_twin_contracted(name) \
-  GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(twin_##name##_portable) GRAZE_DECLARE_POLICY(twin_##name)
+  GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(twin_##name##_portable) GRAZE_DECLARE(policy_twin_##name)
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_DECLARE_##twin##_##arithmetic(name)
 #include "core/variants.inc"
 #undef GRAZE_VARIANT

@@ -76,10 +76,10 @@ TEST(Extremes, RightToIsTheLastOrdinaryShare) {
 TEST(Extremes, FindTheScaleOfAnAbsoluteEpsilon) {
   const auto sources = strata::stratum_sources(4, 400, {"uniform"});
   const Lane& zero = *find_lane("moller_1997/f32/cpu");
-  const DecideUnder decide = policies_of(zero);
+  const Sweep sweep = host_sweep(zero);
   ExtremeCurve paper{"paper", Extreme::scale, {}}, none{"zero", Extreme::scale, {}};
   for (const int k : exponents(Extreme::scale)) {
-    const auto found = sweep(decide, std::vector<std::string>{"paper", ""}, made_extreme(sources, Extreme::scale, k));
+    const auto found = sweep(std::vector<std::string>{"paper", ""}, made_extreme(sources, Extreme::scale, k));
     paper.points.emplace_back(k, found[0]);
     none.points.emplace_back(k, found[1]);
   }

@@ -2,67 +2,26 @@
 #include "analysis/tuning.h"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <tuple>
 
 #include "analysis/lane_trace.h"
-#include "core/exact/exact.h"
-#include "cuda/twin/twin.h"
 
 namespace graze::analysis {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // pairs that are drawn and judged, then decided under all policies
-constexpr std::size_t kWords = kBlock / 64;
 constexpr std::uint64_t kPairsForScale = 100'000;
-
-struct Verdicts {
-  std::array<std::uint64_t, kWords> intersects{}, declined{};
-
-  Verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
-    decide(pairs.data(), pairs.size(), intersects.data(), declined.data());
-  }
-};
-
-struct Block {
-  int source;
-  std::uint64_t first, count;
-};
-
-std::vector<Block> blocks_of(std::span<const strata::PairSource> sources) {
-  std::vector<Block> blocks;
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    for (std::uint64_t first = 0; first < sources[s].pairs; first += kBlock)
-      blocks.push_back({static_cast<int>(s), first, std::min<std::uint64_t>(kBlock, sources[s].pairs - first)});
-  }
-  return blocks;
-}
-
-void keep_first(std::optional<PairPlace>& kept, const std::optional<PairPlace>& found) {
-  if (found && (!kept || *found < *kept)) kept = found;
-}
-
-// Counts the bits, and keeps the first one's place.
-void add(std::uint64_t bits, const PairPlace& word, std::uint64_t& count, std::optional<PairPlace>& first) {
-  if (bits == 0) return;
-  count += static_cast<std::uint64_t>(std::popcount(bits));
-  keep_first(first, PairPlace{word.source, word.index + static_cast<std::uint64_t>(std::countr_zero(bits))});
-}
 
 std::string tolerance(const std::string& site, bool relative, double value) {
   return fmt::format("{}{}{}:{:.3g}", site, site.empty() ? "" : "=", relative ? "rel" : "abs", value);
 }
 
 // log2 of the sources' typical size: the median of the largest differences of coordinates within a pair.
-int log2_size(std::span<const strata::PairSource> sources) {
+int log2_size(Sources sources) {
   std::vector<float> sizes;
   for (const strata::PairSource& source : sources) {
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(source.pairs, 200); ++i) {
@@ -113,7 +72,7 @@ class Tuner {
 
  private:
   std::vector<PolicyErrors> sweep_all(const std::vector<std::string>& policies) const {
-    return sweep(spec_.decide, policies, spec_.sources, spec_.threads);
+    return spec_.sweep(policies, spec_.sources);
   }
   PolicyErrors sweep_one(const std::string& policy) const { return sweep_all({policy}).front(); }
 
@@ -164,7 +123,7 @@ class Tuner {
     }
     result_.chosen = best->policy;
     const std::vector<PolicyErrors> found =
-        sweep(spec_.decide, std::vector<std::string>{"", result_.chosen}, spec_.others, spec_.threads);
+        spec_.sweep(std::vector<std::string>{"", result_.chosen}, spec_.others);
     result_.zero_confirmed = found[0];
     result_.confirmed = found[1];
     const std::uint64_t bad = forbidden(result_.confirmed, spec_.forbid), of = result_.confirmed.pairs;
@@ -190,7 +149,7 @@ class Tuner {
     std::vector<strata::PairSource> some = spec_.sources;
     for (strata::PairSource& source : some) source.pairs = std::min(source.pairs, kPairsForScale / some.size() + 1);
     const auto at = [&](int k) {
-      return sweep(spec_.decide, std::vector<std::string>{result_.chosen}, scaled(some, k), spec_.threads).front();
+      return spec_.sweep(std::vector<std::string>{result_.chosen}, scaled(some, k)).front();
     };
     const std::uint64_t most = 2 * std::max<std::uint64_t>(at(0).wrong(), 5);
     const auto find = [&](int sign, int& exponent, PolicyErrors& errors) {
@@ -231,71 +190,9 @@ class Tuner {
 
 }  // namespace
 
-PolicyErrors& PolicyErrors::operator+=(const PolicyErrors& other) {
-  pairs += other.pairs;
-  misses += other.misses;
-  false_hits += other.false_hits;
-  declined += other.declined;
-  mended += other.mended;
-  broken += other.broken;
-  keep_first(first_mended, other.first_mended);
-  keep_first(first_broken, other.first_broken);
-  return *this;
-}
-
 double tolerance_of(const std::string& policy) { return std::stod(policy.substr(policy.rfind(':') + 1)); }
 
-DecideUnder policies_of(const Lane& lane) {
-  return [&lane](const std::string& policy) {
-    return policy.empty() ? cuda::block_on_host(lane) : cuda::block_on_host(lane_under(lane, policy));
-  };
-}
-
-std::vector<PolicyErrors> sweep(const DecideUnder& decide, std::span<const std::string> policies,
-                                std::span<const strata::PairSource> sources, int threads) {
-  const DecideBlock zero = decide(""), exact = find_lane("exact/f32/cpu")->decide;
-  std::vector<DecideBlock> under;
-  std::vector<PolicyErrors> empty;
-  for (const std::string& policy : policies) {
-    under.push_back(decide(policy));
-    empty.emplace_back().policy = policy;
-  }
-  const std::vector<Block> blocks = blocks_of(sources);
-  const auto count = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
-  tbb::enumerable_thread_specific<std::vector<PolicyErrors>> results(empty);
-  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    const Block& block = blocks[b];
-    std::vector<Pair> pairs;
-    for (std::uint64_t i = 0; i < block.count; ++i)
-      pairs.push_back(sources[static_cast<std::size_t>(block.source)].pair(block.first + i));
-    const Verdicts truth(exact, pairs), without(zero, pairs);
-    std::vector<PolicyErrors>& result = results.local();
-    for (std::size_t p = 0; p < under.size(); ++p) {
-      PolicyErrors& errors = result[p];
-      const Verdicts with(under[p], pairs);
-      for (std::size_t w = 0; w * 64 < pairs.size(); ++w) {
-        const std::uint64_t judged = ~truth.declined[w];  // not finite: nothing is counted
-        const std::uint64_t none = with.declined[w] & judged, was_none = without.declined[w] & judged;
-        const std::uint64_t off = (with.intersects[w] ^ truth.intersects[w]) & judged & ~none;
-        const std::uint64_t was_off = (without.intersects[w] ^ truth.intersects[w]) & judged & ~was_none;
-        errors.misses += static_cast<std::uint64_t>(std::popcount(off & truth.intersects[w]));
-        errors.false_hits += static_cast<std::uint64_t>(std::popcount(off & ~truth.intersects[w]));
-        errors.declined += static_cast<std::uint64_t>(std::popcount(none));
-        const PairPlace word{block.source, block.first + w * 64};
-        add((was_off | was_none) & ~(off | none), word, errors.mended, errors.first_mended);
-        add(~(was_off | was_none) & (off | none), word, errors.broken, errors.first_broken);
-      }
-      errors.pairs += pairs.size();
-    }
-  });
-  for (const std::vector<PolicyErrors>& some : results) {
-    for (std::size_t p = 0; p < some.size(); ++p) empty[p] += some[p];
-  }
-  return empty;
-}
-
-std::vector<strata::PairSource> scaled(std::span<const strata::PairSource> sources, int k) {
+std::vector<strata::PairSource> scaled(Sources sources, int k) {
   std::vector<strata::PairSource> result(sources.begin(), sources.end());
   for (strata::PairSource& source : result) {
     source.pair = [draw = source.pair, k](std::uint64_t index) {
@@ -323,7 +220,7 @@ std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid) {
 
 Tuned tune(const TuneSpec& spec) { return Tuner(spec).run(); }
 
-std::vector<std::string> sites_asked(const Lane& lane, std::span<const strata::PairSource> sources) {
+std::vector<std::string> sites_asked(const Lane& lane, Sources sources) {
   std::array<bool, kSiteCount> asked{};
   for (const strata::PairSource& source : sources) {
     for (std::uint64_t i = 0; i < std::min<std::uint64_t>(source.pairs, 500); ++i) {

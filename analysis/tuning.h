@@ -3,53 +3,19 @@
 // with epsilons that no error count alone shows.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "core/lanes.h"
-#include "strata/pair_source.h"
+#include "analysis/sweep.h"
 
 namespace graze::analysis {
-
-// A pair of a source, by its place.
-struct PairPlace {
-  int source = -1;
-  std::uint64_t index = 0;
-  friend auto operator<=>(const PairPlace&, const PairPlace&) = default;
-};
-
-struct PolicyErrors {
-  std::string policy;  // empty: zero
-  std::uint64_t pairs = 0, misses = 0, false_hits = 0, declined = 0;
-  std::uint64_t mended = 0, broken = 0;  // right, and the lane under no policy wrong; the other way round
-  std::optional<PairPlace> first_mended, first_broken;
-
-  std::uint64_t wrong() const { return misses + false_hits; }
-  bool changes_nothing() const { return mended == 0 && broken == 0; }
-  PolicyErrors& operator+=(const PolicyErrors& other);
-};
-
-// What decides under a policy; the empty one is zero.
-using DecideUnder = std::function<DecideBlock(const std::string& policy)>;
 
 // The number in the name of one tolerance, "rel:24" or "separation=abs:1e-6".
 double tolerance_of(const std::string& policy);
 
-// That of a published lane: on the host, or by its twin.   Throws: UsageError for a policy that it cannot have.
-DecideUnder policies_of(const Lane& lane);
-
-// The errors under each policy, on all pairs of the sources: drawn and judged once, then decided under each. The same
-// whatever the threads (0: one on each core).
-std::vector<PolicyErrors> sweep(const DecideUnder& decide, std::span<const std::string> policies,
-                                std::span<const strata::PairSource> sources, int threads = 0);
-
 // The pairs times 2^k; those for which that is not exact are left as they are.
-std::vector<strata::PairSource> scaled(std::span<const strata::PairSource> sources, int k);
+std::vector<strata::PairSource> scaled(Sources sources, int k);
 
 // Upper bound of the rate behind `count` of `of` cases: at it, so few come once in twenty times.
 // Reference: Clopper and Pearson 1934, one-sided.
@@ -60,13 +26,12 @@ enum class Forbid { miss, false_hit, any };
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid);
 
 struct TuneSpec {
-  DecideUnder decide;
+  Sweep sweep;
   std::vector<std::string> sites;           // that the lane asks
   std::vector<strata::PairSource> sources;  // to choose on
   std::vector<strata::PairSource> others;   // to judge the choice on
   Forbid forbid = Forbid::any;
   double max_rate = 1e-6;
-  int threads = 0;
 };
 
 // A tolerance swept over its range, at all sites or at one.
@@ -113,6 +78,6 @@ struct Tuned {
 Tuned tune(const TuneSpec& spec);
 
 // The sites that the algorithm asks about, by name, on the first pairs of the sources.
-std::vector<std::string> sites_asked(const Lane& lane, std::span<const strata::PairSource> sources);
+std::vector<std::string> sites_asked(const Lane& lane, Sources sources);
 
 }  // namespace graze::analysis

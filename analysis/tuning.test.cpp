@@ -17,51 +17,6 @@ std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, c
 
 const Lane& moller() { return *find_lane("moller_1997/f32/cpu"); }
 
-TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
-  const auto sources = drawn(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
-  const std::vector<std::string> policies = {"", "abs:1e-6", "rel:100", "bound"};
-  const std::vector<PolicyErrors> found = sweep(policies_of(moller()), policies, sources);
-  for (std::size_t p = 0; p < policies.size(); ++p) {
-    PolicyErrors expected;
-    const DecideBlock zero = moller().decide, under = p == 0 ? zero : lane_under(moller(), policies[p]).decide;
-    for (std::size_t s = 0; s < sources.size(); ++s) {
-      for (std::uint64_t i = 0; i < sources[s].pairs; ++i) {
-        const Pair pair = sources[s].pair(i);
-        const Verdict truth = exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects : Verdict::disjoint;
-        const Verdict with = decide_one(under, pair), without = decide_one(zero, pair);
-        ++expected.pairs;
-        expected.declined += with == Verdict::declined;
-        expected.misses += with == Verdict::disjoint && truth == Verdict::intersects;
-        expected.false_hits += with == Verdict::intersects && truth == Verdict::disjoint;
-        const PairPlace place{static_cast<int>(s), i};
-        if (with == truth && without != truth && expected.mended++ == 0) expected.first_mended = place;
-        if (with != truth && without == truth && expected.broken++ == 0) expected.first_broken = place;
-      }
-    }
-    EXPECT_EQ(found[p].policy, policies[p]);
-    EXPECT_EQ(found[p].pairs, expected.pairs);
-    EXPECT_EQ(found[p].misses, expected.misses) << policies[p];
-    EXPECT_EQ(found[p].false_hits, expected.false_hits) << policies[p];
-    EXPECT_EQ(found[p].declined, expected.declined) << policies[p];
-    EXPECT_EQ(found[p].mended, expected.mended) << policies[p];
-    EXPECT_EQ(found[p].broken, expected.broken) << policies[p];
-    EXPECT_EQ(found[p].first_mended, expected.first_mended) << policies[p];
-    EXPECT_EQ(found[p].first_broken, expected.first_broken) << policies[p];
-  }
-  EXPECT_TRUE(found[0].changes_nothing());
-  EXPECT_GT(found[1].mended, 0u);  // relocation: an epsilon mends some and breaks others
-  EXPECT_GT(found[1].broken, 0u);
-  EXPECT_EQ(found[3].wrong(), 0u);
-  EXPECT_GT(found[3].declined, 0u);
-  for (const int threads : {1, 3}) {
-    const std::vector<PolicyErrors> again = sweep(policies_of(moller()), policies, sources, threads);
-    for (std::size_t p = 0; p < policies.size(); ++p) {
-      EXPECT_EQ(again[p].false_hits, found[p].false_hits);
-      EXPECT_EQ(again[p].first_broken, found[p].first_broken);
-    }
-  }
-}
-
 TEST(UpperBound, IsClopperAndPearsons) {
   EXPECT_NEAR(upper_bound(0, 1'000'000), 2.9957e-6, 1e-9);
   EXPECT_NEAR(upper_bound(0, 59), 0.0495, 1e-4);
@@ -86,7 +41,7 @@ TEST(Scaled, IsExactOrLeftAlone) {
 
 TEST(Tune, ChoosesForWhatIsForbidden) {
   TuneSpec spec;
-  spec.decide = policies_of(moller());
+  spec.sweep = host_sweep(moller());
   spec.sources = drawn(5, 6000, {"near_*"});
   spec.others = drawn(6, 20'000, {"near_*"});
   spec.sites = sites_asked(moller(), spec.sources);
@@ -111,7 +66,7 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
 
 TEST(Tune, SaysWhenPairsAreTooFew) {
   TuneSpec spec;
-  spec.decide = policies_of(*find_lane("guigue_devillers_2003/f64/cpu"));
+  spec.sweep = host_sweep(*find_lane("guigue_devillers_2003/f64/cpu"));
   spec.sources = drawn(5, 500, {"uniform"});
   spec.others = drawn(6, 2000, {"uniform"});
   spec.max_rate = 1e-4;
@@ -124,12 +79,14 @@ TEST(Tune, SaysWhenPairsAreTooFew) {
 // A knob that nothing is connected to is called dead, and one that decides is not.
 TEST(Tune, FindsDeadKnobs) {
   TuneSpec spec;
-  const DecideUnder real = policies_of(moller());
-  spec.decide = [&](const std::string& policy) {
+  const auto real = [](const std::string& policy) {
+    return policy.empty() ? moller().decide : lane_under(moller(), policy).decide;
+  };
+  spec.sweep = host_sweep([&](const std::string& policy) {
     return policy.starts_with("orientation=")            ? real("")
            : policy.find(",orientation=") != policy.npos ? real(policy.substr(0, policy.find(',')))
                                                          : real(policy);
-  };
+  });
   spec.sources = drawn(5, 3000, {"near_vertex_face"});
   spec.others = drawn(6, 3000, {"near_vertex_face"});
   spec.sites = {"plane_distance", "orientation"};
@@ -155,7 +112,7 @@ TEST(Tune, FindsWhereTheScaleBreaksAPolicy) {
   TuneSpec spec;
   WrongWhenSmall small;
   const DecideBlock policy(small);
-  spec.decide = [&](const std::string& of) { return of.empty() ? moller().decide : policy; };
+  spec.sweep = host_sweep([&](const std::string& of) { return of.empty() ? moller().decide : policy; });
   spec.sources = drawn(5, 4000, {"near_vertex_face"});  // coordinates of about 1
   spec.others = drawn(6, 4000, {"near_vertex_face"});
   const Tuned tuned = tune(spec);

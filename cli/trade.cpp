@@ -38,11 +38,11 @@ int trade(TradeOptions options) {
   }
   if (ids.empty()) throw std::runtime_error("expected a lane of this processor, found only others");
   blocks[""] = find_lane("exact/f32/cpu")->decide;
-  const analysis::DecideUnder decide = [&](const std::string& id) { return blocks.at(id); };
+  const analysis::Sweep sweep = analysis::host_sweep([&](const std::string& id) { return blocks.at(id); });
   const strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
   const std::vector<strata::PairSource>& sources = all.sources;
 
-  const std::vector<analysis::PolicyErrors> errors = analysis::sweep(decide, ids, sources);
+  const std::vector<analysis::PolicyErrors> errors = sweep(ids, sources);
   std::vector<DecideBlock> timed;
   for (const std::string& id : ids) timed.push_back(blocks.at(id));
   const auto in_cache = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201);
@@ -59,7 +59,7 @@ int trade(TradeOptions options) {
     const std::size_t first = curves.size();
     for (const std::string& id : ids) curves.push_back({id, extreme, {}});
     for (const int k : analysis::exponents(extreme)) {
-      const auto found = analysis::sweep(decide, ids, analysis::made_extreme(some, extreme, k));
+      const auto found = sweep(ids, analysis::made_extreme(some, extreme, k));
       for (std::size_t l = 0; l < ids.size(); ++l) curves[first + l].points.emplace_back(k, found[l]);
     }
   }

@@ -55,7 +55,7 @@ int tune(const TuneOptions& options) {
   if (!cuda::block_on_host(*lane) || (!lane->is_cuda() && !runs_on_this_cpu(*lane)))
     throw UsageError(lane->id + ": expected a lane of this processor, or one with a twin");
   analysis::TuneSpec spec;
-  spec.decide = analysis::policies_of(*lane);
+  spec.sweep = analysis::host_sweep(*lane, options.threads);
   // Chosen on a tenth of the pairs, judged on all of the next seed's.
   strata::SceneSources others = drawn(options.scene, options.seed + 1, options.pairs, options.strata);
   spec.others = std::move(others.sources);
@@ -67,7 +67,6 @@ int tune(const TuneOptions& options) {
   spec.sites = analysis::sites_asked(*lane, spec.sources);
   spec.forbid = static_cast<analysis::Forbid>(options.forbid);
   spec.max_rate = options.max_rate;
-  spec.threads = options.threads;
   const analysis::Tuned tuned = analysis::tune(spec);
 
   const reports::TuneQuestion question{lane->id, spec.forbid, spec.max_rate};

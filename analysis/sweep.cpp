@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/sweep.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "core/exact/exact.h"
+#include "core/ladder.h"
+#include "cuda/twin/twin.h"
+
+namespace graze::analysis {
+namespace {
+
+constexpr std::size_t kBlock = 1024;  // pairs that are drawn and judged, then decided under all policies
+constexpr std::size_t kWords = kBlock / 64;
+
+struct Verdicts {
+  std::array<std::uint64_t, kWords> intersects{}, declined{};
+};
+
+Verdicts verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
+  Verdicts result;
+  decide(pairs.data(), pairs.size(), result.intersects.data(), result.declined.data());
+  return result;
+}
+
+struct Block {
+  int source;
+  std::uint64_t first, count;
+};
+
+std::vector<Block> blocks_of(Sources sources) {
+  std::vector<Block> blocks;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    for (std::uint64_t first = 0; first < sources[s].pairs; first += kBlock)
+      blocks.push_back({static_cast<int>(s), first, std::min<std::uint64_t>(kBlock, sources[s].pairs - first)});
+  }
+  return blocks;
+}
+
+void keep_first(std::optional<PairPlace>& kept, const std::optional<PairPlace>& found) {
+  if (found && (!kept || *found < *kept)) kept = found;
+}
+
+// Counts the bits, and keeps the first one's place.
+void add(std::uint64_t bits, const PairPlace& word, std::uint64_t& count, std::optional<PairPlace>& first) {
+  if (bits == 0) return;
+  count += static_cast<std::uint64_t>(std::popcount(bits));
+  keep_first(first, PairPlace{word.source, word.index + static_cast<std::uint64_t>(std::countr_zero(bits))});
+}
+
+void add(const Block& block, const Verdicts& truth, const Verdicts& without, const std::uint64_t* intersects,
+         const std::uint64_t* declined, PolicyErrors& errors) {
+  for (std::size_t w = 0; w * 64 < block.count; ++w) {
+    const std::uint64_t judged = ~truth.declined[w];  // not finite: nothing is counted
+    const std::uint64_t none = declined[w] & judged, was_none = without.declined[w] & judged;
+    const std::uint64_t off = (intersects[w] ^ truth.intersects[w]) & judged & ~none;
+    const std::uint64_t was_off = (without.intersects[w] ^ truth.intersects[w]) & judged & ~was_none;
+    errors.misses += static_cast<std::uint64_t>(std::popcount(off & truth.intersects[w]));
+    errors.false_hits += static_cast<std::uint64_t>(std::popcount(off & ~truth.intersects[w]));
+    errors.declined += static_cast<std::uint64_t>(std::popcount(none));
+    const PairPlace word{block.source, block.first + w * 64};
+    add((was_off | was_none) & ~(off | none), word, errors.mended, errors.first_mended);
+    add(~(was_off | was_none) & (off | none), word, errors.broken, errors.first_broken);
+  }
+  errors.pairs += block.count;
+}
+
+// Policies that are decided together, by their places.
+struct Together {
+  std::vector<std::size_t> places;
+  DecideBlock one;               // of a single policy
+  DecideLadder ladder = nullptr; // of several
+  std::vector<Epsilons> rungs;
+};
+
+std::vector<PolicyErrors> run(const DecideBlock& zero, const std::vector<Together>& parts, Policies policies,
+                              Sources sources, int threads) {
+  const DecideBlock exact = find_lane("exact/f32/cpu")->decide;
+  std::vector<PolicyErrors> errors;
+  for (const std::string& policy : policies) errors.emplace_back().policy = policy;
+  const std::vector<Block> blocks = blocks_of(sources);
+  const auto count = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
+  tbb::enumerable_thread_specific<std::vector<PolicyErrors>> results(errors);
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    const Block& block = blocks[b];
+    std::vector<Pair> pairs;
+    for (std::uint64_t i = 0; i < block.count; ++i)
+      pairs.push_back(sources[static_cast<std::size_t>(block.source)].pair(block.first + i));
+    const Verdicts truth = verdicts(exact, pairs), without = verdicts(zero, pairs);
+    std::vector<PolicyErrors>& result = results.local();
+    std::vector<std::uint64_t> intersects, declined;
+    for (const Together& part : parts) {
+      const std::size_t words = (pairs.size() + 63) / 64;
+      intersects.resize(words * part.places.size());
+      declined.resize(intersects.size());
+      if (part.ladder) {
+        part.ladder(part.rungs, pairs.data(), pairs.size(), intersects.data(), declined.data());
+      } else {
+        part.one(pairs.data(), pairs.size(), intersects.data(), declined.data());
+      }
+      for (std::size_t p = 0; p < part.places.size(); ++p)
+        add(block, truth, without, &intersects[p * words], &declined[p * words], result[part.places[p]]);
+    }
+  });
+  for (const std::vector<PolicyErrors>& some : results) {
+    for (std::size_t p = 0; p < some.size(); ++p) errors[p] += some[p];
+  }
+  return errors;
+}
+
+// Whether the second may follow the first on a ladder.
+bool rises(const Epsilons& first, const Epsilons& second) {
+  for (int s = 0; s < kSiteCount; ++s) {
+    if (!(first.absolute[s] <= second.absolute[s] && first.relative[s] <= second.relative[s])) return false;
+  }
+  return first.any_relative() == second.any_relative();
+}
+
+// As few ladders as the policies' order allows: a sweep names a curve's tolerances one after the other.
+std::vector<Together> parts_of(const Lane& lane, Policies policies) {
+  std::vector<Together> parts;
+  for (std::size_t p = 0; p < policies.size(); ++p) {
+    const Lane under = policies[p].empty() ? lane : lane_under(lane, policies[p]);
+    const bool tolerances = under.under && under.under->kind == Policy::Kind::tolerances;
+    const DecideLadder ladder = tolerances ? ladder_of(lane, under.under->epsilons.any_relative()) : nullptr;
+    if (!ladder) {
+      parts.push_back({{p}, cuda::block_on_host(under), nullptr, {}});
+    } else if (!parts.empty() && parts.back().ladder && rises(parts.back().rungs.back(), under.under->epsilons)) {
+      parts.back().places.push_back(p);
+      parts.back().rungs.push_back(under.under->epsilons);
+    } else {
+      parts.push_back({{p}, {}, ladder, {under.under->epsilons}});
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+PolicyErrors& PolicyErrors::operator+=(const PolicyErrors& other) {
+  pairs += other.pairs;
+  misses += other.misses;
+  false_hits += other.false_hits;
+  declined += other.declined;
+  mended += other.mended;
+  broken += other.broken;
+  keep_first(first_mended, other.first_mended);
+  keep_first(first_broken, other.first_broken);
+  return *this;
+}
+
+Sweep host_sweep(DecideUnder decide, int threads) {
+  return [decide = std::move(decide), threads](Policies policies, Sources sources) {
+    std::vector<Together> parts;
+    for (std::size_t p = 0; p < policies.size(); ++p) parts.push_back({{p}, decide(policies[p]), nullptr, {}});
+    return run(decide(""), parts, policies, sources, threads);
+  };
+}
+
+Sweep host_sweep(const Lane& lane, int threads) {
+  return [&lane, threads](Policies policies, Sources sources) {
+    return run(cuda::block_on_host(lane), parts_of(lane, policies), policies, sources, threads);
+  };
+}
+
+}  // namespace graze::analysis

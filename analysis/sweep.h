@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// A lane's errors under many policies on the same pairs.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/lanes.h"
+#include "strata/pair_source.h"
+
+namespace graze::analysis {
+
+// A pair of a source, by its place.
+struct PairPlace {
+  int source = -1;
+  std::uint64_t index = 0;
+  friend auto operator<=>(const PairPlace&, const PairPlace&) = default;
+};
+
+struct PolicyErrors {
+  std::string policy;  // empty: zero
+  std::uint64_t pairs = 0, misses = 0, false_hits = 0, declined = 0;
+  std::uint64_t mended = 0, broken = 0;  // right, and the lane under no policy wrong; the other way round
+  std::optional<PairPlace> first_mended, first_broken;
+
+  std::uint64_t wrong() const { return misses + false_hits; }
+  bool changes_nothing() const { return mended == 0 && broken == 0; }
+  PolicyErrors& operator+=(const PolicyErrors& other);
+  bool operator==(const PolicyErrors&) const = default;
+};
+
+using Sources = std::span<const strata::PairSource>;
+using Policies = std::span<const std::string>;  // the empty one is zero
+
+// The errors under each policy, on all pairs of the sources.
+using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
+
+// What decides under a policy.
+using DecideUnder = std::function<DecideBlock(const std::string& policy)>;
+
+// On the host: pairs are drawn and judged once, then decided under each policy. The same whatever the threads (0: one
+// on each core).
+Sweep host_sweep(DecideUnder decide, int threads = 0);
+
+// That of a published lane, on the host, or by its twin: under many tolerances at once where core/ladder.h can.
+// Throws (the sweep): UsageError for a policy that the lane cannot have.
+Sweep host_sweep(const Lane& lane, int threads = 0);
+
+}  // namespace graze::analysis

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/sweep.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/exact/exact.h"
+#include "strata/strata.h"
+
+namespace graze::analysis {
+namespace {
+
+std::vector<strata::PairSource> drawn(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs) {
+  return strata::stratum_sources(seed, pairs, globs);
+}
+
+const Lane& moller() { return *find_lane("moller_1997/f32/cpu"); }
+
+TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
+  const auto sources = drawn(3, 3001, {"near_vertex_face", "shared_edge", "extreme_scale"});
+  const std::vector<std::string> policies = {"", "abs:1e-6", "rel:100", "bound"};
+  const std::vector<PolicyErrors> found = host_sweep(moller())(policies, sources);
+  for (std::size_t p = 0; p < policies.size(); ++p) {
+    PolicyErrors expected;
+    const DecideBlock zero = moller().decide, under = p == 0 ? zero : lane_under(moller(), policies[p]).decide;
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      for (std::uint64_t i = 0; i < sources[s].pairs; ++i) {
+        const Pair pair = sources[s].pair(i);
+        const Verdict truth = exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects : Verdict::disjoint;
+        const Verdict with = decide_one(under, pair), without = decide_one(zero, pair);
+        ++expected.pairs;
+        expected.declined += with == Verdict::declined;
+        expected.misses += with == Verdict::disjoint && truth == Verdict::intersects;
+        expected.false_hits += with == Verdict::intersects && truth == Verdict::disjoint;
+        const PairPlace place{static_cast<int>(s), i};
+        if (with == truth && without != truth && expected.mended++ == 0) expected.first_mended = place;
+        if (with != truth && without == truth && expected.broken++ == 0) expected.first_broken = place;
+      }
+    }
+    EXPECT_EQ(found[p].policy, policies[p]);
+    EXPECT_EQ(found[p].pairs, expected.pairs);
+    EXPECT_EQ(found[p].misses, expected.misses) << policies[p];
+    EXPECT_EQ(found[p].false_hits, expected.false_hits) << policies[p];
+    EXPECT_EQ(found[p].declined, expected.declined) << policies[p];
+    EXPECT_EQ(found[p].mended, expected.mended) << policies[p];
+    EXPECT_EQ(found[p].broken, expected.broken) << policies[p];
+    EXPECT_EQ(found[p].first_mended, expected.first_mended) << policies[p];
+    EXPECT_EQ(found[p].first_broken, expected.first_broken) << policies[p];
+  }
+  EXPECT_TRUE(found[0].changes_nothing());
+  EXPECT_GT(found[1].mended, 0u);  // relocation: an epsilon mends some and breaks others
+  EXPECT_GT(found[1].broken, 0u);
+  EXPECT_EQ(found[3].wrong(), 0u);
+  EXPECT_GT(found[3].declined, 0u);
+  for (const int threads : {1, 3}) {
+    const std::vector<PolicyErrors> again = host_sweep(moller(), threads)(policies, sources);
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      EXPECT_EQ(again[p].false_hits, found[p].false_hits);
+      EXPECT_EQ(again[p].first_broken, found[p].first_broken);
+    }
+  }
+}
+
+// Many tolerances at once give what each gives alone: over all strata, both scalars, absolute and relative ones, at all
+// sites and at one.
+TEST(Sweep, ManyTolerancesAtOnceAreEachAlone) {
+  const auto sources = drawn(8, 19 * 300, {});
+  std::vector<std::string> policies;
+  for (const std::string_view form : {"abs", "rel", "plane_distance=abs", "separation=rel"}) {
+    for (int k = -60; k <= 20; k += 5) policies.push_back(fmt::format("{}:{}", form, std::exp2(k)));
+  }
+  std::size_t lanes_of_cpu = 0;
+  for (const Lane& lane : published_lanes()) {
+    if (lane.variant != Variant::cpu) continue;
+    ++lanes_of_cpu;
+    const std::vector<PolicyErrors> together = host_sweep(lane)(policies, sources);
+    const std::vector<PolicyErrors> alone = host_sweep([&](const std::string& policy) {
+      return policy.empty() ? lane.decide : lane_under(lane, policy).decide;
+    })(policies, sources);
+    std::uint64_t changed = 0;
+    for (std::size_t p = 0; p < policies.size(); ++p) {
+      EXPECT_EQ(together[p], alone[p]) << lane.id << " " << policies[p];
+      changed += alone[p].mended + alone[p].broken;
+    }
+    EXPECT_GT(changed, 1000u) << lane.id;
+  }
+  EXPECT_EQ(lanes_of_cpu, 10u);
+}
+
+}  // namespace
+}  // namespace graze::analysis

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiled as the host lanes of the variant cpu, in their namespace and with their flags.
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "core/algorithms/algorithms.h"
+#include "core/decide_under.h"
+#include "core/ladder.h"
+
+namespace graze {
+inline namespace GRAZE_FP {
+
+// Decides as rung `at` does, and finds the next one under which some comparison of this decision comes out otherwise.
+// Until there the verdict is the same: whatever was compared, and how, is the same.
+template <class Real>
+class Climb {
+ public:
+  Climb(const std::vector<Tolerances<Real>>& rungs, std::size_t at) : rungs_(rungs), at_(at), next_(rungs.size()) {}
+
+  std::size_t next() const { return next_; }
+
+  template <class Number>
+  bool near_zero(Site site, const Number& x) const {
+    if (rungs_[at_].near_zero(site, x)) return true;
+    // Tolerances do not fall: of the rungs from at_ + 1 to next_ - 1, those that hold x for zero are the last ones.
+    if (next_ - at_ > 1 && rungs_[next_ - 1].near_zero(site, x)) {
+      std::size_t far = at_;
+      while (next_ - far > 1) {
+        const std::size_t middle = far + (next_ - far) / 2;
+        (rungs_[middle].near_zero(site, x) ? next_ : far) = middle;
+      }
+    }
+    return false;
+  }
+
+  // As Tolerances has them.
+  template <class Number>
+  Number snap(Site site, const Number& x) const {
+    return near_zero(site, x) ? Number(0) : x;
+  }
+  template <class Number>
+  bool less(Site site, const Number& l, const Number& r) const {
+    return l < r && !near_zero(site, r - l);
+  }
+  template <class Number>
+  bool at_most(Site site, const Number& l, const Number& r) const {
+    return l <= r || near_zero(site, l - r);
+  }
+
+ private:
+  const std::vector<Tolerances<Real>>& rungs_;
+  std::size_t at_;
+  mutable std::size_t next_;
+};
+
+template <class Algorithm, class Real, class Number>
+void decide_ladder(std::span<const Epsilons> epsilons, const Pair* pairs, std::size_t count, std::uint64_t* intersects,
+                   std::uint64_t* declined) {
+  const std::vector<Tolerances<Real>> rungs(epsilons.begin(), epsilons.end());
+  const std::size_t words = (count + 63) / 64;
+  std::fill_n(intersects, words * rungs.size(), 0);
+  std::fill_n(declined, words * rungs.size(), 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t bit = std::uint64_t{1} << i % 64;
+    Vec3<Number> p[3], q[3];
+    for (int v = 0; v < 3; ++v) {
+      p[v] = {Number(Real(pairs[i].a[v].x)), Number(Real(pairs[i].a[v].y)), Number(Real(pairs[i].a[v].z))};
+      q[v] = {Number(Real(pairs[i].b[v].x)), Number(Real(pairs[i].b[v].y)), Number(Real(pairs[i].b[v].z))};
+    }
+    Verdict before = Verdict::disjoint;
+    for (std::size_t at = 0; at < rungs.size();) {
+      const Climb<Real> climb(rungs, at);
+      const Verdict verdict = Algorithm::decide(p, q, climb);
+      // Where a row begins to differ from the one before; summed up below.
+      std::uint64_t& yes = intersects[at * words + i / 64];
+      std::uint64_t& no_answer = declined[at * words + i / 64];
+      if ((verdict == Verdict::intersects) != (before == Verdict::intersects)) yes |= bit;
+      if ((verdict == Verdict::declined) != (before == Verdict::declined)) no_answer |= bit;
+      before = verdict;
+      at = climb.next();
+    }
+  }
+  for (std::size_t k = words; k < words * rungs.size(); ++k) {
+    intersects[k] ^= intersects[k - words];
+    declined[k] ^= declined[k - words];
+  }
+}
+
+// Of each algorithm: f32 absolute and relative, f64 absolute and relative.
+template <class... Algorithm>
+constexpr auto ladders(const std::tuple<Algorithm...>*) {
+  return std::array{std::array<DecideLadder, 4>{
+      decide_ladder<Algorithm, float, float>, decide_ladder<Algorithm, float, Sized<float>>,
+      decide_ladder<Algorithm, double, double>, decide_ladder<Algorithm, double, Sized<double>>}...};
+}
+
+}  // namespace GRAZE_FP
+
+DecideLadder ladder_of(const Lane& lane, bool relative) {
+  static constexpr auto kLadders = ladders(static_cast<const Algorithms*>(nullptr));
+  if (lane.variant != Variant::cpu || lane.algorithm < 0) return nullptr;
+  return kLadders[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar) * 2 + relative];
+}
+
+}  // namespace graze

@@ -12,6 +12,7 @@
 
 #include "core/exact/exact.h"
 #include "core/ladder.h"
+#include "cuda/engine/sweep.h"
 #include "cuda/twin/twin.h"
 
 namespace graze::analysis {
@@ -168,6 +169,31 @@ Sweep host_sweep(DecideUnder decide, int threads) {
 Sweep host_sweep(const Lane& lane, int threads) {
   return [&lane, threads](Policies policies, Sources sources) {
     return run(cuda::block_on_host(lane), parts_of(lane, policies), policies, sources, threads);
+  };
+}
+
+Sweep device_sweep(std::function<Lane(const std::string& policy)> lane_of) {
+  return [lane_of = std::move(lane_of)](Policies policies, Sources sources) {
+    std::vector<PolicyErrors> errors;
+    std::vector<Lane> lanes;
+    for (const std::string& policy : policies) {
+      errors.emplace_back().policy = policy;
+      lanes.push_back(lane_of(policy));
+    }
+    const Lane zero = lane_of("");
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      const std::vector<cuda::ErrorCounts> found = cuda::count_errors(zero, lanes, sources[s]);
+      for (std::size_t p = 0; p < found.size(); ++p) {
+        const auto place = [s](std::uint64_t index) {
+          return index == ~std::uint64_t{0} ? std::nullopt
+                                            : std::optional<PairPlace>({static_cast<int>(s), index});
+        };
+        errors[p] += {policies[p],          sources[s].pairs,  found[p].misses, found[p].false_hits,
+                      found[p].declined,    found[p].mended,   found[p].broken, place(found[p].first_mended),
+                      place(found[p].first_broken)};
+      }
+    }
+    return errors;
   };
 }
 

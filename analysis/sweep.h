@@ -50,4 +50,8 @@ Sweep host_sweep(DecideUnder decide, int threads = 0);
 // Throws (the sweep): UsageError for a policy that the lane cannot have.
 Sweep host_sweep(const Lane& lane, int threads = 0);
 
+// On the first CUDA device. lane_of: the lane under a policy, a CUDA lane.
+// Throws (the sweep): std::runtime_error without a device.
+Sweep device_sweep(std::function<Lane(const std::string& policy)> lane_of);
+
 }  // namespace graze::analysis

@@ -89,7 +89,7 @@ void mark_dominated(std::vector<Offer>& offers) {
   for (Offer& offer : offers) {
     offer.dominated = std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
       const double less = share(other.errors) - share(offer.errors),
-                   faster = other.in_cache.middle - offer.in_cache.middle;
+                   faster = other.near.middle - offer.near.middle;
       return less <= 0 && faster <= 0 && (less < 0 || faster < 0);
     });
   }

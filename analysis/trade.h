@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/tuning.h"
+#include "cuda/lanes/device_costs.h"
 
 namespace graze::analysis {
 
@@ -32,11 +33,13 @@ std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::
 struct Offer {
   std::string lane;
   PolicyErrors errors;
-  Cost in_cache, from_memory;  // of pairs that lie in a core's cache, and of pairs that do not
-  bool dominated = false;      // another one costs no more and errs no more, and one of both less
+  Cost near, far;          // of pairs in a core's cache, and from memory; or on the device, and with copies
+  bool dominated = false;  // another one costs no more and errs no more, and one of both less
+  std::optional<cuda::KernelNeeds> needs = std::nullopt;  // on a device
+  std::optional<Pair> failure = std::nullopt;             // small, on which the lane is wrong
 };
 
-// Marks the dominated ones, by their costs in cache. What a lane declines counts as an error: it gives no verdict.
+// Marks the dominated ones, by their costs nearby. What a lane declines counts as an error: it gives no verdict.
 void mark_dominated(std::vector<Offer>& offers);
 
 // What makes pairs extreme. Each takes the sources' own pairs; truth is that of the pairs as they then are.
@@ -64,6 +67,15 @@ struct ExtremeCurve {
   // The last exponent before the share of errors exceeds twice that at exponent 0 and a thousandth, going up or down;
   // nothing where it never does.
   std::optional<int> right_to(int direction) const;
+};
+
+// Lanes of one machine, and never of two.
+struct Trade {
+  std::string machine;
+  bool on_device = false;
+  int threads_at_once = 0;  // of a device's multiprocessor
+  std::vector<Offer> offers;
+  std::vector<ExtremeCurve> curves;
 };
 
 }  // namespace graze::analysis

@@ -13,7 +13,7 @@ Offer offer(std::uint64_t wrong, double nanoseconds, std::uint64_t declined = 0)
   result.errors.pairs = 1000;
   result.errors.misses = wrong;
   result.errors.declined = declined;
-  result.in_cache = {nanoseconds, nanoseconds, nanoseconds};
+  result.near = {nanoseconds, nanoseconds, nanoseconds};
   return result;
 }
 

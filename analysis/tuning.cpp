@@ -195,6 +195,7 @@ double tolerance_of(const std::string& policy) { return std::stod(policy.substr(
 std::vector<strata::PairSource> scaled(Sources sources, int k) {
   std::vector<strata::PairSource> result(sources.begin(), sources.end());
   for (strata::PairSource& source : result) {
+    source.stratum = -1;
     source.pair = [draw = source.pair, k](std::uint64_t index) {
       const Pair pair = draw(index);
       Pair moved = pair;

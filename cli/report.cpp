@@ -36,7 +36,7 @@ void say_what_the_page_is() {
 void write_report(const fs::path& directory, const Json& report, const char* name) {
   const Json costs = reports::make_costs(directory);
   fuzz::write_whole(directory / fmt::format("{}.json", name), reports::report_text(report));
-  fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report, costs));
+  fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report, costs, reports::make_choices(directory)));
   std::string tables;
   if (costs.is_null()) {
     fs::remove(directory / "costs.json");
@@ -53,11 +53,12 @@ void write_report(const fs::path& directory, const Json& report, const char* nam
   say_what_the_page_is();
 }
 
-// With what lanes cost, if that lies beside the report.
+// With what lanes cost, and what was tuned and traded, if that lies beside the report.
 std::string page_of(const std::string& file) {
   try {
     const Json costs = Json::parse(fuzz::read_whole(fs::path(file).replace_filename("costs.json")), nullptr, false);
-    return reports::page(reports::read_report(file), costs.is_object() ? costs : Json());
+    return reports::page(reports::read_report(file), costs.is_object() ? costs : Json(),
+                         reports::make_choices(fs::path(file).parent_path()));
   } catch (const Json::exception&) {
     throw std::runtime_error(file + ": expected a report of `graze report`, found something else");
   }

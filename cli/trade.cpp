@@ -2,13 +2,15 @@
 // `graze trade`: errors against nanoseconds, and how far from ordinary pairs each lane stays right.
 #include <fmt/format.h>
 
-#include <map>
-
 #include "analysis/trade.h"
 #include "cli/commands.h"
 #include "cli/screen.h"
+#include "core/text.h"
+#include "cuda/lanes/device.h"
+#include "cuda/twin/twin.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/files.h"
+#include "fuzz/minimise/minimise.h"
 #include "reports/trade.h"
 
 namespace graze::cli {
@@ -17,50 +19,112 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kPairsInCache = 256, kPairsFromMemory = std::size_t{1} << 19;  // 18 kB, 38 MB
+constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;  // 302 MB
 
 struct TradeOptions {
   LaneOptions lanes;
   std::vector<std::string> strata;
   std::uint64_t pairs = 200'000, seed = 1;
   std::string scene, out = "trade";
+  bool device = false;
 };
 
-int trade(TradeOptions options) {
-  if (options.lanes.globs.empty())
-    options.lanes.globs = {"*/cpu", "exact/f32/cpu", "moller_1997/*/cpu/paper", "guigue_devillers_2003/*/cpu/filtered"};
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
-  std::map<std::string, DecideBlock> blocks;
+// Lanes by their names, and what measures them.
+struct Measured {
   std::vector<std::string> ids;
+  std::vector<const Lane*> lanes;
+  analysis::Sweep sweep;
+};
+
+// Twins and processes are left out: what they take is not what the code takes.
+Measured measured(const TradeOptions& options, const fuzz::LanesUnderTest& under_test) {
+  Measured result;
   for (const Lane* lane : under_test.lanes) {
-    if (!lane->decide || lane->foreign) continue;  // what a twin or a process takes is not what the code takes
-    ids.push_back(lane->id);
-    blocks[lane->id] = lane->decide;
+    if (lane->foreign || (options.device ? !lane->is_cuda() : !lane->decide)) continue;
+    result.ids.push_back(lane->id);
+    result.lanes.push_back(lane);
   }
-  if (ids.empty()) throw std::runtime_error("expected a lane of this processor, found only others");
-  blocks[""] = find_lane("exact/f32/cpu")->decide;
-  const analysis::Sweep sweep = analysis::host_sweep([&](const std::string& id) { return blocks.at(id); });
+  if (result.ids.empty())
+    throw std::runtime_error(options.device ? "expected a lane of the device, found only others"
+                                            : "expected a lane of this processor, found only others");
+  const Lane* exact = find_lane(options.device ? "exact/f32/cuda" : "exact/f32/cpu");
+  const auto lane_of = [exact](const std::string& id) { return id.empty() ? exact : find_lane(id); };
+  if (options.device) {
+    result.sweep = analysis::device_sweep([=](const std::string& id) { return *lane_of(id); });
+  } else {
+    result.sweep = analysis::host_sweep([=](const std::string& id) { return lane_of(id)->decide; });
+  }
+  return result;
+}
+
+// The simplest pair that the minimiser makes of the first one on which the lane is wrong; of a lane without a twin that
+// pair itself.
+std::optional<Pair> smallest_failure(const Lane& lane, const analysis::PolicyErrors& errors,
+                                     const std::vector<strata::PairSource>& sources, bool on_device) {
+  if (!errors.first_broken) return std::nullopt;
+  const Pair pair = sources[static_cast<std::size_t>(errors.first_broken->source)].pair(errors.first_broken->index);
+  if (!cuda::block_on_host(lane)) return pair;
+  const std::vector<fuzz::Failure> failures =
+      fuzz::failures_of(fuzz::select_lanes({lane.id}, on_device ? fuzz::Executor::device : fuzz::Executor::twin), pair);
+  return failures.empty() ? std::nullopt : std::optional(fuzz::minimise(failures[0], pair).pair);
+}
+
+analysis::Trade offers_of(const TradeOptions& options, const Measured& measured,
+                          const std::vector<strata::PairSource>& sources) {
+  analysis::Trade trade{fuzz::machine_name(), options.device, 0, {}, {}};
+  for (const analysis::PolicyErrors& errors : measured.sweep(measured.ids, sources)) {
+    trade.offers.push_back({errors.policy, errors, {}, {}});
+    trade.offers.back().failure =
+        smallest_failure(*measured.lanes[trade.offers.size() - 1], errors, sources, options.device);
+  }
+  if (options.device) {
+    const cuda::DeviceCosts costs =
+        cuda::measure_on_device(measured.lanes, analysis::first_pairs(sources, kPairsOnDevice), 21);
+    trade.machine = costs.device;
+    trade.threads_at_once = costs.threads_at_once;
+    for (std::size_t l = 0; l < costs.of.size(); ++l) {
+      trade.offers[l].near = analysis::quartiles(costs.of[l].resident);
+      trade.offers[l].far = analysis::quartiles(costs.of[l].with_copies);
+      trade.offers[l].needs = costs.of[l].needs;
+    }
+  } else {
+    std::vector<DecideBlock> timed;
+    for (const Lane* lane : measured.lanes) timed.push_back(lane->decide);
+    const auto in_cache = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201);
+    const auto from_memory = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsFromMemory), 3);
+    for (std::size_t l = 0; l < timed.size(); ++l) {
+      trade.offers[l].near = in_cache[l];
+      trade.offers[l].far = from_memory[l];
+    }
+  }
+  analysis::mark_dominated(trade.offers);
+  return trade;
+}
+
+int trade(TradeOptions options) {
+  if (options.lanes.globs.empty() && options.device) {
+    options.lanes.globs = {"*/cuda-fma", "exact/f32/cuda", "moller_1997/*/cuda-fma/paper",
+                           "guigue_devillers_2003/*/cuda-fma/filtered"};
+  } else if (options.lanes.globs.empty()) {
+    options.lanes.globs = {"*/cpu", "exact/f32/cpu", "moller_1997/*/cpu/paper", "guigue_devillers_2003/*/cpu/filtered"};
+  }
+  if (options.device) {
+    std::string why_not;
+    if (!cuda::open_device(why_not)) throw std::runtime_error("--device: expected a CUDA device, found " + why_not);
+    options.lanes.executor = fuzz::Executor::device;
+  }
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  const Measured lanes = measured(options, under_test);
   const strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
-  const std::vector<strata::PairSource>& sources = all.sources;
-
-  const std::vector<analysis::PolicyErrors> errors = sweep(ids, sources);
-  std::vector<DecideBlock> timed;
-  for (const std::string& id : ids) timed.push_back(blocks.at(id));
-  const auto in_cache = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201);
-  const auto from_memory = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsFromMemory), 3);
-  std::vector<analysis::Offer> offers;
-  for (std::size_t l = 0; l < ids.size(); ++l)
-    offers.push_back({ids[l], errors[l], in_cache[l], from_memory[l], false});
-  analysis::mark_dominated(offers);
-
-  std::vector<analysis::ExtremeCurve> curves;
+  analysis::Trade trade = offers_of(options, lanes, all.sources);
   const auto some =
       drawn(options.scene, options.seed, std::max<std::uint64_t>(options.pairs / 50, 1000), options.strata).sources;
   for (const analysis::Extreme extreme : analysis::kExtremes) {
-    const std::size_t first = curves.size();
-    for (const std::string& id : ids) curves.push_back({id, extreme, {}});
+    const std::size_t first = trade.curves.size();
+    for (const std::string& id : lanes.ids) trade.curves.push_back({id, extreme, {}});
     for (const int k : analysis::exponents(extreme)) {
-      const auto found = sweep(ids, analysis::made_extreme(some, extreme, k));
-      for (std::size_t l = 0; l < ids.size(); ++l) curves[first + l].points.emplace_back(k, found[l]);
+      const auto found = lanes.sweep(lanes.ids, analysis::made_extreme(some, extreme, k));
+      for (std::size_t l = 0; l < found.size(); ++l) trade.curves[first + l].points.emplace_back(k, found[l]);
     }
   }
 
@@ -69,17 +133,24 @@ int trade(TradeOptions options) {
   fs::create_directories(out, error);
   if (error) throw std::runtime_error(out.string() + ": expected a folder, found: " + error.message());
   const reports::Screen screen = output_screen();
-  fmt::print("{}", reports::trade_table(offers, screen));
-  for (const std::string& sentence : reports::extreme_sentences(curves))
+  fmt::print("{}", reports::trade_table(trade, screen));
+  if (options.device) {
+    fmt::print("{}", reports::wrapped(fmt::format("Registers and bytes of local memory of one thread, and threads that a "
+                                                  "multiprocessor of {} holds at once, of {}.",
+                                                  trade.machine, trade.threads_at_once),
+                                      screen.columns));
+  }
+  for (const std::string& sentence : reports::extreme_sentences(trade.curves))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(all.left_out));
-  nlohmann::ordered_json json = {{"machine", fuzz::machine_name()}, {"pairs", options.pairs}, {"seed", options.seed}};
-  json.update(reports::trade_json(offers, curves));
+  nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
+  json.update(reports::trade_json(trade));
   fuzz::write_whole(out / "trade.json", json.dump(1) + "\n");
-  fuzz::write_whole(out / "front.svg", reports::trade_figure(offers));
+  fuzz::write_whole(out / "front.svg", reports::trade_figure(trade));
   for (const analysis::Extreme extreme : analysis::kExtremes)
-    fuzz::write_whole(out / (std::string(name(extreme)) + ".svg"), reports::extreme_figure(curves, extreme));
+    fuzz::write_whole(out / (std::string(name(extreme)) + ".svg"), reports::extreme_figure(trade.curves, extreme));
   fmt::print("Wrote {}/{{trade.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n", out.string());
+  if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", shell_word(out.string()));
   return 0;
 }
 
@@ -101,6 +172,8 @@ void add_trade(CLI::App& app, int& status) {
       ->transform(whole_number(0, kMostWhole))
       ->capture_default_str()
       ->option_text("N");
+  command->add_flag("--device", options->device,
+                    "Measure the CUDA lanes on the first device, on pairs that lie there and with copies");
   command->add_option("--out", options->out, "Folder for trade.json and the pictures")
       ->check(not_empty())
       ->capture_default_str()

@@ -10,6 +10,8 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "cuda/lanes/device.h"
+#include "cuda/lanes/device_costs.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimise.h"
@@ -31,17 +33,36 @@ struct TuneOptions {
   double max_rate = 1e-6;
 };
 
-// The smallest pair that the policy mends, or breaks: the verdicts of both lanes stay as they are.
+// The smallest pair that the policy mends, or breaks: the verdicts of both lanes stay as they are. Of lanes without a
+// twin the pair itself.
 std::string smallest(const Lane& zero, const Lane& under, const Pair& pair) {
   fuzz::LanesUnderTest both;
   both.lanes = {&zero, &under};
   both.on_host = {cuda::block_on_host(zero), cuda::block_on_host(under)};
-  const fuzz::Failure failure = fuzz::failures_of(both, pair).at(0);
-  const Pair small = fuzz::minimise(failure, pair).pair;
+  Pair small = pair;
+  if (both.on_host[0] && both.on_host[1]) small = fuzz::minimise(fuzz::failures_of(both, pair).at(0), pair).pair;
   std::ostringstream text;
   corpus::write_header(text);
   corpus::write_entry(text, {small, {{"lanes", zero.id + "," + under.id}}});
   return text.str();
+}
+
+// Empty for a lane that runs by its twin: what a twin takes is not what the code takes.
+std::string cost_sentence(const Lane& zero, const Lane& chosen, const std::vector<strata::PairSource>& sources,
+                          bool on_device) {
+  if (!zero.is_cuda()) {
+    const std::vector<analysis::Cost> costs = analysis::costs_of(
+        std::vector{chosen.decide, find_lane("exact/f32/cpu")->decide}, analysis::first_pairs(sources, 8192), 9);
+    return fmt::format("Cost: {:.0f} ns a pair on one core here; the exact lane, which is never wrong, {:.0f} ns.",
+                       costs[0].middle, costs[1].middle);
+  }
+  if (!on_device) return "";
+  const Lane* lanes[] = {&chosen, find_lane("exact/f32/cuda")};
+  const cuda::DeviceCosts costs =
+      cuda::measure_on_device(lanes, analysis::first_pairs(sources, std::size_t{1} << 20), 9);
+  return fmt::format("Cost: {:.4f} ns a pair on {}, pairs there; the exact lane, which is never wrong, {:.4f} ns.",
+                     analysis::quartiles(costs.of[0].resident).middle, costs.device,
+                     analysis::quartiles(costs.of[1].resident).middle);
 }
 
 int tune(const TuneOptions& options) {
@@ -52,10 +73,15 @@ int tune(const TuneOptions& options) {
     throw UsageError("expected a published lane (see `graze lanes`), found '" + printable(options.lane) + "'" +
                      did_you_mean(options.lane, ids));
   }
-  if (!cuda::block_on_host(*lane) || (!lane->is_cuda() && !runs_on_this_cpu(*lane)))
-    throw UsageError(lane->id + ": expected a lane of this processor, or one with a twin");
+  std::string why_not;
+  const bool on_device = lane->is_cuda() && cuda::open_device(why_not);
+  if (!on_device && (!cuda::block_on_host(*lane) || (!lane->is_cuda() && !runs_on_this_cpu(*lane))))
+    throw UsageError(lane->id + ": expected a lane of this processor, of a device here, or one with a twin");
   analysis::TuneSpec spec;
-  spec.sweep = analysis::host_sweep(*lane, options.threads);
+  spec.sweep = on_device ? analysis::device_sweep([lane](const std::string& policy) {
+    return policy.empty() ? *lane : lane_under(*lane, policy);
+  })
+                         : analysis::host_sweep(*lane, options.threads);
   // Chosen on a tenth of the pairs, judged on all of the next seed's.
   strata::SceneSources others = drawn(options.scene, options.seed + 1, options.pairs, options.strata);
   spec.others = std::move(others.sources);
@@ -79,16 +105,8 @@ int tune(const TuneOptions& options) {
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(others.left_out));
   const Lane chosen = tuned.chosen.empty() ? *lane : lane_under(*lane, tuned.chosen);
-  if (!lane->is_cuda()) {
-    const std::vector<analysis::Cost> costs = analysis::costs_of(
-        std::vector{chosen.decide, find_lane("exact/f32/cpu")->decide}, analysis::first_pairs(spec.others, 8192), 9);
-    fmt::print(
-        "{}",
-        reports::wrapped(
-            fmt::format("Cost: {:.0f} ns a pair on one core here; the exact lane, which is never wrong, {:.0f} ns.",
-                        costs[0].middle, costs[1].middle),
-            screen.columns));
-  }
+  if (const std::string cost = cost_sentence(*lane, chosen, spec.others, on_device); !cost.empty())
+    fmt::print("{}", reports::wrapped(cost, screen.columns));
   std::vector<std::string> written = {"tune.json", "curves.svg", "policy.h"};
   fuzz::write_whole(out / "tune.json", reports::tuning_json(question, tuned).dump(1) + "\n");
   fuzz::write_whole(out / "curves.svg", reports::tuning_figure(question, tuned));

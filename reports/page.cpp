@@ -37,12 +37,12 @@ std::string with_data(std::string_view text, const char* id, const Json& data) {
 
 bool has_interactive_page() { return !kPageTemplate.empty(); }
 
-std::string page(const Json& report, const Json& costs) {
-  return has_interactive_page() ? filled(kPageTemplate, report, costs) : plain_page(report, costs);
+std::string page(const Json& report, const Json& costs, const Json& choices) {
+  return has_interactive_page() ? filled(kPageTemplate, report, costs, choices) : plain_page(report, costs, choices);
 }
 
-std::string filled(std::string_view page_template, const Json& report, const Json& costs) {
-  return with_data(with_data(page_template, "costs", costs), "report", report);
+std::string filled(std::string_view page_template, const Json& report, const Json& costs, const Json& choices) {
+  return with_data(with_data(with_data(page_template, "choices", choices), "costs", costs), "report", report);
 }
 
 }  // namespace graze::reports

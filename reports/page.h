@@ -11,14 +11,17 @@ namespace graze::reports {
 bool has_interactive_page();
 
 // The report in the page of reports/web if this build has that, else in a plain one. costs: what make_costs returns.
-std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs);
+// choices: what make_choices returns.
+std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
+                 const nlohmann::ordered_json& choices);
 
 // Tables and drawings without any script; says what it lacks.
-std::string plain_page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs);
+std::string plain_page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
+                       const nlohmann::ordered_json& choices);
 
-// Both inside a template, in its elements <script type="application/json" id="report"> and id="costs".
+// All inside a template, in its elements <script type="application/json" id="report">, id="costs" and id="choices".
 // Throws: std::logic_error for a text without them.
 std::string filled(std::string_view page_template, const nlohmann::ordered_json& report,
-                   const nlohmann::ordered_json& costs);
+                   const nlohmann::ordered_json& costs, const nlohmann::ordered_json& choices);
 
 }  // namespace graze::reports

@@ -18,6 +18,8 @@ namespace {
 
 class PageTest : public CampaignTest {};
 
+const Json kNone = {{"tuned", nullptr}, {"trade", nullptr}};
+
 TEST(Page, KnowsTheOutermostBuckets) {
   const std::string page = fuzz::read_whole(fs::path(GRAZE_SOURCE_DIR) / "reports/web/src/margins.ts");
   EXPECT_TRUE(contains(page, fmt::format("kOutermost = [{}, {}];", kBucketLowest, kBucketHighest)));
@@ -28,13 +30,15 @@ TEST(Page, HoldsTheReportInItsElement) {
   const Json report = {{"text", "</script><!--"}};
   const std::string text = filled(
       "<p><script type=\"application/json\" id=\"costs\">null</script>"
+      "<script type=\"application/json\" id=\"choices\"></script>"
       "<script type=\"application/json\" id=\"report\">old</script><script>code</script>",
-      report, {{"passes", 9}});
+      report, {{"passes", 9}}, {{"tuned", "<"}});
   EXPECT_EQ(text,
             "<p><script type=\"application/json\" id=\"costs\">{\"passes\":9}</script>"
+            "<script type=\"application/json\" id=\"choices\">{\"tuned\":\"\\u003c\"}</script>"
             "<script type=\"application/json\" id=\"report\">{\"text\":\"\\u003c/script>\\u003c!--\"}</script>"
             "<script>code</script>");
-  EXPECT_THROW(filled("<p>", report, nullptr), std::logic_error);
+  EXPECT_THROW(filled("<p>", report, nullptr, kNone), std::logic_error);
 }
 
 // A report comes from anywhere (`graze report --from`): one that lacks something is refused, whatever it lacks.
@@ -53,7 +57,7 @@ TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
       else
         parent.erase(place.back());
       try {
-        plain_page(rest, nullptr);
+        plain_page(rest, nullptr, kNone);
       } catch (const Json::exception&) {
         ++refused;
       }
@@ -86,7 +90,7 @@ TEST_F(PageTest, PlainPageIsWellFormedAndShowsEverything) {
   Json report = make_report(root_ / "one");
   add_comparison(report, report, Json::array(), Json::array());
   report["missing"].push_back("a <b> & \"c\"");
-  const std::string text = plain_page(report, make_costs(root_ / "one"));
+  const std::string text = plain_page(report, make_costs(root_ / "one"), make_choices(root_ / "one"));
   expect_well_formed(text);
   EXPECT_TRUE(contains(text, "a &lt;b&gt; &amp; &quot;c&quot;"));
   EXPECT_TRUE(contains(text, "had no Node"));
@@ -173,7 +177,7 @@ TEST(Page, OfManySignaturesIsUnderEightMebibytes) {
   }
   fuzz::write_kinds(directory, kinds);
   const Json report = make_report(directory);
-  const std::string html = page(report, nullptr);
+  const std::string html = page(report, nullptr, kNone);
   EXPECT_EQ(report["cards"].size(), fuzz::kMostShown);
   EXPECT_EQ(report["signatures"].size(), kMostSignatures);
   EXPECT_EQ(report["signature_count"], 12'000);

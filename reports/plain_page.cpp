@@ -204,6 +204,17 @@ std::string compare_section(const Json& compare) {
   return text;
 }
 
+// What graze tune and graze trade say; their pictures are the SVG files beside the report.
+std::string choices_section(const Json& choices) {
+  std::string text;
+  for (const auto& [name, title] : {std::pair{"tuned", "Which tolerance"}, {"trade", "Errors against cost"}}) {
+    if (choices.at(name).is_null()) continue;
+    text += fmt::format("<h2>{}</h2>\n", title);
+    for (const Json& sentence : choices.at(name).at("sentences")) text += paragraph(sentence);
+  }
+  return text;
+}
+
 constexpr const char* kDefinitions = R"(<h2>Definitions</h2>
 <p>A triangle is the closed convex hull of its three stored points; touching counts as intersecting. The truth is decided by
 exact arithmetic, twice. A lane is an algorithm in one precision on one target: cpu and cuda-nofma round every operation,
@@ -215,8 +226,9 @@ coplanar, margin, algorithm, and a mark for each of its lanes: + false positive,
 
 }  // namespace
 
-std::string plain_page(const Json& report, const Json& costs) {
-  return kHead + answer_section(report, costs) + compare_section(report.at("compare")) + league(report) +
+std::string plain_page(const Json& report, const Json& costs, const Json& choices) {
+  return kHead + answer_section(report, costs) + compare_section(report.at("compare")) + choices_section(choices) +
+         league(report) +
          margin_section(report) + extremes_section(report) + signature_section(report) + kDefinitions +
          run_section(report) + "</body>\n</html>\n";
 }

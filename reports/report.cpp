@@ -147,6 +147,19 @@ Json make_costs(const std::filesystem::path& directory) {
   }
 }
 
+Json make_choices(const std::filesystem::path& directory) {
+  const auto read = [&](const char* name, const char* needs) -> Json {
+    const std::filesystem::path file = directory / name;
+    if (!std::filesystem::exists(file)) return nullptr;
+    Json found = Json::parse(fuzz::read_whole(file), nullptr, false);
+    if (!found.is_object() || !found.contains(needs) || !found.contains("sentences"))
+      throw corpus::FormatError(
+          fmt::format("{}: expected what graze writes into it, found something else", file.string()));
+    return found;
+  };
+  return {{"tuned", read("tune.json", "curves")}, {"trade", read("trade.json", "lanes")}};
+}
+
 std::string report_text(const Json& report) {
   std::string text = "{";
   for (const auto& [key, value] : report.items()) {

@@ -19,6 +19,10 @@ nlohmann::ordered_json make_report(const std::filesystem::path& directory);
 // machine. null where the campaign has no timings of its lanes.   Throws: as make_report.
 nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
+// {"tuned", "trade"}: the tune.json and trade.json in the directory, null where they are not.
+// Throws: FormatError for one that is something else.
+nlohmann::ordered_json make_choices(const std::filesystem::path& directory);
+
 // The command that runs the whole campaign again.   Requires: what summary.json holds.
 std::string campaign_command(const nlohmann::ordered_json& summary);
 

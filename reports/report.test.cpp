@@ -39,11 +39,12 @@ TEST_F(ReportTest, SameBytesAgainAndForOtherThreads) {
   const Json one = make_report(root_ / "one"), again = make_report(root_ / "one"), two = make_report(root_ / "two");
   EXPECT_EQ(report_text(one), report_text(again));
   EXPECT_EQ(report_text(one), report_text(two));
-  EXPECT_EQ(page(one, nullptr), page(two, nullptr));
+  const Json none = make_choices(root_);
+  EXPECT_EQ(page(one, nullptr, none), page(two, nullptr, none));
   const Json costs = make_costs(root_ / "one");
   EXPECT_EQ(report_text(costs), report_text(make_costs(root_ / "one")));
   EXPECT_FALSE(contains(report_text(one), " ns "));  // what depends on the machine stays apart
-  EXPECT_TRUE(contains(page(one, costs), costs["answer"][0].get<std::string>()));
+  EXPECT_TRUE(contains(page(one, costs, none), costs["answer"][0].get<std::string>()));
   EXPECT_EQ(report_text(one).find(root_.string()), std::string::npos);
   EXPECT_EQ(Json::parse(report_text(one)), one);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "corpus/pair_format.h"
 #include "reports/findings.h"
 #include "reports/svg_text.h"
 #include "reports/terminal.h"
@@ -20,6 +21,7 @@ using analysis::Extreme;
 using analysis::ExtremeCurve;
 using analysis::Offer;
 using analysis::PolicyErrors;
+using analysis::Trade;
 using Json = nlohmann::ordered_json;
 
 constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7, kLegend = 240;
@@ -52,8 +54,16 @@ std::string begin(const std::string& title, double right = kRight) {
   return svg + svg_text(kLeft, 18, "start", title);
 }
 
+// As `graze check` takes it.
+std::string numbers(const Pair& pair) {
+  std::string text;
+  for (int c = 0; c < kCoordinates; ++c)
+    text += (c > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[c]);
+  return text;
+}
+
 Json cost_json(const Cost& cost) {
-  const auto rounded = [](double x) { return std::round(x * 10) / 10; };
+  const auto rounded = [](double x) { return std::round(x * 1e4) / 1e4; };
   return {{"low", rounded(cost.low)}, {"middle", rounded(cost.middle)}, {"high", rounded(cost.high)}};
 }
 
@@ -61,34 +71,44 @@ Json errors_json(const PolicyErrors& e) {
   return {{"pairs", e.pairs}, {"misses", e.misses}, {"false_hits", e.false_hits}, {"declined", e.declined}};
 }
 
+std::string nanoseconds(double ns) { return fmt::format("{:.{}f}", ns, ns < 1 ? 4 : 1); }
+
 std::vector<Offer> cheapest_first(std::vector<Offer> offers) {
   std::stable_sort(offers.begin(), offers.end(),
-                   [](const Offer& l, const Offer& r) { return l.in_cache.middle < r.in_cache.middle; });
+                   [](const Offer& l, const Offer& r) { return l.near.middle < r.near.middle; });
   return offers;
 }
 
 }  // namespace
 
-std::string trade_table(const std::vector<Offer>& offers, const Screen& screen) {
-  TextTable table({{"lane", Align::left},
-                   {"ns a pair", Align::point},
-                   {"from memory", Align::point},
-                   {"misses"},
-                   {"false hits"},
-                   {"declined"},
-                   {"", Align::left}});
-  for (const Offer& offer : cheapest_first(offers)) {
+std::string trade_table(const Trade& trade, const Screen& screen) {
+  std::vector<Column> columns = {{"lane", Align::left},
+                                 {"ns a pair", Align::point},
+                                 {trade.on_device ? "with copies" : "from memory", Align::point},
+                                 {"misses"},
+                                 {"false hits"},
+                                 {"declined"},
+                                 {"", Align::left}};
+  if (trade.on_device) columns.insert(columns.begin() + 3, {{"registers"}, {"local bytes"}, {"threads"}});
+  TextTable table(columns);
+  for (const Offer& offer : cheapest_first(trade.offers)) {
     const PolicyErrors& e = offer.errors;
     const std::string words = offer.dominated ? "dominated"
                               : share(e) == 0 ? fmt::format("none: under {:.1g}", analysis::upper_bound(0, e.pairs))
                                               : "front";
-    table.add({{offer.lane},
-               {fmt::format("{:.1f}", offer.in_cache.middle)},
-               {fmt::format("{:.1f}", offer.from_memory.middle)},
-               {grouped(e.misses), e.misses > 0},
-               {grouped(e.false_hits), e.false_hits > 0},
-               {grouped(e.declined)},
-               {words}});
+    std::vector<Cell> cells = {{offer.lane},
+                               {nanoseconds(offer.near.middle)},
+                               {nanoseconds(offer.far.middle)},
+                               {grouped(e.misses), e.misses > 0},
+                               {grouped(e.false_hits), e.false_hits > 0},
+                               {grouped(e.declined)},
+                               {words}};
+    if (offer.needs) {
+      const auto cell = [](int n) { return Cell{std::to_string(n)}; };
+      cells.insert(cells.begin() + 3, {cell(offer.needs->registers), cell(offer.needs->local_bytes),
+                                       cell(offer.needs->active_threads)});
+    }
+    table.add(std::move(cells));
   }
   return table.text(screen);
 }
@@ -115,17 +135,23 @@ std::vector<std::string> extreme_sentences(const std::vector<ExtremeCurve>& curv
   return result;
 }
 
-Json trade_json(const std::vector<Offer>& offers, const std::vector<ExtremeCurve>& curves) {
+Json trade_json(const Trade& trade) {
   Json rows = Json::array(), extremes = Json::array();
-  for (const Offer& offer : cheapest_first(offers)) {
+  for (const Offer& offer : cheapest_first(trade.offers)) {
     rows.push_back({{"lane", offer.lane},
                     {"errors", errors_json(offer.errors)},
                     {"bound", analysis::upper_bound(offer.errors.wrong() + offer.errors.declined, offer.errors.pairs)},
-                    {"in_cache", cost_json(offer.in_cache)},
-                    {"from_memory", cost_json(offer.from_memory)},
-                    {"dominated", offer.dominated}});
+                    {trade.on_device ? "resident" : "in_cache", cost_json(offer.near)},
+                    {trade.on_device ? "with_copies" : "from_memory", cost_json(offer.far)},
+                    {"dominated", offer.dominated},
+                    {"failure", offer.failure ? Json(numbers(*offer.failure)) : Json()}});
+    if (offer.needs) {
+      rows.back()["registers"] = offer.needs->registers;
+      rows.back()["local_bytes"] = offer.needs->local_bytes;
+      rows.back()["active_threads"] = offer.needs->active_threads;
+    }
   }
-  for (const ExtremeCurve& curve : curves) {
+  for (const ExtremeCurve& curve : trade.curves) {
     Json points = Json::array();
     for (const auto& [k, e] : curve.points) {
       Json point = {{"log2", k}};
@@ -134,15 +160,19 @@ Json trade_json(const std::vector<Offer>& offers, const std::vector<ExtremeCurve
     }
     extremes.push_back({{"lane", curve.lane}, {"extreme", name(curve.extreme)}, {"points", std::move(points)}});
   }
-  return {{"lanes", std::move(rows)}, {"extremes", std::move(extremes)}, {"sentences", extreme_sentences(curves)}};
+  return {{"machine", trade.machine},
+          {"lanes", std::move(rows)},
+          {"extremes", std::move(extremes)},
+          {"sentences", extreme_sentences(trade.curves)}};
 }
 
-std::string trade_figure(const std::vector<Offer>& offers) {
-  std::string svg = begin("Share of pairs without a right verdict, against nanoseconds a pair on one core");
+std::string trade_figure(const Trade& trade) {
+  std::string svg = begin("Share of pairs without a right verdict, against nanoseconds a pair on " +
+                          (trade.on_device ? trade.machine : "one core"));
   double low = 1e300, high = 0;
-  for (const Offer& offer : offers) {
-    low = std::min(low, offer.in_cache.middle);
-    high = std::max(high, offer.in_cache.middle);
+  for (const Offer& offer : trade.offers) {
+    low = std::min(low, offer.near.middle);
+    high = std::max(high, offer.near.middle);
   }
   low = std::log10(low) - 0.1;
   high = std::max(std::log10(high) + 0.35, low + 0.5);
@@ -154,15 +184,15 @@ std::string trade_figure(const std::vector<Offer>& offers) {
         svg += svg_text(x_of(ns), 370, "middle", fmt::format("{:g}", ns));
     }
   }
-  svg += svg_text((kLeft + kRight) / 2, 396, "middle", "nanoseconds a pair, pairs in cache");
+  svg += svg_text((kLeft + kRight) / 2, 396, "middle", fmt::format("nanoseconds a pair, pairs {}", trade.on_device ? "on the device" : "in cache"));
   std::string front;
-  for (const Offer& offer : cheapest_first(offers)) {
-    const double x = x_of(offer.in_cache.middle), y = y_of(share(offer.errors));
+  for (const Offer& offer : cheapest_first(trade.offers)) {
+    const double x = x_of(offer.near.middle), y = y_of(share(offer.errors));
     const char* colour = offer.dominated ? "#999" : "#d55e00";
     svg += fmt::format(
-        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {:.1f} ns, {} of {} "
+        "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {} ns, {} of {} "
         "pairs</title></circle>\n",
-        x, y, offer.dominated ? 3 : 5, colour, offer.lane, offer.in_cache.middle,
+        x, y, offer.dominated ? 3 : 5, colour, offer.lane, nanoseconds(offer.near.middle),
         grouped(offer.errors.wrong() + offer.errors.declined), grouped(offer.errors.pairs));
     if (offer.dominated) continue;
     front += fmt::format("{:.1f},{:.1f} ", x, y);

@@ -26,7 +26,7 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
     if (!matches_any(globs, row.id)) continue;
     sources.push_back({std::string(row.id), 0,
                        [seed, stratum = row.stratum](std::uint64_t index) { return generate(seed, stratum, index); },
-                       static_cast<int>(row.stratum), row.axis});
+                       static_cast<int>(row.stratum), row.axis, seed});
   }
   for (std::size_t s = 0; s < sources.size(); ++s)
     sources[s].pairs = pairs / sources.size() + (s < pairs % sources.size());

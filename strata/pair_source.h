@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,17 @@
 
 namespace graze::strata {
 
+struct Scene;
+
 struct PairSource {
   std::string id;
   std::uint64_t pairs = 0;  // how many of them the campaign takes: indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;
-  int stratum = -1;        // its place in kStrata; -1 for a mesh
+  // What draws the same pairs on a device: a stratum's place in kStrata; -1: only `pair` draws them.
+  int stratum = -1;
   Axis axis = Axis::none;  // the stratum's
+  std::uint64_t seed = 0;
+  std::shared_ptr<const Scene> scene = nullptr;  // that the stratum is drawn in; null: in none
 };
 
 // The strata whose names match (all of them for an empty list), `pairs` shared evenly, the first ones taking the rest.

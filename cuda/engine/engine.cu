@@ -8,7 +8,6 @@
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
-#include "strata/strata.h"
 
 namespace graze::cuda {
 namespace {
@@ -43,9 +42,9 @@ class CudaEngine final : public DeviceEngine {
   }
   ~CudaEngine() override { cudaSetDevice(ordinal_); }
 
-  EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) override {
+  EngineResult run(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) override {
     check(cudaSetDevice(ordinal_));
-    const EngineBlock empty = begin(strata::kStrata[stratum].axis);
+    const EngineBlock empty = begin(source.axis);
     const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(kLimits.block_pairs, count));
     EngineBlock blocks[kBlocksAtOnce];
     for (int k = 0; k < kBlocksAtOnce; ++k) blocks[k] = with_memory(empty, *buffers_[k], block_pairs);
@@ -56,7 +55,7 @@ class CudaEngine final : public DeviceEngine {
           block.pairs.count = pairs;
           block.pairs.stride = pairs;
           block.first = at;
-          judge(block, *buffers_[b % kBlocksAtOnce], seed, stratum);
+          judge(block, *buffers_[b % kBlocksAtOnce], source);
         },
         [&] { return left_to_host(empty); });
     EngineResult result = fetch(empty);
@@ -113,11 +112,11 @@ class CudaEngine final : public DeviceEngine {
     return block;
   }
 
-  void judge(const EngineBlock& block, Buffers& buffers, std::uint64_t seed, int stratum) {
+  void judge(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
     const cudaStream_t stream = buffers.stream;
-    launch_generate(buffers.coordinates.at_least(0), block.pairs.count, seed, stratum, block.first, stream);
+    drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), stream);
     std::uint32_t* truth = buffers.truth.at_least(0);
-    // No stratum has pairs that are not finite: nothing is declined, and `wrong` is free until it is written.
+    // Pairs are finite: nothing is declined, and `wrong` is free until it is written.
     buffers.exact.decide(block.pairs, truth, block.wrong, nullptr, stream);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
       const LaneWords& words = buffers.lanes_on_host[l];
@@ -154,6 +153,7 @@ class CudaEngine final : public DeviceEngine {
   int ordinal_;
   std::vector<const Lane*> lanes_;
   std::vector<LaneGroup> groups_;
+  Drawing drawing_;
   std::unique_ptr<Buffers> buffers_[kBlocksAtOnce];
   DeviceArray<LaneGroup> groups_on_device_;
   DeviceArray<std::uint32_t> lengths_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The on-device engine as the host sees it: pairs of a stratum are drawn, decided by lanes, judged exactly, measured
-// and counted on a device; only counts and chosen cases come back. No CUDA header is needed here, nor nvcc to build.
+// The on-device engine as the host sees it: pairs are drawn (those of a stratum, with a scene or without) or brought,
+// decided by lanes, judged exactly, measured and counted on a device; only counts and chosen cases come back. No CUDA header is needed here, nor nvcc to build.
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include "core/lanes.h"
 #include "core/margin/bucket.h"
 #include "core/verdict.h"
+#include "strata/pair_source.h"
 
 namespace graze::cuda {
 
@@ -55,9 +56,9 @@ class DeviceEngine {
  public:
   virtual ~DeviceEngine() = default;
 
-  // Pairs [first, first + count) of the stratum (its place in kStrata).
+  // Pairs [first, first + count) of the source.   Requires: they are finite.
   // Throws: std::runtime_error on any CUDA error, and when signatures or undecided pairs outgrow their memory.
-  virtual EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) = 0;
+  virtual EngineResult run(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) = 0;
 };
 
 // An engine for each CUDA device.   Requires: CUDA lanes.   Returns: none without a device.

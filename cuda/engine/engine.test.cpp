@@ -77,7 +77,9 @@ class EngineTest : public testing::Test {
 
   EngineResult run(strata::Stratum stratum, std::uint64_t first, std::uint64_t count,
                    const EngineLimits& limits = {}) const {
-    return make_host_engine(lanes_, on_host_, limits)->run(kSeed, static_cast<int>(stratum), first, count);
+    const strata::StratumInfo& row = strata::kStrata[static_cast<std::size_t>(stratum)];
+    const strata::PairSource source = strata::stratum_sources(kSeed, 1, {std::string(row.id)}).front();
+    return make_host_engine(lanes_, on_host_, limits)->run(source, first, count);
   }
 
   std::vector<const Lane*> lanes_;

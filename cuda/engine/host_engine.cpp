@@ -6,7 +6,6 @@
 
 #include "core/exact/exact.h"
 #include "cuda/engine/engine_steps.h"
-#include "strata/strata.h"
 
 namespace graze::cuda {
 namespace {
@@ -68,7 +67,7 @@ class HostEngine final : public DeviceEngine {
     for (const Lane* lane : lanes) is_truth_.push_back(lane->exact);
   }
 
-  EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) override {
+  EngineResult run(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) override {
     const std::size_t counters = engine_counters(on_host_.size());
     const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(limits_.block_pairs, count));
     EngineTotals totals;
@@ -76,7 +75,7 @@ class HostEngine final : public DeviceEngine {
     totals.undecided.resize(most_undecided);
     totals.counts.resize(2 * counters + 1);
     EngineBlock block{};
-    block.axis = strata::kStrata[stratum].axis;
+    block.axis = source.axis;
     block.signatures = {nullptr, limits_.signatures, key_words(groups_), &totals.full};
     totals.rows.resize(std::size_t{block.signatures.size} * block.signatures.row_words());
     block.signatures.rows = totals.rows.data();
@@ -92,7 +91,7 @@ class HostEngine final : public DeviceEngine {
         [&](int, std::uint64_t at, std::uint32_t pairs) {
           block.first = at;
           block.pairs.count = pairs;
-          decide(block, seed, static_cast<strata::Stratum>(stratum));
+          decide(block, source);
           run_steps(block, HostRun{block});
         },
         [&] { return totals.left; });
@@ -129,11 +128,11 @@ class HostEngine final : public DeviceEngine {
   std::uint32_t* words(std::size_t column) { return reinterpret_cast<std::uint32_t*>(&bits_[column * words_]); }
 
   // Draws the pairs and has them decided, exactly and by the lanes.
-  void decide(const EngineBlock& block, std::uint64_t seed, strata::Stratum stratum) {
+  void decide(const EngineBlock& block, const strata::PairSource& source) {
     std::vector<Pair> pairs(block.pairs.count);
     std::fill_n(&bits_[0], words_, 0);
     for (std::uint32_t i = 0; i < block.pairs.count; ++i) {
-      pairs[i] = strata::generate(seed, stratum, block.first + i);
+      pairs[i] = source.pair(block.first + i);
       const float* c = coordinates(pairs[i]);
       for (std::size_t k = 0; k < kCoordinates; ++k) coordinates_[k * block.pairs.stride + i] = c[k];
       bits_[i / 64] |= std::uint64_t{exact::intersects(c, c + 9)} << (i % 64);

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -18,11 +21,13 @@
 #include "core/exact/exact.h"
 #include "core/fnv1a.h"
 #include "core/lanes.h"
+#include "cuda/engine/sweep.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
+#include "strata/pair_source.h"
 #include "strata/strata.h"
 
 namespace graze::cuda {
@@ -195,6 +200,25 @@ void measure_lane(benchmark::State& state, Resident& resident, int stratum, cons
   });
 }
 
+// All that a sweep of 64 tolerances takes, drawing and judging the pairs included.
+void measure_sweep(benchmark::State& state, const Lane& lane, const std::string& form) {
+  strata::PairSource source = strata::stratum_sources(1, 1u << 28, {"near_edge_edge"}).front();
+  std::vector<Lane> under;
+  for (int k = 0; k < 64; ++k) {
+    char tolerance[32];
+    std::snprintf(tolerance, sizeof tolerance, ":%g", std::exp2(k * 1.25 - 60));
+    under.push_back(lane_under(lane, form + tolerance));
+  }
+  std::uint64_t wrong = 0;
+  for (auto _ : state) {
+    const auto start = std::chrono::steady_clock::now();
+    for (const ErrorCounts& counts : count_errors(lane, under, source)) wrong += counts.misses + counts.false_hits;
+    state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  if (wrong == 0) state.SkipWithError("expected wrong verdicts, found none");
+  state.SetItemsProcessed(static_cast<std::int64_t>(static_cast<std::uint64_t>(state.iterations()) * source.pairs));
+}
+
 template <class Function>
 void add(const std::string& name, Function function) {
   benchmark::RegisterBenchmark(name.c_str(), function)->UseManualTime()->Unit(benchmark::kMicrosecond);
@@ -216,6 +240,13 @@ void add_all(Resident& resident) {
       check(cudaGetLastError());
     });
   });
+  for (const char* form : {"abs", "rel"}) {
+    for (const char* id : {"moller_1997/f32/cuda-fma", "guigue_devillers_2003/f32/cuda-fma"}) {
+      add(std::string("sweep of 64 tolerances/") + id + '/' + form, [=](benchmark::State& state) {
+        measure_sweep(state, *find_lane(id), form);
+      });
+    }
+  }
   for (int stratum = 0; stratum < strata::kStrataCount; ++stratum) {
     for (const Lane& lane : lanes()) {
       if (!lane.is_cuda()) continue;

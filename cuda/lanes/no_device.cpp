@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 #include "cuda/engine/engine.h"
+#include "cuda/engine/sweep.h"
+#include "cuda/lanes/device_costs.h"
 #include "cuda/subject/subject_device.h"
 #include "cuda/twin/prove.h"
 
@@ -16,6 +18,14 @@ std::unique_ptr<Device> open_device(std::string& why_not) {
 }
 
 std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const>) { return {}; }
+
+std::vector<ErrorCounts> count_errors(const Lane&, std::span<const Lane>, const strata::PairSource&) {
+  throw std::runtime_error("a sweep on a device needs one: built without CUDA");
+}
+
+DeviceCosts measure_on_device(std::span<const Lane* const>, const std::vector<Pair>&, int) {
+  throw std::runtime_error("costs on a device need one: built without CUDA");
+}
 
 ProofRecord prove_twin(const ProofOptions&) { throw std::runtime_error("a proof needs a device: built without CUDA"); }
 

@@ -2,9 +2,14 @@
 // Compiled with -fmad=false: the strata's bits are those of the host only without contraction.
 #include "cuda/lanes/stratum_kernels.cuh"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <array>
 #include <utility>
 
+#include "cuda/lanes/device_memory.cuh"
+#include "strata/scene.h"
 #include "strata/strata.h"
 
 namespace graze::cuda {
@@ -17,6 +22,16 @@ __global__ void generate_pairs(float* coordinates, std::uint32_t count, std::uin
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= count) return;
   const Pair pair = strata::generate(seed, stratum, first + i);
+  const float* values = &pair.a[0].x;
+  for (int c = 0; c < kCoordinates; ++c) coordinates[static_cast<std::size_t>(c) * count + i] = values[c];
+}
+
+template <strata::Stratum stratum>
+__global__ void generate_pairs_in(const __grid_constant__ strata::Scene scene, float* coordinates, std::uint32_t count,
+                                  std::uint64_t seed, std::uint64_t first) {
+  const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= count) return;
+  const Pair pair = strata::generate(seed, stratum, scene, first + i);
   const float* values = &pair.a[0].x;
   for (int c = 0; c < kCoordinates; ++c) coordinates[static_cast<std::size_t>(c) * count + i] = values[c];
 }
@@ -49,6 +64,13 @@ constexpr std::array<Generate, sizeof...(kStratum)> generators(std::index_sequen
   return {generate_pairs<static_cast<strata::Stratum>(kStratum)>...};
 }
 
+using GenerateIn = void (*)(strata::Scene, float*, std::uint32_t, std::uint64_t, std::uint64_t);
+
+template <std::size_t... kStratum>
+constexpr std::array<GenerateIn, sizeof...(kStratum)> generators_in(std::index_sequence<kStratum...>) {
+  return {generate_pairs_in<static_cast<strata::Stratum>(kStratum)>...};
+}
+
 constexpr std::uint32_t kBlock = 256;
 constexpr std::uint32_t blocks(std::uint32_t threads) { return (threads + kBlock - 1) / kBlock; }
 
@@ -59,6 +81,28 @@ void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed
                      cudaStream_t stream) {
   static constexpr auto kGenerators = generators(std::make_index_sequence<strata::kStrataCount>());
   kGenerators[static_cast<std::size_t>(stratum)]<<<blocks(count), kBlock, 0, stream>>>(coordinates, count, seed, first);
+}
+
+void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, float* to,
+                   cudaStream_t stream) {
+  static constexpr auto kGenerators = generators_in(std::make_index_sequence<strata::kStrataCount>());
+  if (source.stratum >= 0 && source.scene) {
+    kGenerators[static_cast<std::size_t>(source.stratum)]<<<blocks(count), kBlock, 0, stream>>>(
+        *source.scene, to, count, source.seed, first);
+  } else if (source.stratum >= 0) {
+    launch_generate(to, count, source.seed, source.stratum, first, stream);
+  } else {
+    brought_.resize(std::size_t{count} * kCoordinates);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, count, 4096), [&](const auto& part) {
+      for (std::uint32_t i = part.begin(); i != part.end(); ++i) {
+        const Pair pair = source.pair(first + i);
+        for (std::size_t c = 0; c < kCoordinates; ++c) brought_[c * count + i] = coordinates(pair)[c];
+      }
+    });
+    // Of memory that is not pinned: what is to be copied has been read when this returns.
+    check(cudaMemcpyAsync(to, brought_.data(), brought_.size() * sizeof(float), cudaMemcpyHostToDevice, stream));
+  }
+  check(cudaGetLastError());
 }
 
 void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,

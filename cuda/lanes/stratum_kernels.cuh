@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Device code of the proof: pairs of a stratum as a block, and counts of what differs between two runs.
+// Pairs of a stratum as a block, in a scene or in none, and counts of what differs between two runs. Device code only.
 #pragma once
 
 #include <cuda_runtime.h>
 
 #include <cstdint>
+#include <vector>
 
 #include "cuda/lanes/device_pairs.h"
+#include "strata/pair_source.h"
 
 namespace graze::cuda {
 
@@ -21,6 +23,17 @@ struct Differences {
 // Writes pairs [first, first + count) of the stratum.
 void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
                      cudaStream_t stream);
+
+// A source's pairs on a device: drawn there where its kernels can, else by all cores here and copied.
+class Drawing {
+ public:
+  // Writes pairs [first, first + count) as 18 arrays of `count`, in the stream's order.
+  void draw(const strata::PairSource& source, std::uint64_t first, std::uint32_t count, float* coordinates,
+            cudaStream_t stream);
+
+ private:
+  std::vector<float> brought_;
+};
 
 // Adds the set bits of (a ^ b): bit i % 32 of word i / 32 is place i. Bits from `count` on do not count.
 void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,

@@ -23,6 +23,7 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kBatchPairs = 65536;  // a transaction of the CPU engine
+constexpr std::uint64_t kDrawnHere = std::uint64_t{1} << 25;  // at most, of pairs that a device cannot draw
 
 // The next batch: of the source of which the least is done, so that a campaign that is cut short has seen all of them.
 // Of a large source whose cost is not known, first a few pairs, so that the time left is known early. Not before a
@@ -44,7 +45,8 @@ std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store
     const std::uint64_t few = std::uint64_t{256} * static_cast<unsigned>(threads);
     return store.missing(static_cast<int>(*unknown), std::min(few, kLarge / 4));
   }
-  const std::uint64_t most = campaign.engines.empty() ? kBatchPairs : campaign.engine_batch * campaign.engines.size();
+  std::uint64_t most = campaign.engines.empty() ? kBatchPairs : campaign.engine_batch * campaign.engines.size();
+  if (campaign.sources[*next].stratum < 0) most = std::min(most, kDrawnHere);
   return store.missing(static_cast<int>(*next), most);
 }
 
@@ -100,12 +102,9 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
     if (!campaign.under_test->on_device(l) || campaign.under_test->on_both(l))
       hindrance = campaign.under_test->lanes[l]->id;
   }
-  for (const strata::PairSource& source : campaign.sources) {
-    if (source.stratum < 0) hindrance = source.id + (campaign.spec.contains("scene") ? " in a scene" : "");
-  }
   if (hindrance.empty()) return cuda::open_engines(campaign.under_test->lanes);
   if (choice == EngineChoice::automatic) return {};
-  throw UsageError("expected lanes that run on the device alone, and strata, for the GPU engine; found " + hindrance);
+  throw UsageError("expected lanes that run on the device alone for the GPU engine, found " + hindrance);
 }
 
 Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,

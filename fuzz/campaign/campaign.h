@@ -51,8 +51,7 @@ Json build_info(const LanesUnderTest& under_test);
 // The processor's name and the architecture, for timings.
 std::string machine_name();
 
-// What judges the pairs. automatic: the devices where they can, which is where all lanes are theirs and all sources
-// are strata; else the CPU.
+// What judges the pairs. automatic: the devices where they can, which is where all lanes are theirs; else the CPU.
 enum class EngineChoice { automatic, cpu, gpu };
 
 // The engines that take the campaign; none for the CPU engine.

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <string_view>
 
+#include "analysis/sweep.h"
+#include "cuda/lanes/device_costs.h"
 #include "fuzz/campaign/campaign_testing.h"
 
 namespace graze::fuzz {
@@ -56,6 +58,63 @@ TEST_F(DeviceTest, GpuEngineCpuEngineAndTwinsLeaveTheSameBytesOverAllStrata) {
   }
 }
 
+TEST_F(DeviceTest, ScenesAreDrawnOnTheDeviceAsOnTheHost) {
+  const auto in_scenes = [&](const LanesUnderTest& under_test, const std::string& name, bool engine) {
+    Campaign c = campaign_of(under_test, sources_in_scenes(4, 120'000), 4, name);
+    c.threads = 0;
+    c.build = build_info(twins_);
+    if (engine) c.engines = cuda::open_engines(under_test.lanes);
+    return c;
+  };
+  run(in_scenes(twins_, "twins", false));
+  run(in_scenes(on_device_, "cpu", false));
+  const Json summary = run(in_scenes(on_device_, "gpu", true));
+  expect_same_bytes("twins", "cpu");
+  expect_same_bytes("twins", "gpu");
+  EXPECT_GT(summary["signatures"].size(), 1000u);
+}
+
+TEST_F(DeviceTest, SweepsCountAsTheTwinsDo) {
+  std::vector<strata::PairSource> sources = sources_in_scenes(5, 60'000);
+  for (strata::PairSource& source : strata::stratum_sources(5, 60'000, {})) sources.push_back(std::move(source));
+  const std::vector<std::string> policies = {"", "abs:1e-6", "rel:1", "rel:64", "rel:1e9", "plane_distance=abs:1e-3"};
+  for (const char* id : {"moller_1997/f32/cuda-fma", "guigue_devillers_2003/f64/cuda-nofma"}) {
+    const Lane& lane = *find_lane(id);
+    const auto there = analysis::device_sweep([&](const std::string& policy) {
+      return policy.empty() ? lane : lane_under(lane, policy);
+    })(policies, sources);
+    EXPECT_EQ(there, analysis::host_sweep(lane)(policies, sources)) << id;
+    EXPECT_GT(there[1].mended + there[1].broken, 100u);
+  }
+  const Lane& filtered = *find_lane("guigue_devillers_2003/f32/cuda-fma");
+  const auto found = analysis::device_sweep([&](const std::string& policy) {
+    return policy.empty() ? filtered : lane_under(filtered, policy);
+  })(std::vector<std::string>{"filtered", "bound"}, sources);
+  EXPECT_EQ(found[0].wrong() + found[0].declined + found[1].wrong(), 0u);
+  EXPECT_GT(found[1].declined, 1000u);
+}
+
+TEST_F(DeviceTest, CostsAreOfEachLaneAndNameItsKernel) {
+  std::vector<Pair> pairs;
+  const auto source = strata::stratum_sources(1, 1u << 20, {"near_edge_edge"}).front();
+  for (std::uint64_t i = 0; i < source.pairs; ++i) pairs.push_back(source.pair(i));
+  const Lane bound = lane_under(*find_lane("moller_1997/f64/cuda-fma"), "filtered");
+  const Lane* lanes[] = {find_lane("moller_1997/f32/cuda-fma"), find_lane("exact/f32/cuda"), &bound};
+  const cuda::DeviceCosts costs = cuda::measure_on_device(lanes, pairs, 5);
+  ASSERT_EQ(costs.of.size(), 3u);
+  EXPECT_GE(costs.threads_at_once, 1024);
+  for (const cuda::DeviceCost& cost : costs.of) {
+    ASSERT_EQ(cost.resident.size(), 5u);
+    for (std::size_t pass = 0; pass < 5; ++pass) {
+      EXPECT_GT(cost.resident[pass], 0);
+      EXPECT_GT(cost.with_copies[pass], 0.1);  // 72 bytes at 720 GB/s: no link is as fast
+    }
+    EXPECT_GT(cost.needs.registers, 15);
+    EXPECT_GT(cost.needs.active_threads, 0);
+  }
+  EXPECT_GT(costs.of[2].needs.registers, costs.of[0].needs.registers);
+}
+
 TEST_F(DeviceTest, LanesUnderTolerancesLeaveTheSameBytesByTheirTwins) {
   const std::vector<std::string> globs = {"*/cuda-nofma/abs:1e-6", "*/cuda-nofma/rel:16", "*/cuda-fma/abs:1e-6",
                                           "*/cuda-fma/rel:16", "*/cuda-fma/plane_distance=rel:3,separation=abs:1e-9"};
@@ -82,7 +141,9 @@ TEST_F(DeviceTest, BoundsDecideNothingWrongly) {
     for (const auto& [lane, counts] : row["lanes"].items()) {
       EXPECT_EQ(counts["false_positive"], 0) << lane << " " << stratum;
       EXPECT_EQ(counts["false_negative"], 0) << lane << " " << stratum;
-      if (lane.ends_with("filtered")) EXPECT_EQ(counts["declined"], 0) << lane << " " << stratum;
+      if (lane.ends_with("filtered")) {
+        EXPECT_EQ(counts["declined"], 0) << lane << " " << stratum;
+      }
       declined += counts["declined"].get<std::uint64_t>();
     }
   }

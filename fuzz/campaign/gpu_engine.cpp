@@ -58,8 +58,8 @@ BatchResult GpuEngine::judge(int source, std::uint64_t first, std::uint64_t coun
     runs.push_back(std::async(std::launch::async, [&, e, begin, end] {
       std::vector<cuda::EngineResult> parts;
       for (std::uint64_t at = begin; at < end; at += parts.back().done) {
-        parts.push_back(campaign_.engines[e]->run(
-            campaign_.seed, campaign_.sources[static_cast<std::size_t>(source)].stratum, first + at, end - at));
+        parts.push_back(
+            campaign_.engines[e]->run(campaign_.sources[static_cast<std::size_t>(source)], first + at, end - at));
       }
       return parts;
     }));

@@ -11,7 +11,7 @@ namespace graze::fuzz {
 
 class GpuEngine {
  public:
-  // Requires: campaign outlives this, and its sources are strata.
+  // Requires: campaign outlives this.
   explicit GpuEngine(const Campaign& campaign) : campaign_(campaign) {}
 
   // Pairs [first, first + count) of the source, shared by the campaign's engines.

@@ -36,6 +36,16 @@ TEST_F(GpuEngineTest, LeavesTheBytesOfTheCpuEngineOverAllStrata) {
   }
 }
 
+TEST_F(GpuEngineTest, LeavesTheBytesOfTheCpuEngineInScenes) {
+  for (const int engines : {0, 1}) {
+    Campaign c = campaign_of(twins_, sources_in_scenes(4, 12'000), 4, engines ? "engine" : "cpu");
+    if (engines) c.engines.push_back(cuda::make_host_engine(twins_.lanes, twins_.on_host));
+    EXPECT_GT(c.sources.size(), 40u);
+    EXPECT_GT(run(c)["signatures"].size(), 300u);
+  }
+  expect_same_bytes("cpu", "engine");
+}
+
 TEST_F(GpuEngineTest, TwoEnginesAndInterruptionsChangeNothing) {
   const std::vector<std::string> strata = {"degenerate", "extreme_scale", "mixed_scale"};
   run(campaign(twins_, "cpu", 3'001, 0, 3, strata));
@@ -80,8 +90,8 @@ class WrongEngine final : public cuda::DeviceEngine {
  public:
   explicit WrongEngine(std::unique_ptr<cuda::DeviceEngine> engine) : engine_(std::move(engine)) {}
 
-  cuda::EngineResult run(std::uint64_t seed, int stratum, std::uint64_t first, std::uint64_t count) override {
-    cuda::EngineResult result = engine_->run(seed, stratum, first, count);
+  cuda::EngineResult run(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) override {
+    cuda::EngineResult result = engine_->run(source, first, count);
     Verdict& verdict = result.signatures.at(result.signatures.size() / 2).verdicts.back();
     verdict = verdict == Verdict::intersects ? Verdict::disjoint : Verdict::intersects;
     return result;

@@ -52,7 +52,8 @@ GRAZE_HD inline Pair coplanar(Draws& draws, const Scene& scene, const Space& pla
   const Form form = draw_form(draws, scene);
   put_face(draws, plane, form, draft.a);
   const Vec turned = draw_direction(draws, plane);
-  put_face(draws, {true, turned, draw_across(draws, plane, turned)}, draw_form(draws, scene), draft.b);
+  const Form other = draw_form(draws, scene);
+  put_face(draws, {true, turned, draw_across(draws, plane, turned)}, other, draft.b);
   const double x = draws.real();
   const double y = draws.real();
   move(draft.b, plane.x * (x * form.length) + plane.y * (y * form.length));
@@ -68,7 +69,8 @@ GRAZE_HD inline Pair parallel(Draws& draws, const Scene& scene) {
   const Form form = draw_form(draws, scene);
   put_face(draws, plane, form, draft.a);
   const Vec turned = draw_direction(draws, plane);
-  put_face(draws, {true, turned, draw_across(draws, plane, turned)}, draw_form(draws, scene), draft.b);
+  const Form other = draw_form(draws, scene);
+  put_face(draws, {true, turned, draw_across(draws, plane, turned)}, other, draft.b);
   const double gap = draws.sign();
   const int halvings = draws.between(0, 40);
   const int steps = draws.integer(4);

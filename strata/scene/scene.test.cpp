@@ -200,7 +200,7 @@ TEST(SceneSources, AreSharedByTheMix) {
   for (const PairSource& source : all.sources) {
     pairs[source.id] = source.pairs;
     sum += source.pairs;
-    EXPECT_EQ(source.stratum, -1);
+    EXPECT_TRUE(source.stratum >= 0 && source.scene && source.seed == 1) << source.id;
   }
   EXPECT_EQ(sum, 100'000u);
   EXPECT_EQ(pairs.size(), 7u);  // uniform, four near ones, exact_contact; shared_edge

@@ -166,10 +166,11 @@ SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& f
       result.left_out.push_back({std::string(row.id), std::move(*why)});
       continue;
     }
-    // No number in kStrata: the devices' engines draw strata without a scene.
-    result.sources.push_back({std::string(row.id), 0, [seed, stratum = row.stratum, scene](std::uint64_t index) {
+    result.sources.push_back({std::string(row.id), 0,
+                              [seed, stratum = row.stratum, scene](std::uint64_t index) {
                                 return generate(seed, stratum, *scene, index);
-                              }});
+                              },
+                              static_cast<int>(row.stratum), Axis::none, seed, scene});
     ++of_kind[static_cast<std::size_t>(kind_of(row.stratum))];
     weights.push_back(static_cast<double>(static_cast<int>(kind_of(row.stratum))));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Puts the page together from the report that `graze report` wrote into it.
 import './style.css';
+import { trade_section, tuned_section } from './choices';
 import { compare_section } from './compare';
 import { h } from './dom';
 import { count } from './format';
@@ -10,16 +11,16 @@ import { heat_styles } from './heat';
 import { league_section } from './league';
 import { margins_section } from './margins';
 import { method_section } from './method';
-import type { Costs, Report } from './report';
+import type { Choices, Costs, Report } from './report';
 import { answer_section, run_section } from './run';
 import { side_by_side_section } from './side_by_side';
 import { follow_fragment } from './state';
 
-function build(report: Report, costs: Costs | null) {
+function build(report: Report, costs: Costs | null, { tuned, trade }: Choices) {
   document.head.append(heat_styles());
   const failures = failure_sections(report);
   const sections = [
-    answer_section(report, costs), compare_section(report), league_section(report), ...failures.sections, margins_section(report),
+    answer_section(report, costs, trade), compare_section(report), tuned && tuned_section(tuned), trade && trade_section(report, trade), league_section(report), ...failures.sections, margins_section(report),
     extremes_section(report), side_by_side_section(report), method_section(), run_section(report, costs),
   ].filter((one) => one !== null);
   const contents = sections.map((one) => h('a', { href: `#${one.id}` }, one.querySelector('h2')!.textContent));
@@ -43,7 +44,7 @@ function start() {
   if (!text || text.startsWith('<!--')) page.textContent = 'This is the empty page: graze report DIR writes one with data.';
   else {
     const report = JSON.parse(text) as Report;
-    if (report.format === 2) build(report, JSON.parse(data('costs') || 'null') as Costs | null);
+    if (report.format === 2) build(report, JSON.parse(data('costs') || 'null') as Costs | null, JSON.parse(data('choices')) as Choices);
     else page.textContent = `This page reads reports of format 2, and its data is of format ${report.format}.`;
   }
 }

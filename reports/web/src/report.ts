@@ -18,6 +18,31 @@ export interface Costs {
   answer: string[];
 }
 
+// Counts under one policy, on the same pairs; mended and broken: against the lane without one.
+export interface PolicyErrors { policy: string; pairs: number; misses: number; false_hits: number; declined: number; mended: number; broken: number }
+
+// tune.json and trade.json, where they lie in the campaign's folder; docs/formats.md describes them.
+export interface Tuned {
+  lane: string; forbid: "miss" | "false" | "any"; max_rate: number; chosen: string; result: string; bound: number;
+  confirmed: PolicyErrors; zero_confirmed: PolicyErrors; dead: string[];
+  scale_break: { up?: { log2: number; errors: PolicyErrors }; down?: { log2: number; errors: PolicyErrors } };
+  interactions: { first: PolicyErrors; second: PolicyErrors; together: PolicyErrors }[];
+  zero: PolicyErrors;
+  curves: { site: string; tolerance: "rel" | "abs"; points: PolicyErrors[] }[];
+  sentences: string[];
+}
+export interface Quartiles { low: number; middle: number; high: number }
+export interface Trade {
+  pairs: number; seed: number; machine: string;
+  // in_cache and from_memory of one core, or resident, with_copies and what the kernels need of a device. failure: the
+  // smallest pair on which the lane is wrong, as `graze check` takes it.
+  lanes: { lane: string; errors: PolicyErrors; bound: number; in_cache?: Quartiles; from_memory?: Quartiles; resident?: Quartiles;
+           with_copies?: Quartiles; dominated: boolean; registers?: number; local_bytes?: number; active_threads?: number; failure: string | null }[];
+  extremes: { lane: string; extreme: string; points: ({ log2: number } & PolicyErrors)[] }[];
+  sentences: string[];
+}
+export interface Choices { tuned: Tuned | null; trade: Trade | null }
+
 export interface Report {
   format: 2;
   run: {

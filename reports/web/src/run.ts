@@ -2,8 +2,9 @@
 // What was run, and the answer in sentences.
 import { breakable, code_block, h, lazy_details, section, sentence, type Child } from './dom';
 import { count, nanoseconds, percent } from './format';
+import { front } from './choices';
 import { glance } from './glance';
-import type { Costs, Report } from './report';
+import type { Costs, Report, Trade } from './report';
 import { sortable_table } from './sortable_table';
 
 // "20 lanes: twin, verified on …", one line an evidence word.
@@ -88,11 +89,11 @@ function advice(text: string): Child[] {
 
 const kFirst = 2, kBeside = 4;  // sentences above the picture on a phone, and beside it where there is room
 
-export function answer_section(report: Report, costs: Costs | null) {
+export function answer_section(report: Report, costs: Costs | null, trade: Trade | null) {
   const said = (costs?.answer ?? report.answer).map((text) => h('li', {}, advice(text)));
   const list = (items: HTMLElement[], start: number) => items.length > 0 && h('ol', { class: 'answer', start }, items);
   return section('answer', 'The answer',
     !report.run.complete && h('p', { class: 'notice' }, 'The campaign is not finished: these are its figures so far.'),
-    h('div', { class: 'opening' }, list(said.slice(0, kFirst), 1), glance(report, costs), list(said.slice(kFirst, kBeside), kFirst + 1)),
+    h('div', { class: 'opening' }, list(said.slice(0, kFirst), 1), h('div', { class: 'pictures' }, trade && front(trade), glance(report, costs)), list(said.slice(kFirst, kBeside), kFirst + 1)),
     list(said.slice(kBeside), kBeside + 1));
 }

@@ -20,6 +20,8 @@ export default function make_report() {
   const fuzz = (seed: string, out: string) => run('fuzz', '--pairs', '1500', '--seed', seed, '--strata', kStrata, '--executor', 'twin', '--out', out);
   fuzz('1', 'campaign');
   run('minimize', 'campaign', '--executor', 'twin');
+  run('tune', 'moller_1997/f32/cpu', '--pairs', '5000', '--strata', 'near_*', '--out', 'campaign');
+  run('trade', '--pairs', '2000', '--strata', 'near_*', '--out', 'campaign');
   run('report', 'campaign');
   fuzz('2', 'other');
   run('minimize', 'other', '--executor', 'twin');

@@ -40,6 +40,14 @@ test('real costs are what report.ts says', ({}, info) => {
   expect(complaints({ costs: { ...costs, passes: '9' } }, info, 'Costs')).toContain("'string' is not assignable");
 });
 
+test('real choices are what report.ts says', ({}, info) => {
+  const [tuned, trade] = ['tune', 'trade'].map((name) => JSON.parse(readFileSync(process.env.GRAZE_REPORT!.replace(/report.html$/, `${name}.json`), 'utf8')));
+  expect(tuned.curves.length).toBeGreaterThan(3);
+  expect(trade.lanes.length).toBeGreaterThan(10);
+  expect(complaints({ choices: { tuned, trade }, none: { tuned: null, trade: null } }, info, 'Choices')).toBe('');
+  expect(complaints({ choices: { tuned, trade: { ...trade, machine: 1 } } }, info, 'Choices')).toContain("'number' is not assignable");
+});
+
 test('and others are told apart', ({}, info) => {
   const whole = read(process.env.GRAZE_REPORT!);
   const right: Report = { ...whole, rates: [], margins: [], thresholds: [], extremes: [], side_by_side: [], signatures: [], sources: {}, cards: [{ ...whole.cards[0], maps: null, snippets: [] }] };

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/engine/sweep.h"
+
+#include <algorithm>
+
+#include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/exact_kernels.cuh"
+#include "cuda/lanes/kernels.cuh"
+#include "cuda/lanes/stratum_kernels.cuh"
+
+namespace graze::cuda {
+namespace {
+
+constexpr std::uint32_t kPairsAtOnce = 1u << 22;
+constexpr std::uint32_t kWords = kPairsAtOnce / 32;
+
+// A lane's verdicts; bit i % 32 of word i / 32 belongs to pair i.
+struct Bits {
+  std::uint32_t *intersects, *declined;
+};
+
+__device__ void add(std::uint64_t* to, std::uint32_t count) {
+  for (int from = 16; from > 0; from /= 2) count += __shfl_down_sync(0xffffffffu, count, from);
+  if (threadIdx.x % 32 == 0 && count) atomicAdd(reinterpret_cast<unsigned long long*>(to), count);
+}
+
+__device__ void add(std::uint64_t* to, std::uint64_t* least, std::uint32_t bits, std::uint64_t first_of_word) {
+  add(to, static_cast<std::uint32_t>(__popc(bits)));
+  if (bits) {
+    const auto index = first_of_word + static_cast<std::uint64_t>(__ffs(static_cast<int>(bits)) - 1);
+    if (index < *const_cast<volatile std::uint64_t*>(least))
+      atomicMin(reinterpret_cast<unsigned long long*>(least), index);
+  }
+}
+
+// A thread for each word.
+__global__ void __launch_bounds__(kThreads)
+    add_errors(Bits truth, Bits zero, Bits lane, std::uint32_t pairs, std::uint64_t first, ErrorCounts* counts) {
+  const std::uint32_t w = blockIdx.x * kThreads + threadIdx.x;
+  std::uint32_t judged = 0, is = 0, none = 0, off = 0, was_wrong = 0;
+  if (w * 32 < pairs) {
+    judged = pairs - w * 32 >= 32 ? ~0u : (1u << (pairs - w * 32)) - 1;
+    judged &= ~truth.declined[w];
+    is = truth.intersects[w];
+    none = lane.declined[w] & judged;
+    off = (lane.intersects[w] ^ is) & judged & ~none;
+    was_wrong = (zero.declined[w] | (zero.intersects[w] ^ is)) & judged;
+  }
+  const std::uint32_t wrong = off | none;
+  add(&counts->misses, static_cast<std::uint32_t>(__popc(off & is)));
+  add(&counts->false_hits, static_cast<std::uint32_t>(__popc(off & ~is)));
+  add(&counts->declined, static_cast<std::uint32_t>(__popc(none)));
+  const std::uint64_t index = first + std::uint64_t{w} * 32;
+  add(&counts->mended, &counts->first_mended, was_wrong & ~wrong, index);
+  add(&counts->broken, &counts->first_broken, judged & ~was_wrong & wrong, index);
+}
+
+}  // namespace
+
+std::vector<ErrorCounts> count_errors(const Lane& zero, std::span<const Lane> lanes, const strata::PairSource& source) {
+  check(cudaSetDevice(0));
+  std::vector<ErrorCounts> counts(lanes.size());
+  DeviceArray<ErrorCounts> on_device;
+  DeviceArray<float> coordinates;
+  DeviceArray<std::uint32_t> words;
+  DeviceExact exact;
+  Drawing drawing;
+  ErrorCounts* totals = on_device.at_least(lanes.size());
+  check(cudaMemcpy(totals, counts.data(), counts.size() * sizeof *totals, cudaMemcpyHostToDevice));
+  float* block = coordinates.at_least(std::size_t{kPairsAtOnce} * kCoordinates);
+  std::uint32_t* word = words.at_least(6 * kWords);
+  const Bits truth{word, word + kWords}, without{word + 2 * kWords, word + 3 * kWords},
+      under{word + 4 * kWords, word + 5 * kWords};
+  for (std::uint64_t first = 0; first < source.pairs; first += kPairsAtOnce) {
+    const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(kPairsAtOnce, source.pairs - first));
+    drawing.draw(source, first, count, block, nullptr);
+    const DevicePairs pairs{block, count, count};
+    exact.decide(pairs, truth.intersects, truth.declined, nullptr, nullptr);
+    launch_lane(zero, exact, pairs, without.intersects, without.declined, nullptr);
+    for (std::size_t l = 0; l < lanes.size(); ++l) {
+      launch_lane(lanes[l], exact, pairs, under.intersects, under.declined, nullptr);
+      add_errors<<<(count / 32 + kThreads) / kThreads, kThreads>>>(truth, without, under, count, first, totals + l);
+    }
+    check(cudaGetLastError());
+  }
+  check(cudaMemcpy(counts.data(), totals, counts.size() * sizeof *totals, cudaMemcpyDeviceToHost));
+  return counts;
+}
+
+}  // namespace graze::cuda

@@ -86,6 +86,12 @@ Json differences_of(const Json& after, const Json& before) {
       rows.push_back(
           fmt::format("They differ in {}: {} before, {} after.", what, grouped(then.at(what)), grouped(now.at(what))));
   }
+  const auto scene = [](const Json& run) {
+    return run.contains("scene") && !run["scene"].is_null() ? run["scene"].get<std::string>() : "none";
+  };
+  if (scene(now) != scene(then))
+    rows.push_back(fmt::format("They differ in scene, in which a stratum draws other pairs: {} before, {} after.",
+                               scene(then), scene(now)));
   for (const char* what : {"strata", "lanes"}) {
     const std::set<std::string> l = ids_of(before.at(what)), r = ids_of(after.at(what));
     if (l != r)

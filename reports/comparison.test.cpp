@@ -83,6 +83,11 @@ TEST(Comparison, HowTheyDifferIsSaid) {
       "They differ in lanes, and only what both have is compared. Only before: lane/8, lane/9; only after: none.");
   EXPECT_NE(said[3].get<std::string>().find("not compared"), std::string::npos);
   EXPECT_FALSE(after["compare"]["kinds_compared"]);
+  Json in_scene = report_of(1, 50'000, 10);
+  in_scene["run"]["scene"] = "arm.toml#1";
+  add_comparison(in_scene, before, Json::array(), Json::array());
+  EXPECT_EQ(in_scene["compare"]["differences"],
+            Json::array({"They differ in scene, in which a stratum draws other pairs: none before, arm.toml#1 after."}));
   Json same = before;
   add_comparison(same, before, Json::array(), Json::array());
   EXPECT_TRUE(same["compare"]["differences"].empty());

@@ -45,6 +45,7 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
           {"command", campaign_command(summary)},
           {"map_command", "graze report campaign"},
           {"build", build},
+          {"scene", summary.at("spec").contains("scene") ? summary["spec"]["scene"].at("name") : Json()},
           {"machine", machines(directory)}};
 }
 

@@ -4,15 +4,15 @@ import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, choice, code_block, copy_button, h, on_width, section } from './dom';
 import { count, figure, percent, power_of_two } from './format';
-import type { PolicyErrors, Report, Trade, Tuned } from './report';
+import type { Errors, PolicyErrors, Report, Trade, Tuned } from './report';
 import { sortable_table } from './sortable_table';
 import { cell_text } from './pairs_of_cell';
 import { go_to } from './state';
 
 type Offer = Trade['lanes'][number];
 
-const without_answer = (e: PolicyErrors) => e.misses + e.false_hits + e.declined;
-const share = (e: PolicyErrors) => (e.pairs ? without_answer(e) / e.pairs : 0);
+const without_answer = (e: Errors) => e.misses + e.false_hits + e.declined;
+const share = (e: Errors) => (e.pairs ? without_answer(e) / e.pairs : 0);
 const cost = (offer: Offer) => (offer.resident ?? offer.in_cache)!;
 const far = (offer: Offer) => (offer.with_copies ?? offer.from_memory)!;
 const nanoseconds = (ns: number) => ns.toFixed(ns < 1 ? 4 : 1);
@@ -67,7 +67,7 @@ export function trade_section(report: Report, trade: Trade) {
     const shown = lane >= 0 && report.rates.some((rate) => rate.lane === lane && rate.stratum === null && rate.wrong.count > 0);
     return shown && h('button', { type: 'button', onclick: () => go_to('kinds', { cell: cell_text(report, { lane, stratum: null, kind: 'wrong' }) }) }, 'its failures');
   };
-  const errors = (label: string, of: (e: PolicyErrors) => number) =>
+  const errors = (label: string, of: (e: Errors) => number) =>
     ({ label, numeric: true, cell: (o: Offer) => count(of(o.errors)), order: (o: Offer) => of(o.errors) });
   const needs = (label: string, of: (o: Offer) => number | undefined) =>
     ({ label, numeric: true, cell: (o: Offer) => (of(o) === undefined ? '–' : count(of(o)!)), order: (o: Offer) => of(o) ?? 0 });

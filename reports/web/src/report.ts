@@ -18,8 +18,9 @@ export interface Costs {
   answer: string[];
 }
 
-// Counts under one policy, on the same pairs; mended and broken: against the lane without one.
-export interface PolicyErrors { policy: string; pairs: number; misses: number; false_hits: number; declined: number; mended: number; broken: number }
+export interface Errors { pairs: number; misses: number; false_hits: number; declined: number }
+// Under one policy; mended and broken: against the lane without one.
+export interface PolicyErrors extends Errors { policy: string; mended: number; broken: number }
 
 // tune.json and trade.json, where they lie in the campaign's folder; docs/formats.md describes them.
 export interface Tuned {
@@ -36,9 +37,9 @@ export interface Trade {
   pairs: number; seed: number; machine: string;
   // in_cache and from_memory of one core, or resident, with_copies and what the kernels need of a device. failure: the
   // smallest pair on which the lane is wrong, as `graze check` takes it.
-  lanes: { lane: string; errors: PolicyErrors; bound: number; in_cache?: Quartiles; from_memory?: Quartiles; resident?: Quartiles;
+  lanes: { lane: string; errors: Errors; bound: number; in_cache?: Quartiles; from_memory?: Quartiles; resident?: Quartiles;
            with_copies?: Quartiles; dominated: boolean; registers?: number; local_bytes?: number; active_threads?: number; failure: string | null }[];
-  extremes: { lane: string; extreme: string; points: ({ log2: number } & PolicyErrors)[] }[];
+  extremes: { lane: string; extreme: string; points: ({ log2: number } & Errors)[] }[];
   sentences: string[];
 }
 export interface Choices { tuned: Tuned | null; trade: Trade | null }
@@ -50,6 +51,7 @@ export interface Report {
     command: string;                       // reproduces the whole campaign
     map_command: string;                   // regenerates the page from stored data: "graze report DIR"
     build: { version: string; commit: string; compiler: string; cuda: string | null; device: string | null };
+    scene: string | null;                  // "arm.toml#0123456789abcdef"
     machine: string | null;                // from timings.json only if deterministic; else null
   };
   strata: { id: string; describes: string; pairs: number; intersects: number }[];

@@ -63,6 +63,7 @@ export function run_section(report: Report, costs: Costs | null) {
   const facts: [string, Child][] = [
     ['Pairs', `${count(run.pairs)}${run.complete ? '' : ' so far: the campaign is not complete'}`],
     ['Seed', String(run.seed)],
+    ['Scene', run.scene ?? null],
     ['Build', graze],
     ['Compiler', compiler],
     ['Toolkit', toolkit],

@@ -31,7 +31,7 @@ for (const viewport of [{ width: 1280, height: 800 }, kPhone]) {
     await expect(said.nth(0)).toContainText(/^Use exact.* ns .*a general pair/);
     await expect(said.nth(0)).toBeInViewport({ ratio: 1 });
     await expect(said.nth(1)).toBeInViewport({ ratio: 1 });
-    await expect(page.locator('#glance svg').first()).toBeInViewport();
+    await expect(page.locator('#answer figure svg').first()).toBeInViewport();
     await expect(page.locator('main > section').last()).toHaveAttribute('id', 'run');
     expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(viewport.width);
   });

@@ -62,7 +62,7 @@ int laws(const LawsOptions& options) {
 void add_laws(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "laws", "Count how often a lane's verdict changes although the question is the same: swapped, mirrored, moved, …");
-  command->footer("Example: graze laws --lanes '*/f32/cpu' --strata 'near_*'");
+  command->footer("Example: graze laws --lanes '*/f32/cpu' --strata 'near_*' --pairs 2000");
   const auto options = std::make_shared<LawsOptions>();
   add_lane_options(*command, options->lanes, Executors::twins);
   add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");

@@ -51,6 +51,60 @@ TEST(Tally, SumsAreTheTallyOfTheUnion) {
   }
 }
 
+std::vector<std::uint64_t> fields(const LaneCounts& c) {
+  return {c.false_positive, c.false_negative, c.declined, c.differs_from_cpu, c.crashed, c.timed_out, c.unstable, c.by_convention};
+}
+
+TEST(LaneCounts, EachAddsToItself) {
+  const LaneCounts one{1, 2, 4, 8, 16, 32, 64, 128};
+  LaneCounts sum = one;
+  (sum += one) += one;
+  EXPECT_EQ(fields(sum), (std::vector<std::uint64_t>{3, 6, 12, 24, 48, 96, 192, 384}));
+  EXPECT_EQ(one.failed(), 16u + 32 + 64);
+  EXPECT_EQ(one.wrong(), 1u + 2 + 4 + 16 + 32 + 64);
+  for (std::size_t i = 0; i < 8; ++i) {
+    std::uint64_t f[8] = {};
+    f[i] = 1;
+    const LaneCounts single{f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]};
+    EXPECT_TRUE(single.any()) << i;
+    EXPECT_EQ(single.any_foreign(), i >= 4) << i;
+  }
+  EXPECT_FALSE(LaneCounts{}.any() || LaneCounts{}.any_foreign());
+}
+
+TEST(LaneCounts, AWrongVerdictCountsByWhatItIs) {
+  constexpr std::size_t kField[] = {1, 0, 2, 4, 5, 6};  // of disjoint, intersects, declined, crashed, timed out, unstable
+  for (int verdict = 0; verdict < 6; ++verdict) {
+    LaneCounts counts;
+    counts.count(static_cast<Verdict>(verdict), 3);
+    std::vector<std::uint64_t> expected(8);
+    expected[kField[verdict]] = 3;
+    EXPECT_EQ(fields(counts), expected) << verdict;
+  }
+}
+
+TEST(Tally, StoredCountsGoToTheirBucketAndLane) {
+  Tally tally({-1, 0, 0});
+  const Bucket bucket = make_bucket(-1, 3);
+  tally.add(bucket, 5, 2);
+  tally.add(bucket, 1, LaneCounts{1, 2, 4, 8, 16, 32, 64, 0});
+  tally.excuse(bucket, 1, Verdict::disjoint);
+  for (int l = 0; l < 3; ++l) {
+    for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+      const bool here = l == 1 && b == bucket;
+      EXPECT_EQ(fields(tally.lane(l, static_cast<Bucket>(b))),
+                here ? (std::vector<std::uint64_t>{1, 1, 4, 8, 16, 32, 64, 1}) : std::vector<std::uint64_t>(8));
+    }
+  }
+  Tally sum({-1, 0, 0});
+  sum.add(tally);
+  sum.add(tally);
+  EXPECT_EQ(sum.pairs(bucket), 10u);
+  EXPECT_EQ(sum.intersects(bucket), 4u);
+  EXPECT_EQ(fields(sum.lane(1, bucket)), (std::vector<std::uint64_t>{2, 2, 8, 16, 32, 64, 128, 2}));
+  EXPECT_EQ(sum.pairs(make_bucket(-1, 2)), 0u);
+}
+
 TEST(Disagreements, AreThePairsOnWhichSomeLaneIsNotRight) {
   const Bits wrong = disagreements(Example().block);
   ASSERT_EQ(wrong.size(), 2u);

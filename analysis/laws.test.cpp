@@ -78,6 +78,7 @@ TEST(Laws, NoImageThatWouldLoseBits) {
   // Only what leaves z as it is: 2^-149 less or more than 1 is no float32.
   EXPECT_EQ(images(Law::translate, pair).size(), 3u);
   EXPECT_EQ(images(Law::part, pair).size(), 4u);
+  EXPECT_EQ(images(Law::part, images(Law::swap, pair).front()).size(), 4u);
   pair.b[2].z = 0;
   EXPECT_EQ(images(Law::scale, pair).size(), 8u);
   EXPECT_EQ(images(Law::translate, pair).size(), 8u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "analysis/convention.h"
 #include "analysis/signature.h"
 #include "analysis/tally.h"
 #include "core/algorithms/algorithms.h"
@@ -103,6 +104,40 @@ TEST(Tally, StoredCountsGoToTheirBucketAndLane) {
   EXPECT_EQ(sum.intersects(bucket), 4u);
   EXPECT_EQ(fields(sum.lane(1, bucket)), (std::vector<std::uint64_t>{2, 2, 8, 16, 32, 64, 128, 2}));
   EXPECT_EQ(sum.pairs(make_bucket(-1, 2)), 0u);
+}
+
+// Proper triangles that touch in a point, that are coplanar, share a vertex, or are degenerate: each by its own bit.
+TEST(Convention, LeavesOpenWhatItNames) {
+  const Pair touching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};
+  const Pair coplanar{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 5, 0}, {9, 5, 0}, {5, 9, 0}}};
+  const Pair overlapping{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {5, 1, 0}, {1, 5, 0}}};
+  const Pair shared{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 0}, {1, 1, -4}, {1, 1, 4}}};
+  const Pair thin_a{{{0, 0, 1}, {4, 0, 1}, {2, 0, 1}}, {{0, 1, 0}, {4, 1, 0}, {0, 9, 2}}};
+  Pair thin_b = thin_a;
+  std::swap(thin_b.a, thin_b.b);
+  const Pair plain{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {3, 3, 1}}};
+  const std::pair<const Pair*, unsigned> open[] = {{&touching, kOutsideTouching}, {&coplanar, kOutsideCoplanar},
+                                                   {&overlapping, kOutsideCoplanar}, {&shared, kOutsideShared},
+                                                   {&thin_a, kOutsideDegenerate}, {&thin_b, kOutsideDegenerate},
+                                                   {&plain, 0}};
+  Lane lane = *find_lane("moller_1997/f32/cpu");
+  for (const auto& [pair, bits] : open) {
+    const oracle::Truth truth = oracle::truth(*pair);
+    const Verdict wrong = truth.verdict == Verdict::intersects ? Verdict::disjoint : Verdict::intersects;
+    for (const unsigned bit : {0u, 1u, 2u, 4u, 8u}) {
+      lane.outside = bit;
+      EXPECT_EQ(by_convention(lane, wrong, *pair, truth), bit != 0 && bit == bits) << bits << " " << bit;
+      EXPECT_FALSE(by_convention(lane, truth.verdict, *pair, truth));
+      EXPECT_FALSE(by_convention(lane, Verdict::crashed, *pair, truth));
+    }
+  }
+  lane.outside = kOutsideTouching;
+  const Lane* two[] = {&lane, find_lane("moller_1997/f64/cpu")};
+  EXPECT_EQ(excused(two, {Verdict::disjoint, Verdict::disjoint}, touching, oracle::truth(touching)),
+            (std::vector{Verdict::intersects, Verdict::disjoint}));
+  EXPECT_EQ(outside_in_words(0), "");
+  EXPECT_EQ(outside_in_words(kOutsideTouching | kOutsideShared), "touching pairs, pairs that share a vertex");
+  EXPECT_EQ(outside_in_words(kOutsideCoplanar | kOutsideDegenerate), "coplanar pairs, degenerate triangles");
 }
 
 TEST(Disagreements, AreThePairsOnWhichSomeLaneIsNotRight) {

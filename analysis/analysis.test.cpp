@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include "analysis/convention.h"
 #include "analysis/signature.h"
 #include "analysis/tally.h"
 #include "core/algorithms/algorithms.h"
@@ -49,6 +50,94 @@ TEST(Tally, SumsAreTheTallyOfTheUnion) {
     EXPECT_EQ(sum.pairs(static_cast<Bucket>(b)), twice.pairs(static_cast<Bucket>(b)));
     EXPECT_EQ(sum.lane(1, static_cast<Bucket>(b)).false_positive, twice.lane(1, static_cast<Bucket>(b)).false_positive);
   }
+}
+
+std::vector<std::uint64_t> fields(const LaneCounts& c) {
+  return {c.false_positive, c.false_negative, c.declined, c.differs_from_cpu, c.crashed, c.timed_out, c.unstable, c.by_convention};
+}
+
+TEST(LaneCounts, EachAddsToItself) {
+  const LaneCounts one{1, 2, 4, 8, 16, 32, 64, 128};
+  LaneCounts sum = one;
+  (sum += one) += one;
+  EXPECT_EQ(fields(sum), (std::vector<std::uint64_t>{3, 6, 12, 24, 48, 96, 192, 384}));
+  EXPECT_EQ(one.failed(), 16u + 32 + 64);
+  EXPECT_EQ(one.wrong(), 1u + 2 + 4 + 16 + 32 + 64);
+  for (std::size_t i = 0; i < 8; ++i) {
+    std::uint64_t f[8] = {};
+    f[i] = 1;
+    const LaneCounts single{f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]};
+    EXPECT_TRUE(single.any()) << i;
+    EXPECT_EQ(single.any_foreign(), i >= 4) << i;
+  }
+  EXPECT_FALSE(LaneCounts{}.any() || LaneCounts{}.any_foreign());
+}
+
+TEST(LaneCounts, AWrongVerdictCountsByWhatItIs) {
+  constexpr std::size_t kField[] = {1, 0, 2, 4, 5, 6};  // of disjoint, intersects, declined, crashed, timed out, unstable
+  for (int verdict = 0; verdict < 6; ++verdict) {
+    LaneCounts counts;
+    counts.count(static_cast<Verdict>(verdict), 3);
+    std::vector<std::uint64_t> expected(8);
+    expected[kField[verdict]] = 3;
+    EXPECT_EQ(fields(counts), expected) << verdict;
+  }
+}
+
+TEST(Tally, StoredCountsGoToTheirBucketAndLane) {
+  Tally tally({-1, 0, 0});
+  const Bucket bucket = make_bucket(-1, 3);
+  tally.add(bucket, 5, 2);
+  tally.add(bucket, 1, LaneCounts{1, 2, 4, 8, 16, 32, 64, 0});
+  tally.excuse(bucket, 1, Verdict::disjoint);
+  for (int l = 0; l < 3; ++l) {
+    for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+      const bool here = l == 1 && b == bucket;
+      EXPECT_EQ(fields(tally.lane(l, static_cast<Bucket>(b))),
+                here ? (std::vector<std::uint64_t>{1, 1, 4, 8, 16, 32, 64, 1}) : std::vector<std::uint64_t>(8));
+    }
+  }
+  Tally sum({-1, 0, 0});
+  sum.add(tally);
+  sum.add(tally);
+  EXPECT_EQ(sum.pairs(bucket), 10u);
+  EXPECT_EQ(sum.intersects(bucket), 4u);
+  EXPECT_EQ(fields(sum.lane(1, bucket)), (std::vector<std::uint64_t>{2, 2, 8, 16, 32, 64, 128, 2}));
+  EXPECT_EQ(sum.pairs(make_bucket(-1, 2)), 0u);
+}
+
+// Proper triangles that touch in a point, that are coplanar, share a vertex, or are degenerate: each by its own bit.
+TEST(Convention, LeavesOpenWhatItNames) {
+  const Pair touching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};
+  const Pair coplanar{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 5, 0}, {9, 5, 0}, {5, 9, 0}}};
+  const Pair overlapping{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {5, 1, 0}, {1, 5, 0}}};
+  const Pair shared{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 0}, {1, 1, -4}, {1, 1, 4}}};
+  const Pair thin_a{{{0, 0, 1}, {4, 0, 1}, {2, 0, 1}}, {{0, 1, 0}, {4, 1, 0}, {0, 9, 2}}};
+  Pair thin_b = thin_a;
+  std::swap(thin_b.a, thin_b.b);
+  const Pair plain{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {3, 3, 1}}};
+  const std::pair<const Pair*, unsigned> open[] = {{&touching, kOutsideTouching}, {&coplanar, kOutsideCoplanar},
+                                                   {&overlapping, kOutsideCoplanar}, {&shared, kOutsideShared},
+                                                   {&thin_a, kOutsideDegenerate}, {&thin_b, kOutsideDegenerate},
+                                                   {&plain, 0}};
+  Lane lane = *find_lane("moller_1997/f32/cpu");
+  for (const auto& [pair, bits] : open) {
+    const oracle::Truth truth = oracle::truth(*pair);
+    const Verdict wrong = truth.verdict == Verdict::intersects ? Verdict::disjoint : Verdict::intersects;
+    for (const unsigned bit : {0u, 1u, 2u, 4u, 8u}) {
+      lane.outside = bit;
+      EXPECT_EQ(by_convention(lane, wrong, *pair, truth), bit != 0 && bit == bits) << bits << " " << bit;
+      EXPECT_FALSE(by_convention(lane, truth.verdict, *pair, truth));
+      EXPECT_FALSE(by_convention(lane, Verdict::crashed, *pair, truth));
+    }
+  }
+  lane.outside = kOutsideTouching;
+  const Lane* two[] = {&lane, find_lane("moller_1997/f64/cpu")};
+  EXPECT_EQ(excused(two, {Verdict::disjoint, Verdict::disjoint}, touching, oracle::truth(touching)),
+            (std::vector{Verdict::intersects, Verdict::disjoint}));
+  EXPECT_EQ(outside_in_words(0), "");
+  EXPECT_EQ(outside_in_words(kOutsideTouching | kOutsideShared), "touching pairs, pairs that share a vertex");
+  EXPECT_EQ(outside_in_words(kOutsideCoplanar | kOutsideDegenerate), "coplanar pairs, degenerate triangles");
 }
 
 TEST(Disagreements, AreThePairsOnWhichSomeLaneIsNotRight) {

@@ -3,9 +3,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace graze::analysis {
+namespace {
+
+// x + y where that is exact.   Reference: Knuth, two-sum.
+std::optional<float> exact_sum(float x, float y) {
+  const float sum = x + y, other = sum - x, rest = (x - (sum - other)) + (y - other);
+  return std::isfinite(sum) && rest == 0 ? std::optional(sum) : std::nullopt;
+}
+
+// (x + y) / 2 where that is exact.
+std::optional<float> exact_middle(float x, float y) {
+  const double middle = (double{x} + double{y}) / 2;  // of floats far apart the sum is rounded
+  const auto result = static_cast<float>(middle);
+  const bool exact = double{result} == middle && middle * 2 - double{x} == double{y} && middle * 2 - double{y} == double{x};
+  return exact ? std::optional(result) : std::nullopt;
+}
+
+std::optional<Pair> moved_by(const Pair& pair, const Vec3<float>& step) {
+  Pair moved;
+  for (int i = 0; i < kCoordinates; ++i) {
+    const std::optional<float> sum = exact_sum(coordinates(pair)[i], component(step, i % 3));
+    if (!sum) return {};
+    coordinates(moved)[i] = *sum;
+  }
+  return moved;
+}
+
+// The middles of the edges from v[0] to v[1], from v[1] to v[2] and from v[2] to v[0].
+bool exact_middles(const Vec3<float> (&v)[3], Vec3<float> (&middles)[3]) {
+  for (int i = 0; i < 3; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::optional<float> middle = exact_middle(component(v[i], axis), component(v[(i + 1) % 3], axis));
+      if (!middle) return false;
+      component(middles[i], axis) = *middle;
+    }
+  }
+  return true;
+}
+
+}  // namespace
 
 std::vector<Pair> orders(const Pair& pair) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
@@ -42,6 +82,52 @@ std::vector<Pair> scalings(const Pair& pair) {
       exact = exact && std::ldexp(coordinates(scaled)[i], -k) == c;
     }
     if (exact) result.push_back(scaled);
+  }
+  return result;
+}
+
+std::vector<Pair> axes(const Pair& pair) {
+  constexpr int kAxes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
+  std::vector<Pair> result;
+  for (const auto& order : kAxes) {
+    Pair turned;
+    for (int i = 0; i < kCoordinates; ++i) coordinates(turned)[i] = coordinates(pair)[i - i % 3 + order[i % 3]];
+    result.push_back(turned);
+  }
+  return result;
+}
+
+std::vector<Pair> translated(const Pair& pair) {
+  std::vector<Pair> result{pair};
+  float largest = 0;
+  for (int i = 0; i < kCoordinates; ++i) largest = std::max(largest, std::abs(coordinates(pair)[i]));
+  std::vector<Vec3<float>> steps;
+  for (const auto& triangle : {pair.a, pair.b}) {
+    for (int i = 0; i < 3; ++i) steps.push_back({-triangle[i].x, -triangle[i].y, -triangle[i].z});
+  }
+  if (largest > 0) {
+    const float step = std::ldexp(1.0f, std::ilogb(largest));
+    steps.push_back({step, step, step});
+    steps.push_back({-step, -step, -step});
+  }
+  for (const Vec3<float>& step : steps) {
+    if (const std::optional<Pair> moved = moved_by(pair, step)) result.push_back(*moved);
+  }
+  return result;
+}
+
+std::vector<Pair> parts(const Pair& pair) {
+  std::vector<Pair> result{pair};
+  for (const bool first : {true, false}) {
+    const auto& whole = first ? pair.a : pair.b;
+    Vec3<float> m[3];
+    if (!exact_middles(whole, m)) continue;
+    const Vec3<float> divided[4][3] = {{whole[0], m[0], m[2]}, {m[0], whole[1], m[1]}, {m[2], m[1], whole[2]}, {m[0], m[1], m[2]}};
+    for (const auto& part : divided) {
+      Pair with = pair;
+      std::copy(part, part + 3, first ? with.a : with.b);
+      result.push_back(with);
+    }
   }
   return result;
 }

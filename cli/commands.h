@@ -27,6 +27,7 @@ void add_dump(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
 void add_scene(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
+void add_laws(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
 void add_trade(CLI::App& app, int& status);
 void add_tune(CLI::App& app, int& status);

@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   graze::cli::add_scene(app, status);
   graze::cli::add_lanes(app, status);
   graze::cli::add_strata(app, status);
+  graze::cli::add_laws(app, status);
   graze::cli::add_trade(app, status);
   graze::cli::add_tune(app, status);
   graze::cli::add_prove_twin(app, status);

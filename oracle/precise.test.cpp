@@ -5,6 +5,7 @@
 
 #include <boost/multiprecision/gmp.hpp>
 
+#include "oracle/multiprecision.h"
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
 
@@ -17,6 +18,21 @@ Verdict decide(const Lane& lane, const Pair& pair) {
   std::uint64_t intersects = 0, declined = 0;
   lane.decide(&pair, 1, &intersects, &declined);
   return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
+}
+
+// Bounds add: neither may get lost where the other is exact.
+TEST(Ball, ARadiusHoldsBothErrors) {
+  constexpr long kExact = Ball::kExact, kUnknown = Ball::kUnknown;
+  EXPECT_EQ(Ball::either(kExact, kExact), kExact);
+  EXPECT_EQ(Ball::either(kExact, -7), -7);
+  EXPECT_EQ(Ball::either(-7, kExact), -7);
+  EXPECT_EQ(Ball::either(-7, -9), -6);
+  EXPECT_EQ(Ball::either(-9, -7), -6);
+  EXPECT_EQ(Ball::either(kUnknown, 3), kUnknown);
+  EXPECT_EQ(Ball::scaled(kExact, 3), kExact);
+  EXPECT_EQ(Ball::scaled(3, kExact), kExact);
+  EXPECT_EQ(Ball::scaled(kUnknown, 3), kUnknown);
+  EXPECT_EQ(Ball::scaled(-7, 3), -4);
 }
 
 // MPFR with a format's mantissa and exponents, subnormals included, is that format.

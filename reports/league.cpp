@@ -58,6 +58,7 @@ Json row_json(const fuzz::LeagueRow& row) {
           {"total", counts_json(total)},
           {"clear", clear},
           {"order_dependent", share_json(row.order_dependent, row.order_sample)},
+          {"lawless", share_json(row.lawless, row.order_sample)},
           {"flips", row.flips ? Json(*row.flips) : Json()}};
 }
 
@@ -166,6 +167,11 @@ constexpr Extra kExtras[] = {
      [](const Json&, const Json& row) {
        const Json& order = row.at("order_dependent");
        return count_text(order.at("count")) + " of " + count_text(order.at("of"));
+     }},
+    {"laws",
+     [](const Json&, const Json& row) {
+       const Json& lawless = row.at("lawless");
+       return count_text(lawless.at("count")) + " of " + count_text(lawless.at("of"));
      }},
     {"flips", [](const Json&, const Json& row) { return row.at("flips").is_null() ? "-" : count_text(row.at("flips")); }},
     {"ns a pair", nanoseconds_text},
@@ -353,7 +359,7 @@ Made by `{command}`; do not edit. All rows saw the same {pairs} pairs (strata wi
 The truth of every pair is CGAL's exact decision and that of `core/exact`; of every pair on which a row is wrong, GMP's as well. Every wrong verdict was asked again in a process that was new for it, and counts only where that said the same ("not again": the others). Touching counts, and a degenerate triangle is a segment or a point. What a library's documentation leaves out of its contract is counted apart ("by convention") and is no error; where it states nothing, every difference counts.
 
 {counts}
-Columns: misses / false hits by group of strata ("near": near and exact contacts; "extreme": needles, extreme coordinates, far from the origin). *clear*: of the wrong verdicts outside "extreme" those on proper, not coplanar triangles whose margin is at least 2^{exponent} ulps of the largest coordinate: neither a convention nor rounding of the input excuses them. *order*: pairs, of a sample, on which the verdict changes with the order of triangles and vertices (72 orders, the same truth). *flips*: pairs on which the build with contraction says otherwise, where there is source. *ns a pair*: median of {repetitions} repetitions in turn on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
+Columns: misses / false hits by group of strata ("near": near and exact contacts; "extreme": needles, extreme coordinates, far from the origin). *clear*: of the wrong verdicts outside "extreme" those on proper, not coplanar triangles whose margin is at least 2^{exponent} ulps of the largest coordinate: neither a convention nor rounding of the input excuses them. *order*: pairs, of a sample, on which the verdict changes with the order of triangles and vertices (72 orders, the same truth). *laws*: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that round nothing, or on which a part of a triangle intersects and the whole does not. *flips*: pairs on which the build with contraction says otherwise, where there is source. *ns a pair*: median of {repetitions} repetitions in turn on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
 
 ## Shares
 Wrong within the contract (misses, false hits, declined, crashed, timed out and unstable), in per cent of the pairs within it, with 95 % intervals.

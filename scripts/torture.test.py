@@ -220,6 +220,20 @@ class Torture(unittest.TestCase):
         self.assertIn("| meshes | 1 | 1 | 0 | 0 | 0 | 1 |", table)
         self.assertEqual(list(self.folder.glob("graze-torture-*/meshes-3")), [pathlib.Path(said.split("kept:  ")[1].split("\n")[0])])
 
+    def test_kills_go_on_until_there_are_enough(self):
+        kinds, torture.KINDS = torture.KINDS, {name: torture.KINDS[name] for name in torture.KILLS}
+        arguments, sys.argv = sys.argv, ["torture", "--graze", str(self.graze("good")), "--rounds", "1", "--kills", "6", "--seed", "commits"]
+        said = io.StringIO()
+        try:
+            with contextlib.redirect_stdout(said):
+                self.assertEqual(torture.main(), 0, said.getvalue())
+        finally:
+            torture.KINDS, sys.argv = kinds, arguments
+        for kind in torture.KILLS:
+            attempts = int(said.getvalue().split(f"| {kind} | ")[1].split(" | ")[1])
+            self.assertGreaterEqual(attempts, 6)
+        self.assertRegex(said.getvalue(), r"^Seed [1-9][0-9]*, ")
+
     def test_nothing_attempted_is_a_failure(self):
         kinds, torture.KINDS = torture.KINDS, {"idle": lambda turn: None}
         arguments, sys.argv = sys.argv, ["torture", "--graze", str(self.graze("good")), "--rounds", "1"]
@@ -229,7 +243,7 @@ class Torture(unittest.TestCase):
                 self.assertEqual(torture.main(), 1)
         finally:
             torture.KINDS, sys.argv = kinds, arguments
-        self.assertIn("expected at least one attempt of idle, found none", said.getvalue())
+        self.assertIn("expected at least 1 attempts of idle, found 0", said.getvalue())
 
 
 if __name__ == "__main__":

@@ -113,11 +113,21 @@ TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {
     const auto salvage = discard_damaged(store_spec(c));
     ASSERT_TRUE(salvage) << sql;
     EXPECT_EQ(salvage->batches, kept) << sql;
+    const auto pairs = SQLite::Database(file(c).string()).execAndGet("SELECT ifnull(sum(pairs), 0) FROM batch");
+    EXPECT_EQ(salvage->pairs, static_cast<std::uint64_t>(pairs.getInt64())) << sql;
     EXPECT_TRUE(fs::exists(salvage->damaged)) << sql;
     EXPECT_EQ(refusal(c), "") << sql;
     EXPECT_FALSE(discard_damaged(store_spec(c))) << sql;
     EXPECT_EQ(run(c), whole) << sql;
   }
+}
+
+// A range of one pair is one.
+TEST_F(StoreTest, OnePairOfASourceIsEnough) {
+  const Campaign c = campaign("three", 3);
+  const std::string whole = run(c);
+  EXPECT_EQ(refusal(c), "");
+  EXPECT_EQ(run(c), whole);
 }
 
 // Rows that are lost leave a gap, which is judged again.

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "analysis/convention.h"
+#include "analysis/laws.h"
 #include "analysis/neighbours.h"
 #include "analysis/tally.h"
 #include "fuzz/league/smallest.h"
@@ -110,13 +111,32 @@ struct Counting {
     }
   }
 
-  // On how many of the pairs the verdict changes with the order; those within the contract.
+  // Whether the verdict breaks a law other than those of orders, on an image within the contract.
+  bool breaks_a_law(const Pair& pair, Verdict of_pair) const {
+    std::vector<Pair> all;
+    std::vector<analysis::Law> laws;
+    for (const analysis::LawInfo& law : analysis::kLaws) {
+      if (law.law == analysis::Law::swap || law.law == analysis::Law::order) continue;
+      const std::vector<Pair> images = analysis::images(law.law, pair);
+      all.insert(all.end(), images.begin(), images.end());
+      laws.resize(all.size(), law.law);
+    }
+    const std::vector<Verdict> said = verdicts_of(*decide, all);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const bool open = laws[i] == analysis::Law::part && is_outside(*row.lane, all[i], judged(all[i]));
+      if (!open && analysis::breaks(laws[i], of_pair, said[i])) return true;
+    }
+    return false;
+  }
+
+  // On how many of the pairs the verdict changes with the order, or breaks another law; those within the contract.
   void count_orders(std::span<const Pair> pairs, const std::vector<Judged>& truths) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (is_outside(*row.lane, pairs[i], truths[i])) continue;
       ++row.order_sample;
       const std::vector<Verdict> said = verdicts_of(*decide, analysis::orders(pairs[i]));
       row.order_dependent += std::adjacent_find(said.begin(), said.end(), std::not_equal_to<>()) != said.end();
+      row.lawless += breaks_a_law(pairs[i], said.front());
     }
   }
 };
@@ -185,7 +205,7 @@ League run_league(const LanesUnderTest& under_test, std::vector<strata::PairSour
     const auto limit = most.find(lane.info->id);
     const std::uint64_t of_source =
         limit == most.end() ? ~std::uint64_t{0} : std::max<std::uint64_t>(1, limit->second / sources.size());
-    all.push_back({{&lane, {}, 0, 0, fused ? std::optional<std::uint64_t>(0) : std::nullopt}, fused,
+    all.push_back({{&lane, {}, 0, 0, 0, fused ? std::optional<std::uint64_t>(0) : std::nullopt}, fused,
                    &under_test.on_host[l], of_source, {}});
   }
   League league;

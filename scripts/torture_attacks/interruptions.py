@@ -72,6 +72,29 @@ def small_disk(folder, size):
             subprocess.run(["umount", folder], check=True)
 
 
+def read_only(turn):
+    """A campaign that was killed, on a file system that can only be read: refused in one line, and nothing of it changed."""
+    campaign, reference = turn.folder / "disk" / "campaign", turn.bench.reference("large")
+    command = [*turn.bench.campaign("large"), "--out", campaign]
+    with small_disk(turn.folder / "disk", 64 << 20) as mounted:
+        turn.run(*command, kill_after=turn.bench.seconds["large", False, False] * turn.random.random())
+        before = {file: file.read_bytes() for file in campaign.rglob("*") if file.is_file()}
+        refused = False
+        if mounted:
+            remount = lambda how: subprocess.run(["mount", "-o", f"remount,{how}", turn.folder / "disk"], check=True, capture_output=True)
+            remount("ro")
+            try:
+                refused = turn.is_refused(turn.run(*command), "campaign")
+            finally:
+                remount("rw")
+            if {file: file.read_bytes() for file in campaign.rglob("*") if file.is_file()} != before:
+                raise Violation("expected a folder that can only be read to stay as it is, found it changed")
+        turn.must_succeed(turn.run(*command))
+        turn.must_be_same(campaign, reference)
+        turn.count("refused" if refused else "same")
+        shutil.rmtree(campaign)
+
+
 def full_disk(turn):
     """First without room, on a small file system or by a limit on a file's size, then with room."""
     minimises = turn.random.random() < 0.3

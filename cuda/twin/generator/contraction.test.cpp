@@ -6,6 +6,8 @@
 
 #include <sstream>
 
+#include "cuda/twin/generator/flow.h"
+
 namespace graze::cuda::twin {
 namespace {
 
@@ -41,6 +43,16 @@ int fused(const std::string& body, const std::string& type) {
 class Contraction : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Types, Contraction, testing::Values("f32", "f64"),
                          [](const auto& row) { return std::string(row.param); });
+
+TEST(Flow, AnInstructionReadsItsGuardAndItsOperandsAndWritesTheFirst) {
+  using Names = std::vector<std::string>;
+  const Module module = module_of("@%p1 add.T %f1, %f2, %f3;\nst.global.T [%rd1], %f1;\n", "f32");
+  const std::vector<Instruction>& body = module.kernels.at(0).body;
+  EXPECT_EQ(registers_read(body.at(0)), (Names{"%p1", "%f2", "%f3"}));
+  EXPECT_EQ(registers_written(body.at(0)), (Names{"%f1"}));
+  EXPECT_EQ(registers_read(body.at(1)), (Names{"%rd1", "%f1"}));
+  EXPECT_EQ(registers_written(body.at(1)), Names{});
+}
 
 TEST_P(Contraction, SingleProduct) {
   EXPECT_EQ(contracted("mul.T %f1, %a1, %a2;\nsub.T %f2, %f1, %a3;\n", GetParam()),
@@ -150,6 +162,11 @@ TEST_P(Contraction, FactorsOverwrittenInBetweenAreKept) {
             "mov.T %t_0, %a1\nmul.rn.T %f1, %a1, %a2\nmov.T %a1, %a5\nfma.rn.T %f2, %t_0, %a2, %a3\n");
   EXPECT_EQ(contracted("mul.T %f1, %f1, %a2;\nadd.T %f2, %f1, %a3;\n", GetParam()),
             "mov.T %t_0, %f1\nmul.rn.T %f1, %f1, %a2\nfma.rn.T %f2, %t_0, %a2, %a3\n");
+  // The second factor likewise.
+  EXPECT_EQ(contracted("mul.T %f1, %a1, %a2;\nmov.T %a2, %a5;\nadd.T %f2, %f1, %a3;\n", GetParam()),
+            "mov.T %t_0, %a2\nmul.rn.T %f1, %a1, %a2\nmov.T %a2, %a5\nfma.rn.T %f2, %a1, %t_0, %a3\n");
+  EXPECT_EQ(contracted("mul.T %f1, %a1, %f1;\nadd.T %f2, %f1, %a3;\n", GetParam()),
+            "mov.T %t_0, %f1\nmul.rn.T %f1, %a1, %f1\nfma.rn.T %f2, %a1, %t_0, %a3\n");
 }
 
 TEST_P(Contraction, AProductWrittenAgainIsAnother) {

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/laws.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "analysis/convention.h"
+#include "analysis/explain.h"
+#include "analysis/neighbours.h"
+#include "analysis/tally.h"
+#include "core/exact/exact.h"
+
+namespace graze::analysis {
+namespace {
+
+constexpr std::uint64_t kBlock = 32;  // pairs; with their images some 2,300
+
+// Why no rounding breaks them: a sign or a power of two that is taken out of every operation of a formula leaves its
+// rounding as it is, and so does what gives the same operands to each operation in another order.
+//   scale      sums and comparisons are of quantities of the same degree in the coordinates. Not of the thesis's two:
+//              their projection onto a plane adds a distance and one that is multiplied by the normal's length.
+//   mirror     each quantity that is compared keeps its value, or turns its sign with what it is compared with. Not of
+//              guigue_devillers_2003, which chooses its determinants by the triangles' orientation.
+//   translate  coordinates are used in differences alone, and these are the same.
+//   swap       both triangles' axes are tried, those of two edges with their sign turned.
+// No formula survives another order of its vertices or axes: sums of three round by their order.
+struct Claims {
+  std::string_view algorithm;
+  std::vector<Law> laws;
+};
+const Claims kClaims[] = {
+    {"projected_sat", {Law::mirror}},
+    {"interval_overlap", {Law::mirror}},
+    {"moller_1997", {Law::mirror, Law::scale}},
+    {"guigue_devillers_2003", {Law::scale, Law::translate}},
+    {"separating_axes", {Law::swap, Law::mirror, Law::scale}},
+};
+
+std::vector<Pair> scaled_images(const Pair& pair) {
+  std::vector<Pair> result;
+  for (const int k : {1, -1, 4, -4, 16, -16, 64, -64}) {
+    Pair scaled;
+    bool exact = true;
+    for (int c = 0; c < kCoordinates; ++c) {
+      coordinates(scaled)[c] = std::ldexp(coordinates(pair)[c], k);
+      exact = exact && std::ldexp(coordinates(scaled)[c], -k) == coordinates(pair)[c];
+    }
+    if (exact) result.push_back(scaled);
+  }
+  return result;
+}
+
+// The images of one pair by one law, as a range of the block's pairs.
+struct Group {
+  Law law;
+  std::size_t pair, first, last;
+};
+
+// Pairs of one source, and behind them all of their images.
+struct Asked {
+  std::vector<Pair> all;
+  std::size_t pairs = 0;
+  std::vector<Group> groups;
+
+  Asked(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) : pairs(count) {
+    for (std::uint64_t i = 0; i < count; ++i) all.push_back(source.pair(first + i));
+    for (std::size_t p = 0; p < pairs; ++p) {
+      if (!is_finite(all[p])) continue;
+      for (const LawInfo& law : kLaws) {
+        const std::vector<Pair> of = images(law.law, all[p]);
+        groups.push_back({law.law, p, all.size(), all.size() + of.size()});
+        all.insert(all.end(), of.begin(), of.end());
+      }
+    }
+  }
+
+  std::vector<Verdict> verdicts(const DecideBlock& decide) const {
+    std::vector<std::uint64_t> intersects((all.size() + 63) / 64), declined(intersects.size());
+    decide(all.data(), all.size(), intersects.data(), declined.data());
+    std::vector<Verdict> result(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      result[i] = decide.verdict_of(test_bit(intersects, i), test_bit(declined, i), all[i]);
+    return result;
+  }
+};
+
+bool is_outside(const Lane& lane, const Pair& pair) {
+  if (lane.outside == 0) return false;
+  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
+  return by_convention(lane, Verdict::declined, pair, static_cast<Contact>(r.contact + 1),
+                       oracle::Shape{r.dimension_a, r.dimension_b, r.coplanar}, r.intersects && r.margin_sign == 0);
+}
+
+LawBroken broken(std::string_view who, Law law, const strata::PairSource& source, std::uint64_t index, Verdict pair,
+                 Verdict image) {
+  return LawBroken(fmt::format("{} breaks the law \"{}\" on pair {} of {}: it says {}, and of {} {}", who,
+                               kLaws[static_cast<std::size_t>(law)].id, index, source.id, name(pair),
+                               law == Law::part ? "a part" : "an image", name(image)));
+}
+
+struct Run {
+  const LawSpec& spec;
+
+  // The exact decision on every image; the oracle on those of some pairs.
+  void expect_truth(const Asked& asked, const strata::PairSource& source, std::uint64_t first, Laws& counts) const {
+    const std::vector<Verdict> exactly = asked.verdicts(spec.exact);
+    const auto by_oracle = [&](std::size_t i) {
+      return spec.intersects(asked.all[i]) ? Verdict::intersects : Verdict::disjoint;
+    };
+    std::vector<Verdict> of_pair(asked.pairs, Verdict::declined);
+    for (std::size_t p = 0; p < asked.pairs; ++p) {
+      if ((first + p) % spec.oracle_every != 0 || !is_finite(asked.all[p])) continue;
+      of_pair[p] = by_oracle(p);
+      ++counts.by_oracle;
+      if (of_pair[p] != exactly[p])
+        throw LawBroken(fmt::format("exact and the oracle differ on pair {} of {}: {} and {}", first + p, source.id,
+                                    name(exactly[p]), name(of_pair[p])));
+    }
+    for (const Group& group : asked.groups) {
+      for (std::size_t i = group.first; i < group.last; ++i) {
+        if (breaks(group.law, exactly[group.pair], exactly[i]))
+          throw broken("exact", group.law, source, first + group.pair, exactly[group.pair], exactly[i]);
+        if (of_pair[group.pair] == Verdict::declined) continue;
+        const Verdict of_image = by_oracle(i);
+        ++counts.its_images;
+        if (breaks(group.law, of_pair[group.pair], of_image))
+          throw broken("the oracle", group.law, source, first + group.pair, of_pair[group.pair], of_image);
+      }
+    }
+    counts.pairs += asked.pairs;
+    counts.images += asked.all.size() - asked.pairs;
+  }
+
+  // By host lanes, whose operations are those of the twins.
+  static bool leaves(const Lane& lane, const Pair& pair, const Pair& image) {
+    const Lane& host = *counterpart(lane, Variant::cpu);
+    return leaves_exponents(host, pair) || leaves_exponents(host, image);
+  }
+
+  void keep(std::optional<LawCase>& kept, const LawCase& found) const {
+    const bool better = !kept || spec.simpler(found.pair, kept->pair) ||
+                        (!spec.simpler(kept->pair, found.pair) && found.place < kept->place);
+    if (better) kept = found;
+  }
+
+  void count(std::size_t l, const Asked& asked, const PairPlace& first, LawsOfLane& result) const {
+    const Lane& lane = *spec.lanes[l];
+    const strata::PairSource& source = spec.sources[static_cast<std::size_t>(first.source)];
+    const std::vector<Verdict> said = asked.verdicts(spec.on_host[l]);
+    std::vector<bool> outside(asked.pairs);
+    for (std::size_t p = 0; p < asked.pairs; ++p) outside[p] = is_outside(lane, asked.all[p]);
+    for (const Group& group : asked.groups) {
+      if (group.first == group.last || outside[group.pair]) continue;
+      const auto law = static_cast<std::size_t>(group.law);
+      LawCount& counts = result.counts[law][static_cast<std::size_t>(first.source)];
+      ++counts.pairs;
+      bool changed = false, in_range = false;
+      const PairPlace place{first.source, first.index + group.pair};
+      for (std::size_t i = group.first; i < group.last; ++i) {
+        if (!breaks(group.law, said[group.pair], said[i])) continue;
+        if (group.law == Law::part && is_outside(lane, asked.all[i])) continue;
+        const LawCase found{place, asked.all[group.pair], asked.all[i], said[group.pair], said[i]};
+        in_range = in_range || (knows_range(lane) && !leaves(lane, found.pair, found.image));
+        if (lane.exact || (claims(lane, group.law) && in_range))
+          throw broken(lane.id + (lane.exact ? "" : ", which claims it,"), group.law, source, place.index, found.of_pair,
+                       found.of_image);
+        if (!changed) keep(result.simplest[law], found);
+        changed = true;
+      }
+      counts.changed += changed;
+      counts.in_range += in_range;
+    }
+  }
+};
+
+Laws nothing_yet(const LawSpec& spec) {
+  Laws laws;
+  laws.lanes.resize(spec.lanes.size());
+  for (LawsOfLane& lane : laws.lanes) lane.counts.fill(std::vector<LawCount>(spec.sources.size()));
+  return laws;
+}
+
+}  // namespace
+
+LawCount& LawCount::operator+=(const LawCount& other) {
+  pairs += other.pairs;
+  changed += other.changed;
+  in_range += other.in_range;
+  return *this;
+}
+
+LawCount LawsOfLane::total(Law law) const {
+  LawCount sum;
+  for (const LawCount& of_source : counts[static_cast<std::size_t>(law)]) sum += of_source;
+  return sum;
+}
+
+std::vector<Pair> images(Law law, const Pair& pair) {
+  std::vector<Pair> result;
+  switch (law) {
+    case Law::swap:
+      return {Pair{{pair.b[0], pair.b[1], pair.b[2]}, {pair.a[0], pair.a[1], pair.a[2]}}};
+    case Law::order:
+      result = orders(pair);
+      result.resize(36);
+      break;
+    case Law::mirror:
+      result = mirrored(pair);
+      break;
+    case Law::axes:
+      result = axes(pair);
+      break;
+    case Law::scale:
+      return scaled_images(pair);
+    case Law::translate:
+      result = translated(pair);
+      break;
+    case Law::part:
+      result = parts(pair);
+      break;
+  }
+  result.erase(result.begin());
+  return result;
+}
+
+bool breaks(Law law, Verdict of_pair, Verdict of_image) {
+  if (law != Law::part) return of_pair != of_image;
+  return of_image == Verdict::intersects && of_pair == Verdict::disjoint;
+}
+
+std::vector<Law> claimed_laws(std::string_view algorithm) {
+  for (const Claims& row : kClaims) {
+    if (row.algorithm == algorithm) return row.laws;
+  }
+  return {};
+}
+
+bool knows_range(const Lane& lane) { return lane.algorithm >= 0 && lane.policy.empty(); }
+
+bool claims(const Lane& lane, Law law) {
+  if (!knows_range(lane) || info_of(lane.variant).arithmetic != Arithmetic::rounded)
+    return false;
+  const std::vector<Law> claimed = claimed_laws(lane.info->id);
+  return std::find(claimed.begin(), claimed.end(), law) != claimed.end();
+}
+
+bool oracle_intersects(const Pair& pair) {
+  const bool intersects = oracle::cgal_verdict(pair) == Verdict::intersects;
+  if (intersects == (oracle::gmp_contact(pair) == Contact::none))
+    throw LawBroken(fmt::format("CGAL and GMP differ: {} and {}", intersects, !intersects));
+  return intersects;
+}
+
+Laws laws(const LawSpec& spec) {
+  struct Block {
+    int source;
+    std::uint64_t first, count;
+  };
+  std::vector<Block> blocks;
+  for (std::size_t s = 0; s < spec.sources.size(); ++s) {
+    for (std::uint64_t first = 0; first < spec.sources[s].pairs; first += kBlock)
+      blocks.push_back({static_cast<int>(s), first, std::min(kBlock, spec.sources[s].pairs - first)});
+  }
+  const auto threads = static_cast<std::size_t>(spec.threads > 0 ? spec.threads : tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  tbb::enumerable_thread_specific<Laws> results([&] { return nothing_yet(spec); });
+  const Run run{spec};
+  // A broken law is told of the first block that has one, whichever is met first.
+  std::mutex mutex;
+  std::size_t first_broken = blocks.size();
+  std::string what;
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    {
+      const std::lock_guard lock(mutex);
+      if (b > first_broken) return;
+    }
+    const Block& block = blocks[b];
+    const strata::PairSource& source = spec.sources[static_cast<std::size_t>(block.source)];
+    Laws& result = results.local();
+    try {
+      const Asked asked(source, block.first, block.count);
+      run.expect_truth(asked, source, block.first, result);
+      for (std::size_t l = 0; l < spec.lanes.size(); ++l)
+        run.count(l, asked, {block.source, block.first}, result.lanes[l]);
+    } catch (const LawBroken& error) {
+      const std::lock_guard lock(mutex);
+      if (b < first_broken) first_broken = b, what = error.what();
+    }
+  });
+  if (first_broken < blocks.size()) throw LawBroken(what);
+  Laws all = nothing_yet(spec);
+  for (const Laws& some : results) {
+    all.pairs += some.pairs;
+    all.images += some.images;
+    all.by_oracle += some.by_oracle;
+    all.its_images += some.its_images;
+    for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+      for (std::size_t law = 0; law < kLawCount; ++law) {
+        for (std::size_t s = 0; s < spec.sources.size(); ++s)
+          all.lanes[l].counts[law][s] += some.lanes[l].counts[law][s];
+        if (some.lanes[l].simplest[law]) run.keep(all.lanes[l].simplest[law], *some.lanes[l].simplest[law]);
+      }
+    }
+  }
+  return all;
+}
+
+}  // namespace graze::analysis

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/laws.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "analysis/explain.h"
+#include "corpus/pair_format.h"
+#include "cuda/twin/twin.h"
+#include "strata/strata.h"
+
+namespace graze::analysis {
+namespace {
+
+bool simpler(const Pair& l, const Pair& r) {
+  const auto size = [](const Pair& pair) {
+    double sum = 0;
+    for (int c = 0; c < kCoordinates; ++c) sum += std::fabs(coordinates(pair)[c]);
+    return sum;
+  };
+  return size(l) < size(r);
+}
+
+LawSpec spec_of(const std::vector<std::string>& ids, std::uint64_t pairs, const std::vector<std::string>& strata = {}) {
+  LawSpec spec;
+  for (const std::string& id : ids) {
+    spec.lanes.push_back(find_lane(id));
+    if (!spec.lanes.back()) throw std::logic_error(id + ": expected a lane");
+    spec.on_host.push_back(cuda::block_on_host(*spec.lanes.back()));
+  }
+  spec.sources = strata::stratum_sources(7, pairs, strata);
+  spec.simpler = simpler;
+  return spec;
+}
+
+std::string refusal(const LawSpec& spec) {
+  try {
+    laws(spec);
+  } catch (const LawBroken& error) {
+    return error.what();
+  }
+  return "nothing broken";
+}
+
+TEST(Laws, ImagesAskTheSameQuestion) {
+  std::set<Law> asked;
+  for (const strata::StratumInfo& stratum : strata::kStrata) {
+    for (std::uint64_t i = 0; i < 12; ++i) {
+      const Pair pair = strata::generate(3, stratum.stratum, i);
+      const Verdict truth = oracle::truth(pair).verdict;
+      for (const LawInfo& law : kLaws) {
+        std::set<std::string> different;
+        for (const Pair& image : images(law.law, pair)) {
+          const Verdict of_image = oracle::truth(image).verdict;
+          EXPECT_FALSE(breaks(law.law, truth, of_image)) << law.id << " of " << stratum.id << " " << i;
+          std::string text;
+          for (int c = 0; c < kCoordinates; ++c) text += corpus::hex_float(coordinates(image)[c]) + ' ';
+          different.insert(text);
+          asked.insert(law.law);
+        }
+        if (stratum.id != "uniform") continue;
+        const std::size_t all[] = {1, 35, 7, 5, 8};
+        if (static_cast<std::size_t>(law.law) < std::size(all)) {
+          EXPECT_EQ(different.size(), all[static_cast<std::size_t>(law.law)]) << law.id;
+        }
+      }
+    }
+  }
+  EXPECT_EQ(asked.size(), kLawCount);
+}
+
+TEST(Laws, NoImageThatWouldLoseBits) {
+  Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 0x1p-149f}}};
+  // Not down; up only as far as 2^-149 leads.
+  EXPECT_EQ(images(Law::scale, pair).size(), 4u);
+  // Only what leaves z as it is: 2^-149 less or more than 1 is no float32.
+  EXPECT_EQ(images(Law::translate, pair).size(), 3u);
+  EXPECT_EQ(images(Law::part, pair).size(), 4u);
+  EXPECT_EQ(images(Law::part, images(Law::swap, pair).front()).size(), 4u);
+  pair.b[2].z = 0;
+  EXPECT_EQ(images(Law::scale, pair).size(), 8u);
+  EXPECT_EQ(images(Law::translate, pair).size(), 8u);
+  EXPECT_EQ(images(Law::part, pair).size(), 8u);
+  pair.a[1].x = 0x1p127f;
+  EXPECT_EQ(images(Law::scale, pair).size(), 4u);
+}
+
+TEST(Laws, WhatBreaksThem) {
+  constexpr Verdict yes = Verdict::intersects, no = Verdict::disjoint, none = Verdict::declined;
+  EXPECT_TRUE(breaks(Law::swap, yes, no));
+  EXPECT_TRUE(breaks(Law::swap, no, none));
+  EXPECT_FALSE(breaks(Law::swap, none, none));
+  EXPECT_TRUE(breaks(Law::part, no, yes));
+  EXPECT_FALSE(breaks(Law::part, yes, no));
+  EXPECT_FALSE(breaks(Law::part, none, yes));
+}
+
+// A new algorithm says what it claims, be it nothing: a row of kClaims.
+TEST(Laws, EachAlgorithmSaysWhatItClaims) {
+  for (const Lane& lane : published_lanes()) EXPECT_FALSE(claimed_laws(lane.info->id).empty()) << lane.info->id;
+  EXPECT_TRUE(claims(*find_lane("separating_axes/f32/cuda-nofma"), Law::swap));
+  EXPECT_FALSE(claims(*find_lane("separating_axes/f32/cuda-fma"), Law::swap));
+  EXPECT_FALSE(claims(*find_lane("separating_axes/f32/cpu"), Law::order));
+  EXPECT_FALSE(claims(*find_lane("exact/f32/cpu"), Law::scale));
+}
+
+// Every claim on every stratum, and no claim too few: what is not claimed, some pair breaks.
+TEST(Laws, ClaimsHoldAndNothingElseDoes) {
+  std::vector<std::string> ids;
+  for (const Lane& lane : published_lanes()) {
+    if (lane.variant == Variant::cpu || lane.variant == Variant::cuda_nofma) ids.push_back(lane.id);
+  }
+  const LawSpec spec = spec_of(ids, 19 * 150);
+  const Laws found = laws(spec);  // throws where a claim is broken
+  EXPECT_EQ(found.pairs, 19u * 150);
+  for (std::size_t l = 0; l < ids.size(); ++l) {
+    for (const LawInfo& law : kLaws) {
+      const LawCount count = found.lanes[l].total(law.law);
+      EXPECT_GT(count.pairs, 100u) << law.id;
+      if (spec.lanes[l]->scalar == Scalar::f32 && !claims(*spec.lanes[l], law.law)) {
+        EXPECT_GT(count.changed, 0u) << ids[l] << " " << law.id;
+      }
+    }
+  }
+}
+
+// Counted a second time, one pair and one image after the other.
+TEST(Laws, CountsAreThoseOfAPlainLoop) {
+  const LawSpec spec = spec_of({"moller_1997/f32/cpu", "guigue_devillers_2003/f32/cuda-fma"}, 300, {"near_edge_edge", "lattice"});
+  const Laws found = laws(spec);
+  std::uint64_t changes = 0;
+  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+    for (const LawInfo& law : kLaws) {
+      for (std::size_t s = 0; s < spec.sources.size(); ++s) {
+        LawCount counted;
+        for (std::uint64_t i = 0; i < spec.sources[s].pairs; ++i) {
+          const Pair pair = spec.sources[s].pair(i);
+          const std::vector<Pair> all = images(law.law, pair);
+          counted.pairs += !all.empty();
+          counted.changed += std::any_of(all.begin(), all.end(), [&](const Pair& image) {
+            return breaks(law.law, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image));
+          });
+          const Lane& host = *counterpart(*spec.lanes[l], Variant::cpu);
+          counted.in_range += !leaves_exponents(host, pair) && std::any_of(all.begin(), all.end(), [&](const Pair& image) {
+            return breaks(law.law, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image)) &&
+                   !leaves_exponents(host, image);
+          });
+        }
+        const LawCount& count = found.lanes[l].counts[static_cast<std::size_t>(law.law)][s];
+        EXPECT_EQ(count.pairs, counted.pairs) << spec.lanes[l]->id << " " << law.id;
+        EXPECT_EQ(count.changed, counted.changed) << spec.lanes[l]->id << " " << law.id;
+        EXPECT_EQ(count.in_range, counted.in_range) << spec.lanes[l]->id << " " << law.id;
+        changes += count.changed;
+      }
+      const std::optional<LawCase>& kept = found.lanes[l].simplest[static_cast<std::size_t>(law.law)];
+      ASSERT_EQ(kept.has_value(), found.lanes[l].total(law.law).changed > 0);
+      if (!kept) continue;
+      EXPECT_EQ(decide_one(spec.on_host[l], kept->pair), kept->of_pair);
+      EXPECT_EQ(decide_one(spec.on_host[l], kept->image), kept->of_image);
+      EXPECT_TRUE(breaks(law.law, kept->of_pair, kept->of_image));
+    }
+  }
+  EXPECT_GT(changes, 100u);
+}
+
+TEST(Laws, AreTheSameWhateverTheThreads) {
+  LawSpec spec = spec_of({"moller_1997/f32/cpu", "separating_axes/f64/cpu"}, 600, {"near_*"});
+  spec.threads = 1;
+  const Laws one = laws(spec);
+  spec.threads = 3;
+  const Laws three = laws(spec);
+  EXPECT_EQ(one.images, three.images);
+  EXPECT_EQ(one.its_images, three.its_images);
+  EXPECT_EQ(one.by_oracle, 4u * 19);  // of each stratum's 150
+  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+    for (const LawInfo& law : kLaws) {
+      EXPECT_EQ(one.lanes[l].total(law.law).changed, three.lanes[l].total(law.law).changed);
+      const auto &kept = one.lanes[l].simplest[static_cast<std::size_t>(law.law)],
+                 &again = three.lanes[l].simplest[static_cast<std::size_t>(law.law)];
+      ASSERT_EQ(kept.has_value(), again.has_value());
+      if (kept) {
+        EXPECT_EQ(kept->place, again->place);
+      }
+    }
+  }
+}
+
+// One verdict of an exact decision that depends on the order stops the run, and so does one of the oracle.
+TEST(Laws, StopWhereTheTruthBreaksOne) {
+  LawSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex"});
+  const Pair swapped = images(Law::swap, spec.sources[0].pair(3)).front();
+  static Pair wrong_on;
+  wrong_on = swapped;
+  spec.exact = DecideBlock(+[](const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+    find_lane("exact/f32/cpu")->decide(pairs, count, intersects, declined);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (std::equal(coordinates(pairs[i]), coordinates(pairs[i]) + kCoordinates, coordinates(wrong_on)))
+        intersects[i / 64] ^= std::uint64_t{1} << i % 64;
+    }
+  });
+  EXPECT_EQ(refusal(spec), "exact breaks the law \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
+  spec.exact = find_lane("exact/f32/cpu")->decide;
+  EXPECT_EQ(refusal(spec), "nothing broken");
+  spec.oracle_every = 1;
+  spec.intersects = [&](const Pair& pair) {
+    return oracle_intersects(pair) != std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(swapped));
+  };
+  EXPECT_EQ(refusal(spec), "the oracle breaks the law \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
+  // Wrong on the pair itself: seen before its images are.
+  spec.intersects = [&](const Pair& pair) { return oracle_intersects(pair) && simpler(pair, pair); };
+  EXPECT_EQ(refusal(spec), "exact and the oracle differ on pair 0 of shared_vertex: intersects and disjoint");
+}
+
+// A lane that claims a law and breaks it stops the run; so does one that is said to be exact.
+TEST(Laws, StopWhereAClaimIsBroken) {
+  LawSpec spec = spec_of({"separating_axes/f64/cpu"}, 2000, {"near_*"});
+  EXPECT_EQ(refusal(spec), "nothing broken");
+  spec.on_host[0] = find_lane("moller_1997/f64/cpu")->decide;  // does not keep what separating_axes claims
+  EXPECT_TRUE(refusal(spec).starts_with("separating_axes/f64/cpu, which claims it, breaks the law \"swap\" on pair "))
+      << refusal(spec);
+  LawSpec exact = spec_of({"exact/f32/cpu"}, 2000, {"near_*"});
+  exact.on_host[0] = find_lane("moller_1997/f64/cpu")->decide;
+  EXPECT_TRUE(refusal(exact).starts_with("exact/f32/cpu breaks the law \"order\" on pair ")) << refusal(exact);
+}
+
+}  // namespace
+}  // namespace graze::analysis

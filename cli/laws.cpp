@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze laws`: how often each lane's verdict changes although the question is the same.
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/screen.h"
+#include "core/text.h"
+#include "fuzz/files.h"
+#include "fuzz/minimise/simplicity.h"
+#include "reports/laws.h"
+
+namespace graze::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct LawsOptions {
+  LaneOptions lanes;
+  std::vector<std::string> strata;
+  std::uint64_t pairs = 20'000, seed = 1;
+  int threads = 0;
+  std::string scene, out = "laws";
+};
+
+int laws(const LawsOptions& options) {
+  fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  analysis::LawSpec spec;
+  spec.lanes = under_test.lanes;
+  spec.on_host = under_test.on_host;
+  strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
+  spec.sources = std::move(all.sources);
+  spec.threads = options.threads;
+  spec.simpler = [](const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); };
+  const analysis::Laws found = analysis::laws(spec);
+
+  const fs::path out = options.out;
+  std::error_code error;
+  fs::create_directories(out / "cases", error);
+  if (error) throw std::runtime_error(out.string() + ": expected a folder, found: " + error.message());
+  const reports::Screen screen = output_screen();
+  fmt::print("{}", reports::laws_table(spec, found, screen));
+  for (const std::string& sentence : reports::laws_sentences(spec, found))
+    fmt::print("{}", reports::wrapped(sentence, screen.columns));
+  fmt::print("{}", left_out_text(all.left_out));
+  nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
+  if (!options.scene.empty()) json["scene"] = options.scene;
+  json.update(reports::laws_json(spec, found));
+  fuzz::write_whole(out / "laws.json", json.dump(1) + "\n");
+  const std::map<std::string, std::string> cases = reports::laws_cases(spec, found);
+  for (const analysis::LawInfo& law : analysis::kLaws) fs::remove(out / "cases" / (std::string(law.id) + ".pairs"));
+  for (const auto& [file, text] : cases) fuzz::write_whole(out / "cases" / file, text);
+  fmt::print("Wrote {0}/laws.json{1}\n", out.string(),
+             cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
+  if (cases.empty()) return 0;
+  const std::string first = (out / "cases" / cases.begin()->first).string();
+  fmt::print("Next: graze explain {}\n", shell_word(first));
+  return 0;
+}
+
+}  // namespace
+
+void add_laws(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "laws", "Count how often a lane's verdict changes although the question is the same: swapped, mirrored, moved, …");
+  command->footer("Example: graze laws --lanes '*/f32/cpu' --strata 'near_*' --pairs 2000");
+  const auto options = std::make_shared<LawsOptions>();
+  add_lane_options(*command, options->lanes, Executors::twins);
+  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  add_scene_option(*command, options->scene);
+  command->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata; each has some 70 images")
+      ->transform(whole_number(1, kMostWhole))
+      ->capture_default_str()
+      ->option_text("N");
+  command->add_option("--seed", options->seed, "Seed of the pairs")
+      ->transform(whole_number(0, kMostWhole))
+      ->capture_default_str()
+      ->option_text("N");
+  command->add_option("--threads", options->threads, "Threads; 0: one on each core; results do not depend on it")
+      ->transform(whole_number(0, 4096))
+      ->option_text("N");
+  command->add_option("--out", options->out, "Folder for laws.json and the simplest cases")
+      ->check(not_empty())
+      ->capture_default_str()
+      ->option_text("DIR");
+  command->callback([options, &status] { status = laws(*options); });
+}
+
+}  // namespace graze::cli

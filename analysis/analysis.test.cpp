@@ -189,7 +189,7 @@ TEST(Signature, AKeyIsReadBack) {
   EXPECT_EQ(read->mark_of("f32/cpu/a=abs:1,b=rel:2"), '-');
   EXPECT_EQ(read->mark_of("f64/cpu"), '+');
   EXPECT_EQ(read->mark_of("f32/cpu"), '.');
-  for (const char* text : {"", "point", "point/22/skew/0/mine", "dot/22/skew/0/mine:", "point/23/skew/0/mine:",
+  for (const char* text : {"", "point", "point/22", "point/22/skew", "point/22/skew/mine:", "point/22/skew/0/mine", "dot/22/skew/0/mine:", "point/23/skew/0/mine:",
                            "point/22/flat/0/mine:", "point/22/skew/2^3/mine:", "point/22/skew/0/mine:f32/cpu",
                            "point/22/skew/0/:+f32/cpu", "point/22/skew/0/mine:+", "executors/moller_1997/f32/cuda-fma"})
     EXPECT_FALSE(parse_signature(text)) << text;

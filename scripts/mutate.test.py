@@ -120,9 +120,8 @@ class Mutate(unittest.TestCase):
         self.assertNotIn("the tests pass without a mutant", again.stdout)
 
     def test_tests_that_fail_without_a_mutant_are_refused(self):
-        text = (self.root / "part/small.cpp").read_text()
-        self.addCleanup((self.root / "part/small.cpp").write_text, text)
-        (self.root / "part/small.cpp").write_text(text.replace("? x : 10", "? x : 11"))
+        self.addCleanup((self.root / "part/small.h").write_text, HEADER)
+        (self.root / "part/small.h").write_text(HEADER.replace("x + x", "x + x + 1"))
         ran, results = self.run_script("--count", "1", config=CONFIG % "")
         self.assertEqual((ran.returncode, results), (1, []))
         self.assertIn("expected the tests of group small to pass without a mutant", ran.stderr)

@@ -242,7 +242,7 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
 
 TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
   for (const std::string verb :
-       {"fuzz", "check", "repro", "explain", "dump", "lanes", "strata"}) {  // prove-twin needs a device
+       {"fuzz", "check", "repro", "explain", "dump", "lanes", "plan", "strata"}) {  // prove-twin needs a device
     const Ran help = shell("graze " + verb + " --help");
     EXPECT_EQ(help.status, 0);
     const std::size_t at = help.out.find("Example: ");

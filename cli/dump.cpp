@@ -10,8 +10,8 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
-#include "strata/mesh.h"
 #include "strata/pair_source.h"
 
 namespace graze::cli {
@@ -62,25 +62,8 @@ Dumped of_campaign(const DumpOptions& options) {
   try {
     const Json& spec = summary.at("spec");
     dumped.seed = spec.at("seed");
-    std::uint64_t pairs = spec.at("pairs");
-    if (spec.contains("scene")) {
-      dumped.sources = fuzz::recorded_sources(spec).sources;
-      dumped.scene = spec["scene"].at("name");
-    }
-    std::optional<strata::PairSource> of_mesh;
-    if (spec.contains("mesh")) {
-      const std::vector<std::string> files = spec.at("mesh").at("files");
-      const auto mesh = std::make_shared<strata::MeshPairs>(
-          strata::read_mesh_pairs(files.at(0), files.size() > 1 ? std::optional<fs::path>(files[1]) : std::nullopt));
-      if (fmt::format("{:016x}", mesh->content_hash) != spec.at("mesh").at("content").get<std::string>())
-        throw std::runtime_error(files[0] + ": expected the mesh of the campaign, found another");
-      of_mesh = {"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }};
-      pairs -= std::min(pairs, of_mesh->pairs);
-    }
-    std::vector<std::string> strata = spec.at("strata");
-    std::erase(strata, "mesh");
-    if (!strata.empty() && dumped.sources.empty()) dumped.sources = strata::stratum_sources(dumped.seed, pairs, strata);
-    if (of_mesh) dumped.sources.push_back(*of_mesh);
+    if (spec.contains("scene")) dumped.scene = spec["scene"].at("name");
+    dumped.sources = fuzz::recorded_sources(spec);
   } catch (const Json::exception&) {
     throw std::runtime_error(file.string() + ": expected a campaign's summary, found something else");
   }

@@ -1,25 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 // `graze fuzz`: runs or goes on with a campaign.
 #include <fmt/format.h>
+#include <sys/sysinfo.h>
+#include <tbb/info.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <optional>
+#include <thread>
 
 #include "analysis/signature.h"
+#include "cli/campaign_end.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/screen.h"
+#include "cli/shard_option.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/campaign/scratch.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
+#include "fuzz/ranks/rank_campaign.h"
 #include "reports/margin_figure.h"
 #include "reports/terminal.h"
 #include "strata/mesh.h"
@@ -44,6 +53,8 @@ struct FuzzOptions {
   bool require_device = false;
   bool discard_damaged = false;
   std::optional<std::uint64_t> fail_above;
+  fuzz::Shard shard;
+  std::string scratch;
 };
 
 // What the live line says besides progress, where there is room.
@@ -111,7 +122,33 @@ int fail_above(const FuzzOptions& options, const fuzz::LanesUnderTest& under_tes
   return 0;
 }
 
-int fuzz(const FuzzOptions& options) {
+void print_shard(const FuzzOptions& options, const Json& summary) {
+  if (options.json) {
+    std::cout << summary.dump(1) << '\n';
+    return;
+  }
+  std::cout << fmt::format("Shard {}: {} pairs, {} disagreements, {} signatures\nWrote {}/campaign.sqlite\n"
+                           "Next, when all shards are done: graze merge DIR… --out campaign\n",
+                           summary["shard"].get<std::string>(), reports::grouped(summary["pairs"]),
+                           reports::grouped(summary["disagreements"]), reports::grouped(summary["signatures"]),
+                           options.out);
+}
+
+// One of the processes that mpirun started.   Returns: the exit status.
+int on_ranks(const FuzzOptions& options, fuzz::Campaign& campaign, const std::vector<strata::LeftOut>& left_out,
+             fuzz::Ranks& ranks) {
+  // Where mpirun bound the ranks to cores, each has fewer than the machine.
+  const int cores = tbb::info::default_concurrency();
+  if (campaign.threads == 0 && cores == get_nprocs()) campaign.threads = std::max(1, cores / ranks.local_size);
+  const std::optional<fuzz::Outcome> outcome = fuzz::run_on_ranks(campaign, ranks, catch_interrupts());
+  if (outcome) print_campaign(options.out, *outcome, options.json, left_out);
+  const bool complete = ranks.from_root(outcome ? "complete" : "") == "complete";
+  if (!complete && ranks.rank == 0)
+    fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
+  return complete ? 0 : kInterrupted;
+}
+
+int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   const fuzz::LanesUnderTest under_test =
       lanes_under_test(options.lanes, {}, options.require_device);
   fuzz::Campaign campaign;
@@ -119,6 +156,8 @@ int fuzz(const FuzzOptions& options) {
   campaign.under_test = &under_test;
   campaign.threads = options.threads;
   campaign.directory = options.out;
+  campaign.shard = options.shard;
+  if (!options.scratch.empty()) campaign.scratch = fuzz::scratch_of(options.scratch, options.out);
   Json scene_spec;
   std::vector<strata::LeftOut> left_out;
   if (!options.scene.empty()) {
@@ -150,13 +189,15 @@ int fuzz(const FuzzOptions& options) {
   const bool on_terminal = isatty(STDERR_FILENO);
   campaign.engines = fuzz::choose_engines(campaign, options.engine);
   if (options.discard_damaged) {
+    if (!campaign.scratch.empty()) fuzz::fetch_from_directory(campaign);
     if (const auto kept = fuzz::discard_damaged(fuzz::store_spec(campaign)))
       fmt::print(stderr, "graze: kept {} pairs in {} batches that check; the damaged database is now {}\n",
                  reports::grouped(kept->pairs), reports::grouped(kept->batches), kept->damaged.string());
   }
+  if (ranks) return on_ranks(options, campaign, left_out, *ranks);
   const reports::Screen errors = error_screen();
   std::optional<Progress> live;
-  const auto [summary, oracle] = fuzz::run_campaign(campaign, interrupted, [&](const fuzz::Progress& progress) {
+  const fuzz::Outcome outcome = fuzz::run_campaign(campaign, interrupted, [&](const fuzz::Progress& progress) {
     if (!on_terminal) return;
     if (!live) live.emplace("pairs", progress.total, on_terminal, errors);
     const auto line =
@@ -164,32 +205,59 @@ int fuzz(const FuzzOptions& options) {
     if (line) fmt::print(stderr, "{}", *line);
   });
   if (live) fmt::print(stderr, "{}", live->end());
-  fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(summary));
-  if (!summary["complete"]) {
+  if (!outcome.complete) {
+    if (campaign.shard.whole())
+      fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(outcome.summary));
     fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
     return kInterrupted;
   }
-  const auto status = [&] {
-    std::cout.flush();
-    return options.fail_above ? fail_above(options, under_test, summary) : 0;
-  };
-  if (options.json) {
-    std::cout << summary.dump(1) << '\n';
-    return status();
+  if (!campaign.shard.whole()) {
+    print_shard(options, outcome.summary);
+    return 0;
   }
-  reports::print_summary(std::cout, summary, oracle, output_screen());
-  std::cout << left_out_text(left_out);
-  std::cout << fmt::format(
-      "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", options.out);
-  if (!summary["signatures"].empty()) {
-    const std::string first = options.out + '/' + summary["signatures"][0]["case"].get<std::string>();
-    std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",
-                             shell_word(first), shell_word(options.out));
+  print_campaign(options.out, outcome, options.json, left_out);
+  std::cout.flush();
+  return options.fail_above ? fail_above(options, under_test, outcome.summary) : 0;
+}
+
+// Alone, or as one of those that mpirun started: of these one that fails ends all.
+int start(const FuzzOptions& options) {
+  if (!options.scratch.empty() && options.shard.whole()) throw UsageError("--scratch: expected --shard with it, found none");
+  if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);
+  if (!options.shard.whole() || options.fail_above || options.discard_damaged)
+    throw UsageError("expected no --shard, --fail-above or --discard-damaged under mpirun, found one");
+  const std::unique_ptr<fuzz::Ranks> ranks = fuzz::open_ranks();
+  fuzz::take_one_device(ranks->local_rank);
+  try {
+    return fuzz(options, ranks.get());
+  } catch (const std::exception& error) {
+    // What all ranks find wrong is said once: the root's abort is the first.
+    if (ranks->rank != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+    fmt::print(stderr, "graze: {}\n", error.what());
+    ranks->abort(1);
+    return 1;
   }
-  return status();
 }
 
 }  // namespace
+
+void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,
+                    const std::vector<strata::LeftOut>& left_out) {
+  const Json& summary = outcome.summary;
+  fuzz::write_whole(std::filesystem::path(out) / "margins.svg", reports::margin_figure(summary));
+  if (json) {
+    std::cout << summary.dump(1) << '\n';
+    return;
+  }
+  reports::print_summary(std::cout, summary, outcome.oracle, output_screen());
+  std::cout << left_out_text(left_out);
+  std::cout << fmt::format(
+      "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", out);
+  if (summary["signatures"].empty()) return;
+  const std::string first = out + '/' + summary["signatures"][0]["case"].get<std::string>();
+  std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",
+                           shell_word(first), shell_word(out));
+}
 
 void add_fuzz(CLI::App& app, int& status) {
   CLI::App* command =
@@ -210,6 +278,14 @@ void add_fuzz(CLI::App& app, int& status) {
       ->take_last()
       ->check(not_empty())
       ->capture_default_str();
+  add_shard_option(*command, options->shard,
+                   "Only the K-th of N parts of the campaign, into a directory of its own; graze merge makes all of them "
+                   "one campaign, the same as without shards");
+  command
+      ->add_option("--scratch", options->scratch,
+                   "Folder on a local disk for a shard's database while it runs; --out gets it as one file")
+      ->check(not_empty())
+      ->option_text("DIR");
   add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
   add_lane_options(*command, options->lanes);
   add_scene_option(*command, options->scene);
@@ -235,10 +311,11 @@ void add_fuzz(CLI::App& app, int& status) {
                    "Exit with 1 where a subject given by --subject, or any lanes where none is, is wrong on more pairs; "
                    "with its smallest case on standard error: the simplest that minimising the eight signatures with the "
                    "simplest kept pairs gives")
-      ->transform(whole_number(0, kMostWhole));
+      ->transform(whole_number(0, kMostWhole))
+      ->excludes("--shard");
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("--require-device", options->require_device, "Fail when there is no CUDA device");
-  command->callback([options, &status] { status = fuzz(*options); });
+  command->callback([options, &status] { status = start(*options); });
 }
 
 }  // namespace graze::cli

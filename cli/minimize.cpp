@@ -21,6 +21,7 @@
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/screen.h"
+#include "cli/shard_option.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
@@ -42,6 +43,7 @@ struct MinimizeOptions {
   int threads = 0;
   bool again = false;
   bool exact_input = false;
+  fuzz::Shard shard;
   LaneOptions lanes;
 };
 
@@ -182,7 +184,8 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
 int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
-  const fuzz::FolderLock alone(directory, fuzz::FolderLock::WhenTaken::refuse);
+  const bool whole = options.shard.whole();
+  const fuzz::FolderLock lock(directory, whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
   const Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
   const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
                           summary.value("spec", Json()).contains("lanes");
@@ -191,7 +194,10 @@ int minimize_directory(MinimizeOptions options) {
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
   std::vector<fs::path> files;
-  for (const Json& row : summary["signatures"]) files.push_back(fuzz::case_file(directory, row));
+  for (std::size_t i = 0; i < summary["signatures"].size(); ++i) {  // the commonest first: each shard gets some of them
+    if (i % options.shard.of == options.shard.number - 1)
+      files.push_back(fuzz::case_file(directory, summary["signatures"][i]));
+  }
 
   fs::remove(directory / "kinds.json");  // of the cases as they were
 
@@ -216,7 +222,7 @@ int minimize_directory(MinimizeOptions options) {
   });
   fmt::print(stderr, "{}", progress.end());
   const Json kinds =
-      interrupted ? Json() : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
+      interrupted || !whole ? Json() : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
   const auto mapping = Clock::now();
   std::atomic<std::size_t> maps = 0;
   tbb::parallel_for(std::size_t{0}, std::min(kinds.size(), fuzz::kMostShown), [&](std::size_t i) {
@@ -228,6 +234,12 @@ int minimize_directory(MinimizeOptions options) {
     fmt::print(stderr, "graze: interrupted; minimised {} of {} signatures; run the same command to go on\n",
                reports::grouped(count), reports::grouped(files.size()));
     return kInterrupted;
+  }
+  if (!whole) {
+    fmt::print("shard {}: {} of {} signatures looked at\nNext, when all shards are done: graze minimize {}\n",
+               options.shard.name(), reports::grouped(files.size()), reports::grouped(summary["signatures"].size()),
+               shell_word(options.name));
+    return 0;
   }
   const double map_seconds = seconds_since(mapping);
   fuzz::write_kinds(directory, kinds);
@@ -274,9 +286,12 @@ void add_minimize(CLI::App& app, int& status) {
   command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
       ->transform(whole_number(0, 4096))
       ->capture_default_str();
+  add_shard_option(*command, options->shard,
+                   "Of a directory, only the K-th of N parts of its signatures; without it, what is left, and the kinds");
   add_lane_options(*command, options->lanes);
   command->callback([options, &status] {
     if (!fs::is_directory(options->name)) {
+      if (!options->shard.whole()) throw UsageError("expected --shard only with a campaign's directory, found a case");
       status = minimize_case(*options);
       return;
     }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "cli/commands.h"
+#include "cli/shard_option.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
@@ -69,6 +70,18 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
   return command.add_option_function<std::vector<std::string>>(name, split, description)
       ->allow_extra_args(false)
       ->option_text("GLOB,…");
+}
+
+void add_shard_option(CLI::App& command, fuzz::Shard& shard, const char* description) {
+  const auto check = [](const std::string& text) {
+    return fuzz::parse_shard(text) ? "" : fmt::format("expected K/N, 1 to N of at most {}, found '{}'", fuzz::kMostShards,
+                                                      printable(text));
+  };
+  command
+      .add_option_function<std::string>(
+          "--shard", [&shard](const std::string& text) { shard = *fuzz::parse_shard(text); }, description)
+      ->check(CLI::Validator(check, ""))
+      ->option_text("K/N");
 }
 
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {

@@ -105,7 +105,9 @@ void write_whole(const fs::path& file, const std::string& text) {
 FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
     : handle_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (handle_ < 0) fail(folder, "a folder", std::strerror(errno));
-  if (flock(handle_, LOCK_EX | (when_taken == WhenTaken::refuse ? LOCK_NB : 0)) == 0) return;
+  if (flock(handle_, when_taken == WhenTaken::wait     ? LOCK_EX
+                     : when_taken == WhenTaken::refuse ? LOCK_EX | LOCK_NB
+                                                       : LOCK_SH | LOCK_NB) == 0) return;
   const int error = errno;
   close(handle_);
   fail(folder, "to be alone", error == EWOULDBLOCK ? "another process at work in it" : std::strerror(error));

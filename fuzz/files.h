@@ -15,10 +15,11 @@ std::string read_whole(const std::filesystem::path& file);
 // fails.   Throws: std::runtime_error for a folder, and when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
-// Held as long as it lives: no other process, and no other part of this one, holds the folder's lock.
+// Held as long as it lives: no other process, and no other part of this one, holds the folder's lock; where it is shared,
+// only others that share it.
 class FolderLock {
  public:
-  enum class WhenTaken { wait, refuse };
+  enum class WhenTaken { wait, refuse, share };  // share: refuses where one holds it alone
 
   // Throws: std::runtime_error without such a folder, or when the lock is taken and that is refused.
   explicit FolderLock(const std::filesystem::path& folder, WhenTaken when_taken);

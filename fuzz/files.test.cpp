@@ -122,7 +122,12 @@ TEST_F(Files, OneHoldsAFoldersLock) {
     const FolderLock held(folder_, FolderLock::WhenTaken::refuse);
     EXPECT_THROW(FolderLock(folder_, FolderLock::WhenTaken::refuse), std::runtime_error);
   }
+  {
+    const FolderLock shared(folder_, FolderLock::WhenTaken::share), too(folder_, FolderLock::WhenTaken::share);
+    EXPECT_THROW(FolderLock(folder_, FolderLock::WhenTaken::refuse), std::runtime_error);
+  }
   const FolderLock again(folder_, FolderLock::WhenTaken::refuse);
+  EXPECT_THROW(FolderLock(folder_, FolderLock::WhenTaken::share), std::runtime_error);
   EXPECT_THROW(FolderLock(folder_ / "none", FolderLock::WhenTaken::wait), std::runtime_error);
 }
 

@@ -16,11 +16,13 @@ GENERATED = {"build_info.h", "embedded.inc", "page_template.inc"}  # by the buil
 LIBRARIES = [  # what an include names, which library that is, the folder that may see it
     (r"CGAL/|boost/multiprecision/(gmp|mpfr)|gmp(xx)?\.h|mpfr\.h", "CGAL, GMP and MPFR", "oracle"),
     (r"(cuda|nvrtc|curand|cub|thrust|cooperative_groups)(_\w+)?(\.h|/)", "CUDA", "cuda"),
+    (r"mpi(cxx)?\.h", "MPI", "fuzz/ranks/mpi.cpp"),
 ]
 EXCEPTIONS = {  # files, the library that they see, and why
     "core/*.test.cpp": ("CGAL, GMP and MPFR", "runs the algorithms on MPFR numbers: they must compile for any scalar"),
     "strata/mesh*.cpp": ("CGAL, GMP and MPFR", "CGAL's mesh readers and box intersection, which decide nothing"),
     "subjects/third_party/cgal.cpp": ("CGAL, GMP and MPFR", "the library that is tested; scripts/league alone builds it"),
+    "fuzz/ranks/mpi.cpp": ("MPI", "the one file that does"),
     "fuzz/lanes.bench.cpp": ("CGAL, GMP and MPFR", "times CGAL's own predicates beside the lanes"),
 }
 

@@ -16,7 +16,10 @@
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/gpu_engine.h"
 #include "fuzz/campaign/lane_costs.h"
+#include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/campaign/run_status.h"
+#include "fuzz/campaign/scratch.h"
 #include "fuzz/cost_estimate.h"
 
 namespace graze::fuzz {
@@ -34,7 +37,7 @@ std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store
   constexpr std::uint64_t kLarge = 8192;
   std::optional<std::size_t> next, unknown;
   for (std::size_t s = 0; s < done.size(); ++s) {
-    const std::uint64_t pairs = campaign.sources[s].pairs;
+    const std::uint64_t pairs = share_of(campaign.shard, static_cast<int>(s), campaign.sources[s].pairs).pairs;
     if (done[s] >= pairs) continue;
     if (!next || done[s] < done[*next]) next = s;
     const bool measure = campaign.engines.empty() && pairs - done[s] >= kLarge && !costs.measured(s);
@@ -89,7 +92,7 @@ Json build_info(const LanesUnderTest& under_test) {
 }
 
 StoreSpec store_spec(const Campaign& campaign) {
-  StoreSpec spec{campaign.directory, campaign.spec, campaign.build, campaign.sources, {}};
+  StoreSpec spec{campaign.scratch.empty() ? campaign.directory : campaign.scratch, campaign.spec, campaign.build, campaign.sources, {}, campaign.shard};
   for (const Lane* lane : campaign.under_test->lanes) spec.lanes.push_back(lane->id);
   return spec;
 }
@@ -107,27 +110,38 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
   throw UsageError("expected lanes that run on the device alone for the GPU engine, found " + hindrance);
 }
 
-Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
-                     const std::function<void(const Progress&)>& report) {
+namespace {
+
+Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& status,
+            const std::function<void(const Progress&)>& report) {
   const auto start = std::chrono::steady_clock::now();
   const int threads = campaign.threads > 0 ? campaign.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
   Store store(store_spec(campaign));
+  take_in_ranks(campaign, store);
   GpuEngine device(campaign);
   Progress progress;
   progress.disagreements_of_source.resize(campaign.sources.size());
   std::vector<std::uint64_t> done, left;
   for (const strata::PairSource& source : campaign.sources) {
     done.push_back(store.done(static_cast<int>(done.size())));
-    left.push_back(source.pairs - done.back());
-    progress.total += source.pairs;
+    const std::uint64_t share = share_of(campaign.shard, static_cast<int>(left.size()), source.pairs).pairs;
+    left.push_back(share - done.back());
+    progress.total += share;
     progress.done += done.back();
   }
+  const auto tell = [&] {
+    progress.signatures = store.signatures().size();
+    progress.all_disagreements = store.disagreements();
+    status.tell(progress);
+  };
+  tell();
   CostEstimate costs(left);
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   while (!stop) {
-    const std::optional<PairRange> batch = next_batch(campaign, store, done, costs, progress.done_here, threads);
+    const std::optional<PairRange> batch =
+        campaign.take ? campaign.take() : next_batch(campaign, store, done, costs, progress.done_here, threads);
     if (!batch) break;
     const double before = seconds();
     const BatchResult result = campaign.engines.empty() ? judge(campaign, batch->source, batch->pairs,
@@ -140,21 +154,49 @@ Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
     progress.done_here += batch->pairs;
     progress.seconds = seconds();
     progress.seconds_left = costs.seconds_left();
-    progress.signatures = store.signatures().size();
     progress.disagreements += result.disagreements;
     progress.disagreements_of_source[static_cast<std::size_t>(batch->source)] += result.disagreements;
+    tell();
     report(progress);
   }
   const bool complete = progress.done == progress.total;
-  Outcome outcome{write_summary(campaign, store, complete), store.oracle()};
+  Outcome outcome{complete, {}, store.oracle()};
+  if (campaign.shard.whole() && !campaign.take) {
+    outcome.summary = write_summary(campaign, store, complete);
+  } else {
+    if (complete) store.compact();  // what is merged, perhaps with thousands, is small
+    outcome.summary = {{"shard", campaign.shard.name()},
+                       {"complete", complete},
+                       {"pairs", progress.done},
+                       {"disagreements", store.disagreements()},
+                       {"signatures", store.signatures().size()}};
+  }
   Json run = {{"pairs", progress.done_here},
               {"seconds", seconds()},
               {"threads", threads},
               {"machine", machine_name()},
               {"engine", campaign.engines.empty() ? "cpu" : "gpu"}};
-  if (complete) run["costs"] = measure_costs(campaign);
+  if (complete && campaign.shard.number == 1) run["costs"] = measure_costs(campaign);  // once is enough
   append_timing(campaign.directory, run, outcome.oracle);
   return outcome;
+}
+
+}  // namespace
+
+Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
+                     const std::function<void(const Progress&)>& report) {
+  RunStatus status(campaign);
+  if (!campaign.scratch.empty()) fetch_from_directory(campaign);
+  try {
+    Outcome outcome = run(campaign, stop, status, report);
+    if (!campaign.scratch.empty()) bring_to_directory(campaign);
+    status.end(outcome.complete ? "done" : "stopped");
+    if (outcome.complete) seal(campaign.directory);
+    return outcome;
+  } catch (const std::exception& error) {
+    status.end("failed", error.what());
+    throw;
+  }
 }
 
 }  // namespace graze::fuzz

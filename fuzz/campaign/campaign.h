@@ -29,8 +29,12 @@ struct Campaign {
   std::uint64_t engine_batch = std::uint64_t{1}
                                << 32;  // pairs of an engine in a transaction: a second or so on a device
   std::filesystem::path directory;
-  Json spec;  // what makes this campaign another one; see campaign_spec
+  std::filesystem::path scratch;  // where the store lives while it runs, where not in the directory; see scratch.h
+  Shard shard;  // what of it is run
+  Json spec;    // what makes this campaign another one; see campaign_spec
   Json build;
+  // Where set, the batches to take, one after the other, from what several processes share; nothing at the end.
+  std::function<std::optional<PairRange>()> take;
 };
 
 struct Progress {
@@ -39,6 +43,7 @@ struct Progress {
   double seconds = 0;                               // of this process
   std::optional<double> seconds_left;               // by what the pairs of each source cost; see CostEstimate
   std::uint64_t disagreements = 0, signatures = 0;  // so far; disagreements by this process only
+  std::uint64_t all_disagreements = 0;
   std::vector<std::uint64_t> disagreements_of_source;
 };
 
@@ -62,11 +67,13 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
 StoreSpec store_spec(const Campaign& campaign);
 
 struct Outcome {
-  Json summary;
+  bool complete;  // all that was to be done here is done
+  Json summary;   // of a whole campaign; of a shard {"shard", "complete", "pairs", "disagreements", "signatures"}
   Json oracle;  // {"cgal", "gmp", "device", "apart"}: pairs that each exact decision saw; depends on the engine
 };
 
-// Runs or goes on with the campaign until done or `stop`, then writes summary.json, timings.json and cases/.
+// Runs or goes on with the campaign until done or `stop`, then writes timings.json and, of a whole one, summary.json and
+// cases/; status.json meanwhile.
 // Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any case.
 Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& report);

@@ -50,12 +50,6 @@ NamedScene recorded_scene(const Json& recorded) {
   return {file, strata::parse_scene(file, recorded.at("text").get<std::string>())};
 }
 
-strata::SceneSources recorded_sources(const Json& spec) {
-  const Json& scene = spec.at("scene");
-  return sources_of(recorded_scene(scene), spec.at("seed"), scene.at("pairs"),
-                    spec.at("strata").get<std::vector<std::string>>());
-}
-
 Pair draw_again(const SceneCase& named) {
   const std::size_t hash = named.scene.rfind('#');
   const bool whole = hash == std::string::npos || fs::exists(named.scene);

@@ -31,9 +31,6 @@ nlohmann::ordered_json scene_spec(const NamedScene& scene, std::uint64_t pairs, 
 // Of what scene_spec recorded.   Throws: std::runtime_error, or nlohmann's for another shape.
 NamedScene recorded_scene(const nlohmann::ordered_json& recorded);
 
-// The sources of a campaign in a scene, by its spec.
-strata::SceneSources recorded_sources(const nlohmann::ordered_json& spec);
-
 // Of ID@SCENE:SEED:INDEX, where SCENE is a scene's file, with #HASH or without, or a campaign's directory.
 struct SceneCase {
   std::string id, scene;

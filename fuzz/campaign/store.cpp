@@ -12,9 +12,10 @@ namespace {
 // a minute or two. A batch of a device's engine is larger than that, and a row of its own.
 constexpr std::uint64_t kRowPairs = std::uint64_t{1} << 24;
 
-const std::filesystem::path& with_folders(const std::filesystem::path& directory) {
+const std::filesystem::path& with_folders(const StoreSpec& spec) {
+  const std::filesystem::path& directory = spec.directory;
   std::error_code error;
-  std::filesystem::create_directories(directory / "cases", error);
+  std::filesystem::create_directories(spec.shard.whole() ? directory / "cases" : directory, error);
   if (error)
     throw std::runtime_error(directory.string() +
                              ": expected a directory that can be written, found: " + error.message());
@@ -63,7 +64,7 @@ Json source_results(const strata::PairSource& source, const std::vector<std::str
 
 Store::Store(StoreSpec spec)
     : spec_(std::move(spec)),
-      lock_(with_folders(spec_.directory), FolderLock::WhenTaken::refuse),
+      lock_(with_folders(spec_), FolderLock::WhenTaken::refuse),
       file_(spec_),
       rows_(spec_.sources.size()),
       of_source_(spec_.sources.size(), StoredCounts(static_cast<int>(spec_.lanes.size()))) {
@@ -91,21 +92,31 @@ std::uint64_t Store::done(int source) const {
   return pairs;
 }
 
-PairRange Store::missing(int source, std::uint64_t most) const {
-  std::uint64_t begin = 0, end = spec_.sources[static_cast<std::size_t>(source)].pairs;
+std::vector<PairRange> Store::gaps(int source) const {
+  const PairRange share = share_of(spec_.shard, source, spec_.sources[static_cast<std::size_t>(source)].pairs);
+  std::vector<PairRange> found;
+  std::uint64_t begin = share.first;
   for (const auto& [first, row] : rows_[static_cast<std::size_t>(source)]) {
-    if (first > begin) {
-      end = first;
-      break;
-    }
+    if (first > begin) found.push_back({source, begin, first - begin});
     begin = first + row.pairs;
   }
-  return {source, begin, std::min(most, end - begin)};
+  if (begin < share.first + share.pairs) found.push_back({source, begin, share.first + share.pairs - begin});
+  return found;
 }
 
-void Store::commit(const PairRange& range, const BatchResult& result) {
+PairRange Store::missing(int source, std::uint64_t most) const {
+  const std::vector<PairRange> all = gaps(source);
+  return all.empty() ? PairRange{source, 0, 0} : PairRange{source, all[0].first, std::min(most, all[0].pairs)};
+}
+
+bool Store::holds(const PairRange& range) const {
+  const auto& rows = rows_[static_cast<std::size_t>(range.source)];
+  const auto next = rows.upper_bound(range.first);
+  return next != rows.begin() && std::prev(next)->first + std::prev(next)->second.pairs >= range.first + range.pairs;
+}
+
+void Store::commit(const PairRange& range, const StoredCounts& fresh) {
   auto& rows = rows_[static_cast<std::size_t>(range.source)];
-  const StoredCounts fresh(result);
   StoredCounts counts = fresh;
   PairRange row = range;
   std::vector<std::int64_t> replaced;
@@ -126,14 +137,45 @@ void Store::commit(const PairRange& range, const BatchResult& result) {
   add(range, fresh);
 }
 
+// One row of the source's share: of its rows, and these counts.
+void Store::put_whole(int source, StoredCounts counts) {
+  auto& rows = rows_[static_cast<std::size_t>(source)];
+  const PairRange all = share_of(spec_.shard, source, spec_.sources[static_cast<std::size_t>(source)].pairs);
+  std::vector<std::int64_t> replaced;
+  for (const auto& [first, row] : rows) {
+    counts.add(file_.counts(row.id));
+    replaced.push_back(row.id);
+  }
+  const std::int64_t id = file_.put(all, counts, replaced);
+  rows = {{all.first, {id, all.pairs}}};
+}
+
+void Store::complete(int source, const StoredCounts& rest) {
+  const std::vector<PairRange> missing = gaps(source);
+  if (missing.empty()) return;
+  put_whole(source, rest);
+  add(missing.front(), rest);
+}
+
+void Store::compact() {
+  for (std::size_t s = 0; s < rows_.size(); ++s) {
+    if (rows_[s].size() > 1) put_whole(static_cast<int>(s), StoredCounts(static_cast<int>(spec_.lanes.size())));
+  }
+  file_.shrink();
+}
+
+std::uint64_t Store::disagreements() const {
+  std::uint64_t all = 0;
+  for (const StoredCounts& source : of_source_) all += source.disagreements;
+  return all;
+}
+
 Json Store::results() const {
   Json strata = Json::object();
-  std::uint64_t disagreements = 0;
   for (std::size_t s = 0; s < spec_.sources.size(); ++s) {
     strata[spec_.sources[s].id] = source_results(spec_.sources[s], spec_.lanes, of_source_[s]);
-    disagreements += of_source_[s].disagreements;
   }
-  return {{"strata", strata}, {"disagreements", disagreements}};
+  return {{"strata", strata}, {"disagreements", disagreements()}};
 }
 
 Json Store::oracle() const {

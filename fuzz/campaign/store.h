@@ -26,12 +26,26 @@ class Store {
   // The first pairs of the source that are not, at most so many.
   PairRange missing(int source, std::uint64_t most) const;
 
+  // All of them, of what the store is to hold.
+  std::vector<PairRange> gaps(int source) const;
+  // Whether all of these pairs are done.
+  bool holds(const PairRange& range) const;
+
   // One transaction: these pairs are done.
   // Requires: none of them was.
-  void commit(const PairRange& range, const BatchResult& result);
+  void commit(const PairRange& range, const StoredCounts& fresh);
+
+  // One transaction: all that was missing of the source is done, and this is its sum; one row is left of it.
+  void complete(int source, const StoredCounts& rest);
+
+  // Leaves one row of each source, and a file without room for more.   Requires: nothing is missing.
+  void compact();
 
   // Of all that is committed: how many pairs each decision saw.
   Json oracle() const;
+
+  // Pairs on which some lane is wrong.
+  std::uint64_t disagreements() const;
 
   // Of all that is committed: {"strata": …, "disagreements": …}, in a fixed order.
   Json results() const;
@@ -47,6 +61,7 @@ class Store {
   };
 
   void add(const PairRange& range, const StoredCounts& counts);
+  void put_whole(int source, StoredCounts counts);
 
   StoreSpec spec_;
   FolderLock lock_;

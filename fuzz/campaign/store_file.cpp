@@ -6,7 +6,9 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
+#include <memory>
 
 #include "core/error.h"
 #include "core/fnv1a.h"
@@ -26,11 +28,6 @@ CREATE TABLE batch(id INTEGER PRIMARY KEY, source INTEGER NOT NULL, first INTEGE
   counts BLOB NOT NULL, checksum INTEGER NOT NULL);
 )";
 constexpr const char* kColumns = "SELECT id, source, first, pairs, counts, checksum FROM batch ";
-
-// A database that does not check. Other errors are no reason to discard anything.
-struct DamagedStore : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 // SQLite quotes what it stumbles on, line breaks and all.
 std::string one_line(std::string text) {
@@ -60,9 +57,13 @@ auto in_one_line(const fs::path& file, const Body& body) {
   }
 }
 
-fs::path database_file(const StoreSpec& spec) { return spec.directory / "campaign.sqlite"; }
+fs::path database_file(const StoreSpec& spec) { return spec.directory / kDatabase; }
 
-std::string text_of(const StoreSpec& spec) { return Json{{"spec", spec.spec}, {"build", spec.build}}.dump(); }
+std::string text_of(const StoreSpec& spec) {
+  Json text{{"spec", spec.spec}, {"build", spec.build}};
+  if (!spec.shard.whole()) text["shard"] = spec.shard.name();
+  return text.dump();
+}
 
 std::int64_t number(SQLite::Database& database, const char* sql) { return database.execAndGet(sql).getInt64(); }
 
@@ -98,7 +99,8 @@ std::string recorded_text(SQLite::Database& database) {
   return text;
 }
 
-// The first place in which two specs differ, with both values: `seed 2, found 1`.
+}  // namespace
+
 std::string first_difference(const Json& expected, const Json& found) {
   const Json ours = expected.flatten(), theirs = found.flatten();  // "/lanes/0": "exact/f32/cpu"
   const auto value = [](const Json& of, const std::string& place) {
@@ -113,10 +115,16 @@ std::string first_difference(const Json& expected, const Json& found) {
   return "the same, found another order";
 }
 
+namespace {
+
 // Throws: UsageError when the text, which checks, is of another campaign.
 void compare(const StoreSpec& spec, const std::string& text) {
   if (text == text_of(spec)) return;
   const Json found = Json::parse(text);
+  if (const std::string shard = found.value("shard", "none"), own = spec.shard.whole() ? "none" : spec.shard.name();
+      found["spec"] == spec.spec && shard != own)
+    throw UsageError(fmt::format("{}: holds another shard: expected {}, found {}; choose another --out",
+                                 spec.directory.string(), own, shard));
   const bool another = found["spec"] != spec.spec;
   throw UsageError(
       fmt::format("{}: {}: expected {}; choose another --out", spec.directory.string(),
@@ -132,7 +140,9 @@ class Coverage {
   // Throws: Damaged for a range that is not within its source, or that overlaps another.
   void take(const PairRange& range) {
     const std::uint64_t size = spec_.sources[static_cast<std::size_t>(range.source)].pairs;
-    if (range.pairs == 0 || range.first > size || range.pairs > size - range.first)
+    const PairRange share = share_of(spec_.shard, range.source, size);
+    if (range.pairs == 0 || range.first < share.first || range.first > share.first + share.pairs ||
+        range.pairs > share.first + share.pairs - range.first)
       throw Damaged(
           fmt::format("{} pairs from {} on and the {} of {} do not agree", range.pairs, range.first, size, id(range)));
     auto& pairs = pairs_[static_cast<std::size_t>(range.source)];
@@ -184,6 +194,33 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   put.exec();
   return database.getLastInsertRowid();
 }
+
+// To be read alone: a store whose last run ended well is one file that nobody writes to; that of a killed one has a log
+// beside it, which its next reader takes in, alone.
+struct OpenedToRead {
+  explicit OpenedToRead(const fs::path& directory)
+      : lock(fs::exists(directory / (std::string(kDatabase) + "-wal"))
+                 ? std::make_unique<FolderLock>(directory, FolderLock::WhenTaken::refuse)
+                 : nullptr),
+        database(lock ? opened(directory / kDatabase)
+                      : SQLite::Database(as_uri(directory / kDatabase), SQLite::OPEN_READONLY | SQLite::OPEN_URI)) {
+    if (lock) database.exec("PRAGMA locking_mode = EXCLUSIVE");
+  }
+
+  static std::string as_uri(const fs::path& file) {
+    std::string uri = "file:";
+    for (const char c : fs::absolute(file).string()) {
+      const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' || c == '-' || c == '_';
+      uri += plain ? std::string(1, c) : fmt::format("%{:02x}", static_cast<unsigned char>(c));
+    }
+    return uri + "?immutable=1";
+  }
+
+  static SQLite::Database opened(const fs::path& file) { return {file.string(), SQLite::OPEN_READWRITE}; }
+
+  std::unique_ptr<FolderLock> lock;
+  SQLite::Database database;
+};
 
 SQLite::Database opened(const fs::path& file) { return {file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE}; }
 
@@ -283,6 +320,10 @@ void StoreFile::for_each(const std::function<void(std::int64_t, const PairRange&
   });
 }
 
+void StoreFile::shrink() {
+  in_one_line(file_, [&] { database_->exec("VACUUM"); });
+}
+
 StoredCounts StoreFile::counts(std::int64_t id) {
   return in_one_line(file_, [&] {
     SQLite::Statement query(*database_, std::string(kColumns) + "WHERE id = ?");
@@ -301,6 +342,36 @@ std::int64_t StoreFile::put(const PairRange& range, const StoredCounts& counts,
     transaction.commit();
     return id;
   });
+}
+
+StoreSpec recorded_store(const fs::path& directory) {
+  const fs::path file = directory / kDatabase;
+  if (!fs::exists(file)) throw std::runtime_error(file.string() + ": expected a campaign or a shard, found none");
+  return in_one_line(file, [&] {
+    OpenedToRead store(directory);
+    if (is_fresh(store.database, file)) throw Damaged("it is empty");
+    const Json text = Json::parse(recorded_text(store.database));
+    StoreSpec spec{directory, text.at("spec"), text.at("build"), {}, text["spec"].at("lanes"), {}};
+    if (text.contains("shard")) spec.shard = parse_shard(text["shard"].get<std::string>()).value();
+    return spec;
+  });
+}
+
+void for_each_row(const StoreSpec& spec, const std::function<void(const PairRange&, const StoredCounts&)>& visit) {
+  const std::uint64_t campaign = fnv1a(text_of(spec));
+  Coverage coverage(spec);
+  std::unique_ptr<OpenedToRead> store;
+  std::unique_ptr<SQLite::Statement> query;
+  const auto next = [&]() -> std::optional<CheckedRow> {
+    if (!store) store = std::make_unique<OpenedToRead>(spec.directory);
+    if (!query) query = std::make_unique<SQLite::Statement>(store->database, kColumns);
+    if (!query->executeStep()) return {};
+    CheckedRow row = checked_row(*query, spec, campaign);
+    coverage.take(row.range);
+    return row;
+  };
+  // visit is called without: what it throws is not the database's.
+  while (const auto row = in_one_line(database_file(spec), next)) visit(row->range, row->counts);
 }
 
 std::optional<Salvage> discard_damaged(const StoreSpec& spec) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "fuzz/campaign/shard.h"
 #include "fuzz/campaign/stored_counts.h"
 #include "strata/pair_source.h"
 
@@ -20,12 +21,20 @@ namespace graze::fuzz {
 
 using Json = nlohmann::ordered_json;
 
+inline constexpr const char* kDatabase = "campaign.sqlite";  // in its directory
+
 // Which campaign a store holds.
 struct StoreSpec {
   std::filesystem::path directory;
   Json spec, build;  // recorded, and compared when the campaign goes on
   std::vector<strata::PairSource> sources;
   std::vector<std::string> lanes;  // their ids
+  Shard shard;                     // of the campaign, which the store holds; recorded and compared unless it is all
+};
+
+// A database that does not check; what() is one line that names it.
+struct DamagedStore : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 class StoreFile {
@@ -40,6 +49,9 @@ class StoreFile {
 
   StoredCounts counts(std::int64_t id);
 
+  // Gives back the room of rows that are gone.
+  void shrink();
+
   // One transaction: a new row in place of those.   Returns: its id.
   std::int64_t put(const PairRange& range, const StoredCounts& counts, const std::vector<std::int64_t>& replaced);
 
@@ -49,6 +61,17 @@ class StoreFile {
   std::optional<SQLite::Database> database_;
   std::uint64_t campaign_;  // the checksum of what it is of
 };
+
+// The first place in which two specs differ, with both values: `seed 2, found 1`.
+std::string first_difference(const Json& expected, const Json& found);
+
+// A store as it is found, without its sources.
+// Throws: std::runtime_error, as StoreFile; DamagedStore.
+StoreSpec recorded_store(const std::filesystem::path& directory);
+
+// Calls visit for every row of such a store, once its sources are known; writes nothing, and needs no lock where the
+// last run ended well.   Throws: as recorded_store.
+void for_each_row(const StoreSpec& spec, const std::function<void(const PairRange&, const StoredCounts&)>& visit);
 
 // What discard_damaged kept of a damaged database.
 struct Salvage {

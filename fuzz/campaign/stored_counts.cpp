@@ -93,7 +93,7 @@ std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally&
   return pairs - left;
 }
 
-std::map<std::string, SignatureCount> read_signatures(const Json& rows, const PairRange& range,
+std::map<std::string, SignatureCount> read_signatures(const Json& rows, const PairRange& range, std::uint64_t pairs,
                                                       bool (*is_key)(const std::string&)) {
   constexpr const char* kWhat = "the signatures and the batch's pairs";
   constexpr std::size_t kMost = ~std::size_t{0};
@@ -102,7 +102,7 @@ std::map<std::string, SignatureCount> read_signatures(const Json& rows, const Pa
     list(row, 3, 3, kWhat);
     expect(row[0].is_string() && is_key(row[0].get_ref<const std::string&>()), kWhat);
     SignatureCount found;
-    found.count = whole(row[1], range.pairs, kWhat);
+    found.count = whole(row[1], pairs, kWhat);
     for (const Json& index : list(row[2], 1, kKeptCases, kWhat)) {
       const CaseKey kept{whole(index, range.first + range.pairs - 1, kWhat), range.source};
       expect(kept.index >= range.first && (found.cases.empty() || found.cases.back() < kept), kWhat);
@@ -163,23 +163,23 @@ std::string to_bytes(const StoredCounts& counts) {
   return bytes;
 }
 
-StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes) {
+StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::uint64_t pairs, Axis axis, int lanes) {
   const Json all = parsed(bytes);
   constexpr std::uint64_t kMost = ~std::uint64_t{0};
   list(all, 8, 8, "a batch's parts");
   StoredCounts counts(lanes);
-  expect(read_tally(all[0], range.pairs, counts.tally, "the margins") == range.pairs,
+  expect(read_tally(all[0], pairs, counts.tally, "the margins") == pairs,
          "the margins and the batch's pairs");
-  expect(read_tally(all[1], range.pairs, counts.extremes, "the extremes") == (axis == Axis::none ? 0 : range.pairs),
+  expect(read_tally(all[1], pairs, counts.extremes, "the extremes") == (axis == Axis::none ? 0 : pairs),
          "the extremes and the batch's pairs");
   counts.signatures = read_signatures(
-      all[2], range, [](const std::string& key) { return is_printable(key) && analysis::parse_signature(key); });
+      all[2], range, pairs, [](const std::string& key) { return is_printable(key) && analysis::parse_signature(key); });
   counts.executors_apart = read_signatures(
-      all[3], range, [](const std::string& lane) { return is_printable(lane) && parse_lane_name(lane); });
-  counts.disagreements = whole(all[4], range.pairs, "the disagreements and the batch's pairs");
+      all[3], range, pairs, [](const std::string& lane) { return is_printable(lane) && parse_lane_name(lane); });
+  counts.disagreements = whole(all[4], pairs, "the disagreements and the batch's pairs");
   counts.cgal = whole(all[5], kMost, "the pairs that CGAL decided");
   counts.gmp = whole(all[6], kMost, "the pairs that GMP confirmed");
-  counts.device = whole(all[7], range.pairs, "the device's pairs and the batch's pairs");
+  counts.device = whole(all[7], pairs, "the device's pairs and the batch's pairs");
   return counts;
 }
 

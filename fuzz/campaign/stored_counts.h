@@ -27,7 +27,7 @@ struct PairRange {
 // Counts add, in any order.
 struct StoredCounts {
   explicit StoredCounts(int lanes);
-  explicit StoredCounts(const BatchResult& result);
+  StoredCounts(const BatchResult& result);
   void add(const StoredCounts& other);
 
   analysis::Tally tally, extremes;
@@ -38,8 +38,12 @@ struct StoredCounts {
 
 std::string to_bytes(const StoredCounts& counts);
 
-// Requires: the range lies within the source.   Throws: Damaged.
-StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes);
+// Requires: the range lies within the source, and holds at least so many pairs, of which the bytes are the counts.
+// Throws: Damaged.
+StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::uint64_t pairs, Axis axis, int lanes);
+inline StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes) {
+  return from_bytes(bytes, range, range.pairs, axis, lanes);
+}
 
 // Of the range and its bytes, for the campaign with this checksum; any single change changes it.
 std::uint64_t checksum(std::uint64_t campaign, const PairRange& range, const std::string& bytes);

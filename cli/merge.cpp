@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze merge`: one campaign of several shards.
+#include <fmt/format.h>
+
+#include "cli/campaign_end.h"
+#include "cli/commands.h"
+#include "fuzz/campaign/merge.h"
+#include "reports/terminal.h"
+
+namespace graze::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> parts;
+  std::string out;
+  bool partial = false, json = false;
+};
+
+int merge(const Options& options) {
+  fuzz::MergeOptions wanted{{}, options.out, options.partial};
+  for (const std::string& part : options.parts) {
+    wanted.parts.emplace_back(part);
+    if (!wanted.parts.back().has_filename()) wanted.parts.back() = wanted.parts.back().parent_path();  // "shard-1/"
+  }
+  const fuzz::Outcome outcome = fuzz::merge(wanted);
+  print_campaign(options.out, outcome, options.json);
+  if (!outcome.complete) {
+    std::fflush(stdout);
+    fmt::print(stderr, "graze: not all pairs are there; graze fuzz with --out {} goes on from there\n", options.out);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("merge", "Make one campaign of shards, the same as one run of the whole");
+  command->footer("Example: graze merge shard-* --out campaign");
+  auto options = std::make_shared<Options>();
+  command
+      ->add_option("parts", options->parts,
+                   "Directories of shards, or of campaigns that were merged before; in any order")
+      ->required();
+  command->add_option("--out", options->out, "Directory of the campaign; new, or empty")
+      ->required()
+      ->check(not_empty());
+  command->add_flag("--partial", options->partial,
+                    "Take what is there: an unfinished campaign, with which graze fuzz and graze merge go on");
+  command->add_flag("--json", options->json, "Print the summary as JSON");
+  command->callback([options, &status] { status = merge(*options); });
+}
+
+}  // namespace graze::cli

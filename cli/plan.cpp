@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze plan`: how long a campaign takes and how much disk, before it is run.
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "cli/commands.h"
+#include "cli/progress.h"
+#include "fuzz/plan.h"
+#include "reports/terminal.h"
+
+namespace graze::cli {
+
+using fuzz::Json;
+namespace {
+
+struct Options {
+  std::uint64_t pairs = 1'000'000, gpus = 0, cores = 1;
+  double rate = 0;
+  std::vector<std::string> strata;
+  std::string scene;
+  LaneOptions lanes;
+  bool json = false;
+};
+
+std::string time_of(double seconds) {
+  if (seconds < 2 * 86400.0) return duration(seconds);
+  if (seconds < 2 * 365.25 * 86400.0) return fmt::format("{:.1f} days", seconds / 86400);
+  return fmt::format("{:.3g} years", seconds / (365.25 * 86400));
+}
+
+std::string size_of(double bytes) {
+  for (const char* unit : {"B", "KiB", "MiB", "GiB"}) {
+    if (bytes < 1000) return fmt::format("{:.3g} {}", bytes, unit);
+    bytes /= 1024;
+  }
+  return fmt::format("{:.3g} TiB", bytes);
+}
+
+int plan(const Options& options) {
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  fuzz::Campaign campaign;
+  campaign.under_test = &under_test;
+  Json scene;
+  campaign.sources = options.scene.empty()
+                         ? strata::stratum_sources(campaign.seed, options.pairs, options.strata)
+                         : drawn_from_scene(options.scene, campaign.seed, options.pairs, options.strata, scene).sources;
+  campaign.spec = fuzz::campaign_spec(campaign);
+  if (!scene.is_null()) campaign.spec["scene"] = scene;
+  const bool gpu = options.gpus > 0;
+  // A rate that is given needs no device; the store's rows are then measured on the CPU.
+  if (gpu && options.rate == 0) campaign.engines = fuzz::choose_engines(campaign, fuzz::EngineChoice::gpu);
+  if (campaign.engines.size() > 1) campaign.engines.resize(1);
+  const fuzz::Sample sample = fuzz::measure(campaign);
+  fuzz::Workers given{gpu ? options.gpus : options.cores, gpu, {}};
+  if (options.rate > 0) given.rate = options.rate;
+  const std::uint64_t workers = given.count;
+  const fuzz::Plan found = fuzz::plan(campaign, sample, given);
+  if (options.json) {
+    std::cout << Json{{"pairs", found.pairs},
+                      {gpu ? "gpus" : "cores", workers},
+                      {"rate", found.rate},
+                      {"measured", options.rate == 0},
+                      {"seconds", found.seconds},
+                      {"shards", found.shards},
+                      {"shard_seconds", found.shard_seconds},
+                      {"shard_bytes", found.shard_bytes},
+                      {"merged_bytes", found.merged_bytes}}
+                     .dump(1)
+              << '\n';
+    return 0;
+  }
+  const char* worker = gpu ? "GPU" : "core";
+  std::cout << fmt::format(
+      "{} pairs of {} strata through {} lanes\n"
+      "rate    {} pairs/s on one {}, {}\n"
+      "time    {} on {} {}{}\n"
+      "shards  {} of {} each: --shard K/{}\n"
+      "disk    about {} a shard, {} all, {} merged\n",
+      reports::grouped(found.pairs), campaign.sources.size(), under_test.lanes.size(),
+      reports::grouped(static_cast<std::uint64_t>(found.rate)), worker,
+      options.rate > 0 ? "as given" : fmt::format("measured here on {} pairs", reports::grouped(sample.pairs)),
+      time_of(found.seconds), reports::grouped(workers), worker, workers == 1 ? "" : "s",
+      reports::grouped(found.shards), time_of(found.shard_seconds), found.shards, size_of(found.shard_bytes),
+      size_of(found.shard_bytes * static_cast<double>(found.shards)), size_of(found.merged_bytes));
+  return 0;
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("plan", "How long a campaign takes and how much disk, from what its pairs cost here");
+  command->footer("Example: graze plan --pairs 1e10 --lanes '*/f32/cpu' --cores 64");
+  auto options = std::make_shared<Options>();
+  command->add_option("--pairs", options->pairs, "Pairs in all")
+      ->transform(whole_number(1, kMostWhole))
+      ->capture_default_str();
+  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  add_scene_option(*command, options->scene);
+  add_lane_options(*command, options->lanes);
+  CLI::Option* cores =
+      command->add_option("--cores", options->cores, "Cores that run it")->transform(whole_number(1, 10'000'000));
+  command->add_option("--gpus", options->gpus, "GPUs that run it; the rate is measured on one, or given")
+      ->transform(whole_number(1, 10'000'000))
+      ->excludes(cores);
+  command->add_option("--rate", options->rate, "Pairs a second of one core or GPU, instead of measuring it")
+      ->check(CLI::Range(1e-3, 1e15))
+      ->option_text("PAIRS");
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->callback([options, &status] { status = plan(*options); });
+}
+
+}  // namespace graze::cli

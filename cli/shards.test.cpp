@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shards as processes: killed, resumed, run twice at once, by ranks; and what is said of them. The same bytes as one
+// run.
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+using Json = nlohmann::json;
+
+class Shards : public CommandTest {
+ protected:
+  // Summary, cases and the report's data.
+  void expect_same(const std::string& one, const std::string& other) const {
+    const Ran ran = shell("for d in " + one + ' ' + other + "; do graze report $d > /dev/null || exit 9; done; " +
+                          "diff " + one + "/summary.json " + other + "/summary.json && diff -r " + one + "/cases " +
+                          other + "/cases && diff " + one + "/report.json " + other + "/report.json");
+    EXPECT_EQ(ran.status, 0) << ran.out.substr(0, 1000) << ran.err;
+  }
+
+  // The command between two words of what was said.
+  static std::string command_in(const std::string& said, const std::string& before) {
+    const std::size_t at = said.find(before);
+    EXPECT_NE(at, std::string::npos) << said;
+    return at == std::string::npos ? "false" : said.substr(at + before.size());
+  }
+};
+
+TEST_F(Shards, KilledAndResumedInAnyOrderLeaveTheBytesOfTheWhole) {
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 60000 --strata 'near_*,degenerate' --lanes '*/f32/c*,exact*' ";
+  ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
+  std::mt19937 random(7);
+  int killed = 0;
+  for (const int k : {4, 2, 5, 1, 3}) {
+    const std::string shard = fuzz + "--shard " + std::to_string(k) + "/5 --out part-" + std::to_string(k);
+    const std::string scratch = k % 2 == 0 ? " --scratch local" : "";
+    for (int i = 0; i < 3; ++i) {
+      const Ran ran =
+          shell("timeout -s KILL 0." + std::to_string(100 + random() % 400) + ' ' + shard + scratch + " --threads 1");
+      killed += ran.status == 137;
+    }
+    const Ran ran = shell(shard + scratch);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    EXPECT_TRUE(ran.out.starts_with("Shard " + std::to_string(k) + "/5: 12,000 pairs, ")) << ran.out;
+  }
+  EXPECT_GT(killed, 2);
+  EXPECT_EQ(shell("ls local").out, "");
+  EXPECT_EQ(shell("graze merge part-3 part-5 part-1/ part-2 part-4 --out all").status, 0);
+  expect_same("whole", "all");
+}
+
+TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
+  ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
+  for (const char* k : {"1", "3"}) ASSERT_EQ(shell(fuzz + "--shard " + k + "/3 --out p-" + k).status, 0);
+  expect_error("graze merge p-* --out all", 1, "expected 3 shards, found none that is 2/3; it is run by: graze fuzz");
+  const std::string missing = command_in(shell("graze merge p-1 p-3 --out all").err, "it is run by: ");
+  ASSERT_EQ(shell(missing).status, 0) << missing;
+  EXPECT_EQ(shell("graze merge p-1 p-3 shard-2 --out all").status, 0);
+  expect_same("whole", "all");
+  expect_error("graze merge p-1 p-3 shard-2 --out all", 2, "expected a new or an empty directory");
+
+  // Of what is damaged, too; what checks is kept.
+  expect_done(
+      "sqlite3 p-3/campaign.sqlite 'UPDATE batch SET pairs = pairs + 1 WHERE id = 2' 2> /dev/null || python3 -c "
+      "\"import sqlite3; c = sqlite3.connect('p-3/campaign.sqlite'); c.execute('UPDATE batch SET pairs = pairs + 1 "
+      "WHERE id = 2'); c.commit()\"");
+  const std::string said = shell("graze merge p-1 p-3 shard-2 --out again").err;
+  const std::string repair = command_in(said, "keeps the batches that check: ");
+  EXPECT_NE(said.find("p-3/campaign.sqlite: expected a"), std::string::npos) << said;
+  ASSERT_EQ(shell(repair).status, 0) << repair;
+  EXPECT_EQ(shell("graze merge p-1 p-3 shard-2 --out again").status, 0);
+  expect_same("whole", "again");
+}
+
+TEST_F(Shards, MinimizingTakesShardsOfTheSignatures) {
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
+  ASSERT_EQ(shell(fuzz + "--out whole && cp -r whole parts && graze minimize whole").status, 0);
+  const Ran ran = shell("graze minimize parts --shard 2/3 && graze minimize parts --shard 1/3 && cat parts/kinds.json");
+  EXPECT_NE(ran.out.find("shard 2/3: "), std::string::npos) << ran.out << ran.err;
+  EXPECT_EQ(ran.status, 1);  // kinds are of all signatures
+  EXPECT_EQ(
+      shell("graze minimize parts --shard 3/3 && graze minimize parts && diff whole/kinds.json parts/kinds.json && "
+            "diff -r whole/cases parts/cases")
+          .status,
+      0);
+  expect_error("graze minimize uniform:1:1 --shard 1/2", 2, "expected --shard only with a campaign's directory");
+}
+
+TEST_F(Shards, WrongUseIsOneLine) {
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
+  for (const char* text : {"0/3", "4/3", "3", "x"})
+    expect_error(fuzz + "--shard " + text + " --out a", 2, "expected K/N");
+  expect_error(fuzz + "--shard 1/3 --fail-above 0 --out a", 2, "--fail-above");
+  expect_error(fuzz + "--scratch here --out a", 2, "--scratch: expected --shard");
+  ASSERT_EQ(shell(fuzz + "--shard 1/3 --out a").status, 0);
+  expect_error(fuzz + "--shard 2/3 --out a", 2,
+               "a: holds another shard: expected 2/3, found 1/3; choose another --out");
+  expect_error(fuzz + "--out a", 2, "a: holds another shard: expected none, found 1/3");
+  expect_error("graze report a", 1, "summary.json");
+  expect_error("graze merge --out b", 2, "");
+  EXPECT_EQ(Json::parse(shell(fuzz + "--shard 1/3 --out a --json").out)["pairs"], 300);
+}
+
+TEST_F(Shards, TwoProcessesOfOneShardAreRefused) {
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 3000000 --strata 'near_*' --shard 1/2 --out a ";
+  for (const char* scratch : {"", "--scratch local"}) {
+    const Ran ran =
+        shell(fuzz + scratch + " & for i in $(seq 100); do grep -qs running a/status.json && break; sleep 0.1; done; " +
+              fuzz + scratch + "; echo second $?; kill -TERM $!; wait $!; echo first $?");
+    EXPECT_EQ(ran.out, "second 1\nfirst 130\n") << ran.err;
+    EXPECT_NE(ran.err.find("expected to be alone, found: another process at work in it"), std::string::npos) << ran.err;
+  }
+}
+
+TEST_F(Shards, ScenesPoliciesAndSubjectsMergeToo) {
+  std::ofstream(shell.folder / "arm.toml") << "extent = [0, 64]\nedges = [1, 2]\n";
+  std::ofstream(shell.folder / "mine.cpp")
+      << "bool intersects(const float a[9], const float b[9]) { return a[0] <= b[0]; }\n";
+  const std::string fuzz =
+      "graze fuzz --seed 2 --pairs 600 --scene arm.toml --subject mine=mine.cpp "
+      "--lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/rel:24,mine/f32/cpu' ";
+  ASSERT_EQ(shell(fuzz + "--out whole").status, 0) << shell(fuzz + "--out whole").err;
+  for (const char* k : {"1", "2"}) ASSERT_EQ(shell(fuzz + "--shard " + k + "/3 --out p-" + k).status, 0);
+  ASSERT_EQ(shell(command_in(shell("graze merge p-1 p-2 --out all").err, "it is run by: ")).status, 0);
+  EXPECT_EQ(shell("graze merge p-1 p-2 shard-3 --out all").status, 0);
+  expect_same("whole", "all");
+}
+
+TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 3000000 --strata 'near_*' ";
+  const Ran ran = shell(
+      "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --shard 1/3 --out done > /dev/null; " + fuzz +
+      "--shard 2/3 --out killed & for i in $(seq 100); do grep -qs running killed/status.json && break; sleep 0.1; "
+      "done; graze status done killed none; echo $?; kill -KILL $!; wait; "
+      "graze status done killed none --json --prometheus p.prom > s.json; echo $?");
+  EXPECT_NE(ran.out.find(" 1/3 done "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" 2/3 running "), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find(" - not begun"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("1 done, 1 running, 1 not begun\n0\n"), std::string::npos) << ran.out;
+  EXPECT_TRUE(ran.out.ends_with("\n1\n")) << ran.out;
+  const Json status = Json::parse(contents(shell.folder / "s.json"));
+  EXPECT_EQ(status["states"], (Json{{"done", 1}, {"killed", 1}, {"not begun", 1}}));
+  EXPECT_EQ(status["shards"][0]["done"], 300);
+  const std::string prometheus = contents(shell.folder / "p.prom");
+  EXPECT_NE(prometheus.find("graze_done{directory=\"done\",shard=\"1/3\",state=\"done\"} 300\n"), std::string::npos)
+      << prometheus;
+  // A run elsewhere that has not said anything for long.
+  Json old = Json::parse(contents(shell.folder / "killed/status.json"));
+  old["host"] = "elsewhere";
+  old["updated"] = old["updated"].get<std::int64_t>() - 1000;
+  std::ofstream(shell.folder / "killed/status.json") << old;
+  const Ran stalled = shell("graze status killed");
+  EXPECT_EQ(stalled.status, 1);
+  EXPECT_NE(stalled.out.find(" stalled "), std::string::npos) << stalled.out;
+  expect_done("graze status killed --stalled 3000");
+}
+
+// mpirun refuses to run as root unless it is told to.
+TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
+  const Ran found = shell("command -v mpirun && test -e '" + std::string(GRAZE_BINARY_DIR) + "/libgraze_mpi.so'");
+  if (found.status != 0) GTEST_SKIP() << "no mpirun, or a build without MPI";
+  const std::string fuzz =
+      "graze fuzz --seed 5 --pairs 200000 --strata 'near_*,degenerate' --lanes '*/f32/c*' --threads 1 ";
+  const std::string mpirun =
+      "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1; mpirun -n "
+      "4 ";
+  ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
+  const Ran killed =
+      shell(mpirun + fuzz +
+            "--out ranks & for i in $(seq 200); do "
+            "[ \"$(grep -ls '\"done\": [1-9]' ranks/rank-*/status.json | wc -l)\" -ge 2 ] && break; sleep 0.1; done; "
+            "kill -KILL $(grep -h '\"process\"' ranks/rank-2/status.json | grep -o '[0-9]*'); wait $!; echo $?; "
+            "graze status ranks; ls -d ranks/rank-*");
+  EXPECT_FALSE(killed.out.starts_with("0\n")) << killed.out << killed.err;
+  EXPECT_NE(killed.out.find("ranks/rank-3"), std::string::npos) << killed.out;
+  EXPECT_NE(killed.out.find(" killed "), std::string::npos) << killed.out;
+  const Ran again = shell(mpirun + fuzz + "--out ranks");
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.out.find("Wrote ranks/summary.json"), std::string::npos) << again.out;
+  EXPECT_EQ(shell("ls ranks | grep rank-").out, "");
+  const Json run = Json::parse(contents(shell.folder / "ranks/timings.json"))["runs"].back();
+  EXPECT_EQ(run["ranks"], 4);
+  EXPECT_LT(run["pairs"], 200'000);  // what the killed run had committed stays
+  expect_same("whole", "ranks");
+  const Ran wrong = shell(mpirun + fuzz + "--shard 1/2 --out x");
+  EXPECT_NE(wrong.err.find("under mpirun"), std::string::npos) << wrong.err;
+}
+
+}  // namespace
+}  // namespace graze::cli

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze status`: how far shards, ranks and campaigns are, from the status.json that each of them writes.
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <ctime>
+#include <iostream>
+
+#include "cli/commands.h"
+#include "cli/progress.h"
+#include "fuzz/campaign/rank_stores.h"
+#include "fuzz/campaign/run_status.h"
+#include "reports/terminal.h"
+
+namespace graze::cli {
+
+using fuzz::Json;
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> directories;
+  std::string prometheus;
+  std::uint64_t stalled = 600;
+  bool json = false;
+};
+
+// A run that does not say how it ended: killed, where its process is gone from this machine; stalled, where it has said
+// nothing for long.
+std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stalled) {
+  const std::string state = status.value("state", "unknown");
+  if (state != "running") return state;
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  const auto process = status.value("process", pid_t{0});
+  if (status.value("host", "") == host && process > 0 && kill(process, 0) != 0 && errno == ESRCH) return "killed";
+  return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
+}
+
+Json row_of(const fs::path& directory, std::uint64_t stalled) {
+  Json row = {{"directory", directory.string()},
+              {"shard", nullptr},
+              {"state", "not begun"},
+              {"pairs", 0},
+              {"done", 0},
+              {"rate", 0.0},
+              {"seconds_left", nullptr},
+              {"disagreements", 0},
+              {"signatures", 0}};
+  try {
+    const Json status = fuzz::read_status(directory);
+    if (status.is_null()) return row;
+    const std::int64_t silent = std::time(nullptr) - status.at("updated").get<std::int64_t>();
+    row["shard"] = status.at("shard").get<std::string>();
+    row["state"] = state_of(status, silent, stalled);
+    for (const char* count : {"pairs", "done", "disagreements", "signatures"})
+      row[count] = status.at(count).get<std::uint64_t>();
+    if (row["state"] == "running") {
+      row["rate"] = status.at("rate").get<double>();
+      row["seconds_left"] = status.at("seconds_left");
+    }
+    row["silent"] = silent;
+    if (status.contains("why")) row["why"] = status["why"].get<std::string>();
+    return row;
+  } catch (const Json::exception&) {
+    throw std::runtime_error((directory / "status.json").string() +
+                             ": expected what a run says of itself, found something else");
+  }
+}
+
+// {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements", "states": {state: shards}}
+Json status_of(const Options& options) {
+  Json all = {{"shards", Json::array()},
+              {"pairs", 0},
+              {"done", 0},
+              {"rate", 0.0},
+              {"seconds_left", nullptr},
+              {"disagreements", 0},
+              {"states", Json::object()}};
+  std::uint64_t pairs = 0, done = 0, disagreements = 0;
+  double rate = 0;
+  for (const std::string& name : options.directories) {
+    std::vector<fs::path> places = fuzz::rank_directories(name);
+    if (places.empty()) places.emplace_back(name);
+    std::uint64_t of_ranks = 0;
+    for (const fs::path& place : places) {
+      const Json row = row_of(place, options.stalled);
+      // Each rank knows the pairs of all.
+      of_ranks = std::max(of_ranks, row["pairs"].get<std::uint64_t>());
+      done += row["done"].get<std::uint64_t>();
+      disagreements += row["disagreements"].get<std::uint64_t>();
+      rate += row["rate"].get<double>();
+      Json& count = all["states"][row["state"].get<std::string>()];
+      count = count.is_null() ? 1 : count.get<int>() + 1;
+      all["shards"].push_back(row);
+    }
+    pairs += of_ranks;
+  }
+  all["pairs"] = pairs;
+  all["done"] = done;
+  all["rate"] = rate;
+  if (rate > 0) all["seconds_left"] = static_cast<double>(pairs - std::min(done, pairs)) / rate;
+  all["disagreements"] = disagreements;
+  return all;
+}
+
+std::string table(const Json& all) {
+  std::string text = fmt::format("{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10}\n", "directory", "shard",
+                                 "state", "pairs done", "pairs/s", "left", "disagreements", "signatures");
+  for (const Json& row : all["shards"]) {
+    const std::uint64_t pairs = row["pairs"], done = row["done"];
+    text += fmt::format("{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10}\n", row["directory"].get<std::string>(),
+                        row["shard"].is_null() ? "-" : row["shard"].get<std::string>(), row["state"].get<std::string>(),
+                        fmt::format("{} ({}%)", reports::grouped(done), pairs == 0 ? 0 : 100 * done / pairs),
+                        reports::grouped(static_cast<std::uint64_t>(row["rate"].get<double>())),
+                        row["seconds_left"].is_null() ? "-" : duration(row["seconds_left"].get<double>()),
+                        reports::grouped(row["disagreements"]), reports::grouped(row["signatures"]));
+    if (row.contains("why")) text += "  " + row["why"].get<std::string>() + '\n';
+  }
+  std::vector<std::string> states;
+  for (const auto& [state, count] : all["states"].items())
+    states.push_back(fmt::format("{} {}", count.get<int>(), state));
+  const std::string left =
+      all["seconds_left"].is_null() ? "" : ", " + duration(all["seconds_left"].get<double>()) + " left at this rate";
+  text += fmt::format(
+      "{} of {} pairs, {} pairs/s{}; {}\n", reports::grouped(all["done"]), reports::grouped(all["pairs"]),
+      reports::grouped(static_cast<std::uint64_t>(all["rate"].get<double>())), left, fmt::join(states, ", "));
+  return text;
+}
+
+// Prometheus' text format, as its node exporter reads it from a folder of *.prom files.
+std::string prometheus(const Json& all) {
+  const auto label = [](const std::string& text) {
+    std::string escaped;
+    for (const char c : text)
+      escaped += c == '\n' ? "\\n" : c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+    return escaped;
+  };
+  std::string text;
+  for (const auto& [name, help] : {std::pair{"pairs", "Pairs that the shard has."},
+                                   {"done", "Pairs that are judged."},
+                                   {"rate", "Pairs judged in a second; 0 where it does not run."},
+                                   {"disagreements", "Pairs on which some lane is wrong."},
+                                   {"signatures", "Signatures seen."}}) {
+    text += fmt::format("# HELP graze_{0} {1}\n# TYPE graze_{0} gauge\n", name, help);
+    for (const Json& row : all["shards"]) {
+      text += fmt::format("graze_{}{{directory=\"{}\",shard=\"{}\",state=\"{}\"}} {}\n", name, label(row["directory"]),
+                          row["shard"].is_null() ? "" : row["shard"].get<std::string>(),
+                          row["state"].get<std::string>(), row[name].dump());
+    }
+  }
+  return text;
+}
+
+int status_command(const Options& options) {
+  const Json all = status_of(options);
+  if (!options.prometheus.empty()) fuzz::write_whole(options.prometheus, prometheus(all));
+  std::cout << (options.json ? all.dump(1) + '\n' : table(all));
+  for (const char* bad : {"failed", "killed", "stalled"}) {
+    if (all["states"].contains(bad)) return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_status(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("status", "How far shards are; exit status 1 where one failed, was killed or stalls");
+  command->footer("Example: graze status shard-*");
+  auto options = std::make_shared<Options>();
+  command->add_option("directories", options->directories, "Directories of shards or campaigns, of one by mpirun also")
+      ->required();
+  command->add_option("--stalled", options->stalled, "Seconds without a word after which a run counts as stalled")
+      ->transform(whole_number(1, 1'000'000'000))
+      ->capture_default_str();
+  command->add_option("--prometheus", options->prometheus, "Write the same to this file in Prometheus' text format")
+      ->check(not_empty())
+      ->option_text("FILE");
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->callback([options, &status] { status = status_command(*options); });
+}
+
+}  // namespace graze::cli

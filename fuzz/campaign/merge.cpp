@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/merge.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "fuzz/campaign/recorded.h"
+#include "fuzz/campaign/result_files.h"
+#include "fuzz/campaign/run_status.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "device; twin, verified on …" of both.
+std::string common_words(const std::string& one, const std::string& other) {
+  std::set<std::string> words;
+  for (const std::string& text : {one, other}) {
+    for (std::size_t begin = 0, end; begin < text.size(); begin = end + 2) {
+      end = std::min(text.find("; ", begin), text.size());
+      words.insert(text.substr(begin, end - begin));
+    }
+  }
+  return fmt::format("{}", fmt::join(words, "; "));
+}
+
+// What is recorded of each part; they are of one campaign.
+std::vector<StoreSpec> read_records(const std::vector<fs::path>& parts) {
+  std::vector<StoreSpec> stores;
+  for (const fs::path& part : parts) {
+    stores.push_back(recorded_store(part));
+    if (stores.back().spec == stores.front().spec) continue;
+    throw std::runtime_error(fmt::format("{}: holds a part of another campaign: expected {}, as {}; leave one out",
+                                         part.string(),
+                                         first_difference(stores.front().spec, stores.back().spec),
+                                         stores.front().directory.string()));
+  }
+  return stores;
+}
+
+std::string named(const StoreSpec& store) {
+  return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
+}
+
+// Throws: what the part's owner must do about what is missing, in one line.
+void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, const fs::path& out) {
+  const std::vector<PairRange> gaps = sums.gaps();
+  if (gaps.empty()) return;
+  const Json& spec = stores.front().spec;
+  const std::vector<strata::PairSource>& sources = stores.front().sources;
+  std::uint64_t missing = 0;
+  for (const PairRange& gap : gaps) missing += gap.pairs;
+  std::vector<const StoreSpec*> undone;
+  for (const StoreSpec& store : stores) {
+    const auto is_undone = [&](const strata::PairSource& source) {
+      const auto s = static_cast<int>(&source - sources.data());
+      return !sums.gaps(share_of(store.shard, s, source.pairs)).empty();
+    };
+    if (!store.shard.whole() && std::any_of(sources.begin(), sources.end(), is_undone)) undone.push_back(&store);
+  }
+  if (!undone.empty()) {
+    throw std::runtime_error(fmt::format(
+        "{}: expected all of its pairs, found {}; go on: {}", named(*undone.front()),
+        undone.size() == 1 ? "that it is not done" : fmt::format("that it and {} other shards are not done", undone.size() - 1),
+        command_of(spec, undone.front()->shard, undone.front()->directory)));
+  }
+  const std::uint64_t of = stores.front().shard.of;
+  const bool alike = of > 1 && std::all_of(stores.begin(), stores.end(), [&](auto& store) { return store.shard.of == of; });
+  if (!alike) {
+    throw std::runtime_error(fmt::format(
+        "expected all pairs, found {} of them in none of these; merge them --partial into {} and go on: {}", missing,
+        out.string(), command_of(spec, {}, out)));
+  }
+  std::set<std::uint64_t> lacking;
+  for (std::uint64_t k = 1; k <= of; ++k) lacking.insert(k);
+  for (const StoreSpec& store : stores) lacking.erase(store.shard.number);
+  std::erase_if(lacking, [&](std::uint64_t k) {  // there may be fewer pairs than shards
+    return std::all_of(sources.begin(), sources.end(), [&](const strata::PairSource& source) {
+      return share_of({k, of}, 0, source.pairs).pairs == 0;
+    });
+  });
+  const fs::path folder = stores.front().directory.parent_path();
+  std::string command = command_of(spec, {*lacking.begin(), of}, folder / fmt::format("shard-{}", *lacking.begin()));
+  throw std::runtime_error(lacking.size() == 1
+                               ? fmt::format("expected {} shards, found none that is {}/{}; it is run by: {}", of,
+                                             *lacking.begin(), of, command)
+                               : fmt::format("expected {} shards, found none that are {}; the first is run by: {}", of,
+                                             fmt::join(lacking, ", "), command));
+}
+
+// Throws: std::runtime_error where the file is not what the finished run sealed.
+void expect_sealed(const StoreSpec& store) {
+  const Json status = read_status(store.directory);
+  if (status.is_null() || status.value("state", "") != "done" || !status.contains("hash")) return;
+  if (const std::string found = file_hash(store.directory / kDatabase); found != status["hash"])
+    throw DamagedStore(fmt::format("{}: expected the file that the run left, hash {}, found hash {}; copy it again, or",
+                                   (store.directory / kDatabase).string(), printable(status["hash"].get<std::string>()), found));
+}
+
+// The directory that becomes `out`: beside it, and empty.
+fs::path fresh_beside(const fs::path& out) {
+  std::error_code error;
+  if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
+    throw UsageError(out.string() + ": expected a new or an empty directory, found other things; choose another --out");
+  fs::path part = fs::absolute(out).lexically_normal();
+  if (!part.has_filename()) part = part.parent_path();
+  part += ".part";
+  fs::create_directories(part, error);
+  if (error) throw std::runtime_error(part.string() + ": expected a directory that can be written, found: " + error.message());
+  const FolderLock alone(part, FolderLock::WhenTaken::refuse);
+  for (const auto& left : fs::directory_iterator(part)) fs::remove_all(left);  // by one that was killed
+  return part;
+}
+
+// Runs of the parts as one, and what one of them measured of the lanes.
+Json timings_of(const std::vector<StoreSpec>& stores) {
+  Json run = {{"merged", stores.size()}, {"pairs", 0}, {"seconds", 0.0}};
+  for (const StoreSpec& store : stores) {
+    const Json timings = Json::parse(read_whole(store.directory / "timings.json"), nullptr, false);
+    if (!timings.is_object() || !timings.contains("runs") || !timings["runs"].is_array()) continue;
+    for (const Json& of_part : timings["runs"]) {
+      if (!of_part.is_object()) continue;
+      run["pairs"] = run["pairs"].get<std::uint64_t>() + of_part.value("pairs", std::uint64_t{0});
+      run["seconds"] = run["seconds"].get<double>() + of_part.value("seconds", 0.0);
+      if (!of_part.contains("costs")) continue;
+      run["machine"] = of_part.value("machine", "");
+      run["costs"] = of_part["costs"];
+    }
+  }
+  return run;
+}
+
+Outcome write_results(const Campaign& campaign, const Store& store, bool complete) {
+  return {complete, write_summary(campaign, store, complete), store.oracle()};
+}
+
+}  // namespace
+
+Json common_build(const Json& one, const Json& other, const fs::path& directory) {
+  Json common = one, rest = other;
+  for (Json* build : {&common, &rest}) {
+    build->erase("device");
+    build->erase("executors");
+  }
+  if (common != rest)
+    throw std::runtime_error(fmt::format("{}: was run by another build: expected {}; leave it out",
+                                         directory.string(), first_difference(common, rest)));
+  common = one;
+  const auto merge_words = [](Json& into, const Json& from) {
+    if (from.is_null()) return;
+    into = into.is_null() ? from : Json(common_words(into.get<std::string>(), from.get<std::string>()));
+  };
+  merge_words(common["device"], other["device"]);
+  for (const auto& [lane, evidence] : other["executors"].items()) merge_words(common["executors"][lane], evidence);
+  return common;
+}
+
+Outcome write_merged(const Campaign& campaign, const Sums& sums) {
+  Store store(store_spec(campaign));
+  for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
+    const PairRange all{static_cast<int>(s), 0, campaign.sources[s].pairs};
+    if (all.pairs > 0) store.commit(all, sums.of_source(all.source));
+  }
+  return write_results(campaign, store, true);
+}
+
+Outcome merge(const MergeOptions& options) {
+  if (options.parts.empty()) throw UsageError("expected directories of shards, found none");
+  std::vector<StoreSpec> stores = read_records(options.parts);
+  Campaign campaign;
+  campaign.spec = stores.front().spec;
+  campaign.seed = campaign.spec.at("seed");
+  campaign.sources = recorded_sources(campaign.spec);
+  campaign.build = stores.front().build;
+  for (StoreSpec& store : stores) {
+    campaign.build = common_build(campaign.build, store.build, store.directory);
+    store.sources = campaign.sources;
+  }
+  // The pairs of the cases are drawn again, here.
+  if (const Json here = build_info({}); campaign.build.at("commit") != here["commit"])
+    throw std::runtime_error(fmt::format("{}: expected shards of this build, commit {}, found {}",
+                                         stores.front().directory.string(), here["commit"].get<std::string>(),
+                                         printable(campaign.build["commit"].get<std::string>())));
+  const LanesUnderTest under_test = recorded_lanes(campaign.spec);
+  campaign.under_test = &under_test;
+  campaign.directory = fresh_beside(options.out);
+
+  Sums sums(campaign.sources, static_cast<int>(under_test.lanes.size()));
+  std::optional<Store> partial;
+  try {
+    if (options.partial) partial.emplace(store_spec(campaign));
+    for (std::size_t i = 0; i < stores.size(); ++i) {
+      try {
+        expect_sealed(stores[i]);
+        for_each_row(stores[i], [&](const PairRange& range, const StoredCounts& counts) {
+          sums.add(range, counts, i);
+          if (partial) partial->commit(range, counts);
+        });
+      } catch (const DamagedStore& error) {
+        throw std::runtime_error(fmt::format("{}: {} --discard-damaged", error.what(),
+                                             command_of(campaign.spec, stores[i].shard, stores[i].directory)));
+      } catch (const Sums::Overlap& overlap) {
+        throw std::runtime_error(fmt::format(
+            "{} and {}: expected parts that have no pairs in common, found {} of {} from {} on in both; leave one out",
+            named(stores[overlap.before]), named(stores[overlap.now]), overlap.pairs.pairs,
+            campaign.sources[static_cast<std::size_t>(overlap.pairs.source)].id, overlap.pairs.first));
+      }
+    }
+    if (!partial) expect_no_gaps(stores, sums, options.out);
+    Outcome outcome = partial ? write_results(campaign, *partial, sums.gaps().empty()) : write_merged(campaign, sums);
+    partial.reset();
+    append_timing(campaign.directory, timings_of(stores), outcome.oracle);
+    if (fs::exists(options.out)) fs::remove(options.out);
+    fs::rename(campaign.directory, options.out);
+    return outcome;
+  } catch (...) {
+    partial.reset();
+    fs::remove_all(campaign.directory);
+    throw;
+  }
+}
+
+}  // namespace graze::fuzz

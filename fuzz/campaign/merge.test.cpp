@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+// However a campaign is cut into shards, whoever runs them, and in whatever order they are merged: the bytes of one
+// run.
+#include "fuzz/campaign/merge.h"
+
+#include <algorithm>
+#include <random>
+
+#include "core/error.h"
+#include "cuda/engine/host_engine.h"
+#include "fuzz/campaign/campaign_testing.h"
+#include "fuzz/campaign/cpu_engine.h"
+#include "fuzz/campaign/rank_stores.h"
+#include "fuzz/ranks/rank_campaign.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MergeTest : public CampaignFiles {
+ protected:
+  Campaign campaign(const std::string& name, const Shard& shard = {}) const {
+    Campaign c = campaign_of(
+        twins_, strata::stratum_sources(3, 3'001, {"near_edge_edge", "degenerate", "extreme_scale"}), 3, name);
+    c.shard = shard;
+    return c;
+  }
+
+  // The directories of all shards. Each third runs by the steps of the device engine, each fifth is interrupted after
+  // every batch.
+  std::vector<fs::path> run_shards(std::uint64_t of) const {
+    std::vector<fs::path> parts;
+    for (std::uint64_t k = 1; k <= of; ++k) {
+      Campaign c = campaign("of" + std::to_string(of) + "-" + std::to_string(k), {k, of});
+      if (k % 3 == 0) c.engines.push_back(cuda::make_host_engine(twins_.lanes, twins_.on_host, {}));
+      if (k % 3 == 0) c.engine_batch = 19;
+      if (k % 5 == 0) {
+        run_in_parts(c);
+      } else {
+        run(c);
+      }
+      parts.push_back(c.directory);
+    }
+    return parts;
+  }
+
+  // What merge says of these; empty when all is well.
+  std::string refusal(const std::vector<fs::path>& parts) const {
+    try {
+      merge({parts, root_ / "refused", false});
+    } catch (const std::runtime_error& error) {
+      EXPECT_FALSE(fs::exists(root_ / "refused"));
+      EXPECT_FALSE(fs::exists(root_ / "refused.part"));
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path database(const std::string& name) const { return root_ / name / kDatabase; }
+
+  LanesUnderTest twins_ =
+      select_lanes({"moller_1997/f32/cuda*", "projected_sat/f32/cuda*", "exact/f32/cuda*"}, Executor::twin);
+};
+
+TEST_F(MergeTest, AnyNumberOfShardsInAnyOrderLeavesTheBytesOfTheWhole) {
+  const Json whole = run(campaign("whole"));
+  EXPECT_GT(whole["signatures"].size(), 20u);
+  std::mt19937 random(1);
+  // However many batches a shard took, it leaves one row of each source.
+  const Campaign parts = campaign("rows", {2, 3});
+  EXPECT_GT(run_in_parts(parts), 1);
+  EXPECT_EQ(SQLite::Database(database("rows").string()).execAndGet("SELECT count(*) FROM batch").getInt64(), 3);
+  for (const std::uint64_t of : {1, 2, 3, 7, 64}) {
+    std::vector<fs::path> parts = run_shards(of);
+    std::shuffle(parts.begin(), parts.end(), random);
+    const std::string name = "merged" + std::to_string(of);
+    const Outcome outcome = merge({parts, root_ / name, false});
+    EXPECT_TRUE(outcome.complete);
+    EXPECT_EQ(outcome.summary.dump(), whole.dump()) << of;
+    expect_same_bytes("whole", name);
+    // The store is that of a campaign that is done: nothing is judged again.
+    Campaign again = campaign(name);
+    std::atomic<bool> stop{false};
+    EXPECT_TRUE(run_campaign(again, stop, [](const Progress&) { ADD_FAILURE() << "a batch"; }).complete);
+    expect_same_bytes("whole", name);
+  }
+}
+
+TEST_F(MergeTest, MergesOfMergesAreTheSame) {
+  run(campaign("whole"));
+  const std::vector<fs::path> of7 = run_shards(7), of2 = run_shards(2);
+  merge({{of7[5], of7[1], of7[3]}, root_ / "odd", true});
+  merge({{of7[6], root_ / "odd"}, root_ / "more", true});
+  merge({{of7[2], root_ / "more", of7[0], of7[4]}, root_ / "all", false});
+  expect_same_bytes("whole", "all");
+  // Half by one cut, half by another: 2/2 begins where 4/4's third ends.
+  std::vector<fs::path> mixed{of2[0]};
+  for (const Shard& shard : {Shard{3, 4}, Shard{4, 4}}) {
+    const Campaign c = campaign("quarter" + std::to_string(shard.number), shard);
+    run(c);
+    mixed.push_back(c.directory);
+  }
+  merge({mixed, root_ / "mixed", false});
+  expect_same_bytes("whole", "mixed");
+}
+
+TEST_F(MergeTest, APartialMergeIsACampaignToGoOnWith) {
+  run(campaign("whole"));
+  const std::vector<fs::path> parts = run_shards(7);
+  const Outcome partial = merge({{parts[6], parts[2]}, root_ / "partial", true});
+  EXPECT_FALSE(partial.complete);
+  EXPECT_FALSE(partial.summary["complete"].get<bool>());
+  EXPECT_TRUE(run(campaign("partial"))["complete"].get<bool>());
+  expect_same_bytes("whole", "partial");
+}
+
+TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
+  const std::vector<fs::path> parts = run_shards(3);
+  run(campaign("whole"));
+  const std::string command =
+      "graze fuzz --pairs 3001 --seed 3 --strata near_edge_edge,degenerate,extreme_scale --lanes ";
+  const auto expect = [&](const std::vector<fs::path>& of, const std::vector<std::string>& said) {
+    const std::string line = refusal(of);
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+    for (const std::string& part : said) EXPECT_NE(line.find(part), std::string::npos) << line;
+  };
+  expect({parts[0], parts[2]}, {"expected 3 shards, found none that is 2/3; it is run by: " + command,
+                                " --shard 2/3 --out " + (root_ / "shard-2").string()});
+  expect({parts[2]}, {"expected 3 shards, found none that are 1, 2; the first is run by: "});
+  expect({parts[0], parts[1], parts[0]}, {parts[0].string() + ", shard 1/3 and " + parts[0].string() +
+                                          ", shard 1/3: expected parts that have no pairs in common, found "});
+  expect({parts[0], root_ / "whole"}, {"of3-1, shard 1/3 and " + (root_ / "whole").string() + ": expected parts"});
+  expect({parts[0], root_ / "none"}, {(database("none")).string() + ": expected a campaign or a shard, found none"});
+  const fs::path foreign = run_shards(1)[0];
+  SQLite::Database(database("of1-1").string(), SQLite::OPEN_READWRITE).exec("PRAGMA application_id = 7");
+  expect({foreign}, {"expected a Graze campaign database, found another program's"});
+
+  Campaign other = campaign("other", {2, 3});
+  other.spec["seed"] = 4;
+  run(other);
+  expect({parts[0], root_ / "other"}, {"other: holds a part of another campaign: expected seed 3, found 4"});
+  other = campaign("build", {2, 3});
+  other.build["flags"] = "-O9";
+  run(other);
+  expect({parts[0], root_ / "build"}, {"build: was run by another build: expected flags "});
+  Campaign stopped = campaign("stopped", {2, 3});
+  run(stopped, 1);
+  expect({parts[0], root_ / "stopped", parts[2]},
+         {"stopped, shard 2/3: expected all of its pairs, found that it is not done; go on: " + command,
+          " --shard 2/3 --out " + (root_ / "stopped").string()});
+
+  // A bit that a copy lost, found by the hash; then an edit that the hash does not cover, by the row's checksum.
+  std::string bytes = read_whole(database("of3-2"));
+  const std::string good = bytes;
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+  write_whole(database("of3-2"), bytes);
+  expect(parts, {"expected the file that the run left, hash ", "--shard 2/3", " --discard-damaged"});
+  write_whole(database("of3-2"), good);
+  fs::remove(parts[1] / "status.json");
+  SQLite::Database(database("of3-2").string(), SQLite::OPEN_READWRITE).exec("UPDATE batch SET first = first + 1");
+  expect(parts, {"expected a whole database, found damage: ", "--shard 2/3", " --discard-damaged"});
+  write_whole(database("of3-2"), "");
+  expect(parts, {"found damage: it is empty"});
+  write_whole(database("of3-2"), good);
+  EXPECT_EQ(refusal(parts), "");
+}
+
+TEST_F(MergeTest, WhatRanTheLanesIsSaidOfAll) {
+  Json one = {{"commit", "c"}, {"device", nullptr}, {"executors", {{"a", "twin, verified on X"}, {"b", "device"}}}};
+  Json other = {{"commit", "c"}, {"device", "H100"}, {"executors", {{"a", "device"}, {"b", "device"}}}};
+  const Json both = common_build(one, other, "d");
+  EXPECT_EQ(both.dump(),
+            R"({"commit":"c","device":"H100","executors":{"a":"device; twin, verified on X","b":"device"}})");
+  EXPECT_EQ(common_build(other, one, "d").dump(), both.dump());
+  EXPECT_EQ(common_build(both, other, "d").dump(), both.dump());
+  other["commit"] = "d";
+  EXPECT_THROW(common_build(one, other, "d"), std::runtime_error);
+}
+
+TEST(Shard, PartsAreTheWholeEachIndexOnce) {
+  for (const std::uint64_t pairs : {std::uint64_t{0}, std::uint64_t{5}, std::uint64_t{1000}, std::uint64_t{1} << 53}) {
+    for (const std::uint64_t of : {std::uint64_t{1}, std::uint64_t{7}, std::uint64_t{64}, kMostShards}) {
+      std::uint64_t at = 0;
+      for (std::uint64_t k = 1; k <= of; ++k) {
+        const PairRange share = share_of({k, of}, 2, pairs);
+        ASSERT_EQ(share.first, at);
+        at += share.pairs;
+      }
+      EXPECT_EQ(at, pairs);
+    }
+  }
+  EXPECT_EQ(share_of({2, 4}, 0, 10).first, share_of({1, 2}, 0, 5).pairs);
+  EXPECT_EQ(parse_shard("3/16")->name(), "3/16");
+  for (const char* text : {"", "3", "0/4", "5/4", "1/", "/4", "1/2/3", "-1/2", "1/1000001", "a/b"})
+    EXPECT_FALSE(parse_shard(text)) << text;
+}
+
+// One process plays all ranks, in turns.
+TEST_F(MergeTest, BlocksOfRanksAreTheWholeAndWhatARankLeftIsTakenIn) {
+  const Json whole = run(campaign("whole"));
+  const Campaign left = campaign("left");
+  std::vector<PairRange> all;
+  for (int s = 0; s < 3; ++s) all.push_back({s, 0, left.sources[static_cast<std::size_t>(s)].pairs});
+  const Blocks blocks(all, 100);
+  std::uint64_t pairs = 0;
+  for (int rank = 0; rank < 3; ++rank) {
+    StoreSpec of_rank = store_spec(left);
+    of_rank.directory = rank_directory(left.directory, rank);
+    fs::create_directories(of_rank.directory);
+    Store store(of_rank);
+    for (std::uint64_t b = static_cast<std::uint64_t>(rank); b < blocks.count(); b += 4) {  // the fourth died at once
+      const PairRange block = blocks.at(b);
+      store.commit(block, judge(left, block.source, block.pairs, [&](std::size_t i) { return block.first + i; }));
+      pairs += block.pairs;
+    }
+  }
+  std::uint64_t judged = 0;
+  std::atomic<bool> stop{false};
+  const Outcome outcome = run_campaign(left, stop, [&](const Progress& progress) { judged = progress.done_here; });
+  EXPECT_EQ(judged, 3'001 - pairs);
+  EXPECT_EQ(outcome.summary.dump(), whole.dump());
+  EXPECT_TRUE(rank_directories(left.directory).empty());
+}
+
+TEST_F(MergeTest, SumsOfRanksTravelAsBytes) {
+  const Campaign c = campaign("sums");
+  Sums direct(c.sources, static_cast<int>(twins_.lanes.size())), root = direct, leaf = direct;
+  for (std::uint64_t b = 0; b < 9; ++b) {
+    const PairRange range{static_cast<int>(b % 3), b * 100, 50};
+    const StoredCounts counts = judge(c, range.source, range.pairs, [&](std::size_t i) { return range.first + i; });
+    direct.add(range, counts, 0);
+    (b % 2 == 0 ? root : leaf).add(range, counts, 0);
+  }
+  root.add(leaf.bytes());
+  EXPECT_EQ(root.bytes(), direct.bytes());
+  EXPECT_THROW(root.add(leaf.bytes()), Sums::Overlap);
+  EXPECT_THROW(root.add("nonsense"), Damaged);
+  EXPECT_EQ(direct.gaps().size(), 3u + 4u + 4u);  // the first source has its first pairs
+}
+
+}  // namespace
+}  // namespace graze::fuzz

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/rank_stores.h"
+
+#include <algorithm>
+
+namespace graze::fuzz {
+
+namespace fs = std::filesystem;
+
+fs::path rank_directory(const fs::path& campaign, int rank) { return campaign / ("rank-" + std::to_string(rank)); }
+
+std::vector<fs::path> rank_directories(const fs::path& campaign) {
+  std::vector<fs::path> found;
+  if (!fs::is_directory(campaign)) return found;
+  for (const auto& entry : fs::directory_iterator(campaign)) {
+    if (entry.path().filename().string().starts_with("rank-") && entry.is_directory()) found.push_back(entry.path());
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+void take_in_ranks(const Campaign& campaign, Store& store) {
+  for (const fs::path& directory : rank_directories(campaign.directory)) {
+    if (fs::exists(directory / kDatabase)) {
+      StoreSpec of_rank = store_spec(campaign);
+      of_rank.directory = directory;
+      try {
+        if (const StoreSpec found = recorded_store(directory); found.spec != of_rank.spec || found.build != of_rank.build)
+          throw std::runtime_error(directory.string() + ": expected the store of a rank of this campaign, found another's");
+        for_each_row(of_rank, [&](const PairRange& range, const StoredCounts& counts) {
+          if (!store.holds(range)) store.commit(range, counts);  // else taken in by a run that was killed then
+        });
+      } catch (const DamagedStore& error) {
+        const std::string what = error.what();
+        throw std::runtime_error(what.substr(0, what.rfind("; ")) + "; its pairs are judged again once you remove " +
+                                 directory.string());
+      }
+    }
+    fs::remove_all(directory);
+  }
+}
+
+void remove_ranks(const fs::path& campaign) {
+  for (const fs::path& directory : rank_directories(campaign)) fs::remove_all(directory);
+}
+
+}  // namespace graze::fuzz

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/recorded.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "core/text.h"
+#include "fuzz/campaign/campaign_scene.h"
+#include "strata/mesh.h"
+#include "strata/strata.h"
+#include "subjects/subjects.h"
+
+namespace graze::fuzz {
+
+std::vector<strata::PairSource> recorded_sources(const Json& spec) {
+  const std::uint64_t seed = spec.at("seed");
+  std::vector<std::string> strata = spec.at("strata");
+  if (spec.contains("scene")) {
+    const Json& scene = spec["scene"];
+    return sources_of(recorded_scene(scene), seed, scene.at("pairs"), strata).sources;
+  }
+  std::uint64_t pairs = spec.at("pairs");
+  std::optional<strata::PairSource> of_mesh;
+  if (spec.contains("mesh")) {
+    const std::vector<std::string> files = spec["mesh"].at("files");
+    const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
+        files.at(0), files.size() > 1 ? std::optional<std::filesystem::path>(files[1]) : std::nullopt));
+    if (fmt::format("{:016x}", mesh->content_hash) != spec["mesh"].at("content").get<std::string>())
+      throw std::runtime_error(files[0] + ": expected the mesh of the campaign, found another");
+    of_mesh = {"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }};
+    pairs -= std::min(pairs, of_mesh->pairs);
+  }
+  std::erase(strata, "mesh");
+  std::vector<strata::PairSource> sources;
+  if (!strata.empty()) sources = strata::stratum_sources(seed, pairs, strata);
+  if (of_mesh) sources.push_back(*of_mesh);
+  return sources;
+}
+
+LanesUnderTest recorded_lanes(const Json& spec) {
+  subjects::open_recorded(spec);
+  LanesUnderTest under_test;
+  for (const std::string id : spec.at("lanes")) {
+    add_policy_lanes(id);
+    const Lane* lane = find_lane(id);
+    if (!lane) throw std::runtime_error(printable(id) + ": expected a lane that this build knows, found none");
+    under_test.lanes.push_back(lane);
+    under_test.on_host.push_back(nullptr);
+  }
+  return under_test;
+}
+
+std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out) {
+  const bool scene = spec.contains("scene"), mesh = spec.contains("mesh");
+  std::vector<std::string> strata = spec.at("strata"), lanes = spec.at("lanes"), all_strata, all_lanes;
+  std::uint64_t pairs = scene ? spec["scene"].at("pairs") : spec.at("pairs");
+  std::string command = "graze fuzz";
+  const auto add = [&](const char* name, const std::string& value) {
+    command += fmt::format(" {} {}", name, shell_word(value));
+  };
+  if (scene) add("--scene", spec["scene"].at("file"));
+  if (mesh) {
+    command += " --mesh";
+    for (const std::string file : spec["mesh"].at("files")) command += ' ' + shell_word(file);
+    std::erase(strata, "mesh");
+    for (const strata::PairSource& source : recorded_sources(spec)) pairs -= source.stratum < 0 ? source.pairs : 0;
+  }
+  if (!mesh || !strata.empty()) add("--pairs", std::to_string(pairs));
+  add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
+  for (const strata::StratumInfo& row : strata::kStrata) all_strata.emplace_back(row.id);
+  if (!strata.empty() && strata != all_strata) add("--strata", fmt::format("{}", fmt::join(strata, ",")));
+  for (const Json& row : spec.value("subjects", Json::array())) {
+    add("--subject", row.at("name").get<std::string>() + '=' + row.at("what").get<std::string>());
+  }
+  if (spec.contains("subjects")) {  // flags and timeout are those of all
+    const Json& first = spec["subjects"].at(0);
+    for (const std::string flag : first.at("flags")) command += ' ' + shell_word("--flags=" + flag);
+    if (first.at("timeout") != 1) add("--subject-timeout", fmt::format("{}", first["timeout"].get<double>()));
+  }
+  for (const Lane* lane : select_lanes({}, Executor::twin).lanes) all_lanes.push_back(lane->id);
+  if (lanes != all_lanes) add("--lanes", fmt::format("{}", fmt::join(lanes, ",")));
+  if (!shard.whole()) add("--shard", shard.name());
+  add("--out", out.string());
+  return command;
+}
+
+}  // namespace graze::fuzz

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/run_status.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+
+#include "core/fnv1a.h"
+#include "fuzz/files.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFile = "status.json";
+constexpr double kSecondsBetween = 2;
+
+std::int64_t now() {
+  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+RunStatus::RunStatus(const Campaign& campaign) : file_(campaign.directory / kFile) {
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  status_ = {{"state", "running"},   {"shard", campaign.shard.name()}, {"pairs", 0},   {"done", 0},
+             {"rate", 0},            {"seconds_left", nullptr},        {"disagreements", 0}, {"signatures", 0},
+             {"host", host},         {"process", getpid()},            {"updated", now()}};
+}
+
+void RunStatus::write() {
+  status_["updated"] = now();
+  try {
+    write_whole(file_, status_.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void RunStatus::tell(const Progress& progress) {
+  status_["pairs"] = progress.total;
+  status_["done"] = progress.done;
+  status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
+  status_["seconds_left"] = progress.seconds_left ? Json(*progress.seconds_left) : Json();
+  status_["disagreements"] = progress.all_disagreements;
+  status_["signatures"] = progress.signatures;
+  if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween) return;
+  written_ = progress.seconds;
+  write();
+}
+
+void RunStatus::end(const std::string& state, const std::string& why) {
+  if (written_ < 0) return;
+  status_["state"] = state;
+  if (!why.empty()) status_["why"] = why;
+  write();
+}
+
+std::string file_hash(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::uint64_t hash = fnv1a("");
+  std::string bytes(1 << 20, '\0');
+  while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), in.gcount() > 0)
+    hash = fnv1a({bytes.data(), static_cast<std::size_t>(in.gcount())}, hash);
+  if (in.bad() || !in.eof()) throw std::runtime_error(file.string() + ": expected to read it, found an error");
+  return fmt::format("{:016x}", hash);
+}
+
+void seal(const fs::path& directory) {
+  Json status = read_status(directory);
+  if (status.is_null()) return;
+  status["hash"] = file_hash(directory / kDatabase);
+  write_whole(directory / kFile, status.dump(1) + "\n");
+}
+
+Json read_status(const fs::path& directory) {
+  const Json status = Json::parse(read_whole(directory / kFile), nullptr, false);
+  return status.is_object() ? status : Json();
+}
+
+}  // namespace graze::fuzz

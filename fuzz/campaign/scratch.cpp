@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/scratch.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "core/fnv1a.h"
+#include "fuzz/files.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The file, whole, under its name or not at all, also after a crash of the machine.
+void copy_whole(const fs::path& from, const fs::path& to) {
+  const fs::path part = to.string() + ".part";
+  fs::copy_file(from, part, fs::copy_options::overwrite_existing);
+  const int file = open(part.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool kept = file >= 0 && fsync(file) == 0;
+  if (file >= 0) close(file);
+  if (!kept) throw std::runtime_error(to.string() + ": expected room for it, found none");
+  fs::rename(part, to);
+}
+
+}  // namespace
+
+fs::path scratch_of(const fs::path& disk, const fs::path& directory) {
+  return disk / fmt::format("graze-{:016x}", fnv1a(fs::absolute(directory).lexically_normal().string()));
+}
+
+void fetch_from_directory(const Campaign& campaign) {
+  std::error_code error;
+  for (const fs::path& folder : {campaign.scratch, campaign.directory}) {
+    fs::create_directories(folder, error);
+    if (error) throw std::runtime_error(folder.string() + ": expected a directory that can be written, found: " + error.message());
+  }
+  const FolderLock alone(campaign.scratch, FolderLock::WhenTaken::refuse);
+  if (fs::exists(campaign.scratch / kDatabase) || !fs::exists(campaign.directory / kDatabase)) return;
+  copy_whole(campaign.directory / kDatabase, campaign.scratch / kDatabase);
+}
+
+void bring_to_directory(const Campaign& campaign) {
+  copy_whole(campaign.scratch / kDatabase, campaign.directory / kDatabase);
+  fs::remove_all(campaign.scratch);
+}
+
+}  // namespace graze::fuzz

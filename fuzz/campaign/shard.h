@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// A shard: the K-th of N parts of a campaign. It takes the same part of every source's indices, so that it can run
+// anywhere; the parts of all K together are the whole, each index once.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "fuzz/campaign/stored_counts.h"
+
+namespace graze::fuzz {
+
+inline constexpr std::uint64_t kMostShards = 1'000'000;
+
+struct Shard {
+  std::uint64_t number = 1, of = 1;  // 1 <= number <= of
+
+  bool whole() const { return of == 1; }
+  std::string name() const { return std::to_string(number) + '/' + std::to_string(of); }  // "3/16"
+  auto operator<=>(const Shard&) const = default;
+};
+
+// Of "3/16".   Returns: nothing for what is none, or for more than kMostShards.
+std::optional<Shard> parse_shard(std::string_view text);
+
+// The shard's indices of a source with so many pairs; none where there are fewer pairs than shards.
+PairRange share_of(const Shard& shard, int source, std::uint64_t pairs);
+
+}  // namespace graze::fuzz

@@ -15,6 +15,7 @@
 namespace graze::cli {
 
 void add_fuzz(CLI::App& app, int& status);
+void add_hunt(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_repro(CLI::App& app, int& status);
 void add_minimize(CLI::App& app, int& status);

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   int status = 0;
   graze::cli::add_fuzz(app, status);
+  graze::cli::add_hunt(app, status);
   graze::cli::add_check(app, status);
   graze::cli::add_repro(app, status);
   graze::cli::add_minimize(app, status);

@@ -103,9 +103,8 @@ PairRange Store::missing(int source, std::uint64_t most) const {
   return {source, begin, std::min(most, end - begin)};
 }
 
-void Store::commit(const PairRange& range, const BatchResult& result) {
+void Store::commit(const PairRange& range, const StoredCounts& fresh) {
   auto& rows = rows_[static_cast<std::size_t>(range.source)];
-  const StoredCounts fresh(result);
   StoredCounts counts = fresh;
   PairRange row = range;
   std::vector<std::int64_t> replaced;

@@ -28,7 +28,8 @@ class Store {
 
   // One transaction: these pairs are done.
   // Requires: none of them was.
-  void commit(const PairRange& range, const BatchResult& result);
+  void commit(const PairRange& range, const BatchResult& result) { commit(range, StoredCounts(result)); }
+  void commit(const PairRange& range, const StoredCounts& fresh);
 
   // Of all that is committed: how many pairs each decision saw.
   Json oracle() const;

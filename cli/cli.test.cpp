@@ -240,6 +240,29 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
   EXPECT_EQ(shell("echo '0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1 | stratum=x' > s.pairs; graze repro s.pairs").status, 0);
 }
 
+// Of a build without libFuzzer one line; otherwise a campaign's directory that other verbs take, gone on with.
+TEST_F(Cli, AHuntIsACampaignForOtherVerbs) {
+  const std::string hunt = "graze hunt --runs 600 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out h";
+  const Ran first = shell(hunt);
+  if (first.status != 0) {
+    EXPECT_EQ(first.out, "graze: hunt: expected a build with clang's libFuzzer, found none; install libclang-rt-14-dev and build again\n");
+    GTEST_SKIP() << "this build has no libFuzzer";
+  }
+  EXPECT_NE(first.out.find("600 pairs: some lane is wrong on"), std::string::npos) << first.out;
+  EXPECT_NE(first.out.find("new kinds"), std::string::npos) << first.out;
+  const std::string summary = contents(shell.folder / "h/summary.json");
+  EXPECT_EQ(shell(hunt).out, first.out);
+  EXPECT_EQ(contents(shell.folder / "h/summary.json"), summary);
+  const Json row = Json::parse(summary)["signatures"][0];
+  EXPECT_EQ(shell("graze repro h/" + row["case"].get<std::string>()).status, 0);
+  EXPECT_NE(shell("graze kinds h").out.find("moller_1997"), std::string::npos);
+  EXPECT_EQ(shell("graze minimize h").status, 0);
+  EXPECT_EQ(shell("graze report h").status, 0);
+  EXPECT_EQ(Json::parse(contents(shell.folder / "h/report.json"))["run"]["command"].dump().find("graze hunt --runs 600 --seed 1"), 1u);
+  EXPECT_EQ(shell("graze dump h").status, 1);
+  EXPECT_EQ(shell("graze hunt --runs 601 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out h").status, 2);
+}
+
 TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
   for (const std::string verb :
        {"fuzz", "check", "repro", "explain", "dump", "lanes", "plan", "strata"}) {  // prove-twin needs a device

@@ -18,6 +18,7 @@ void add_fuzz(CLI::App& app, int& status);
 void add_merge(CLI::App& app, int& status);
 void add_status(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);
+void add_hunt(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_repro(CLI::App& app, int& status);
 void add_minimize(CLI::App& app, int& status);

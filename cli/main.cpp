@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   graze::cli::add_merge(app, status);
   graze::cli::add_status(app, status);
   graze::cli::add_plan(app, status);
+  graze::cli::add_hunt(app, status);
   graze::cli::add_check(app, status);
   graze::cli::add_repro(app, status);
   graze::cli::add_minimize(app, status);

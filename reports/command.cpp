@@ -20,6 +20,16 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+// What the hunt draws from stands for its one source.
+std::string hunt_command(const Json& spec, const std::vector<std::string>& ids) {
+  const std::vector<std::string> strata = spec.at("hunt").at("strata");
+  std::string command = fmt::format("graze hunt --runs {} --seed {}", spec.at("pairs").dump(), spec.at("seed").dump());
+  if (spec.contains("scene")) command += " --scene " + quoted(spec.at("scene").at("file").get<std::string>());
+  if (spec.contains("scene") || strata.size() != strata::kStrataCount) command += fmt::format(" --strata {}", fmt::join(strata, ","));
+  if (ids.size() != lanes().size()) command += fmt::format(" --lanes '{}'", fmt::join(ids, ","));
+  return command + " --out hunt";
+}
+
 std::string joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ",")); }
 
 }  // namespace
@@ -28,6 +38,7 @@ std::string campaign_command(const Json& summary) {
   const Json& spec = summary.at("spec");
   std::vector<std::string> strata = spec.at("strata");
   const auto ids = spec.at("lanes").get<std::vector<std::string>>();
+  if (spec.contains("hunt")) return hunt_command(spec, ids);
   std::string command = "graze fuzz";
   std::uint64_t pairs = spec.at("pairs");
   if (spec.contains("mesh")) {

@@ -115,7 +115,7 @@ if out == "":
     print("graze: --out: expected a name, found ''", file=sys.stderr)
     sys.exit(2)
 reads = "--mesh" in words or "--scene" in words
-if words[0] == "fuzz" and not reads:
+if words[0] in ("fuzz", "hunt") and not reads:
     if MODE == "replaces" and os.path.islink(out):
         os.unlink(out)
     fuzz()
@@ -173,6 +173,7 @@ class Torture(unittest.TestCase):
     def test_what_each_does_wrong(self):
         for kind, mode, what in (
                 ("kill_fuzz", "loses", "found that 1 files differ, the first summary.json"),
+                ("kill_hunt", "loses", "found that 1 files differ, the first summary.json"),
                 ("kill_minimize", "loses", "found that 1 files differ, the first cases/1.json"),
                 ("full_disk", "litters", "expected nothing left behind"),
                 ("two_at_once", "collides", "expected one line on stderr"),

@@ -29,7 +29,7 @@ class BlockJudge {
 
   // `begin` is the first pair's place among the device lanes' bits.
   void judge(std::span<const Pair> pairs, std::span<const std::uint64_t> indices, std::size_t begin,
-             BatchResult& result) {
+             BatchResult& result, PairJudge::Found* found = nullptr) {
     const std::size_t words = (pairs.size() + 63) / 64;
     truth_.assign(words, 0);
     buckets_.resize(pairs.size());
@@ -108,9 +108,16 @@ class BlockJudge {
         const analysis::Signature failure = analysis::signature(
             contact, hulls, buckets_[i], truth,
             std::span(under_test_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
-        if (failure.wrong()) result.signatures[failure].add(CaseKey{index, source_});
+        if (!failure.wrong()) return;
+        result.signatures[failure].add(CaseKey{index, source_});
+        if (found) found->failures.push_back(failure);
       });
     }
+    if (!found) return;
+    found->truth = analysis::test_bit(truth_, 0) ? Verdict::intersects : Verdict::disjoint;
+    found->bucket = buckets_[0];
+    if (!analysis::test_bit(wrong, 0)) verdicts_.assign(views_.size(), found->truth);
+    found->verdicts = verdicts_;
   }
 
  private:
@@ -130,6 +137,27 @@ class BlockJudge {
 
 }  // namespace
 
+struct PairJudge::Parts {
+  explicit Parts(const Campaign& campaign) : judge(campaign, 0, device_bits) {}
+
+  std::vector<cuda::LaneBits> device_bits;
+  BlockJudge judge;
+  Found found{};
+};
+
+PairJudge::PairJudge(const Campaign& campaign) : parts_(std::make_unique<Parts>(campaign)) {}
+PairJudge::~PairJudge() = default;
+
+const PairJudge::Found& PairJudge::judge(const Pair& pair, std::uint64_t index, BatchResult& total) {
+  parts_->found.failures.clear();
+  parts_->judge.judge({&pair, 1}, {&index, 1}, 0, total, &parts_->found);
+  return parts_->found;
+}
+
+BatchResult no_counts(const Campaign& campaign) {
+  return BatchResult(analysis::Tally(analysis::cpu_twins(campaign.under_test->lanes)));
+}
+
 BatchResult judge(const Campaign& campaign, int source_number, std::size_t count,
                   const std::function<std::uint64_t(std::size_t)>& index_of) {
   const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(source_number)];
@@ -148,7 +176,7 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
   std::vector<cuda::LaneBits> device_bits;
   if (!device_lanes.empty()) campaign.under_test->device->decide(pairs, device_lanes, device_bits);
 
-  const BatchResult empty(analysis::Tally(analysis::cpu_twins(campaign.under_test->lanes)));
+  const BatchResult empty = no_counts(campaign);
   tbb::enumerable_thread_specific<BatchResult> results(empty);
   tbb::enumerable_thread_specific<BlockJudge> judges([&] { return BlockJudge(campaign, source_number, device_bits); });
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {

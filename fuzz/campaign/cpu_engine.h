@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "fuzz/campaign/campaign.h"
 
@@ -12,5 +14,29 @@ namespace graze::fuzz {
 // Throws: OracleApart when two exact decisions differ.
 BatchResult judge(const Campaign& campaign, int source, std::size_t count,
                   const std::function<std::uint64_t(std::size_t)>& index_of);
+
+// The same of one pair at a time, by lanes of the host and twins, with what was found of each.
+class PairJudge {
+ public:
+  // Requires: campaign outlives this, has one source, and nothing runs on a device.
+  explicit PairJudge(const Campaign& campaign);
+  ~PairJudge();
+
+  struct Found {
+    Verdict truth;
+    Bucket bucket;
+    std::vector<Verdict> verdicts;               // of each lane; of one that is right by its convention the truth
+    std::vector<analysis::Signature> failures;  // of each subject that is wrong
+  };
+  // Adds the pair's counts to `total`.   Throws: OracleApart.
+  const Found& judge(const Pair& pair, std::uint64_t index, BatchResult& total);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+// Counts of nothing, for the campaign's lanes.
+BatchResult no_counts(const Campaign& campaign);
 
 }  // namespace graze::fuzz

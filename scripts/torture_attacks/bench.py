@@ -15,7 +15,7 @@ import time
 MEMORY_MIB = 1024       # address space; a sanitizer needs far more, so not for builds with one
 PROCESSOR_SECONDS = 60  # what takes longer hangs
 SECONDS = 600           # what waits, hangs; a machine under load takes many times as long as an idle one
-RESULTS = ("summary.json", "margins.svg")  # and what is in cases/; timings and the database's pages may differ
+RESULTS = ("summary.json", "margins.svg", "hunt.json")  # and what is in cases/; timings and the database's pages may differ
 
 
 class Violation(Exception):
@@ -40,8 +40,10 @@ class Bench:
         self.undisturbed, self.seconds = {}, {}
 
     def campaign(self, name):
-        """Arguments of the campaign of that name, all but --out."""
+        """Arguments of the campaign of that name, or of the hunt, all but --out."""
         seed = str(random.Random(f"{self.seed} {name}").randrange(1 << 32))
+        if name == "hunt":
+            return ["hunt", "--runs", "12000", "--seed", seed, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]
         many = "near_edge_edge,degenerate,uniform,lattice,near_vertex_face,coplanar_wide"
         pairs, strata = {"large": ("240000", many), "small": ("600", many), "tiny": ("12", "near_edge_edge,degenerate")}[name]
         return ["fuzz", "--pairs", pairs, "--seed", seed, "--strata", strata, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]

@@ -44,6 +44,27 @@ def kill_fuzz(turn):
         turn.count("same")
 
 
+def kill_hunt(turn):
+    """With its processes; at times a round that was kept is damaged after it."""
+    campaign = turn.folder / "campaign"
+    command = [*turn.bench.campaign("hunt"), "--out", campaign]
+    ran = turn.run("hunt", "--runs", "1", "--seed", "1", "--lanes", "interval_overlap/f32/cpu", "--out", turn.folder / "one")
+    if turn.is_refused(ran):
+        if "libFuzzer" not in ran.err:
+            raise Violation(f"expected a hunt, found {ran.err!r}")
+        return turn.count("refused")
+    reference = turn.bench.reference("hunt")
+    kills = kill_repeatedly(turn, lambda: shutil.rmtree(campaign), command, turn.bench.seconds["hunt", False, False])
+    rounds = sorted((campaign / "hunt").glob("*.round"))
+    if rounds and turn.random.random() < 0.3:
+        damaged = turn.random.choice(rounds)
+        damaged.write_bytes(mutate.any_of(turn.random, damaged.read_bytes(), mutate.BINARY))
+    turn.must_succeed(turn.run(*command))
+    turn.must_be_same(campaign, reference)
+    for _ in range(kills):
+        turn.count("same")
+
+
 def kill_minimize(turn):
     campaign, reference = turn.folder / "campaign", turn.bench.reference("tiny", minimised=True)
 

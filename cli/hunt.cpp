@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze hunt`: guided search for pairs on which lanes are wrong, or goes on with one.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iostream>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/screen.h"
+#include "core/text.h"
+#include "fuzz/files.h"
+#include "fuzz/hunt/hunt.h"
+#include "fuzz/hunt/round.h"
+#include "reports/terminal.h"
+#include "reports/text_table.h"
+#include "strata/scene/envelope.h"
+#include "subjects/subjects.h"
+
+namespace graze::cli {
+
+using fuzz::Json;
+namespace {
+
+struct HuntOptions {
+  std::uint64_t runs = 1'000'000;
+  std::uint64_t seed = 1, minutes = 0;
+  int threads = 0;
+  std::string out = "hunt", scene;
+  std::vector<std::string> strata;
+  LaneOptions lanes;
+  bool json = false;
+};
+
+std::vector<std::string> details(const fuzz::HuntProgress& progress) {
+  const double rate = static_cast<double>(progress.done_here) / std::max(progress.seconds, 1e-9);
+  return {reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s",
+          fmt::format("{} kinds, {} of them new, the last {} ago", reports::grouped(progress.kinds),
+                      reports::grouped(progress.new_kinds), duration(progress.seconds_since_kind)),
+          reports::grouped(progress.signatures) + " signatures", reports::grouped(progress.units) + " pairs in the corpus"};
+}
+
+void print_mutations(const std::filesystem::path& directory) {
+  const Json told = Json::parse(fuzz::read_whole(directory / "hunt.json"));
+  reports::TextTable table({{"mutation", reports::Align::left}, {"pairs"}, {"some lane is wrong"}, {"kept to go on from"}, {"new kinds"}});
+  for (const Json& row : told.at("mutations")) {
+    const auto count = [&](const char* what) { return reports::grouped(row.at(what).get<std::uint64_t>()); };
+    table.add({row.at("mutation").get<std::string>(), count("pairs"), count("disagreements"), count("units"), count("kinds")});
+  }
+  fmt::print("\n{}\nGuided search kept {} pairs to go on from, and met {} kinds of failure or more.\n", table.text(output_screen()),
+             reports::grouped(told.at("units").get<std::uint64_t>()), reports::grouped(told.at("kinds").size()));
+}
+
+int hunt(const HuntOptions& options) {
+  if (!fuzz::has_libfuzzer()) {
+    throw std::runtime_error(
+        "hunt: expected a build with clang's libFuzzer, found none; install libclang-rt-14-dev and build again");
+  }
+  LaneOptions lanes = options.lanes;
+  lanes.executor = fuzz::Executor::twin;
+  const fuzz::LanesUnderTest under_test = lanes_under_test(lanes);
+  fuzz::Hunt hunt;
+  hunt.pairs = options.runs;
+  hunt.seconds = 60 * static_cast<double>(options.minutes);
+  hunt.campaign.seed = options.seed;
+  hunt.campaign.under_test = &under_test;
+  hunt.campaign.threads = options.threads;
+  hunt.campaign.directory = options.out;
+  Json scene_spec;
+  std::vector<strata::LeftOut> left_out;
+  std::optional<strata::Scene> scene;
+  if (!options.scene.empty()) {
+    strata::SceneSources drawn = drawn_from_scene(options.scene, options.seed, options.runs, options.strata, scene_spec);
+    hunt.drawn.sources = std::move(drawn.sources);
+    left_out = std::move(drawn.left_out);
+    hunt.drawn.scene = &scene.emplace(strata::resolved(fuzz::open_scene(options.scene).scene));
+  } else {
+    hunt.drawn.sources = strata::stratum_sources(options.seed, options.runs, options.strata);
+  }
+  hunt.campaign.spec = fuzz::hunt_spec(hunt);
+  if (!scene_spec.is_null()) hunt.campaign.spec["scene"] = scene_spec;
+  if (const Json subjects = subjects::record(hunt.campaign.spec["lanes"].get<std::vector<std::string>>()); !subjects.is_null())
+    hunt.campaign.spec["subjects"] = subjects;
+  hunt.campaign.build = fuzz::build_info(under_test);
+
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  const bool on_terminal = isatty(STDERR_FILENO);
+  std::optional<Progress> live;
+  const auto [complete, summary, oracle] = fuzz::run_hunt(hunt, interrupted, [&](const fuzz::HuntProgress& progress) {
+    if (!on_terminal) return;
+    if (!live) live.emplace("pairs", progress.total, on_terminal, error_screen());
+    const double each = progress.seconds / static_cast<double>(std::max<std::uint64_t>(progress.done_here, 1));
+    if (const auto line = live->line(progress.done, progress.seconds, each * static_cast<double>(progress.total - progress.done), details(progress)))
+      fmt::print(stderr, "{}", *line);
+  });
+  if (live) fmt::print(stderr, "{}", live->end());
+  if (!complete) {
+    fmt::print(stderr, "graze: {}; what was done is kept, and the same command goes on from there\n",
+               interrupted ? "interrupted" : "the time is over");
+    if (interrupted) return kInterrupted;
+  }
+  if (options.json) {
+    std::cout << summary.dump(1) << '\n';
+    return 0;
+  }
+  reports::print_summary(std::cout, summary, oracle, output_screen());
+  std::cout << left_out_text(left_out) << std::flush;
+  print_mutations(options.out);
+  fmt::print("\nWrote {0}/summary.json, {0}/hunt.json, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite, {0}/hunt/\n", options.out);
+  if (!summary["signatures"].empty()) fmt::print("Next: graze minimize {}\n", shell_word(options.out));
+  return 0;
+}
+
+}  // namespace
+
+void add_hunt(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "hunt", "Search for wrong verdicts, guided by what the lanes compute, or go on with it: mutated pairs through all lanes and the oracle");
+  command->footer("Example: graze hunt --runs 1000000 --seed 1 --lanes 'moller*' --out hunt");
+  auto options = std::make_shared<HuntOptions>();
+  command->add_option("--runs", options->runs, "Pairs in all")
+      ->transform(whole_number(1, kMostWhole))
+      ->capture_default_str();
+  command->add_option("--minutes", options->minutes, "Stop after so many minutes, if not done; the same command goes on; 0: no limit")
+      ->transform(whole_number(0, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of the search")->transform(whole_number(0, kMostWhole))->capture_default_str();
+  command->add_option("--threads", options->threads, "Rounds at once, at most four; 0 for one on each core; results do not depend on it")
+      ->transform(whole_number(0, 4096))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Directory of the hunt; an unfinished one is gone on with")
+      ->take_last()
+      ->check(not_empty())
+      ->capture_default_str();
+  add_globs(*command, "--strata", options->strata, "Start from, and draw again from, only strata that match a pattern");
+  add_lane_options(*command, options->lanes, Executors::twins);
+  add_scene_option(*command, options->scene);
+  command->add_flag("--json", options->json, "Print the summary as JSON");
+  command->callback([options, &status] { status = hunt(*options); });
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sets GRAZE_LIBFUZZER to clang's libFuzzer without a main function, which programs of any compiler can call; false where
+# there is none, or it does not link. Guided search (graze hunt) needs it; nothing else does.
+if(NOT DEFINED GRAZE_LIBFUZZER)
+  file(GLOB folders /usr/lib/llvm-*/lib/clang/*/lib/linux /usr/lib/clang/*/lib/linux)
+  list(SORT folders COMPARE NATURAL ORDER DESCENDING)
+  list(PREPEND folders /usr/lib/llvm-14/lib/clang/14.0.6/lib/linux)  # the one that measurements were made with
+  find_library(GRAZE_LIBFUZZER NAMES libclang_rt.fuzzer_no_main-${CMAKE_SYSTEM_PROCESSOR}.a PATHS ${folders} NO_DEFAULT_PATH)
+  if(GRAZE_LIBFUZZER)
+    file(WRITE ${CMAKE_BINARY_DIR}/libfuzzer.cpp "extern \"C\" int LLVMFuzzerRunDriver(int*, char***, int (*)(const unsigned char*, unsigned long));
+int main(int count, char** words) { return LLVMFuzzerRunDriver(&count, &words, [](const unsigned char*, unsigned long) { return 0; }); }\n")
+    try_compile(links ${CMAKE_BINARY_DIR}/libfuzzer ${CMAKE_BINARY_DIR}/libfuzzer.cpp
+      LINK_LIBRARIES ${GRAZE_LIBFUZZER} Threads::Threads ${CMAKE_DL_LIBS})
+    if(NOT links)
+      set(GRAZE_LIBFUZZER FALSE CACHE FILEPATH "clang's libFuzzer" FORCE)
+    endif()
+  endif()
+endif()
+if(GRAZE_LIBFUZZER)
+  message(STATUS "graze hunt: libFuzzer of ${GRAZE_LIBFUZZER}")
+else()
+  message(STATUS "graze hunt: unavailable (no libFuzzer found; Debian's package libclang-rt-14-dev has it)")
+endif()

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs in the case format and in every form that people paste: what is read is written and read again, the same bits.
+#include <cstring>
+#include <sstream>
+
+#include "core/fuzz_target.h"
+#include "corpus/pair_format.h"
+
+namespace graze::corpus {
+namespace {
+
+void written_and_read_again(const Entry& entry) {
+  std::ostringstream out;
+  write_header(out);
+  write_entry(out, entry);
+  std::istringstream in(out.str());
+  PairReader reader(in, "again");
+  const std::optional<Entry> again = reader.next();
+  must_hold(again.has_value(), "what was written is read");
+  must_hold(!is_finite(entry.pair) || std::memcmp(&again->pair, &entry.pair, sizeof entry.pair) == 0, "the bits are the same");
+  must_hold(again->fields == entry.fields, "the fields are the same");
+  must_hold(!reader.next(), "one entry is one entry");
+}
+
+const RegisterFuzzTarget kPairs("pairs", [](std::string_view bytes) {
+  std::istringstream in{std::string(bytes)};
+  PairReader reader(in, "pairs");
+  for (int entries = 0; entries < 100; ++entries) {
+    try {
+      const std::optional<Entry> entry = reader.next();
+      if (!entry) return;
+      written_and_read_again(*entry);
+    } catch (const FormatError& error) {
+      must_be_one_line(error.what());
+    }
+  }
+});
+
+}  // namespace
+}  // namespace graze::corpus

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/hunt/feedback.h"
+
+#include <algorithm>
+#include <cmath>
+#include <source_location>
+
+#include "analysis/lane_trace.h"
+#include "core/bounded.h"
+#include "core/fnv1a.h"
+#include "cuda/twin/twin.h"
+
+namespace graze::fuzz {
+namespace {
+
+enum class Kind : std::uint32_t { failure, closeness, site, parting, contraction };
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {  // FNV-1a, a word at a time, with a final shift
+  hash = (hash ^ value) * 0x100000001b3u;
+  return hash ^ hash >> 29;
+}
+
+template <class... Values>
+std::uint16_t feature(Kind kind, Values... values) {
+  std::uint64_t hash = mixed(0xcbf29ce484222325u, static_cast<std::uint64_t>(kind));
+  ((hash = mixed(hash, static_cast<std::uint64_t>(values))), ...);
+  return static_cast<std::uint16_t>(hash ^ hash >> 16 ^ hash >> 32 ^ hash >> 48);
+}
+
+// The default policy, which also says how far beyond its error bound each value is.
+template <class Real>
+struct Meter {
+  using Number = Bounded<Real>;
+  int algorithm;
+  Features* features;
+  int* asked;
+
+  Number snap(Site site, const Number& x, std::source_location where = std::source_location::current()) const {
+    return note(site, x.value, x.error, where), x;
+  }
+  bool less(Site site, const Number& l, const Number& r,
+            std::source_location where = std::source_location::current()) const {
+    return note(site, l.value - r.value, l.error + r.error, where), l < r;
+  }
+  bool at_most(Site site, const Number& l, const Number& r,
+               std::source_location where = std::source_location::current()) const {
+    return note(site, l.value - r.value, l.error + r.error, where), l <= r;
+  }
+
+ private:
+  void note(Site site, Real value, Real error, const std::source_location& where) const {
+    constexpr int kMost = 24, kNotFinite = 99;
+    int octave = -kMost;  // of a zero
+    if (!std::isfinite(value) || !std::isfinite(error)) octave = kNotFinite;
+    else if (value != 0) octave = error == 0 ? kMost : std::clamp(std::ilogb(magnitude(value) / error), -8, kMost);
+    const int place = std::min((*asked)++, 31);
+    features->push_back(feature(Kind::site, algorithm, sizeof(Real), static_cast<int>(site), where.line(), place, octave + 128));
+  }
+};
+
+template <class Real, std::size_t place>
+void measure_sites(const Pair& pair, Features& features) {
+  int asked = 0;
+  const Meter<Real> meter{static_cast<int>(place), &features, &asked};
+  decide_widened<Bounded<Real>>(pair, [&](const auto& a, const auto& b) {
+    return std::tuple_element_t<place, Algorithms>::decide(a, b, meter);
+  });
+}
+
+void measure_sites(int algorithm, const Pair& pair, Features& features) {
+  const auto one = [&]<std::size_t place>(std::integral_constant<std::size_t, place>) {
+    if (algorithm != static_cast<int>(place)) return;
+    measure_sites<float, place>(pair, features);
+    measure_sites<double, place>(pair, features);
+  };
+  [&]<std::size_t... places>(std::index_sequence<places...>) {
+    (one(std::integral_constant<std::size_t, places>()), ...);
+  }(std::make_index_sequence<kAlgorithmCount>());
+}
+
+// Where the algorithm's runs in float32 and in float64 first take different ways; 0 where they do not.
+unsigned line_of_parting(int algorithm, const Pair& pair) {
+  const Trace<double> narrow = run_traced<float>(algorithm, pair), wide = run_traced<double>(algorithm, pair);
+  const std::size_t both = std::min(narrow.seen.size(), wide.seen.size());
+  for (std::size_t i = 0; i < both; ++i) {
+    if (narrow.seen[i].held != wide.seen[i].held) return narrow.seen[i].where.line();
+  }
+  return 0;
+}
+
+int shape_number(const oracle::Shape& shape) {
+  return (shape.dimension_a * 3 + shape.dimension_b) * 2 + shape.coplanar;
+}
+
+}  // namespace
+
+Feedback::Feedback(const std::vector<const Lane*>& lanes) : lanes_(lanes) {
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    const Lane& lane = *lanes[l];
+    if (lane.algorithm >= 0 && std::find(algorithms_.begin(), algorithms_.end(), lane.algorithm) == algorithms_.end())
+      algorithms_.push_back(lane.algorithm);
+    if (lane.foreign || lane.under || cuda::contraction_sites(lane).empty()) continue;
+    const Lane* rounded = counterpart(lane, rounded_variant(lane.variant));
+    const auto found = std::find(lanes.begin(), lanes.end(), rounded);
+    if (found != lanes.end()) fused_.push_back({l, static_cast<std::size_t>(found - lanes.begin())});
+  }
+}
+
+Features Feedback::features(const Pair& pair, const PairJudge::Found& found) const {
+  Features features;
+  features.push_back(feature(Kind::closeness, found.bucket + kBucketMost, shape_number(oracle::shape(pair))));
+  for (const int algorithm : algorithms_) measure_sites(algorithm, pair, features);
+  for (const analysis::Signature& failure : found.failures) {
+    features.push_back(feature(Kind::failure, fnv1a(coarse_key(failure))));
+    const auto lane = std::find_if(lanes_.begin(), lanes_.end(), [&](const Lane* l) { return l->info->id == failure.subject; });
+    if ((*lane)->algorithm >= 0)
+      features.push_back(feature(Kind::parting, (*lane)->algorithm, line_of_parting((*lane)->algorithm, pair)));
+  }
+  for (const Fused& fused : fused_) {
+    if (found.verdicts[fused.lane] == found.verdicts[fused.rounded]) continue;
+    const Lane& lane = *lanes_[fused.lane];
+    const std::size_t sites = cuda::contraction_sites(lane).size();
+    std::vector<std::uint64_t> all((sites + 63) / 64, ~std::uint64_t{0});
+    for (std::size_t site = 0; site < sites; ++site) {
+      all[site / 64] ^= std::uint64_t{1} << site % 64;
+      if (cuda::decide_fusing(lane, pair, all) != found.verdicts[fused.lane])
+        features.push_back(feature(Kind::contraction, fused.lane, site));
+      all[site / 64] ^= std::uint64_t{1} << site % 64;
+    }
+  }
+  std::sort(features.begin(), features.end());
+  features.erase(std::unique(features.begin(), features.end()), features.end());
+  return features;
+}
+
+std::string coarse_key(const analysis::Signature& signature) {
+  analysis::Signature coarse = signature;
+  coarse.bucket = 0;
+  return analysis::key(coarse);
+}
+
+}  // namespace graze::fuzz

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// Guided search: the same bytes on any number of threads and after interruptions, kept pairs that are what is said of
+// them; and mutations that do what they are named after.
+#include "fuzz/hunt/hunt.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+
+#include "corpus/pair_format.h"
+#include "fuzz/campaign/campaign_testing.h"
+#include "fuzz/hunt/feedback.h"
+#include "fuzz/hunt/round.h"
+#include "fuzz/hunt/round_bytes.h"
+#include "strata/scene/envelope.h"
+#include "strata/scene/place.h"
+
+namespace graze::fuzz {
+namespace {
+
+int shared_vertices(const Pair& pair) {
+  return static_cast<int>(std::count_if(std::begin(pair.a), std::end(pair.a), [&](const Vec3<float>& u) {
+    return std::find(std::begin(pair.b), std::end(pair.b), u) != std::end(pair.b);
+  }));
+}
+
+bool same(const Pair& l, const Pair& r) { return std::memcmp(&l, &r, sizeof l) == 0; }
+
+// Of so many pairs of the stratum, changed in this way, on how many this holds.
+template <class Holds>
+int count_after(Mutation mutation, Holds holds, strata::Stratum stratum = strata::Stratum::uniform) {
+  int count = 0;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    strata::Draws draws(1, 1000, i);
+    const Pair pair = strata::generate(1, stratum, i), other = strata::generate(2, stratum, i);
+    const Pair result = mutated(mutation, pair, other, draws);
+    count += holds(pair, other, result);
+  }
+  return count;
+}
+
+TEST(Mutations, EachChangesThePairAndAFreshOneIsOfASource) {
+  for (int m = 1; m < kMutationCount; ++m) {
+    const int changed = count_after(static_cast<Mutation>(m), [](const Pair& p, const Pair&, const Pair& r) { return !same(p, r); });
+    EXPECT_GT(changed, 100) << kMutationIds[static_cast<std::size_t>(m)];
+  }
+  const Drawn drawn{strata::stratum_sources(1, 10, {"lattice"}), nullptr};
+  strata::Draws draws(1, 1000, 1);
+  const Pair pair = fresh_pair(drawn, draws);
+  for (int i = 0; i < kCoordinates; ++i) EXPECT_EQ(coordinates(pair)[i], std::nearbyint(coordinates(pair)[i]));
+}
+
+TEST(Mutations, DoWhatTheyAreNamedAfter) {
+  const auto shares = [](int vertices) {
+    return [vertices](const Pair&, const Pair&, const Pair& r) { return shared_vertices(r) == vertices; };
+  };
+  EXPECT_EQ(count_after(Mutation::onto_vertex, shares(1)), 200);
+  EXPECT_EQ(count_after(Mutation::shared_edge, shares(2)), 200);
+  const auto flat = [](const Pair&, const Pair&, const Pair& r) { return oracle::shape(r).coplanar; };
+  EXPECT_EQ(count_after(Mutation::coplanar, [](const Pair&, const Pair&, const Pair& r) {
+              return oracle::cgal_verdict(r) == Verdict::intersects && oracle::margin_bucket(r, Verdict::intersects) < make_bucket(-1, 7);
+            }), 0) << "deeper than 2^8 ulps, they are far from a common plane";
+  EXPECT_GT(count_after(Mutation::coplanar, flat, strata::Stratum::lattice), 20);
+  const auto degenerate = [](const Pair&, const Pair&, const Pair& r) {
+    const oracle::Shape shape = oracle::shape(r);
+    return std::min(shape.dimension_a, shape.dimension_b) < 2;
+  };
+  EXPECT_GT(count_after(Mutation::collinear, degenerate), 30);
+  EXPECT_EQ(count_after(Mutation::reordered, [](const Pair& p, const Pair&, const Pair& r) {
+              return oracle::cgal_verdict(p) == oracle::cgal_verdict(r);
+            }), 200);
+  EXPECT_EQ(count_after(Mutation::ulps, [](const Pair& p, const Pair&, const Pair& r) {
+              int changed = 0;
+              for (int i = 0; i < kCoordinates; ++i) changed += coordinates(p)[i] != coordinates(r)[i];
+              return changed >= 1 && changed <= 3;
+            }), 200);
+}
+
+TEST(Mutations, StayWithinAScene) {
+  const strata::Scene scene = strata::resolved(strata::parse_scene("scene.toml", "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\ngrid = { power_of_two = -6 }\n"));
+  Drawn drawn{{{"uniform", 10, [&scene](std::uint64_t i) { return strata::generate(1, strata::Stratum::uniform, scene, i); }}}, &scene};
+  int mutations = 0;
+  strata::Draws first(1, 1000, 0);
+  Pair pair = fresh_pair(drawn, first);
+  for (std::uint64_t i = 0; i < 2000; ++i) {
+    strata::Draws draws(1, 1001, i);
+    Mutation mutation;
+    pair = next_pair(drawn, pair, nullptr, draws, mutation);
+    mutations += mutation != Mutation::fresh;
+    for (const Vec3<float>& v : {pair.a[0], pair.a[1], pair.a[2], pair.b[0], pair.b[1], pair.b[2]}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const double x = static_cast<double>(component(v, axis));
+        ASSERT_GE(x, component(scene.low, axis));
+        ASSERT_LE(x, component(scene.high, axis));
+        ASSERT_EQ(x * 64, std::nearbyint(x * 64));
+      }
+    }
+  }
+  EXPECT_GT(mutations, 1000);
+}
+
+TEST(Feedback, ShowsMarginsFailuresAndContractions) {
+  const LanesUnderTest under_test = select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-*fma"}, Executor::twin);
+  Campaign campaign;
+  campaign.under_test = &under_test;
+  campaign.sources = strata::stratum_sources(1, 1, {"near_edge_edge"});
+  PairJudge judge(campaign);
+  const Feedback feedback(under_test.lanes);
+  BatchResult counts = no_counts(campaign);
+  std::size_t most = 0, least = 1000, wrong = 0;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Pair pair = campaign.sources[0].pair(i);
+    const PairJudge::Found found = judge.judge(pair, i, counts);
+    const Features features = feedback.features(pair, found);
+    EXPECT_EQ(features, feedback.features(pair, found));
+    EXPECT_TRUE(std::is_sorted(features.begin(), features.end()));
+    most = std::max(most, features.size());
+    least = std::min(least, features.size());
+    wrong += !found.failures.empty();
+  }
+  EXPECT_GT(least, 3u);
+  EXPECT_GT(most, least + 5);
+  EXPECT_EQ(counts.disagreements, wrong);
+  EXPECT_GT(wrong, 10u);
+}
+
+class HuntFiles : public CampaignFiles {
+ protected:
+  void SetUp() override {
+    if (!has_libfuzzer()) GTEST_SKIP() << "this build has no libFuzzer";
+  }
+
+  Hunt hunt_of(const std::string& name, int threads) const {
+    Hunt hunt;
+    hunt.pairs = 5000;
+    hunt.drawn.sources = strata::stratum_sources(3, hunt.pairs, {});
+    hunt.campaign.seed = 3;
+    hunt.campaign.under_test = &under_test_;
+    hunt.campaign.threads = threads;
+    hunt.campaign.directory = root_ / name;
+    hunt.campaign.spec = hunt_spec(hunt);
+    hunt.campaign.build = build_info(under_test_);
+    return hunt;
+  }
+
+  Json run(const std::string& name, int threads, std::uint64_t rounds = ~0ull) const {
+    Hunt hunt = hunt_of(name, threads);
+    std::atomic<bool> stop{false};
+    return run_hunt(hunt, stop, [&](const HuntProgress& progress) { stop = progress.done_here >= rounds * round_pairs(hunt.pairs); }).summary;
+  }
+
+  void expect_same_hunt(const std::string& one, const std::string& other) const {
+    expect_same_bytes(one, other);
+    EXPECT_EQ(read_whole(root_ / one / "hunt.json"), read_whole(root_ / other / "hunt.json"));
+  }
+
+  LanesUnderTest under_test_ = select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-*fma", "projected_sat/f32/cpu", "exact/*"}, Executor::twin);
+};
+
+TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
+  const Json summary = run("whole", 2);
+  ASSERT_TRUE(summary["complete"].get<bool>());
+  EXPECT_EQ(summary["strata"]["hunt"]["pairs"], 5000);
+  run("one", 1);
+  expect_same_hunt("whole", "one");
+  for (int part = 0; !run("parts", 2, 3)["complete"].get<bool>(); ++part) {
+    ASSERT_LT(part, 10);
+    std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // is found, and made again
+  }
+  expect_same_hunt("whole", "parts");
+  EXPECT_EQ(read_whole(root_ / "whole/hunt/000000.round"), read_whole(root_ / "one/hunt/000000.round"));
+}
+
+TEST_F(HuntFiles, KeepsPairsThatFailAsTheirSignatureSays) {
+  const Json summary = run("kept", 2);
+  Campaign campaign;
+  campaign.under_test = &under_test_;
+  campaign.sources = {{"hunt", 5000, nullptr}};
+  PairJudge judge(campaign);
+  BatchResult counts = no_counts(campaign);
+  ASSERT_GT(summary["signatures"].size(), 20u);
+  std::size_t cases = 0;
+  for (const Json& row : summary["signatures"]) {
+    for (const corpus::Entry& entry : corpus::read_pairs(case_file(root_ / "kept", row))) {
+      const auto failures = judge.judge(entry.pair, cases++, counts).failures;
+      EXPECT_TRUE(std::any_of(failures.begin(), failures.end(), [&](const auto& f) { return analysis::key(f) == row["key"]; }));
+      EXPECT_EQ(corpus::origin_of(entry).substr(0, 7), "hunt:3:");
+    }
+  }
+  EXPECT_GT(cases, 20u);
+  const Json told = Json::parse(read_whole(root_ / "kept/hunt.json"));
+  std::uint64_t pairs = 0, wrong = 0;
+  for (const Json& row : told["mutations"]) {
+    pairs += row["pairs"].get<std::uint64_t>();
+    wrong += row["disagreements"].get<std::uint64_t>();
+  }
+  EXPECT_EQ(pairs, 5000u);
+  EXPECT_EQ(wrong, summary["disagreements"]);
+  EXPECT_GT(told["kinds"].size(), 3u);
+}
+
+TEST_F(HuntFiles, SaysWhatWentWrongInARound) {
+  const Hunt hunt = hunt_of("errors", 1);
+  const std::vector<Unit> none;
+  const RoundTask task{&hunt.campaign, &hunt.drawn, {0, 0, 5000}, &none};
+  EXPECT_THROW(parse_result(error_bytes("apart", true), task), oracle::OracleApart);
+  EXPECT_THROW(parse_result(error_bytes("full", false), task), std::runtime_error);
+  EXPECT_FALSE(parse_round("short", 1));
+}
+
+}  // namespace
+}  // namespace graze::fuzz

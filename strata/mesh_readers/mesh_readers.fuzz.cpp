@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mesh files of any bytes: an error of one line, or finite vertices and triangles of vertices that exist.
+#include <cmath>
+#include <stdexcept>
+
+#include "core/fuzz_target.h"
+#include "strata/mesh_readers/soup.h"
+
+namespace graze::strata {
+namespace {
+
+template <Soup (*read)(const MeshBytes&)>
+void read_any(std::string_view bytes) {
+  try {
+    const Soup soup = read({"mesh", bytes});
+    for (const Vec3<float>& v : soup.vertices)
+      must_hold(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z), "vertices are finite");
+    for (const auto& triangle : soup.triangles) {
+      for (const std::uint32_t vertex : triangle) must_hold(vertex < soup.vertices.size(), "vertices exist");
+    }
+  } catch (const std::runtime_error& error) {
+    must_be_one_line(error.what());
+  }
+}
+
+const RegisterFuzzTarget kOff("mesh_off", read_any<read_off>), kObj("mesh_obj", read_any<read_obj>),
+    kStl("mesh_stl", read_any<read_stl>), kPly("mesh_ply", read_any<read_ply>);
+
+}  // namespace
+}  // namespace graze::strata

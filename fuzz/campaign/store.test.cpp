@@ -113,8 +113,9 @@ TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {
     const auto salvage = discard_damaged(store_spec(c));
     ASSERT_TRUE(salvage) << sql;
     EXPECT_EQ(salvage->batches, kept) << sql;
-    const auto pairs = SQLite::Database(file(c).string()).execAndGet("SELECT ifnull(sum(pairs), 0) FROM batch");
-    EXPECT_EQ(salvage->pairs, static_cast<std::uint64_t>(pairs.getInt64())) << sql;
+    const std::int64_t pairs =
+        SQLite::Database(file(c).string()).execAndGet("SELECT ifnull(sum(pairs), 0) FROM batch").getInt64();
+    EXPECT_EQ(salvage->pairs, static_cast<std::uint64_t>(pairs)) << sql;
     EXPECT_TRUE(fs::exists(salvage->damaged)) << sql;
     EXPECT_EQ(refusal(c), "") << sql;
     EXPECT_FALSE(discard_damaged(store_spec(c))) << sql;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <istream>
+#include <limits>
 #include <regex>
 #include <set>
+#include <stdexcept>
 
 namespace graze::cuda::twin {
 namespace {
@@ -38,11 +40,24 @@ std::string without_spaces(std::string text) {
   return text;
 }
 
+constexpr std::size_t kMostEntries = 1 << 20;  // of a table
+
 class Reader {
  public:
   Reader(std::istream& in, const std::string& path) : in_(in) { module_.path = path; }
 
   Module read() {
+    try {
+      read_lines();
+    } catch (const std::out_of_range&) {  // of std::stoi and its like
+      fail("expected numbers that fit");
+    }
+    if (kernel_ != nullptr) fail("the file ends within a kernel");
+    return std::move(module_);
+  }
+
+ private:
+  void read_lines() {
     while (next_line()) {
       if (text_.empty() || in_debug_section_) continue;
       if (kernel_ == nullptr) {
@@ -53,11 +68,8 @@ class Reader {
         read_statements();
       }
     }
-    if (kernel_ != nullptr) fail("the file ends within a kernel");
-    return std::move(module_);
   }
 
- private:
   [[noreturn]] void fail(const std::string& why) const {
     throw PtxError(module_.path + ":" + std::to_string(line_) + ": " + why + (text_.empty() ? "" : ": " + text_));
   }
@@ -152,6 +164,7 @@ class Reader {
     table.align = std::stoi(match[1]);
     table.name = match[4];
     const std::size_t size = std::stoul(match[3]) / 8, count = match[5].matched ? std::stoul(match[5]) : 1;
+    if (size < 1 || size > 8 || count > kMostEntries) fail("expected a table of numbers of 8 to 64 bits");
     std::string values = match[6];
     if (values.starts_with('{')) values = values.substr(1, values.size() - 2);
     for (const std::string& value : values.empty() ? std::vector<std::string>() : split(values, ',')) {
@@ -356,7 +369,9 @@ std::optional<Parameter> parameter(const std::string& declaration) {
       R"(\.param\s+(?:\.align \d+ )?\.[a-z](\d+)(?:\s+\.ptr.*)?\s+([\w$]+)(?:\[(\d+)\])?)");
   std::smatch match;
   if (!std::regex_match(declaration, match, kParameter)) return std::nullopt;
-  return Parameter{declaration, match[2], std::stoi(match[1]) / 8 * (match[3].matched ? std::stoi(match[3]) : 1)};
+  const std::int64_t bytes = std::int64_t{std::stoi(match[1])} / 8 * (match[3].matched ? std::stoi(match[3]) : 1);
+  if (bytes > std::numeric_limits<int>::max()) return std::nullopt;
+  return Parameter{declaration, match[2], static_cast<int>(bytes)};
 }
 
 std::string register_type(const Kernel& kernel, std::string_view name) {

@@ -33,7 +33,6 @@ class Store {
 
   // One transaction: these pairs are done.
   // Requires: none of them was.
-  void commit(const PairRange& range, const BatchResult& result) { commit(range, StoredCounts(result)); }
   void commit(const PairRange& range, const StoredCounts& fresh);
 
   // One transaction: all that was missing of the source is done, and this is its sum; one row is left of it.

@@ -105,7 +105,7 @@ class Hunter {
       Wanted wanted;
       wanted.range = {0, r * per_round_, std::min(per_round_, hunt_.pairs - r * per_round_)};
       wanted.kept = parse_round(read_whole(file_of(wanted.range, "round")), checksum_);
-      wanted.committed = store_->missing(0, 1).pairs == 0 || store_->missing(0, 1).first > wanted.range.first;
+      wanted.committed = store_->holds(wanted.range);
       rounds.push_back(std::move(wanted));
     }
     if (!play(rounds)) return;

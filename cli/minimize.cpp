@@ -185,7 +185,7 @@ int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
   const bool whole = options.shard.whole();
-  const fuzz::FolderLock lock(directory, whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
+  const fuzz::FolderLock held(directory, whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
   const Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
   const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
                           summary.value("spec", Json()).contains("lanes");

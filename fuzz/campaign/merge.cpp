@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -119,22 +120,23 @@ fs::path fresh_beside(const fs::path& out) {
   return part;
 }
 
-// Runs of the parts as one, and what one of them measured of the lanes.
-Json timings_of(const std::vector<StoreSpec>& stores) {
-  Json run = {{"merged", stores.size()}, {"pairs", 0}, {"seconds", 0.0}};
+// Runs of the parts as one for each machine, and what one of them measured of the lanes.
+std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
+  std::map<std::string, Json> by_machine;
   for (const StoreSpec& store : stores) {
     const Json timings = Json::parse(read_whole(store.directory / "timings.json"), nullptr, false);
     if (!timings.is_object() || !timings.contains("runs") || !timings["runs"].is_array()) continue;
     for (const Json& of_part : timings["runs"]) {
-      if (!of_part.is_object()) continue;
+      if (!of_part.is_object() || !of_part.contains("machine")) continue;
+      const std::string machine = of_part["machine"];
+      Json& run = by_machine[machine];
+      if (run.is_null()) run = {{"merged", stores.size()}, {"pairs", 0}, {"seconds", 0.0}, {"machine", machine}};
       run["pairs"] = run["pairs"].get<std::uint64_t>() + of_part.value("pairs", std::uint64_t{0});
       run["seconds"] = run["seconds"].get<double>() + of_part.value("seconds", 0.0);
-      if (!of_part.contains("costs")) continue;
-      run["machine"] = of_part.value("machine", "");
-      run["costs"] = of_part["costs"];
+      if (of_part.contains("costs")) run["costs"] = of_part["costs"];
     }
   }
-  return run;
+  return by_machine;
 }
 
 Outcome write_results(const Campaign& campaign, const Store& store, bool complete) {
@@ -216,7 +218,7 @@ Outcome merge(const MergeOptions& options) {
     if (!partial) expect_no_gaps(stores, sums, options.out);
     Outcome outcome = partial ? write_results(campaign, *partial, sums.gaps().empty()) : write_merged(campaign, sums);
     partial.reset();
-    append_timing(campaign.directory, timings_of(stores), outcome.oracle);
+    for (const auto& [machine, run] : timings_of(stores)) append_timing(campaign.directory, run, outcome.oracle);
     if (fs::exists(options.out)) fs::remove(options.out);
     fs::rename(campaign.directory, options.out);
     return outcome;

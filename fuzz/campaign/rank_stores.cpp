@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "fuzz/campaign/result_files.h"
+
 namespace graze::fuzz {
 
 namespace fs = std::filesystem;
@@ -24,17 +26,20 @@ void take_in_ranks(const Campaign& campaign, Store& store) {
     if (fs::exists(directory / kDatabase)) {
       StoreSpec of_rank = store_spec(campaign);
       of_rank.directory = directory;
+      std::uint64_t pairs = 0;
       try {
         if (const StoreSpec found = recorded_store(directory); found.spec != of_rank.spec || found.build != of_rank.build)
           throw std::runtime_error(directory.string() + ": expected the store of a rank of this campaign, found another's");
         for_each_row(of_rank, [&](const PairRange& range, const StoredCounts& counts) {
           if (!store.holds(range)) store.commit(range, counts);  // else taken in by a run that was killed then
+          pairs += range.pairs;
         });
       } catch (const DamagedStore& error) {
         const std::string what = error.what();
         throw std::runtime_error(what.substr(0, what.rfind("; ")) + "; its pairs are judged again once you remove " +
                                  directory.string());
       }
+      append_timing(campaign.directory, {{"pairs", pairs}, {"seconds", 0}, {"machine", machine_name()}});
     }
     fs::remove_all(directory);
   }

@@ -71,6 +71,12 @@ std::string command_of(const Json& spec, const Shard& shard, const std::filesyst
   if (!mesh || !strata.empty()) add("--pairs", std::to_string(pairs));
   add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
   for (const strata::StratumInfo& row : strata::kStrata) all_strata.emplace_back(row.id);
+  if (scene) {  // what the scene left out was asked for as well
+    for (const auto& [id, why] : spec["scene"].at("left_out").items()) strata.push_back(id);
+    if (std::all_of(all_strata.begin(), all_strata.end(),
+                    [&](const std::string& id) { return std::find(strata.begin(), strata.end(), id) != strata.end(); }))
+      strata = all_strata;
+  }
   if (!strata.empty() && strata != all_strata) add("--strata", fmt::format("{}", fmt::join(strata, ",")));
   for (const Json& row : spec.value("subjects", Json::array())) {
     add("--subject", row.at("name").get<std::string>() + '=' + row.at("what").get<std::string>());

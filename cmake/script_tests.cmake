@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: Apache-2.0
+# The scripts, and their own tests.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_test(NAME scripts.IncludeDirection COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/check_includes.py ${PROJECT_SOURCE_DIR})
+foreach(script check_includes league mutate same_results speed_table torture)
+  add_test(NAME scripts.test.${script} COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/${script}.test.py)
+endforeach()
+# Two minutes of it on an idle machine; an hour by hand: scripts/torture --minutes 60. Each commit has another seed, so
+# that ten commits kill campaigns and minimisations a hundred times, each at other moments.
+add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 5 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
+set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
+# Defects planted in our own sources; each is compiled anew from what this build knows, so Ninja has to have made it.
+if(CMAKE_GENERATOR STREQUAL Ninja)
+  add_test(NAME scripts.PlantedDefects COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/mutate --planted --build ${CMAKE_BINARY_DIR} --out ${CMAKE_BINARY_DIR}/planted)
+endif()
+# A thousand by hand: scripts/simulate_shards.
+add_test(NAME scripts.SimulateShards COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/simulate_shards --graze $<TARGET_FILE:graze>
+  --shards 12 --pairs 12000 --strata near_*,degenerate --lanes */f32/cpu --kill 0.5)
+add_test(NAME scripts.Slurm COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/slurm/campaign.test.py $<TARGET_FILE:graze>)
+set_tests_properties(scripts.Slurm PROPERTIES SKIP_RETURN_CODE 77)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  add_test(NAME scripts.test.odr COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/odr.test.py ${CMAKE_CXX_COMPILER})
+endif()
+# Five seconds for each fuzz target, and what they take to build; an hour by hand: scripts/fuzz --seconds 400.
+add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 5 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
+set_tests_properties(scripts.Fuzz PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)

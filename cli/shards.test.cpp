@@ -2,7 +2,6 @@
 // Shards as processes: killed, resumed, run twice at once, by ranks; and what is said of them. The same bytes as one
 // run.
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "cli/run_graze.h"
 
@@ -30,23 +29,20 @@ class Shards : public CommandTest {
 };
 
 TEST_F(Shards, KilledAndResumedInAnyOrderLeaveTheBytesOfTheWhole) {
-  const std::string fuzz = "graze fuzz --seed 5 --pairs 60000 --strata 'near_*,degenerate' --lanes '*/f32/c*,exact*' ";
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 120000 --strata 'near_*,degenerate' --lanes '*/f32/c*,exact*' ";
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
-  std::mt19937 random(7);
   int killed = 0;
   for (const int k : {4, 2, 5, 1, 3}) {
     const std::string shard = fuzz + "--shard " + std::to_string(k) + "/5 --out part-" + std::to_string(k);
     const std::string scratch = k % 2 == 0 ? " --scratch local" : "";
-    for (int i = 0; i < 3; ++i) {
-      const Ran ran =
-          shell("timeout -s KILL 0." + std::to_string(100 + random() % 400) + ' ' + shard + scratch + " --threads 1");
-      killed += ran.status == 137;
-    }
+    // The first no machine survives; the later ones come when some of it is done, on a slow machine at least.
+    for (const char* seconds : {"0.02", "0.1", "0.3"})
+      killed += shell(std::string("timeout -s KILL ") + seconds + ' ' + shard + scratch + " --threads 1").status == 137;
     const Ran ran = shell(shard + scratch);
     ASSERT_EQ(ran.status, 0) << ran.err;
-    EXPECT_TRUE(ran.out.starts_with("Shard " + std::to_string(k) + "/5: 12,000 pairs, ")) << ran.out;
+    EXPECT_TRUE(ran.out.starts_with("Shard " + std::to_string(k) + "/5: 24,000 pairs, ")) << ran.out;
   }
-  EXPECT_GT(killed, 0);
+  EXPECT_GE(killed, 5);
   EXPECT_EQ(shell("ls local").out, "");
   EXPECT_EQ(shell("graze merge part-3 part-5 part-1/ part-2 part-4 --out all").status, 0);
   expect_same("whole", "all");
@@ -164,7 +160,7 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   const Ran found = shell("command -v mpirun && test -e '" + std::string(GRAZE_BINARY_DIR) + "/libgraze_mpi.so'");
   if (found.status != 0) GTEST_SKIP() << "no mpirun, or a build without MPI";
   const std::string fuzz =
-      "graze fuzz --seed 5 --pairs 200000 --strata 'near_*,degenerate' --lanes '*/f32/c*' --threads 1 ";
+      "graze fuzz --seed 5 --pairs 600000 --strata 'near_*,degenerate' --lanes '*/f32/c*' --threads 1 ";
   const std::string mpirun =
       "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1; mpirun -n "
       "4 ";
@@ -183,7 +179,7 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   EXPECT_EQ(shell("ls ranks | grep rank-").out, "");
   const Json run = Json::parse(contents(shell.folder / "ranks/timings.json"))["runs"].back();
   EXPECT_EQ(run["ranks"], 4);
-  EXPECT_LE(run["pairs"], 200'000);  // what the killed run had committed stays
+  EXPECT_LE(run["pairs"], 600'000);  // what the killed run had committed stays
   expect_same("whole", "ranks");
   const Ran wrong = shell(mpirun + fuzz + "--shard 1/2 --out x");
   EXPECT_NE(wrong.err.find("under mpirun"), std::string::npos) << wrong.err;

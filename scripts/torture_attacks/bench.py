@@ -45,7 +45,7 @@ class Bench:
         if name == "hunt":
             return ["hunt", "--runs", "12000", "--seed", seed, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]
         many = "near_edge_edge,degenerate,uniform,lattice,near_vertex_face,coplanar_wide"
-        pairs, strata = {"large": ("240000", many), "small": ("600", many), "tiny": ("12", "near_edge_edge,degenerate")}[name]
+        pairs, strata = {"large": ("240000", many), "small": ("600", many), "tiny": ("24", "near_edge_edge,degenerate")}[name]
         return ["fuzz", "--pairs", pairs, "--seed", seed, "--strata", strata, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]
 
     def reference(self, name, minimised=False, reported=False):

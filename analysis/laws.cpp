@@ -8,12 +8,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 
 #include "analysis/convention.h"
 #include "analysis/explain.h"
 #include "analysis/neighbours.h"
+#include "analysis/scales.h"
 #include "analysis/tally.h"
 #include "core/exact/exact.h"
 
@@ -46,13 +46,7 @@ const Claims kClaims[] = {
 std::vector<Pair> scaled_images(const Pair& pair) {
   std::vector<Pair> result;
   for (const int k : {1, -1, 4, -4, 16, -16, 64, -64}) {
-    Pair scaled;
-    bool exact = true;
-    for (int c = 0; c < kCoordinates; ++c) {
-      coordinates(scaled)[c] = std::ldexp(coordinates(pair)[c], k);
-      exact = exact && std::ldexp(coordinates(scaled)[c], -k) == coordinates(pair)[c];
-    }
-    if (exact) result.push_back(scaled);
+    if (const std::optional<Pair> image = exactly_scaled(pair, k)) result.push_back(*image);
   }
   return result;
 }
@@ -259,15 +253,7 @@ bool oracle_intersects(const Pair& pair) {
 }
 
 Laws laws(const LawSpec& spec) {
-  struct Block {
-    int source;
-    std::uint64_t first, count;
-  };
-  std::vector<Block> blocks;
-  for (std::size_t s = 0; s < spec.sources.size(); ++s) {
-    for (std::uint64_t first = 0; first < spec.sources[s].pairs; first += kBlock)
-      blocks.push_back({static_cast<int>(s), first, std::min(kBlock, spec.sources[s].pairs - first)});
-  }
+  const std::vector<SourceBlock> blocks = blocks_of(spec.sources, kBlock);
   const auto threads = static_cast<std::size_t>(spec.threads > 0 ? spec.threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   tbb::enumerable_thread_specific<Laws> results([&] { return nothing_yet(spec); });
@@ -281,7 +267,7 @@ Laws laws(const LawSpec& spec) {
       const std::lock_guard lock(mutex);
       if (b > first_broken) return;
     }
-    const Block& block = blocks[b];
+    const SourceBlock& block = blocks[b];
     const strata::PairSource& source = spec.sources[static_cast<std::size_t>(block.source)];
     Laws& result = results.local();
     try {

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "analysis/scales.h"
+
 namespace graze::analysis {
 namespace {
 
@@ -74,14 +76,8 @@ std::vector<Pair> mirrored(const Pair& pair) {
 std::vector<Pair> scalings(const Pair& pair) {
   std::vector<Pair> result{pair};
   for (int k = -kMostScaling; k <= kMostScaling; ++k) {
-    Pair scaled;
-    bool exact = k != 0;
-    for (int i = 0; i < kCoordinates; ++i) {
-      const float c = coordinates(pair)[i];
-      coordinates(scaled)[i] = std::ldexp(c, k);
-      exact = exact && std::ldexp(coordinates(scaled)[i], -k) == c;
-    }
-    if (exact) result.push_back(scaled);
+    if (k == 0) continue;
+    if (const std::optional<Pair> image = exactly_scaled(pair, k)) result.push_back(*image);
   }
   return result;
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "core/lanes.h"
@@ -77,6 +78,13 @@ inline Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
 inline Pair scaled(const Pair& pair, int k) {
   Pair result = pair;
   for (int i = 0; i < kCoordinates; ++i) coordinates(result)[i] = std::ldexp(coordinates(pair)[i], k);
+  return result;
+}
+
+// The same; nothing where a coordinate would lose bits or overflow.
+inline std::optional<Pair> exactly_scaled(const Pair& pair, int k) {
+  const Pair result = scaled(pair, k), back = scaled(result, -k);
+  if (!std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(back))) return std::nullopt;
   return result;
 }
 

@@ -31,20 +31,6 @@ Verdicts verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
   return result;
 }
 
-struct Block {
-  int source;
-  std::uint64_t first, count;
-};
-
-std::vector<Block> blocks_of(Sources sources) {
-  std::vector<Block> blocks;
-  for (std::size_t s = 0; s < sources.size(); ++s) {
-    for (std::uint64_t first = 0; first < sources[s].pairs; first += kBlock)
-      blocks.push_back({static_cast<int>(s), first, std::min<std::uint64_t>(kBlock, sources[s].pairs - first)});
-  }
-  return blocks;
-}
-
 void keep_first(std::optional<PairPlace>& kept, const std::optional<PairPlace>& found) {
   if (found && (!kept || *found < *kept)) kept = found;
 }
@@ -56,7 +42,7 @@ void add(std::uint64_t bits, const PairPlace& word, std::uint64_t& count, std::o
   keep_first(first, PairPlace{word.source, word.index + static_cast<std::uint64_t>(std::countr_zero(bits))});
 }
 
-void add(const Block& block, const Verdicts& truth, const Verdicts& without, const std::uint64_t* intersects,
+void add(const SourceBlock& block, const Verdicts& truth, const Verdicts& without, const std::uint64_t* intersects,
          const std::uint64_t* declined, PolicyErrors& errors) {
   for (std::size_t w = 0; w * 64 < block.count; ++w) {
     const std::uint64_t judged = ~truth.declined[w];  // not finite: nothing is counted
@@ -86,12 +72,12 @@ std::vector<PolicyErrors> run(const DecideBlock& zero, const std::vector<Togethe
   const DecideBlock exact = find_lane("exact/f32/cpu")->decide;
   std::vector<PolicyErrors> errors;
   for (const std::string& policy : policies) errors.emplace_back().policy = policy;
-  const std::vector<Block> blocks = blocks_of(sources);
+  const std::vector<SourceBlock> blocks = blocks_of(sources, kBlock);
   const auto count = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
   tbb::enumerable_thread_specific<std::vector<PolicyErrors>> results(errors);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-    const Block& block = blocks[b];
+    const SourceBlock& block = blocks[b];
     std::vector<Pair> pairs;
     for (std::uint64_t i = 0; i < block.count; ++i)
       pairs.push_back(sources[static_cast<std::size_t>(block.source)].pair(block.first + i));
@@ -145,6 +131,15 @@ std::vector<Together> parts_of(const Lane& lane, Policies policies) {
 }
 
 }  // namespace
+
+std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most) {
+  std::vector<SourceBlock> blocks;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    for (std::uint64_t first = 0; first < sources[s].pairs; first += most)
+      blocks.push_back({static_cast<int>(s), first, std::min(most, sources[s].pairs - first)});
+  }
+  return blocks;
+}
 
 PolicyErrors& PolicyErrors::operator+=(const PolicyErrors& other) {
   pairs += other.pairs;

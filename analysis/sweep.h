@@ -36,6 +36,15 @@ struct PolicyErrors {
 using Sources = std::span<const strata::PairSource>;
 using Policies = std::span<const std::string>;  // the empty one is zero
 
+// Pairs [first, first + count) of a source.
+struct SourceBlock {
+  int source;
+  std::uint64_t first, count;
+};
+
+// All pairs of the sources, in blocks of at most so many.
+std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most);
+
 // The errors under each policy, on all pairs of the sources.
 using Sweep = std::function<std::vector<PolicyErrors>(Policies policies, Sources sources)>;
 

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "analysis/lane_trace.h"
+#include "analysis/scales.h"
 
 namespace graze::analysis {
 namespace {
@@ -198,12 +199,7 @@ std::vector<strata::PairSource> scaled(Sources sources, int k) {
     source.stratum = -1;
     source.pair = [draw = source.pair, k](std::uint64_t index) {
       const Pair pair = draw(index);
-      Pair moved = pair;
-      for (int c = 0; c < kCoordinates; ++c) {
-        coordinates(moved)[c] = std::ldexp(coordinates(pair)[c], k);
-        if (std::ldexp(coordinates(moved)[c], -k) != coordinates(pair)[c]) return pair;
-      }
-      return moved;
+      return exactly_scaled(pair, k).value_or(pair);
     };
   }
   return result;

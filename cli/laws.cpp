@@ -33,10 +33,8 @@ int laws(const LawsOptions& options) {
   spec.simpler = [](const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); };
   const analysis::Laws found = analysis::laws(spec);
 
-  const fs::path out = options.out;
-  std::error_code error;
-  fs::create_directories(out / "cases", error);
-  if (error) throw std::runtime_error(out.string() + ": expected a folder, found: " + error.message());
+  const fs::path out = made_folder(options.out);
+  made_folder(out / "cases");
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::laws_table(spec, found, screen));
   for (const std::string& sentence : reports::laws_sentences(spec, found))

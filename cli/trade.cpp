@@ -60,12 +60,11 @@ Measured measured(const TradeOptions& options, const fuzz::LanesUnderTest& under
 // The simplest pair that the minimiser makes of the first one on which the lane is wrong; of a lane without a twin that
 // pair itself.
 std::optional<Pair> smallest_failure(const Lane& lane, const analysis::PolicyErrors& errors,
-                                     const std::vector<strata::PairSource>& sources, bool on_device) {
+                                     const std::vector<strata::PairSource>& sources) {
   if (!errors.first_broken) return std::nullopt;
   const Pair pair = sources[static_cast<std::size_t>(errors.first_broken->source)].pair(errors.first_broken->index);
   if (!cuda::block_on_host(lane)) return pair;
-  const std::vector<fuzz::Failure> failures =
-      fuzz::failures_of(fuzz::select_lanes({lane.id}, on_device ? fuzz::Executor::device : fuzz::Executor::twin), pair);
+  const auto failures = fuzz::failures_of(fuzz::select_lanes({lane.id}, fuzz::Executor::twin), pair);
   return failures.empty() ? std::nullopt : std::optional(fuzz::minimise(failures[0], pair).pair);
 }
 
@@ -74,8 +73,7 @@ analysis::Trade offers_of(const TradeOptions& options, const Measured& measured,
   analysis::Trade trade{fuzz::machine_name(), options.device, 0, {}, {}};
   for (const analysis::PolicyErrors& errors : measured.sweep(measured.ids, sources)) {
     trade.offers.push_back({errors.policy, errors, {}, {}});
-    trade.offers.back().failure =
-        smallest_failure(*measured.lanes[trade.offers.size() - 1], errors, sources, options.device);
+    trade.offers.back().failure = smallest_failure(*measured.lanes[trade.offers.size() - 1], errors, sources);
   }
   if (options.device) {
     const cuda::DeviceCosts costs =
@@ -128,10 +126,7 @@ int trade(TradeOptions options) {
     }
   }
 
-  const fs::path out = options.out;
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error) throw std::runtime_error(out.string() + ": expected a folder, found: " + error.message());
+  const fs::path out = made_folder(options.out);
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::trade_table(trade, screen));
   if (options.device) {

@@ -96,10 +96,7 @@ int tune(const TuneOptions& options) {
   const analysis::Tuned tuned = analysis::tune(spec);
 
   const reports::TuneQuestion question{lane->id, spec.forbid, spec.max_rate};
-  const fs::path out = options.out;
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error) throw std::runtime_error(out.string() + ": expected a folder, found: " + error.message());
+  const fs::path out = made_folder(options.out);
   const reports::Screen screen = output_screen();
   for (const std::string& sentence : reports::tuning_sentences(question, tuned))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));

@@ -13,4 +13,7 @@ namespace graze::cli {
 void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,
                     const std::vector<strata::LeftOut>& left_out = {});
 
+// The same of a shard.
+void print_shard(const std::string& out, const fuzz::Json& summary);
+
 }  // namespace graze::cli

@@ -122,18 +122,6 @@ int fail_above(const FuzzOptions& options, const fuzz::LanesUnderTest& under_tes
   return 0;
 }
 
-void print_shard(const FuzzOptions& options, const Json& summary) {
-  if (options.json) {
-    std::cout << summary.dump(1) << '\n';
-    return;
-  }
-  std::cout << fmt::format("Shard {}: {} pairs, {} disagreements, {} signatures\nWrote {}/campaign.sqlite\n"
-                           "Next, when all shards are done: graze merge DIR… --out campaign\n",
-                           summary["shard"].get<std::string>(), reports::grouped(summary["pairs"]),
-                           reports::grouped(summary["disagreements"]), reports::grouped(summary["signatures"]),
-                           options.out);
-}
-
 // One of the processes that mpirun started.   Returns: the exit status.
 int on_ranks(const FuzzOptions& options, fuzz::Campaign& campaign, const std::vector<strata::LeftOut>& left_out,
              fuzz::Ranks& ranks) {
@@ -212,7 +200,11 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     return kInterrupted;
   }
   if (!campaign.shard.whole()) {
-    print_shard(options, outcome.summary);
+    if (options.json) {
+      std::cout << outcome.summary.dump(1) << '\n';
+    } else {
+      print_shard(options.out, outcome.summary);
+    }
     return 0;
   }
   print_campaign(options.out, outcome, options.json, left_out);
@@ -240,6 +232,13 @@ int start(const FuzzOptions& options) {
 }
 
 }  // namespace
+
+void print_shard(const std::string& out, const Json& summary) {
+  std::cout << fmt::format("Shard {}: {} pairs, {} disagreements, {} signatures\nWrote {}/campaign.sqlite\n"
+                           "Next, when all shards are done: graze merge DIR… --out campaign\n",
+                           summary["shard"].get<std::string>(), reports::grouped(summary["pairs"]),
+                           reports::grouped(summary["disagreements"]), reports::grouped(summary["signatures"]), out);
+}
 
 void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,
                     const std::vector<strata::LeftOut>& left_out) {

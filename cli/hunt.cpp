@@ -7,10 +7,12 @@
 #include <iostream>
 #include <optional>
 
+#include "cli/campaign_end.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "cli/screen.h"
+#include "cli/shard_option.h"
 #include "core/text.h"
 #include "fuzz/files.h"
 #include "fuzz/hunt/hunt.h"
@@ -32,6 +34,7 @@ struct HuntOptions {
   std::string out = "hunt", scene;
   std::vector<std::string> strata;
   LaneOptions lanes;
+  fuzz::Shard shard;
   bool json = false;
 };
 
@@ -69,6 +72,7 @@ int hunt(const HuntOptions& options) {
   hunt.campaign.under_test = &under_test;
   hunt.campaign.threads = options.threads;
   hunt.campaign.directory = options.out;
+  hunt.campaign.shard = options.shard;
   Json scene_spec;
   std::vector<strata::LeftOut> left_out;
   std::optional<strata::Scene> scene;
@@ -106,6 +110,10 @@ int hunt(const HuntOptions& options) {
     std::cout << summary.dump(1) << '\n';
     return 0;
   }
+  if (!options.shard.whole()) {
+    if (complete) print_shard(options.out, summary);
+    return 0;
+  }
   reports::print_summary(std::cout, summary, oracle, output_screen());
   std::cout << left_out_text(left_out) << std::flush;
   print_mutations(options.out);
@@ -135,6 +143,9 @@ void add_hunt(CLI::App& app, int& status) {
       ->take_last()
       ->check(not_empty())
       ->capture_default_str();
+  add_shard_option(*command, options->shard,
+                   "Only the K-th of N searches, each through its part of the runs, into a directory of its own; graze merge "
+                   "makes all of them one, by kind of failure");
   add_globs(*command, "--strata", options->strata, "Start from, and draw again from, only strata that match a pattern");
   add_lane_options(*command, options->lanes, Executors::twins);
   add_scene_option(*command, options->scene);

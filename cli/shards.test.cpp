@@ -126,6 +126,25 @@ TEST_F(Shards, ScenesPoliciesAndSubjectsMergeToo) {
   expect_same("whole", "all");
 }
 
+TEST_F(Shards, OfAHuntMergeByKind) {
+  const std::string hunt = "graze hunt --runs 3000 --seed 5 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
+  const Ran first = shell(hunt + "--shard 1/2 --out p-1");
+  if (first.err.find("libFuzzer") != std::string::npos) GTEST_SKIP() << first.err;
+  EXPECT_TRUE(first.out.starts_with("Shard 1/2: 1,500 pairs, ")) << first.out << first.err;
+  const std::string missing = command_in(shell("graze merge p-1 --out all").err, "it is run by: ");
+  ASSERT_EQ(shell(missing).status, 0) << missing;
+  const Ran status = shell("graze status p-1 shard-2 --json");
+  EXPECT_EQ(status.status, 0) << status.err;
+  const Json shards = Json::parse(status.out)["shards"];
+  EXPECT_EQ(shards[0]["done"], 1500);
+  EXPECT_GT(shards[0]["new"], 3);
+  EXPECT_LT(shards[1]["new"], shards[0]["new"]);  // most of them the first has as well
+  const Ran merged = shell("graze merge shard-2 p-1 --out all && graze kinds all && graze report all && graze minimize all");
+  EXPECT_EQ(merged.status, 0) << merged.err;
+  EXPECT_NE(merged.out.find("\n3,000 pairs: some lane is wrong on "), std::string::npos) << merged.out;
+  expect_error(hunt + "--out all", 2, "merged of shards");
+}
+
 TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 3000000 --strata 'near_*' ";
   const Ran ran = shell(
@@ -160,18 +179,20 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   const Ran found = shell("command -v mpirun && test -e '" + std::string(GRAZE_BINARY_DIR) + "/libgraze_mpi.so'");
   if (found.status != 0) GTEST_SKIP() << "no mpirun, or a build without MPI";
   const std::string fuzz =
-      "graze fuzz --seed 5 --pairs 600000 --strata 'near_*,degenerate' --lanes '*/f32/c*' --threads 1 ";
+      "graze fuzz --seed 5 --pairs 200000 --strata 'near_*,degenerate' --lanes '*/f32/c*' --threads 1 ";
   const std::string mpirun =
       "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1; mpirun -n "
       "4 ";
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
-  const Ran killed =
-      shell(mpirun + fuzz +
-            "--out ranks & for i in $(seq 200); do "
-            "[ \"$(grep -ls '\"done\": [1-9]' ranks/rank-*/status.json | wc -l)\" -ge 2 ] && break; sleep 0.1; done; "
-            "kill -KILL $(grep -h '\"process\"' ranks/rank-2/status.json | grep -o '[0-9]*'); wait $!; echo $?; "
-            "graze status ranks; ls -d ranks/rank-*");
-  EXPECT_FALSE(killed.out.starts_with("0\n")) << killed.out << killed.err;
+  // Rank 2 is stopped within a block, until the others have done all the rest; then it is killed.
+  const Ran killed = shell(
+      mpirun + fuzz +
+      "--out ranks & for i in $(seq 600); do [ -s ranks/rank-2/status.json ] && break; sleep 0.02; done; "
+      "rank=$(grep -h '\"process\"' ranks/rank-2/status.json | grep -o '[0-9]*'); kill -STOP $rank; "
+      "for i in $(seq 1200); do [ $(grep -ls stopped ranks/rank-*/status.json | wc -l) -eq 3 ] && break; sleep 0.1; done; "
+      "graze status ranks | tail -n 1; kill -KILL $rank; wait $!; echo $?; ls -d ranks/rank-*");
+  EXPECT_NE(killed.out.find("3 stopped, 1 running\n"), std::string::npos) << killed.out << killed.err;
+  EXPECT_EQ(killed.out.find("\n0\n"), std::string::npos) << killed.out << killed.err;
   EXPECT_NE(killed.out.find("ranks/rank-3"), std::string::npos) << killed.out;
   const Ran again = shell(mpirun + fuzz + "--out ranks");
   EXPECT_EQ(again.status, 0) << again.err;
@@ -179,7 +200,9 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   EXPECT_EQ(shell("ls ranks | grep rank-").out, "");
   const Json run = Json::parse(contents(shell.folder / "ranks/timings.json"))["runs"].back();
   EXPECT_EQ(run["ranks"], 4);
-  EXPECT_LE(run["pairs"], 600'000);  // what the killed run had committed stays
+  // All that was committed stays; of the killed rank only the block is missing in which it was, one of 256 at least.
+  EXPECT_GT(run["pairs"], 0);
+  EXPECT_LE(run["pairs"], 200'000 / 128);
   expect_same("whole", "ranks");
   const Ran wrong = shell(mpirun + fuzz + "--shard 1/2 --out x");
   EXPECT_NE(wrong.err.find("under mpirun"), std::string::npos) << wrong.err;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <ctime>
 #include <iostream>
+#include <set>
 
 #include "cli/commands.h"
 #include "cli/progress.h"
@@ -40,7 +41,8 @@ std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stal
   return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
 }
 
-Json row_of(const fs::path& directory, std::uint64_t stalled) {
+// known: ways to fail of the rows above, to which those of this one are added.
+Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::string>& known) {
   Json row = {{"directory", directory.string()},
               {"shard", nullptr},
               {"state", "not begun"},
@@ -49,7 +51,8 @@ Json row_of(const fs::path& directory, std::uint64_t stalled) {
               {"rate", 0.0},
               {"seconds_left", nullptr},
               {"disagreements", 0},
-              {"signatures", 0}};
+              {"signatures", 0},
+              {"new", 0}};
   try {
     const Json status = fuzz::read_status(directory);
     if (status.is_null()) return row;
@@ -58,6 +61,9 @@ Json row_of(const fs::path& directory, std::uint64_t stalled) {
     row["state"] = state_of(status, silent, stalled);
     for (const char* count : {"pairs", "done", "disagreements", "signatures"})
       row[count] = status.at(count).get<std::uint64_t>();
+    std::size_t fresh = 0;
+    for (const std::string way : status.value("ways", Json::array())) fresh += known.insert(way).second;
+    row["new"] = fresh;
     if (row["state"] == "running") {
       row["rate"] = status.at("rate").get<double>();
       row["seconds_left"] = status.at("seconds_left");
@@ -71,7 +77,7 @@ Json row_of(const fs::path& directory, std::uint64_t stalled) {
   }
 }
 
-// {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements", "states": {state: shards}}
+// In the order of the directories. {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements", "states": {state: shards}}
 Json status_of(const Options& options) {
   Json all = {{"shards", Json::array()},
               {"pairs", 0},
@@ -81,13 +87,14 @@ Json status_of(const Options& options) {
               {"disagreements", 0},
               {"states", Json::object()}};
   std::uint64_t pairs = 0, done = 0, disagreements = 0;
+  std::set<std::string> known;
   double rate = 0;
   for (const std::string& name : options.directories) {
     std::vector<fs::path> places = fuzz::rank_directories(name);
     if (places.empty()) places.emplace_back(name);
     std::uint64_t of_ranks = 0;
     for (const fs::path& place : places) {
-      const Json row = row_of(place, options.stalled);
+      const Json row = row_of(place, options.stalled, known);
       // Each rank knows the pairs of all.
       of_ranks = std::max(of_ranks, row["pairs"].get<std::uint64_t>());
       done += row["done"].get<std::uint64_t>();
@@ -108,16 +115,17 @@ Json status_of(const Options& options) {
 }
 
 std::string table(const Json& all) {
-  std::string text = fmt::format("{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10}\n", "directory", "shard",
-                                 "state", "pairs done", "pairs/s", "left", "disagreements", "signatures");
+  std::string text = fmt::format("{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10} {:>6}\n", "directory", "shard",
+                                 "state", "pairs done", "pairs/s", "left", "disagreements", "signatures", "new");
   for (const Json& row : all["shards"]) {
     const std::uint64_t pairs = row["pairs"], done = row["done"];
-    text += fmt::format("{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10}\n", row["directory"].get<std::string>(),
+    text += fmt::format("{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10} {:>6}\n", row["directory"].get<std::string>(),
                         row["shard"].is_null() ? "-" : row["shard"].get<std::string>(), row["state"].get<std::string>(),
                         fmt::format("{} ({}%)", reports::grouped(done), pairs == 0 ? 0 : 100 * done / pairs),
                         reports::grouped(static_cast<std::uint64_t>(row["rate"].get<double>())),
                         row["seconds_left"].is_null() ? "-" : duration(row["seconds_left"].get<double>()),
-                        reports::grouped(row["disagreements"]), reports::grouped(row["signatures"]));
+                        reports::grouped(row["disagreements"]), reports::grouped(row["signatures"]),
+                        reports::grouped(row["new"]));
     if (row.contains("why")) text += "  " + row["why"].get<std::string>() + '\n';
   }
   std::vector<std::string> states;
@@ -144,7 +152,8 @@ std::string prometheus(const Json& all) {
                                    {"done", "Pairs that are judged."},
                                    {"rate", "Pairs judged in a second; 0 where it does not run."},
                                    {"disagreements", "Pairs on which some lane is wrong."},
-                                   {"signatures", "Signatures seen."}}) {
+                                   {"signatures", "Signatures seen."},
+                                   {"new", "Of its signatures, margins aside, those of no shard before it."}}) {
     text += fmt::format("# HELP graze_{0} {1}\n# TYPE graze_{0} gauge\n", name, help);
     for (const Json& row : all["shards"]) {
       text += fmt::format("graze_{}{{directory=\"{}\",shard=\"{}\",state=\"{}\"}} {}\n", name, label(row["directory"]),

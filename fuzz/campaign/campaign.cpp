@@ -134,7 +134,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
   const auto tell = [&] {
     progress.signatures = store.signatures().size();
     progress.all_disagreements = store.disagreements();
-    status.tell(progress);
+    status.tell(progress, store.signatures());
   };
   tell();
   CostEstimate costs(left);
@@ -165,11 +165,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
     outcome.summary = write_summary(campaign, store, complete);
   } else {
     if (complete) store.compact();  // what is merged, perhaps with thousands, is small
-    outcome.summary = {{"shard", campaign.shard.name()},
-                       {"complete", complete},
-                       {"pairs", progress.done},
-                       {"disagreements", store.disagreements()},
-                       {"signatures", store.signatures().size()}};
+    outcome.summary = shard_summary(campaign.shard, store, complete, progress.done);
   }
   Json run = {{"pairs", progress.done_here},
               {"seconds", seconds()},

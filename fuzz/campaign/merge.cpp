@@ -14,6 +14,7 @@
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/campaign/run_status.h"
+#include "fuzz/hunt/hunt_rounds.h"
 
 namespace graze::fuzz {
 namespace {
@@ -139,6 +140,36 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   return by_machine;
 }
 
+// What the parts of a hunt kept in their rounds, as the campaign's, which draws its cases from it.
+void join_rounds(const std::vector<StoreSpec>& stores, const Sums& sums, Campaign& campaign) {
+  std::vector<KeptRound> rounds;
+  for (const StoreSpec& store : stores) {
+    std::uint64_t held = 0, kept = 0;
+    for_each_row(store, [&](const PairRange& range, const StoredCounts&) { held += range.pairs; });
+    for (KeptRound& round : read_rounds(store)) {
+      kept += round.pairs;
+      rounds.push_back(std::move(round));
+    }
+    if (kept != held)
+      throw std::runtime_error(fmt::format("{}: expected the rounds of its {} pairs, found those of {}; copy it again, or: {}",
+                                           rounds_folder(store.directory).string(), held, kept,
+                                           command_of(store.spec, store.shard, store.directory)));
+  }
+  std::sort(rounds.begin(), rounds.end(), [](const KeptRound& l, const KeptRound& r) { return l.first < r.first; });
+  auto found = std::make_shared<HuntRounds>();
+  for (const KeptRound& round : rounds) found->add(round);
+  std::set<std::uint64_t> cases;
+  for (const auto& [key, signature] : sums.of_source(0).signatures) {
+    for (const CaseKey& kept : signature.cases) cases.insert(kept.index);
+  }
+  std::erase_if(found->all.kept, [&](const auto& pair) { return !cases.contains(pair.first); });
+  found->all.coarse.assign(found->coarse.begin(), found->coarse.end());
+  fs::create_directories(rounds_folder(campaign.directory));
+  write_whole(merged_rounds_file(campaign.directory), round_bytes(found->all, hunt_checksum(campaign.spec, campaign.build)));
+  write_whole(campaign.directory / "hunt.json", found->told().dump(1) + "\n");
+  campaign.sources[0].pair = [found](std::uint64_t index) { return found->all.kept.at(index).pair; };
+}
+
 Outcome write_results(const Campaign& campaign, const Store& store, bool complete) {
   return {complete, write_summary(campaign, store, complete), store.oracle()};
 }
@@ -180,6 +211,8 @@ Outcome merge(const MergeOptions& options) {
   campaign.spec = stores.front().spec;
   campaign.seed = campaign.spec.at("seed");
   campaign.sources = recorded_sources(campaign.spec);
+  const bool hunt = campaign.spec.contains("hunt");
+  if (hunt && options.partial) throw UsageError("--partial: expected parts of a campaign, found those of a hunt, which are merged when all are done");
   campaign.build = stores.front().build;
   for (StoreSpec& store : stores) {
     campaign.build = common_build(campaign.build, store.build, store.directory);
@@ -206,8 +239,9 @@ Outcome merge(const MergeOptions& options) {
           if (partial) partial->commit(range, counts);
         });
       } catch (const DamagedStore& error) {
-        throw std::runtime_error(fmt::format("{}: {} --discard-damaged", error.what(),
-                                             command_of(campaign.spec, stores[i].shard, stores[i].directory)));
+        const std::string again = command_of(campaign.spec, stores[i].shard, stores[i].directory);
+        throw std::runtime_error(hunt ? fmt::format("{} remove it: {}", error.what(), again)
+                                      : fmt::format("{}: {} --discard-damaged", error.what(), again));
       } catch (const Sums::Overlap& overlap) {
         throw std::runtime_error(fmt::format(
             "{} and {}: expected parts that have no pairs in common, found {} of {} from {} on in both; leave one out",
@@ -216,6 +250,7 @@ Outcome merge(const MergeOptions& options) {
       }
     }
     if (!partial) expect_no_gaps(stores, sums, options.out);
+    if (hunt) join_rounds(stores, sums, campaign);
     Outcome outcome = partial ? write_results(campaign, *partial, sums.gaps().empty()) : write_merged(campaign, sums);
     partial.reset();
     for (const auto& [machine, run] : timings_of(stores)) append_timing(campaign.directory, run, outcome.oracle);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One campaign of several stores: shards, ranks, or campaigns that were merged before. The result is that of one run of
-// the whole, the same bytes, whatever the parts, their order, and who ran them.
+// the whole, the same bytes, whatever the parts, their order, and who ran them. Shards of a hunt are searches of their
+// own: of their kinds of failure each counts once, by the first pair; the result does not depend on their order either.
 #pragma once
 
 #include <filesystem>

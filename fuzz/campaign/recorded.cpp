@@ -18,6 +18,7 @@ namespace graze::fuzz {
 std::vector<strata::PairSource> recorded_sources(const Json& spec) {
   const std::uint64_t seed = spec.at("seed");
   std::vector<std::string> strata = spec.at("strata");
+  if (spec.contains("hunt")) return {{"hunt", spec.at("pairs"), nullptr}};
   if (spec.contains("scene")) {
     const Json& scene = spec["scene"];
     return sources_of(recorded_scene(scene), seed, scene.at("pairs"), strata).sources;
@@ -54,10 +55,10 @@ LanesUnderTest recorded_lanes(const Json& spec) {
 }
 
 std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out) {
-  const bool scene = spec.contains("scene"), mesh = spec.contains("mesh");
-  std::vector<std::string> strata = spec.at("strata"), lanes = spec.at("lanes"), all_strata, all_lanes;
+  const bool scene = spec.contains("scene"), mesh = spec.contains("mesh"), hunt = spec.contains("hunt");
+  std::vector<std::string> strata = (hunt ? spec["hunt"] : spec).at("strata"), lanes = spec.at("lanes"), all_strata, all_lanes;
   std::uint64_t pairs = scene ? spec["scene"].at("pairs") : spec.at("pairs");
-  std::string command = "graze fuzz";
+  std::string command = hunt ? "graze hunt" : "graze fuzz";
   const auto add = [&](const char* name, const std::string& value) {
     command += fmt::format(" {} {}", name, shell_word(value));
   };
@@ -68,7 +69,7 @@ std::string command_of(const Json& spec, const Shard& shard, const std::filesyst
     std::erase(strata, "mesh");
     for (const strata::PairSource& source : recorded_sources(spec)) pairs -= source.stratum < 0 ? source.pairs : 0;
   }
-  if (!mesh || !strata.empty()) add("--pairs", std::to_string(pairs));
+  if (!mesh || !strata.empty()) add(hunt ? "--runs" : "--pairs", std::to_string(pairs));
   add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
   for (const strata::StratumInfo& row : strata::kStrata) all_strata.emplace_back(row.id);
   if (scene) {  // what the scene left out was asked for as well

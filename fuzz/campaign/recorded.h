@@ -12,6 +12,7 @@
 
 namespace graze::fuzz {
 
+// The source of a hunt has no pairs: what it kept of them is in its rounds (fuzz/hunt/hunt_rounds.h).
 // Throws: std::runtime_error where a mesh is not what it was; nlohmann's for another shape.
 std::vector<strata::PairSource> recorded_sources(const Json& spec);
 

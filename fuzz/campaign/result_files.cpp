@@ -83,6 +83,14 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
   return summary;
 }
 
+Json shard_summary(const Shard& shard, const Store& store, bool complete, std::uint64_t pairs) {
+  return {{"shard", shard.name()},
+          {"complete", complete},
+          {"pairs", pairs},
+          {"disagreements", store.disagreements()},
+          {"signatures", store.signatures().size()}};
+}
+
 std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row) {
   const std::filesystem::path file = row.at("case").get<std::string>();
   if (file.parent_path() != "cases" || file.extension() != ".pairs")

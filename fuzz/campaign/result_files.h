@@ -17,6 +17,9 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Trut
 // put into it.   Returns: the summary.
 Json write_summary(const Campaign& campaign, const Store& store, bool complete);
 
+// What a shard says instead, until all are merged: {"shard", "complete", "pairs", "disagreements", "signatures"}.
+Json shard_summary(const Shard& shard, const Store& store, bool complete, std::uint64_t pairs);
+
 // The file of a signature's cases, by its row in the summary.
 // Throws: std::runtime_error where that is not within cases/: what reads a summary also writes these files.
 std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row);

@@ -6,9 +6,11 @@
 
 #include <chrono>
 #include <fstream>
+#include <set>
 
 #include "core/fnv1a.h"
 #include "fuzz/files.h"
+#include "fuzz/hunt/feedback.h"
 
 namespace graze::fuzz {
 namespace {
@@ -22,6 +24,15 @@ std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
+// Of the signatures, their margins aside, the hashes, each once.
+std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signatures) {
+  std::set<std::string> ways;
+  for (const auto& [key, count] : signatures) {
+    if (const auto signature = analysis::parse_signature(key)) ways.insert(fmt::format("{:016x}", fnv1a(coarse_key(*signature))));
+  }
+  return ways;
+}
+
 }  // namespace
 
 RunStatus::RunStatus(const Campaign& campaign) : file_(campaign.directory / kFile) {
@@ -29,7 +40,7 @@ RunStatus::RunStatus(const Campaign& campaign) : file_(campaign.directory / kFil
   gethostname(host, sizeof host - 1);
   status_ = {{"state", "running"},   {"shard", campaign.shard.name()}, {"pairs", 0},   {"done", 0},
              {"rate", 0},            {"seconds_left", nullptr},        {"disagreements", 0}, {"signatures", 0},
-             {"host", host},         {"process", getpid()},            {"updated", now()}};
+             {"ways", Json::array()}, {"host", host},         {"process", getpid()},            {"updated", now()}};
 }
 
 void RunStatus::write() {
@@ -40,13 +51,14 @@ void RunStatus::write() {
   }
 }
 
-void RunStatus::tell(const Progress& progress) {
+void RunStatus::tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures) {
   status_["pairs"] = progress.total;
   status_["done"] = progress.done;
   status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
   status_["seconds_left"] = progress.seconds_left ? Json(*progress.seconds_left) : Json();
   status_["disagreements"] = progress.all_disagreements;
-  status_["signatures"] = progress.signatures;
+  if (status_["signatures"] != signatures.size()) status_["ways"] = ways_of(signatures);
+  status_["signatures"] = signatures.size();
   if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween) return;
   written_ = progress.seconds;
   write();

@@ -16,8 +16,9 @@ class RunStatus {
   // Nothing is written before the first tell: the directory may be another's.
   explicit RunStatus(const Campaign& campaign);
 
-  // Says how far it is, every few seconds at most. What cannot be written is left out: it is for those who watch.
-  void tell(const Progress& progress);
+  // Says how far it is, and what was seen so far, every few seconds at most. What cannot be written is left out: it is
+  // for those who watch.
+  void tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures);
 
   // Says how it ended: "done", "stopped" or "failed", and then why. Nothing of a run that told nothing.
   void end(const std::string& state, const std::string& why = {});

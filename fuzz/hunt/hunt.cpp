@@ -14,10 +14,11 @@
 #include <deque>
 #include <set>
 
-#include "core/fnv1a.h"
+#include "core/error.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/campaign/run_status.h"
+#include "fuzz/hunt/hunt_rounds.h"
 #include "fuzz/hunt/round.h"
-#include "fuzz/hunt/round_bytes.h"
 #include "fuzz/minimise/kinds.h"
 
 namespace graze::fuzz {
@@ -56,13 +57,15 @@ class Processes {
 class Hunter {
  public:
   Hunter(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report)
-      : hunt_(hunt), stop_(stop), report_(report), kept_(std::make_shared<std::map<std::uint64_t, FoundPair>>()),
-        per_round_(round_pairs(hunt.pairs)) {
+      : hunt_(hunt), stop_(stop), report_(report), found_(std::make_shared<HuntRounds>()), status_(hunt.campaign),
+        share_(share_of(hunt.campaign.shard, 0, hunt.pairs)), per_round_(round_pairs(share_.pairs)) {
     hunt.campaign.sources = {
-        {"hunt", hunt.pairs, [kept = kept_](std::uint64_t index) { return kept->at(index).pair; }}};
+        {"hunt", hunt.pairs, [found = found_](std::uint64_t index) { return found->all.kept.at(index).pair; }}};
     threads_ = hunt.campaign.threads > 0 ? hunt.campaign.threads : tbb::info::default_concurrency();
     store_.emplace(store_spec(hunt.campaign));
-    checksum_ = fnv1a(hunt.campaign.spec.dump() + hunt.campaign.build.dump());
+    if (fs::exists(merged_rounds_file(hunt.campaign.directory)))
+      throw UsageError(hunt.campaign.directory.string() + ": holds a hunt that was merged of shards, which is done; choose another --out");
+    checksum_ = hunt_checksum(hunt.campaign.spec, hunt.campaign.build);
     fs::create_directories(folder());
     for (const auto& file : fs::directory_iterator(folder())) {  // of processes that were killed
       if (file.path().extension() != ".round") fs::remove(file.path());
@@ -70,17 +73,21 @@ class Hunter {
   }
 
   Outcome run() {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_));
-    const std::uint64_t rounds = (hunt_.pairs + per_round_ - 1) / per_round_;
-    for (std::uint64_t first = 0; first < rounds && !over(); first += kRoundsOfGeneration)
-      generation(first, std::min(rounds, first + kRoundsOfGeneration));
-    const bool complete = store_->done(0) == hunt_.pairs;
-    Outcome outcome{complete, write_summary(hunt_.campaign, *store_, complete), store_->oracle()};
-    write_whole(hunt_.campaign.directory / "hunt.json", told().dump(1) + "\n");
-    append_timing(hunt_.campaign.directory,
-                  {{"pairs", done_here_}, {"seconds", seconds()}, {"threads", threads_}, {"machine", machine_name()}, {"engine", "cpu"}},
-                  outcome.oracle);
-    return outcome;
+    try {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads_));
+      tell_status();
+      const std::uint64_t rounds = (share_.pairs + per_round_ - 1) / per_round_;
+      for (std::uint64_t first = 0; first < rounds && !over(); first += kRoundsOfGeneration)
+        generation(first, std::min(rounds, first + kRoundsOfGeneration));
+      Outcome outcome = finished();
+      store_.reset();
+      status_.end(outcome.complete ? "done" : "stopped");
+      if (outcome.complete) seal(hunt_.campaign.directory);
+      return outcome;
+    } catch (const std::exception& error) {
+      status_.end("failed", error.what());
+      throw;
+    }
   }
 
  private:
@@ -91,9 +98,9 @@ class Hunter {
     bool whole() const { return kept && committed; }
   };
 
-  fs::path folder() const { return hunt_.campaign.directory / "hunt"; }
+  fs::path folder() const { return rounds_folder(hunt_.campaign.directory); }
   fs::path file_of(const PairRange& range, const char* kind) const {
-    return folder() / fmt::format("{:06}.{}", range.first / per_round_, kind);
+    return folder() / fmt::format("{:06}.{}", (range.first - share_.first) / per_round_, kind);
   }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool over() const { return stop_ || (hunt_.seconds > 0 && seconds() >= hunt_.seconds); }
@@ -103,7 +110,7 @@ class Hunter {
     std::vector<Wanted> rounds;
     for (std::uint64_t r = first; r < last; ++r) {
       Wanted wanted;
-      wanted.range = {0, r * per_round_, std::min(per_round_, hunt_.pairs - r * per_round_)};
+      wanted.range = {0, share_.first + r * per_round_, std::min(per_round_, share_.pairs - r * per_round_)};
       wanted.kept = parse_round(read_whole(file_of(wanted.range, "round")), checksum_);
       wanted.committed = store_->holds(wanted.range);
       rounds.push_back(std::move(wanted));
@@ -136,7 +143,7 @@ class Hunter {
     return true;
   }
 
-  RoundTask task_of(const Wanted& round) const { return {&hunt_.campaign, &hunt_.drawn, round.range, &corpus_}; }
+  RoundTask task_of(const Wanted& round) const { return {&hunt_.campaign, &hunt_.drawn, round.range, &found_->all.units}; }
 
   // Keeps the round, and what is new in it.
   void finish(Wanted& round) {
@@ -178,7 +185,7 @@ class Hunter {
       std::vector<LaneReason> reasons;
     };
     std::vector<New> fresh;
-    std::set<std::string> coarse = coarse_;
+    std::set<std::string> coarse = found_->coarse;
     for (const auto& [key, found] : result.counts.signatures) {
       const std::optional<analysis::Signature> signature = analysis::parse_signature(key);
       if (!signature || !coarse.insert(coarse_key(*signature)).second) continue;
@@ -190,7 +197,7 @@ class Hunter {
       fresh[i].reasons = reasons_of(*hunt_.campaign.under_test, fresh[i].signature.subject, result.kept.at(fresh[i].index).pair, truth);
     });
     std::sort(fresh.begin(), fresh.end(), [](const New& l, const New& r) { return l.index < r.index; });
-    std::set<std::string> known = kinds_;
+    std::set<std::string> known = found_->kinds;
     for (const New& of : fresh) {
       for (const LaneReason& reason : of.reasons) {
         const std::string key = kind_key(of.signature.subject, reason, of.signature.shape);
@@ -201,61 +208,58 @@ class Hunter {
 
   void take(const KeptRound& round) {
     for (const Unit& unit : round.units) {
-      corpus_.push_back(unit);
       for (const std::uint16_t f : unit.features) seen_.set(f);
     }
-    kept_->insert(round.kept.begin(), round.kept.end());
-    coarse_.insert(round.coarse.begin(), round.coarse.end());
-    for (std::size_t m = 0; m < mutations_.size(); ++m) {
-      mutations_[m].pairs += round.mutations[m].pairs;
-      mutations_[m].disagreements += round.mutations[m].disagreements;
-      mutations_[m].units += round.mutations[m].units;
-    }
-    for (const NewKind& kind : round.kinds) {
-      kinds_.insert(kind.key);
-      in_order_.push_back(kind);
-    }
-    done_ = round.first + round.pairs;
-    if (done_here_ == 0) known_before_ = kinds_.size();
+    found_->add(round);
+    if (done_here_ == 0) known_before_ = found_->kinds.size();
     if (!round.kinds.empty() && done_here_ > 0) last_kind_ = seconds();
   }
 
-  void report_progress() const {
-    report_({done_, hunt_.pairs, done_here_, seconds(), corpus_.size(), store_->signatures().size(), kinds_.size(),
-             kinds_.size() - known_before_, seconds() - last_kind_});
+  void report_progress() {
+    tell_status();
+    report_({found_->all.pairs, share_.pairs, done_here_, seconds(), found_->all.units.size(), store_->signatures().size(),
+             found_->kinds.size(), found_->kinds.size() - known_before_, seconds() - last_kind_});
   }
 
-  // {"pairs", "units", "mutations": [{"mutation", "pairs", "disagreements", "units", "kinds"}],
-  //  "kinds": [{"key", "index", "mutation"}]}, kinds in the order in which they were found.
-  Json told() const {
-    Json mutations = Json::array(), kinds = Json::array();
-    std::array<std::uint64_t, kMutationCount> kinds_of{};
-    for (const NewKind& kind : in_order_) {
-      ++kinds_of[static_cast<std::size_t>(kind.mutation)];
-      kinds.push_back({{"key", kind.key}, {"index", kind.index}, {"mutation", kMutationIds[static_cast<std::size_t>(kind.mutation)]}});
+  void tell_status() {
+    Progress progress;
+    progress.done = found_->all.pairs;
+    progress.total = share_.pairs;
+    progress.done_here = done_here_;
+    progress.seconds = seconds();
+    if (done_here_ > 0)
+      progress.seconds_left = progress.seconds / static_cast<double>(done_here_) * static_cast<double>(progress.total - progress.done);
+    progress.all_disagreements = store_->disagreements();
+    progress.signatures = store_->signatures().size();
+    status_.tell(progress, store_->signatures());
+  }
+
+  Outcome finished() {
+    const bool complete = store_->gaps(0).empty();
+    Outcome outcome{complete, {}, store_->oracle()};
+    if (hunt_.campaign.shard.whole()) {
+      outcome.summary = write_summary(hunt_.campaign, *store_, complete);
+    } else {
+      if (complete) store_->compact();
+      outcome.summary = shard_summary(hunt_.campaign.shard, *store_, complete, found_->all.pairs);
     }
-    for (std::size_t m = 0; m < mutations_.size(); ++m) {
-      mutations.push_back({{"mutation", kMutationIds[m]},
-                           {"pairs", mutations_[m].pairs},
-                           {"disagreements", mutations_[m].disagreements},
-                           {"units", mutations_[m].units},
-                           {"kinds", kinds_of[m]}});
-    }
-    return {{"pairs", done_}, {"units", corpus_.size()}, {"mutations", mutations}, {"kinds", kinds}};
+    write_whole(hunt_.campaign.directory / "hunt.json", found_->told().dump(1) + "\n");
+    append_timing(hunt_.campaign.directory,
+                  {{"pairs", done_here_}, {"seconds", seconds()}, {"threads", threads_}, {"machine", machine_name()}, {"engine", "cpu"}},
+                  outcome.oracle);
+    return outcome;
   }
 
   Hunt& hunt_;
   const std::atomic<bool>& stop_;
   const std::function<void(const HuntProgress&)>& report_;
-  std::shared_ptr<std::map<std::uint64_t, FoundPair>> kept_;
-  std::uint64_t per_round_, checksum_ = 0, done_ = 0, done_here_ = 0;
+  std::shared_ptr<HuntRounds> found_;  // the rounds that are done, in their order
+  RunStatus status_;
+  PairRange share_;
+  std::uint64_t per_round_, checksum_ = 0, done_here_ = 0;
   int threads_;
   std::optional<Store> store_;
-  std::vector<Unit> corpus_;
   std::bitset<kFeatures> seen_;
-  std::set<std::string> coarse_, kinds_;
-  std::vector<NewKind> in_order_;
-  std::array<MutationCounts, kMutationCount> mutations_{};
   std::size_t known_before_ = 0;
   double last_kind_ = 0;
   const Clock::time_point start_ = Clock::now();

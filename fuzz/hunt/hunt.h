@@ -37,8 +37,9 @@ Json hunt_spec(const Hunt& hunt);
 // The pairs of a round.
 std::uint64_t round_pairs(std::uint64_t pairs);
 
-// Runs or goes on with the hunt until done, or its time is over, or `stop`; then writes summary.json, hunt.json,
-// timings.json and cases/.
+// Runs or goes on with the hunt, or with a shard of it, until done, or its time is over, or `stop`; then writes hunt.json
+// and timings.json, and of a whole one summary.json and cases/; status.json meanwhile. A shard is a search of its own,
+// through its share of the pairs' numbers.
 // Requires: has_libfuzzer(); no lane runs on a device.
 // Throws: OracleApart, UsageError, std::runtime_error; committed rounds stay in any case.
 Outcome run_hunt(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report);

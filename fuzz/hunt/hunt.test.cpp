@@ -8,9 +8,13 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <set>
 
+#include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign_testing.h"
+#include "fuzz/campaign/merge.h"
+#include "fuzz/campaign/run_status.h"
 #include "fuzz/hunt/feedback.h"
 #include "fuzz/hunt/round.h"
 #include "fuzz/hunt/round_bytes.h"
@@ -151,6 +155,31 @@ class HuntFiles : public CampaignFiles {
     return run_hunt(hunt, stop, [&](const HuntProgress& progress) { stop = progress.done_here >= rounds * round_pairs(hunt.pairs); }).summary;
   }
 
+  Json run_shard(const std::string& name, const Shard& shard, std::uint64_t rounds = ~0ull) const {
+    Hunt hunt = hunt_of(name, 2);
+    hunt.campaign.shard = shard;
+    std::atomic<bool> stop{false};
+    return run_hunt(hunt, stop, [&](const HuntProgress& progress) { stop = progress.done_here >= rounds * 256; }).summary;
+  }
+
+  // Every pair of every case is wrong as its signature says.   Returns: how many there are.
+  std::size_t expect_cases_are_true(const std::string& name, const Json& summary) const {
+    Campaign campaign;
+    campaign.under_test = &under_test_;
+    campaign.sources = {{"hunt", 5000, nullptr}};
+    PairJudge judge(campaign);
+    BatchResult counts = no_counts(campaign);
+    std::size_t cases = 0;
+    for (const Json& row : summary["signatures"]) {
+      for (const corpus::Entry& entry : corpus::read_pairs(case_file(root_ / name, row))) {
+        const auto failures = judge.judge(entry.pair, cases++, counts).failures;
+        EXPECT_TRUE(std::any_of(failures.begin(), failures.end(), [&](const auto& f) { return analysis::key(f) == row["key"]; }));
+        EXPECT_EQ(corpus::origin_of(entry).substr(0, 7), "hunt:3:");
+      }
+    }
+    return cases;
+  }
+
   void expect_same_hunt(const std::string& one, const std::string& other) const {
     expect_same_bytes(one, other);
     EXPECT_EQ(read_whole(root_ / one / "hunt.json"), read_whole(root_ / other / "hunt.json"));
@@ -175,21 +204,8 @@ TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
 
 TEST_F(HuntFiles, KeepsPairsThatFailAsTheirSignatureSays) {
   const Json summary = run("kept", 2);
-  Campaign campaign;
-  campaign.under_test = &under_test_;
-  campaign.sources = {{"hunt", 5000, nullptr}};
-  PairJudge judge(campaign);
-  BatchResult counts = no_counts(campaign);
   ASSERT_GT(summary["signatures"].size(), 20u);
-  std::size_t cases = 0;
-  for (const Json& row : summary["signatures"]) {
-    for (const corpus::Entry& entry : corpus::read_pairs(case_file(root_ / "kept", row))) {
-      const auto failures = judge.judge(entry.pair, cases++, counts).failures;
-      EXPECT_TRUE(std::any_of(failures.begin(), failures.end(), [&](const auto& f) { return analysis::key(f) == row["key"]; }));
-      EXPECT_EQ(corpus::origin_of(entry).substr(0, 7), "hunt:3:");
-    }
-  }
-  EXPECT_GT(cases, 20u);
+  EXPECT_GT(expect_cases_are_true("kept", summary), 20u);
   const Json told = Json::parse(read_whole(root_ / "kept/hunt.json"));
   std::uint64_t pairs = 0, wrong = 0;
   for (const Json& row : told["mutations"]) {
@@ -199,6 +215,69 @@ TEST_F(HuntFiles, KeepsPairsThatFailAsTheirSignatureSays) {
   EXPECT_EQ(pairs, 5000u);
   EXPECT_EQ(wrong, summary["disagreements"]);
   EXPECT_GT(told["kinds"].size(), 3u);
+}
+
+TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
+  std::vector<std::filesystem::path> parts;
+  std::set<std::string> kinds;
+  std::uint64_t wrong = 0, units = 0, new_kinds = 0;
+  for (std::uint64_t k = 1; k <= 3; ++k) {
+    const std::string name = "part-" + std::to_string(k);
+    parts.push_back(root_ / name);
+    if (k == 2) {  // interrupted, then gone on with
+      EXPECT_FALSE(run_shard(name, {k, 3}, 2)["complete"].get<bool>());
+    }
+    const Json summary = run_shard(name, {k, 3});
+    EXPECT_EQ(summary["shard"], std::to_string(k) + "/3");
+    EXPECT_TRUE(summary["complete"].get<bool>());
+    EXPECT_FALSE(std::filesystem::exists(parts.back() / "summary.json"));
+    EXPECT_EQ(read_status(parts.back())["state"], "done");
+    EXPECT_GT(read_status(parts.back())["ways"].size(), 3u);
+    const Json told = Json::parse(read_whole(parts.back() / "hunt.json"));
+    for (const Json& kind : told["kinds"]) kinds.insert(kind["key"]);
+    new_kinds += told["kinds"].size();
+    wrong += summary["disagreements"].get<std::uint64_t>();
+    units += told["units"].get<std::uint64_t>();
+  }
+  EXPECT_LT(kinds.size(), new_kinds);  // some were found by several
+
+  const Outcome merged = merge({parts, root_ / "merged", false});
+  EXPECT_TRUE(merged.complete);
+  EXPECT_EQ(merged.summary["strata"]["hunt"]["pairs"], 5000);
+  EXPECT_EQ(merged.summary["disagreements"], wrong);
+  EXPECT_GT(expect_cases_are_true("merged", merged.summary), 20u);
+  const Json told = Json::parse(read_whole(root_ / "merged/hunt.json"));
+  EXPECT_EQ(told["pairs"], 5000);
+  EXPECT_EQ(told["units"], units);
+  std::set<std::string> once;
+  for (const Json& kind : told["kinds"]) EXPECT_TRUE(once.insert(kind["key"]).second) << kind;
+  EXPECT_EQ(once, kinds);
+
+  std::reverse(parts.begin(), parts.end());
+  merge({parts, root_ / "backwards", false});
+  expect_same_hunt("merged", "backwards");
+  merge({{root_ / "merged"}, root_ / "again", false});
+  expect_same_hunt("merged", "again");
+
+  const auto refusal = [&](const MergeOptions& options) -> std::string {
+    try {
+      merge(options);
+    } catch (const std::runtime_error& error) {
+      EXPECT_FALSE(std::filesystem::exists(options.out));
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal({{parts[0], parts[2]}, root_ / "none", false}).find("none that is 2/3; it is run by: graze hunt --runs 5000"), std::string::npos);
+  EXPECT_NE(refusal({parts, root_ / "none", true}).find("merged when all are done"), std::string::npos);
+  std::ofstream(parts[1] / "hunt/000001.round", std::ios::app) << "x";
+  const std::string damaged = refusal({parts, root_ / "none", false});
+  EXPECT_NE(damaged.find("part-2/hunt: expected the rounds of its 1667 pairs, found those of 1411"), std::string::npos) << damaged;
+  EXPECT_NE(damaged.find("--shard 2/3"), std::string::npos) << damaged;
+  run_shard("part-2", {2, 3});  // that round again
+  merge({parts, root_ / "mended", false});
+  expect_same_hunt("merged", "mended");
+  EXPECT_THROW(run("merged", 1), UsageError);
 }
 
 TEST_F(HuntFiles, SaysWhatWentWrongInARound) {

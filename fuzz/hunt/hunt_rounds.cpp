@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/hunt/hunt_rounds.h"
+
+#include <algorithm>
+
+#include "core/fnv1a.h"
+#include "fuzz/files.h"
+
+namespace graze::fuzz {
+
+namespace fs = std::filesystem;
+
+void HuntRounds::add(const KeptRound& round) {
+  all.pairs += round.pairs;
+  all.units.insert(all.units.end(), round.units.begin(), round.units.end());
+  all.kept.insert(round.kept.begin(), round.kept.end());
+  coarse.insert(round.coarse.begin(), round.coarse.end());
+  for (std::size_t m = 0; m < all.mutations.size(); ++m) {
+    all.mutations[m].pairs += round.mutations[m].pairs;
+    all.mutations[m].disagreements += round.mutations[m].disagreements;
+    all.mutations[m].units += round.mutations[m].units;
+  }
+  for (const NewKind& kind : round.kinds) {
+    if (kinds.insert(kind.key).second) all.kinds.push_back(kind);
+  }
+}
+
+Json HuntRounds::told() const {
+  Json mutations = Json::array(), in_order = Json::array();
+  std::array<std::uint64_t, kMutationCount> kinds_of{};
+  for (const NewKind& kind : all.kinds) {
+    const auto m = static_cast<std::size_t>(kind.mutation);
+    ++kinds_of[m];
+    in_order.push_back({{"key", kind.key}, {"index", kind.index}, {"mutation", kMutationIds[m]}});
+  }
+  for (std::size_t m = 0; m < all.mutations.size(); ++m) {
+    mutations.push_back({{"mutation", kMutationIds[m]},
+                         {"pairs", all.mutations[m].pairs},
+                         {"disagreements", all.mutations[m].disagreements},
+                         {"units", all.mutations[m].units},
+                         {"kinds", kinds_of[m]}});
+  }
+  return {{"pairs", all.pairs}, {"units", all.units.size()}, {"mutations", mutations}, {"kinds", in_order}};
+}
+
+fs::path rounds_folder(const fs::path& hunt) { return hunt / "hunt"; }
+fs::path merged_rounds_file(const fs::path& hunt) { return rounds_folder(hunt) / "merged.round"; }
+
+std::uint64_t hunt_checksum(const Json& spec, const Json& build) { return fnv1a(spec.dump() + build.dump()); }
+
+std::vector<KeptRound> read_rounds(const StoreSpec& hunt) {
+  std::vector<KeptRound> rounds;
+  std::error_code none;
+  for (const auto& file : fs::directory_iterator(rounds_folder(hunt.directory), none)) {
+    if (file.path().extension() != ".round") continue;
+    if (auto round = parse_round(read_whole(file.path()), hunt_checksum(hunt.spec, hunt.build)))
+      rounds.push_back(std::move(*round));
+  }
+  std::sort(rounds.begin(), rounds.end(), [](const KeptRound& l, const KeptRound& r) { return l.first < r.first; });
+  return rounds;
+}
+
+}  // namespace graze::fuzz

@@ -5,6 +5,7 @@
 
 #include "analysis/tally.h"
 #include "core/exact/exact.h"
+#include "core/exact_blocks/decide.h"
 #include "core/margin/single_precision.h"
 #include "core/margin/tie_proof.h"
 #include "oracle/truth.h"
@@ -47,12 +48,19 @@ TEST_P(EveryStratum, TheOraclesTwoDecisionsAgree) {
 
 // The exact decision on machine numbers: verdict, contact, shape and the margin's sign are the oracle's.
 TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
-  for (std::uint64_t index = 0; index < 100'000; ++index) {
-    const Pair pair = strata::generate(kSeed + 1, GetParam().stratum, index);
+  constexpr std::size_t kPairs = 100'000;
+  std::vector<Pair> pairs(kPairs);
+  for (std::size_t index = 0; index < kPairs; ++index) pairs[index] = strata::generate(kSeed + 1, GetParam().stratum, index);
+  std::vector<std::uint64_t> side_by_side((kPairs + 63) / 64), declined(side_by_side.size());
+  exact::decide(coordinates(pairs[0]), kPairs, side_by_side.data(), declined.data());
+  for (std::size_t index = 0; index < kPairs; ++index) {
+    const Pair& pair = pairs[index];
     const float *a = &pair.a[0].x, *b = &pair.b[0].x;
     const Verdict verdict = oracle::cgal_verdict(pair);
     const Contact contact = oracle::gmp_contact(pair);
     ASSERT_EQ(exact::intersects(a, b), verdict == Verdict::intersects) << index;
+    ASSERT_EQ(side_by_side[index / 64] >> index % 64 & 1, verdict == Verdict::intersects) << index;
+    ASSERT_EQ(declined[index / 64] >> index % 64 & 1, 0u) << index;
     const exact::Relation r = exact::relation(a, b);
     ASSERT_EQ(r.intersects, verdict == Verdict::intersects) << index;
     ASSERT_EQ(r.contact, static_cast<int>(contact) - 1) << index;

@@ -11,7 +11,7 @@
 
 #include "core/decide_each.h"
 #include "core/error.h"
-#include "core/exact/exact.h"
+#include "core/exact_blocks/decide.h"
 #include "core/host_blocks.h"
 
 namespace graze {
@@ -28,11 +28,7 @@ constexpr AlgorithmInfo kExactInfo{"exact",
                                    true};
 
 void decide_exactly(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-  decide_each(pairs, count, intersects, declined, [](const Pair& pair) {
-    return !is_finite(pair)                                ? Verdict::declined
-           : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects
-                                                           : Verdict::disjoint;
-  });
+  exact::decide(reinterpret_cast<const float*>(pairs), count, intersects, declined);
 }
 
 template <class... Algorithm>

@@ -68,8 +68,8 @@ TEST_F(MergeTest, AnyNumberOfShardsInAnyOrderLeavesTheBytesOfTheWhole) {
   EXPECT_GT(whole["signatures"].size(), 20u);
   std::mt19937 random(1);
   // However many batches a shard took, it leaves one row of each source.
-  const Campaign parts = campaign("rows", {2, 3});
-  EXPECT_GT(run_in_parts(parts), 1);
+  const Campaign rows = campaign("rows", {2, 3});
+  EXPECT_GT(run_in_parts(rows), 1);
   EXPECT_EQ(SQLite::Database(database("rows").string()).execAndGet("SELECT count(*) FROM batch").getInt64(), 3);
   for (const std::uint64_t of : {1, 2, 3, 7, 64}) {
     std::vector<fs::path> parts = run_shards(of);

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// By Google Highway: compiled for each instruction set, of which the best is taken when the program runs. Roundings may
+// differ from one set to another, as some contract; what is beyond the error bound does not, and all else is exact.
+#ifdef __wasm__
+#include "core/exact_blocks/one_by_one.h"
+
+namespace graze::exact {
+void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  one_by_one(pairs, count, intersects, declined);
+}
+const char* decide_target() { return "scalar"; }
+}  // namespace graze::exact
+#else
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/exact_blocks/decide.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+
+#include "core/exact/exact.h"
+#include "core/exact_blocks/decide.h"
+#include "core/exact_blocks/one_by_one.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace graze::exact {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE
+#include "core/exact_blocks/vectors-inl.h"
+
+constexpr std::size_t kChunk = 512;  // pairs whose rest is gathered: 36 KB
+constexpr unsigned kAll = (1u << kAtOnce) - 1;
+constexpr int kBitsOfDoubles = detail::kDoubleBits, kBitsOfBoth = 34;
+
+// Numbers of pairs that wait for the next step.
+struct Waiting {
+  std::uint16_t pair[kChunk + kAtOnce];
+  std::size_t count = 0;
+
+  void add(unsigned which, const std::uint16_t* pairs) {
+    for (; which != 0; which &= which - 1) pair[count++] = pairs[std::countr_zero(which)];
+  }
+
+  // Calls step(numbers, which) with kAtOnce of them at a time, the last one repeated; `which` has a bit for each one.
+  template <class Step>
+  void take(const Step& step) {
+    for (std::size_t i = 0; i < kAtOnce && count > 0; ++i) pair[count + i] = pair[count - 1];
+    for (std::size_t i = 0; i < count; i += kAtOnce)
+      step(pair + i, (1u << std::min(kAtOnce, count - i)) - 1);
+  }
+};
+
+struct Chunk {
+  const float* pairs;
+  std::uint64_t *intersects, *declined;  // words of zeros
+
+  // Those from `first` on.
+  HWY_INLINE Coordinates from(std::size_t first) const {
+    const float* where[kAtOnce];
+    for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + (first + i) * kFloats;
+    return Coordinates(where);
+  }
+
+  HWY_INLINE Coordinates at(const std::uint16_t* numbers) const {
+    const float* where[kAtOnce];
+    for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + numbers[i] * kFloats;
+    return Coordinates(where);
+  }
+
+  static void set(std::uint64_t* words, unsigned which, const std::uint16_t* numbers) {
+    for (; which != 0; which &= which - 1) {
+      const std::size_t number = numbers[std::countr_zero(which)];
+      words[number / 64] |= std::uint64_t{1} << number % 64;
+    }
+  }
+};
+
+HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
+  Waiting last, open, small, middle, rest;
+  const std::size_t side_by_side = count / kAtOnce * kAtOnce;
+  for (std::size_t i = 0; i < side_by_side; i += kAtOnce) {
+    const Screened found = screen_all(chunk.from(i));
+    chunk.intersects[i / 64] |= std::uint64_t{found.intersects} << i % 64;
+    chunk.declined[i / 64] |= std::uint64_t{found.declined} << i % 64;
+    for (unsigned left = kAll & ~(found.intersects | found.disjoint | found.declined); left != 0; left &= left - 1)
+      open.pair[open.count++] = static_cast<std::uint16_t>(i + static_cast<std::size_t>(std::countr_zero(left)));
+  }
+  for (std::size_t i = side_by_side; i < count; ++i) last.pair[last.count++] = static_cast<std::uint16_t>(i);
+  last.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
+    const Screened found = screen_all(chunk.at(numbers));
+    chunk.set(chunk.intersects, which & found.intersects, numbers);
+    chunk.set(chunk.declined, which & found.declined, numbers);
+    open.add(which & ~(found.intersects | found.disjoint | found.declined), numbers);
+  });
+  open.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
+    const Coordinates pairs = chunk.at(numbers);
+    const unsigned shared = share_vertex(pairs);
+    chunk.set(chunk.intersects, which & shared, numbers);
+    if ((which &= ~shared) == 0) return;
+    const unsigned of_doubles = OnGrid(pairs, kBitsOfDoubles).within, of_both = OnGrid(pairs, kBitsOfBoth).within;
+    small.add(which & of_doubles, numbers);
+    middle.add(which & ~of_doubles & of_both, numbers);
+    rest.add(which & ~of_doubles & ~of_both, numbers);
+  });
+  small.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
+    chunk.set(chunk.intersects, which & ~separated<Double>(OnGrid(chunk.at(numbers), kBitsOfDoubles)), numbers);
+  });
+  middle.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
+    chunk.set(chunk.intersects, which & ~separated<DoubleAndInteger>(OnGrid(chunk.at(numbers), kBitsOfBoth)), numbers);
+  });
+  for (std::size_t i = 0; i < rest.count; ++i) {
+    const float* const pair = chunk.pairs + rest.pair[i] * kFloats;
+    Stage stage;
+    if (detail::decide_unsure(pair, pair + 9, stage)) chunk.set(chunk.intersects, 1, rest.pair + i);
+  }
+}
+
+HWY_ATTR void decide_all(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  std::fill_n(intersects, (count + 63) / 64, 0);
+  std::fill_n(declined, (count + 63) / 64, 0);
+  for (std::size_t first = 0; first < count; first += kChunk)
+    decide_chunk({pairs + first * kFloats, intersects + first / 64, declined + first / 64}, std::min(kChunk, count - first));
+}
+
+const char* target() { return hwy::TargetName(HWY_TARGET); }
+
+#else
+
+void decide_all(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  one_by_one(pairs, count, intersects, declined);
+}
+
+const char* target() { return "scalar"; }
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace graze::exact
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace graze::exact {
+
+HWY_EXPORT(decide_all);
+HWY_EXPORT(target);
+
+void decide(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+  HWY_DYNAMIC_DISPATCH(decide_all)(pairs, count, intersects, declined);
+}
+
+const char* decide_target() { return HWY_DYNAMIC_DISPATCH(target)(); }
+
+}  // namespace graze::exact
+#endif
+#endif

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs side by side are decided as each alone, by every instruction set of this processor.
+// analysis/truth_over_strata.test.cpp compares with the oracle in every stratum.
+#include "core/exact_blocks/decide.h"
+
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/exact/exact.h"
+
+namespace graze::exact {
+namespace {
+
+class ExactBlocks : public testing::Test {
+ protected:
+  ~ExactBlocks() override { take(hwy::SupportedTargets()); }
+
+  static void take(std::int64_t targets) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+
+  // Calls check with the name of each way of computing that this processor has.   Returns: them.
+  template <class Check>
+  static std::set<std::string> on_every_target(const Check& check) {
+    hwy::SetSupportedTargetsForTest(0);
+    std::set<std::string> names;
+    for (std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS; all != 0; all &= all - 1) {
+      take(all & -all);
+      names.insert(decide_target());
+      check(decide_target());
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    return names;
+  }
+
+  // Both bits of every pair, and zeros behind the last.
+  static void expect_as_each_alone(const std::vector<float>& pairs, const std::string& what) {
+    const std::size_t count = pairs.size() / 18, words = (count + 63) / 64;
+    std::vector<std::uint64_t> yes(words + 1, ~0ull), declined(words + 1, ~0ull);
+    decide(pairs.data(), count, yes.data(), declined.data());
+    for (std::size_t i = 0; i < words * 64; ++i) {
+      bool finite = i < count, meet = false;
+      for (std::size_t c = 0; finite && c < 18; ++c) finite = std::isfinite(pairs[18 * i + c]);
+      if (finite) meet = intersects(&pairs[18 * i], &pairs[18 * i + 9]);
+      ASSERT_EQ(yes[i / 64] >> i % 64 & 1, meet) << what << ", pair " << i << " of " << count;
+      ASSERT_EQ(declined[i / 64] >> i % 64 & 1, i < count && !finite) << what << ", pair " << i << " of " << count;
+    }
+    EXPECT_EQ(yes[words] & declined[words], ~0ull) << "written behind the end";
+  }
+};
+
+std::vector<float> drawn(std::size_t pairs, auto coordinate) {
+  std::vector<float> all(18 * pairs);
+  for (float& x : all) x = coordinate();
+  return all;
+}
+
+TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
+  std::mt19937_64 random(7);
+  const auto whole = [&](int bits) { return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits)); };
+  const auto vertices_again = [&](std::vector<float> all) {  // of b, some are a's: contacts and coplanar pairs
+    for (std::size_t pair = 0; pair < all.size(); pair += 18) {
+      for (std::size_t v = 9; v < 18; v += 3) {
+        if (random() % 3 == 0) std::copy_n(&all[pair + random() % 3 * 3], 3, &all[pair + v]);
+      }
+      if (random() % 4 == 0) {
+        for (std::size_t v = 2; v < 18; v += 3) all[pair + v] = all[pair + 2];  // in one plane
+      }
+      if (random() % 8 == 0) std::copy_n(&all[pair + 3], 3, &all[pair + 6]);  // a segment
+    }
+    return all;
+  };
+  const std::vector<std::pair<std::string, std::vector<float>>> kinds = {
+      {"general", drawn(5000, [&] { return static_cast<float>(random() % 2000) / 7; })},
+      {"small lattice", drawn(20000, [&] { return whole(2); })},
+      {"lattice that doubles hold", vertices_again(drawn(5000, [&] { return whole(13); }))},
+      {"24 bits", vertices_again(drawn(5000, [&] { return whole(23); }))},
+      {"about 34 bits", vertices_again(drawn(5000, [&] { return std::ldexp(whole(23), static_cast<int>(random() % 12)); }))},
+      {"wider", vertices_again(drawn(2000, [&] { return std::ldexp(whole(23), static_cast<int>(random() % 60)); }))},
+      {"near the smallest", vertices_again(drawn(2000, [&] { return std::ldexp(whole(5), -149); }))},
+      {"near the largest", vertices_again(drawn(2000, [&] { return std::ldexp(whole(20), 106); }))},
+      {"any bits", drawn(5000, [&] {
+         const auto bits = static_cast<std::uint32_t>(random());
+         float x;
+         std::memcpy(&x, &bits, sizeof x);
+         return x;
+       })},
+  };
+  const std::set<std::string> names = on_every_target([&](const std::string& target) {
+    for (const auto& [kind, pairs] : kinds) expect_as_each_alone(pairs, target + ", " + kind);
+  });
+  EXPECT_TRUE(names.contains("scalar") || names.size() > 1) << "only one way of computing was tested";
+  std::string all;
+  for (const std::string& name : names) all += name + ' ';
+  RecordProperty("targets", all);
+}
+
+TEST_F(ExactBlocks, AreOfAnySizeAndDeclineWhatIsNotFinite) {
+  std::mt19937 random(8);
+  std::vector<float> pairs = drawn(1100, [&] { return static_cast<float>(random() % 9); });
+  for (std::size_t i = 0; i < pairs.size(); i += 18 * 5 + 7)
+    pairs[i] = i % 2 == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+  on_every_target([&](const std::string& target) {
+    for (std::size_t count = 0; count <= 140; ++count)
+      expect_as_each_alone({pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(18 * count)}, target);
+    for (const std::size_t count : {511, 512, 513, 1023, 1100})
+      expect_as_each_alone({pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(18 * count)}, target);
+  });
+}
+
+}  // namespace
+}  // namespace graze::exact

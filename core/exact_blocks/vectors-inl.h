@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+// What decide.cpp computes with: pairs side by side, one in each lane of a vector of doubles. Included once for each
+// instruction set, within its namespace, so there is no guard.
+//
+//   screen_all    the decision by planes with one error bound for each pair, as core/exact/screen.h
+//   share_vertex  as core/exact/shared_vertex.h
+//   separated     the decision by axes, as core/exact/by_axes.h, on numbers of which signs are exact:
+//                 Doubles where nothing rounds, and DoublesAndIntegers, each number as a double, which is near, and as a
+//                 64-bit integer, which is the number modulo 2^64: where the double is small the integer is the number.
+
+constexpr std::size_t kFloats = 18;
+using Tag = hn::CappedTag<double, 8>;
+using FloatTag = hn::Rebind<float, Tag>;
+using IntegerTag = hn::RebindToSigned<Tag>;
+using V = hn::Vec<Tag>;
+using VF = hn::Vec<FloatTag>;
+using VI = hn::Vec<IntegerTag>;
+using M = hn::Mask<Tag>;
+constexpr Tag d;
+constexpr FloatTag df;
+constexpr IntegerTag di;
+constexpr std::size_t kAtOnce = HWY_MAX_BYTES >= 64 ? 8 : 4;
+
+HWY_INLINE unsigned bits(M mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(d, mask, bytes);
+  return bytes[0];
+}
+
+template <class T>
+struct Three {
+  T x, y, z;
+};
+template <class T>
+HWY_INLINE Three<T> operator-(const Three<T>& l, const Three<T>& r) {
+  return {l.x - r.x, l.y - r.y, l.z - r.z};
+}
+
+// What a number is in each kind.
+struct Double {
+  V v;
+  static HWY_INLINE Double of_integer(V x) { return {x}; }
+  HWY_INLINE V sign() const { return v; }
+  friend HWY_INLINE Double operator-(Double l, Double r) { return {hn::Sub(l.v, r.v)}; }
+  // p q - r s
+  static HWY_INLINE Double minor_of(Double p, Double q, Double r, Double s) {
+    return {hn::MulSub(p.v, q.v, hn::Mul(r.v, s.v))};
+  }
+  static HWY_INLINE Double dot(const Three<Double>& u, const Three<Double>& v) {
+    return {hn::MulAdd(u.z.v, v.z.v, hn::MulAdd(u.y.v, v.y.v, hn::Mul(u.x.v, v.x.v)))};
+  }
+};
+
+// Of integers of up to 34 bits: a difference has 35, a determinant is less than 6 * 2^105, and its double is off by at
+// most 2^-50 of that (error_bound.h), less than 2^58: beyond 2^60 its sign is right, and so is that of a difference of
+// two. Up to 2^60, and what it may be off, the number is within 64 bits.
+struct DoubleAndInteger {
+  V v;
+  VI i;
+  static HWY_INLINE DoubleAndInteger of_integer(V x) { return {x, hn::ConvertTo(di, x)}; }
+  // A double of the number's sign.
+  HWY_INLINE V sign() const { return hn::IfThenElse(hn::Gt(hn::Abs(v), hn::Set(d, 0x1p60)), v, hn::ConvertTo(d, i)); }
+  friend HWY_INLINE DoubleAndInteger operator-(DoubleAndInteger l, DoubleAndInteger r) {
+    return {hn::Sub(l.v, r.v), hn::Sub(l.i, r.i)};
+  }
+  static HWY_INLINE DoubleAndInteger minor_of(DoubleAndInteger p, DoubleAndInteger q, DoubleAndInteger r,
+                                              DoubleAndInteger s) {
+    return {hn::MulSub(p.v, q.v, hn::Mul(r.v, s.v)), hn::Sub(hn::Mul(p.i, q.i), hn::Mul(r.i, s.i))};
+  }
+  static HWY_INLINE DoubleAndInteger dot(const Three<DoubleAndInteger>& u, const Three<DoubleAndInteger>& v) {
+    return {hn::MulAdd(u.z.v, v.z.v, hn::MulAdd(u.y.v, v.y.v, hn::Mul(u.x.v, v.x.v))),
+            hn::Add(hn::Add(hn::Mul(u.x.i, v.x.i), hn::Mul(u.y.i, v.y.i)), hn::Mul(u.z.i, v.z.i))};
+  }
+};
+
+template <class T>
+HWY_INLINE Three<T> cross(const Three<T>& u, const Three<T>& v) {
+  return {T::minor_of(u.y, v.z, u.z, v.y), T::minor_of(u.z, v.x, u.x, v.z), T::minor_of(u.x, v.y, u.y, v.x)};
+}
+
+HWY_INLINE Three<Double> chosen(M mask, const Three<Double>& yes, const Three<Double>& no) {
+  return {{hn::IfThenElse(mask, yes.x.v, no.x.v)}, {hn::IfThenElse(mask, yes.y.v, no.y.v)}, {hn::IfThenElse(mask, yes.z.v, no.z.v)}};
+}
+
+// The coordinates of kAtOnce pairs, which may lie anywhere.
+struct Coordinates {
+  VF x[kFloats];
+
+  HWY_INLINE explicit Coordinates(const float* const (&pairs)[kAtOnce]) {
+    for (std::size_t c = 0; c < 16; c += 4) columns(pairs, c, x[c], x[c + 1], x[c + 2], x[c + 3]);
+    VF again, too;
+    columns(pairs, 14, again, too, x[16], x[17]);
+  }
+
+ private:
+  // Four floats of one pair in every 128 bits.
+  static HWY_INLINE VF row(const float* const (&pairs)[kAtOnce], std::size_t k, std::size_t c) {
+    constexpr hn::FixedTag<float, 4> four;
+#if HWY_MAX_BYTES >= 64
+    return hn::Combine(df, hn::LoadU(four, pairs[k + 4] + c), hn::LoadU(four, pairs[k] + c));
+#else
+    return hn::LoadU(four, pairs[k] + c);
+#endif
+  }
+
+  static HWY_INLINE void columns(const float* const (&pairs)[kAtOnce], std::size_t c, VF& c0, VF& c1, VF& c2, VF& c3) {
+    constexpr hn::Repartition<double, FloatTag> by_two;
+    const VF r0 = row(pairs, 0, c), r1 = row(pairs, 1, c), r2 = row(pairs, 2, c), r3 = row(pairs, 3, c);
+    const auto lower_01 = hn::BitCast(by_two, hn::InterleaveLower(df, r0, r1));
+    const auto lower_23 = hn::BitCast(by_two, hn::InterleaveLower(df, r2, r3));
+    const auto upper_01 = hn::BitCast(by_two, hn::InterleaveUpper(df, r0, r1));
+    const auto upper_23 = hn::BitCast(by_two, hn::InterleaveUpper(df, r2, r3));
+    c0 = hn::BitCast(df, hn::InterleaveLower(by_two, lower_01, lower_23));
+    c1 = hn::BitCast(df, hn::InterleaveUpper(by_two, lower_01, lower_23));
+    c2 = hn::BitCast(df, hn::InterleaveLower(by_two, upper_01, upper_23));
+    c3 = hn::BitCast(df, hn::InterleaveUpper(by_two, upper_01, upper_23));
+  }
+};
+
+// Bit i for pair i: what is beyond doubt.
+struct Screened {
+  unsigned intersects, disjoint, declined;
+};
+
+// One triangle's vertices, the one that is alone on its side first, in the order of lone_vertices (core/exact/sides.h).
+struct Turned {
+  Three<Double> first, second, third;
+};
+
+// below: of the vertices, which are below the other triangle's plane; not all three alike.
+HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M other_is_below) {
+  const M apart_01 = hn::Xor(below[0], below[1]), apart_02 = hn::Xor(below[0], below[2]);
+  const M is_1 = hn::AndNot(apart_02, apart_01), is_2 = hn::AndNot(apart_01, apart_02);
+  const Three<Double> next = chosen(is_1, v[2], chosen(is_2, v[0], v[1]));
+  const Three<Double> last = chosen(is_1, v[0], chosen(is_2, v[1], v[2]));
+  return {chosen(is_1, v[1], chosen(is_2, v[2], v[0])), chosen(other_is_below, last, next),
+          chosen(other_is_below, next, last)};
+}
+
+// Of three that are not alike, whether the one that is alone is below: the other two are alike, and cancel.
+HWY_INLINE M alone_is_below(const M (&below)[3]) { return hn::Xor(hn::Xor(below[0], below[1]), below[2]); }
+
+HWY_INLINE Screened screen_all(const Coordinates& pairs) {
+  VF zeros = hn::Zero(df);  // but for what is not finite
+  for (const VF& x : pairs.x) zeros = hn::MulAdd(x, hn::Zero(df), zeros);
+  const unsigned declined = bits(hn::IsNaN(hn::PromoteTo(d, zeros)));
+
+  V bound = hn::Set(d, 6 * detail::kDeterminantError);  // see determinant_error in core/exact/error_bound.h
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    VF low = pairs.x[axis], high = pairs.x[axis];
+    for (std::size_t i = axis + 3; i < kFloats; i += 3) {
+      low = hn::Min(low, pairs.x[i]);
+      high = hn::Max(high, pairs.x[i]);
+    }
+    bound = hn::Mul(bound, hn::Sub(hn::PromoteTo(d, high), hn::PromoteTo(d, low)));
+  }
+
+  Three<Double> a[3], b[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto at = [&](std::size_t c) HWY_ATTR { return Double{hn::PromoteTo(d, pairs.x[c])}; };
+    a[i] = {at(3 * i), at(3 * i + 1), at(3 * i + 2)};
+    b[i] = {at(3 * i + 9), at(3 * i + 10), at(3 * i + 11)};
+  }
+  const Three<Double> normal_a = cross(a[1] - a[0], a[2] - a[0]), normal_b = cross(b[1] - b[0], b[2] - b[0]);
+  const V of_a[3] = {Double::dot(normal_b, a[0] - b[0]).v, Double::dot(normal_b, a[1] - b[0]).v,
+                     Double::dot(normal_b, a[2] - b[0]).v};
+  const V of_b[3] = {Double::dot(normal_a, b[0] - a[0]).v, Double::dot(normal_a, b[1] - a[0]).v,
+                     Double::dot(normal_a, b[2] - a[0]).v};
+  const auto least = [](const V(&v)[3]) HWY_ATTR { return hn::Min(hn::Min(v[0], v[1]), v[2]); };
+  const auto most = [](const V(&v)[3]) HWY_ATTR { return hn::Max(hn::Max(v[0], v[1]), v[2]); };
+  const V nearest = hn::Min(hn::Min(hn::Min(hn::Abs(of_a[0]), hn::Abs(of_a[1])), hn::Abs(of_a[2])),
+                            hn::Min(hn::Min(hn::Abs(of_b[0]), hn::Abs(of_b[1])), hn::Abs(of_b[2])));
+  const unsigned parted = ~declined & bits(hn::Gt(hn::Max(hn::Max(least(of_a), least(of_b)),
+                                                          hn::Max(hn::Neg(most(of_a)), hn::Neg(most(of_b)))), bound));
+  const unsigned on_sides = ~(parted | declined) & bits(hn::Gt(nearest, bound));
+  if (on_sides == 0) return {0, parted, declined};
+
+  const V zero = hn::Zero(d);
+  const M a_below[3] = {hn::Lt(of_a[0], zero), hn::Lt(of_a[1], zero), hn::Lt(of_a[2], zero)};
+  const M b_below[3] = {hn::Lt(of_b[0], zero), hn::Lt(of_b[1], zero), hn::Lt(of_b[2], zero)};
+  const Turned t = turned(a, a_below, alone_is_below(b_below)), u = turned(b, b_below, alone_is_below(a_below));
+  const V first = Double::dot(cross(u.first - t.second, t.first - t.second), u.second - t.second).v;
+  const V second = Double::dot(cross(u.first - t.first, t.third - t.first), u.third - t.first).v;
+  const V between = hn::Max(first, second);
+  return {on_sides & bits(hn::Lt(between, hn::Neg(bound))), parted | (on_sides & bits(hn::Gt(between, bound))), declined};
+}
+
+HWY_INLINE unsigned share_vertex(const Coordinates& pairs) {
+  auto shared = hn::Gt(hn::Zero(df), hn::Zero(df));
+  for (std::size_t i = 0; i < 9; i += 3) {
+    for (std::size_t j = 9; j < kFloats; j += 3) {
+      const auto same = hn::And(hn::Eq(pairs.x[i], pairs.x[j]), hn::And(hn::Eq(pairs.x[i + 1], pairs.x[j + 1]), hn::Eq(pairs.x[i + 2], pairs.x[j + 2])));
+      shared = hn::Or(shared, same);
+    }
+  }
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(df, shared, bytes);
+  return bytes[0];
+}
+
+// The coordinates as integers, where so many bits hold them all.
+struct OnGrid {
+  V x[kFloats];
+  unsigned within;  // bit i for pair i: they are integers
+
+  HWY_INLINE OnGrid(const Coordinates& pairs, int bits_of_grid) {
+    VF largest = hn::Set(df, 0x1p-126f);  // grids of subnormals alone are taken for finer ones
+    for (const VF& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
+    // Below 2^bits_of_grid, and no more is needed than that the largest is at least half of it: 2^(bits_of_grid - 1 - e).
+    const VI exponent = hn::And(hn::BitCast(di, hn::PromoteTo(d, largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
+    const V scale = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023 + bits_of_grid - 1} << 52), exponent));
+    M whole = hn::Eq(scale, scale);
+    for (std::size_t c = 0; c < kFloats; ++c) {
+      x[c] = hn::Mul(hn::PromoteTo(d, pairs.x[c]), scale);
+      whole = hn::And(whole, hn::Eq(hn::Round(x[c]), x[c]));
+    }
+    within = bits(whole);
+  }
+};
+
+// Whether an axis separates: the origin lies on one side of all these differences.
+struct Axes {
+  M separated;
+  V least, most;  // of all of them
+
+  HWY_INLINE Axes() : separated(hn::Gt(hn::Zero(d), hn::Zero(d))), least(hn::Zero(d)), most(hn::Zero(d)) {}
+  HWY_INLINE void look(V low, V high) {
+    separated = hn::Or(separated, hn::Or(hn::Gt(low, hn::Zero(d)), hn::Lt(high, hn::Zero(d))));
+    least = hn::Min(least, low);
+    most = hn::Max(most, high);
+  }
+  template <class... T>
+  HWY_INLINE void look_at(const T&... difference) {
+    V low = hn::Set(d, 0x1p1000), high = hn::Set(d, -0x1p1000);
+    ((low = hn::Min(low, difference.sign()), high = hn::Max(high, difference.sign())), ...);
+    look(low, high);
+  }
+};
+
+// The axes that decide, as look and look_flat of core/exact/axes.h have them; p are a's vertices and q are b's, seen from
+// a's first. Along each axis the differences of a vertex of b and one of a count, equal ones once.
+template <class T>
+HWY_INLINE unsigned separated(const OnGrid& pair) {
+  const auto at = [&](std::size_t c) HWY_ATTR { return T::of_integer(hn::Sub(pair.x[c], pair.x[c % 3])); };
+  const Three<T> zero = {at(0), at(1), at(2)};
+  const Three<T> p[3] = {zero, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}};
+  const Three<T> q[3] = {{at(9), at(10), at(11)}, {at(12), at(13), at(14)}, {at(15), at(16), at(17)}};
+  const Three<T> of_a[3] = {p[1], p[2] - p[1], zero - p[2]}, of_b[3] = {q[1] - q[0], q[2] - q[1], q[0] - q[2]};
+  Axes axes;
+  const Three<T> normal_a = cross(p[1], p[2]), normal_b = cross(of_b[0], of_b[1]);
+  axes.look_at(T::dot(normal_a, q[0]), T::dot(normal_a, q[1]), T::dot(normal_a, q[2]));
+  axes.look_at(T::dot(normal_b, q[0]), T::dot(normal_b, q[0] - p[1]), T::dot(normal_b, q[0] - p[2]));
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Three<T> n = cross(of_a[i], of_b[j]);
+      const T s = T::dot(n, p[i == 0 ? 2 : 1]), u = T::dot(n, q[j]), v = T::dot(n, q[(j + 2) % 3]);
+      axes.look_at(u, v, u - s, v - s);
+    }
+  }
+  const auto all_zero = [&]() HWY_ATTR { return hn::And(hn::Eq(axes.least, hn::Zero(d)), hn::Eq(axes.most, hn::Zero(d))); };
+  if (hn::AllFalse(d, all_zero())) return bits(axes.separated);
+
+  // Those that lie in a plane with the origin: the difference of a and b is flat.
+  using Part = T Three<T>::*;
+  constexpr Part kPlanes[3][2] = {{&Three<T>::x, &Three<T>::y}, {&Three<T>::y, &Three<T>::z}, {&Three<T>::z, &Three<T>::x}};
+  for (const auto& [x, y] : kPlanes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto beside = [&](const Three<T>& e, const Three<T>& v) HWY_ATTR { return T::minor_of(e.*x, v.*y, e.*y, v.*x); };
+      const Three<T>&e = of_a[i], &f = of_b[i];
+      const T s = beside(e, p[i == 0 ? 2 : 1]), u0 = beside(e, q[0]), u1 = beside(e, q[1]), u2 = beside(e, q[2]);
+      axes.look_at(u0, u1, u2, u0 - s, u1 - s, u2 - s);
+      const T c = beside(f, q[i]), t = beside(f, q[(i + 2) % 3]), w1 = beside(f, p[1]), w2 = beside(f, p[2]);
+      axes.look_at(c, t, c - w1, t - w1, c - w2, t - w2);
+    }
+  }
+  for (const Part x : {&Three<T>::x, &Three<T>::y, &Three<T>::z}) {
+    const V p1 = (p[1].*x).v, p2 = (p[2].*x).v, q0 = (q[0].*x).v, q1 = (q[1].*x).v, q2 = (q[2].*x).v;
+    const V least_p = hn::Min(hn::Zero(d), hn::Min(p1, p2)), most_p = hn::Max(hn::Zero(d), hn::Max(p1, p2));
+    const V least_q = hn::Min(q0, hn::Min(q1, q2)), most_q = hn::Max(q0, hn::Max(q1, q2));
+    axes.look(hn::Sub(least_q, most_p), hn::Sub(most_q, least_p));
+  }
+  return bits(axes.separated);
+}

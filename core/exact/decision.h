@@ -25,7 +25,52 @@ GRAZE_HD bool decide(const float* a, const float* b, int exponent) {
   return !seen.separated;
 }
 
-// The decision of pairs of which the screen is unsure. Wide integers only after a tighter bound of each determinant.
+// The decision by planes for pairs that no machine number holds: each determinant in doubles with a bound of its own,
+// and those that this leaves open, most of them zeros, in the wide numbers.
+// Returns: unsure where all vertices of one lie in the plane of the other.
+template <class Numbers>
+GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int exponent, Stage& stage) {
+  const BoundedNumbers bounded;
+  const Numbers exact;
+  const Triangles<BoundedNumbers> near = triangles<BoundedNumbers>(a, b);
+  Triangles<Numbers> wide;
+  const auto widen = [&] {
+    if (stage != Numbers::kStage) wide = triangles<Numbers>(a, b, exponent);
+    stage = Numbers::kStage;
+  };
+  const auto settle = [&](Sides& sides, const VecOf<Numbers>(&p)[3], const VecOf<Numbers>(&q)[3]) {
+    for (unsigned i = 0; i < 3; ++i) {
+      if (((sides.above | sides.below | sides.in) >> i & 1) != 0) continue;
+      widen();
+      const auto height = determinant<Numbers>(p[0], p[1], p[2], q[i]);
+      (exact.positive(height) ? sides.above : exact.negative(height) ? sides.below : sides.in) |= 1u << i;
+    }
+  };
+  Sides of_b = sides(near.a, normal<BoundedNumbers>(near.a), near.b, bounded);
+  if (of_b.one_side()) return Finding::disjoint;
+  Sides of_a = sides(near.b, normal<BoundedNumbers>(near.b), near.a, bounded);
+  if (of_a.one_side()) return Finding::disjoint;
+  settle(of_b, wide.a, wide.b);
+  settle(of_a, wide.b, wide.a);
+  if (of_b.one_side() || of_a.one_side()) return Finding::disjoint;
+  if (of_a.in == 7 || of_b.in == 7) return Finding::unsure;
+
+  const Turn turn = lone_vertices(of_a, of_b);
+  for (unsigned k = 1; k < 3; ++k) {  // whether an edge of each parts them
+    const auto between = [&]<class N>(const Triangles<N>& t, const N&) {
+      return k == 1 ? determinant<N>(t.a[turn.a[1]], t.b[turn.b[0]], t.a[turn.a[0]], t.b[turn.b[1]])
+                    : determinant<N>(t.a[turn.a[0]], t.b[turn.b[0]], t.a[turn.a[2]], t.b[turn.b[2]]);
+    };
+    const auto nearly = between(near, bounded);
+    if (bounded.positive(nearly)) return Finding::disjoint;
+    if (bounded.negative(nearly) || bounded.zero(nearly)) continue;
+    widen();
+    if (exact.positive(between(wide, exact))) return Finding::disjoint;
+  }
+  return Finding::intersects;
+}
+
+// The decision of pairs of which the screen is unsure.
 GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage) {
   stage = Stage::bounded;
   if (shared_vertex(a, b) >= 0) return true;
@@ -36,7 +81,8 @@ GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage)
     return decide<Numbers>(a, b, grid.exponent);
   };
   if (MachineNumbers::hold(grid)) return MachineNumbers::visit(grid, decide_in);
-  const Finding found = by_planes(triangles<BoundedNumbers>(a, b));
+  const Finding found = MultiwordNumbers::visit(
+      grid, [&](auto numbers) { return by_planes_one_by_one<decltype(numbers)>(a, b, grid.exponent, stage); });
   return found == Finding::unsure ? MultiwordNumbers::visit(grid, decide_in) : found != Finding::disjoint;
 }
 

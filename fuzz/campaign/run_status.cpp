@@ -57,10 +57,10 @@ void RunStatus::tell(const Progress& progress, const std::map<std::string, Signa
   status_["rate"] = progress.seconds > 0 ? static_cast<double>(progress.done_here) / progress.seconds : 0;
   status_["seconds_left"] = progress.seconds_left ? Json(*progress.seconds_left) : Json();
   status_["disagreements"] = progress.all_disagreements;
-  if (status_["signatures"] != signatures.size()) status_["ways"] = ways_of(signatures);
   status_["signatures"] = signatures.size();
-  if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween) return;
+  if (written_ >= 0 && progress.seconds - written_ < kSecondsBetween && progress.done < progress.total) return;
   written_ = progress.seconds;
+  status_["ways"] = ways_of(signatures);
   write();
 }
 

@@ -5,16 +5,18 @@
 #include <cuda_runtime.h>
 
 #include <source_location>
-#include <stdexcept>
 #include <string>
+
+#include "cuda/lanes/device_failure.h"
 
 namespace graze::cuda {
 
-// Throws: std::runtime_error with CUDA's message and the place of the call.
+// Throws: DeviceFailure with CUDA's message and the place of the call.
 inline void check(cudaError_t error, std::source_location where = std::source_location::current()) {
   if (error != cudaSuccess) {
-    throw std::runtime_error(std::string("CUDA: ") + cudaGetErrorString(error) + " (" + where.file_name() + ":" +
-                             std::to_string(where.line()) + ")");
+    throw DeviceFailure(std::string("CUDA: ") + cudaGetErrorString(error) + " (" + where.file_name() + ":" +
+                            std::to_string(where.line()) + ")",
+                        error == cudaErrorMemoryAllocation);
   }
 }
 

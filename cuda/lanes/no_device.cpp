@@ -7,6 +7,8 @@
 #include "cuda/engine/engine.h"
 #include "cuda/engine/sweep.h"
 #include "cuda/lanes/device_costs.h"
+#include "cuda/query/device_query.h"
+#include "cuda/query/device_rows.h"
 #include "cuda/subject/subject_device.h"
 #include "cuda/twin/prove.h"
 
@@ -35,6 +37,23 @@ std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild&) {
 
 ProofRecord prove_subjects(std::span<const NamedBuild>, const ProofOptions&) {
   throw std::runtime_error("a proof needs a device: built without CUDA");
+}
+
+int count_query_devices(std::string& why_not) {
+  why_not = "built without CUDA";
+  return 0;
+}
+
+std::unique_ptr<QueryDevice> open_query_device(int) {
+  throw DeviceFailure("a query on a device needs one: built without CUDA", false);
+}
+
+std::unique_ptr<DeviceMemory> device_memory(int, std::size_t) {
+  throw DeviceFailure("memory of a device needs one: built without CUDA", false);
+}
+
+DeviceSpeeds measure_speeds(int, std::size_t) {
+  throw DeviceFailure("speeds of a device need one: built without CUDA", false);
 }
 
 }  // namespace graze::cuda

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// Queries on a device: chunks go through slots, two or three at a time, so that the host's part of one chunk (packing,
+// taking results), the copies of another and the kernels of a third overlap. Triangles in the device's own memory are
+// read where they are, on one stream; those of the host come through pinned memory, with a stream for each slot.
+#include "cuda/query/device_query.h"
+
+#include <cuda_runtime.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/exact_kernels.cuh"
+#include "cuda/query/query_kernels.cuh"
+
+namespace graze::cuda {
+namespace {
+
+constexpr std::uint64_t kFirstOfAny = 1 << 12, kFirstOfAll = 1 << 20, kGrowth = 8;
+constexpr std::uint64_t kMostResident = 1 << 25, kMostStreamed = 1 << 20, kMostOfLane = 1 << 20;
+
+// Pinned memory of the host that grows and is freed with its owner.
+template <class T>
+class PinnedArray {
+ public:
+  PinnedArray() = default;
+  PinnedArray(const PinnedArray&) = delete;
+  PinnedArray& operator=(const PinnedArray&) = delete;
+  ~PinnedArray() { cudaFreeHost(data_); }
+
+  T* at_least(std::size_t count) {
+    if (count > count_) {
+      check(cudaFreeHost(data_));
+      data_ = nullptr;
+      count_ = 0;
+      check(cudaMallocHost(&data_, count * sizeof(T)));
+      count_ = count;
+    }
+    return data_;
+  }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+class Stream {
+ public:
+  Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking)); }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+  ~Stream() { cudaStreamDestroy(stream_); }
+  operator cudaStream_t() const { return stream_; }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+class Event {
+ public:
+  Event() { check(cudaEventCreate(&event_)); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+  ~Event() { cudaEventDestroy(event_); }
+  operator cudaEvent_t() const { return event_; }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
+// What kernels of a chunk write.
+struct Verdicts {
+  DeviceArray<std::uint32_t> hits, declined, lists, counts, not_finite;
+  DeviceArray<float> columns, triangles;
+  DeviceArray<QueryCounts> found;
+  DeviceExact exact;  // of a filtered lane
+};
+
+struct Slot {
+  Stream stream;
+  Event start, stop, done;
+  Verdicts verdicts;
+  PinnedArray<float> triangles;
+  PinnedArray<std::uint64_t> hits, declined;
+  PinnedArray<QueryCounts> found;
+  std::optional<QueryRange> range;  // what it is at
+};
+
+// Copies or packs the triangles to where a device can fetch them fast.
+void pack(const TriangleArray& array, std::uint64_t first, std::uint64_t count, float* to) {
+  constexpr std::uint64_t kPart = 1 << 14;
+  tbb::parallel_for(std::uint64_t{0}, (count + kPart - 1) / kPart, [&](std::uint64_t part) {
+    const std::uint64_t begin = part * kPart, end = std::min(count, begin + kPart);
+    if (array.packed()) {
+      std::memcpy(to + 9 * begin, array.rows + 36 * (first + begin), 36 * (end - begin));
+    } else {
+      for (std::uint64_t i = begin; i < end; ++i) array.load(first + i, to + 9 * i);
+    }
+  });
+}
+
+bool is_pinned(const void* at) {
+  cudaPointerAttributes attributes;
+  check(cudaPointerGetAttributes(&attributes, at));
+  return attributes.type == cudaMemoryTypeHost;
+}
+
+class Run {
+ public:
+  Run(const DeviceQuestion& question, QueryWork& work, int device, Slot* slots)
+      : question_(question), work_(work), device_(device), slots_(slots) {
+    for (std::size_t r = 0; r < question.references.size() / 9; ++r)
+      references_.push_back(exact::prepare(question.references.data() + 9 * r));
+    resident_ = std::any_of(question.places.begin(), question.places.end(), [&](int p) { return p == device; });
+    pinned_ = !resident_ && std::all_of(question.parts.begin(), question.parts.end(), [](const TriangleArray& part) {
+      return part.packed() && is_pinned(part.rows);
+    });
+    most_ = !question.lane->exact ? kMostOfLane : resident_ ? kMostResident : kMostStreamed;
+    most_ = std::max<std::uint64_t>(1 << 12, most_ / references_.size() / 64 * 64);
+    std::size_t free = 0, all = 0;
+    check(cudaMemGetInfo(&free, &all));
+    // Of the lists, the verdicts and, where they are copied, the triangles in all slots; at most half of what is free.
+    const std::size_t bytes = (resident_ ? 16 : 3 * 60) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
+    while (most_ > 1 << 12 && most_ * bytes > free / 2) most_ /= 2;
+    chunk_ = std::min(most_, question.any ? kFirstOfAny : kFirstOfAll);
+  }
+
+  // However a run ends, nothing of it may still be running: the caller's memory goes.
+  ~Run() {
+    for (int k = 0; k < kSlots; ++k) slots_[k].range.reset();
+    cudaDeviceSynchronize();
+  }
+
+  LaunchRecord operator()() {
+    const int slots = resident_ ? 2 : kSlots;
+    for (int k = 0;; k = (k + 1) % slots) {
+      finish(slots_[k]);
+      QueryRange range;
+      if (!work_.next(resident_ ? device_ : -1, chunk_, range)) break;
+      start(slots_[k], resident_ ? slots_[0] : slots_[k], range);
+    }
+    for (int k = 0; k < slots; ++k) finish(slots_[k]);
+    return record_;
+  }
+
+  static constexpr int kSlots = 3;
+
+ private:
+  // Triangles in the device's memory have one stream, so that slots can share what kernels write.
+  void start(Slot& slot, Slot& shared, const QueryRange& range) {
+    const auto count = static_cast<std::uint32_t>(range.count);
+    const cudaStream_t stream =
+        resident_ && question_.stream ? static_cast<cudaStream_t>(question_.stream) : cudaStream_t{shared.stream};
+    QueryChunk chunk{question_.parts[range.part], range.first_in_part, count};
+    Verdicts& at = shared.verdicts;
+    if (!resident_) {
+      const void* from = chunk.array.rows + 36 * range.first_in_part;
+      if (!pinned_) {
+        float* packed = slot.triangles.at_least(9 * range.count);
+        pack(chunk.array, range.first_in_part, range.count, packed);
+        from = packed;
+      }
+      float* triangles = at.triangles.at_least(9 * range.count);
+      check(cudaMemcpyAsync(triangles, from, 36 * range.count, cudaMemcpyHostToDevice, stream));
+      chunk = {{}, 0, count};
+      chunk.array.rows = reinterpret_cast<const char*>(triangles);
+      chunk.array.count = count;
+    }
+    const std::size_t words = row_words(count), rows = references_.size();
+    std::uint32_t *hits = at.hits.at_least(words * rows), *declined = at.declined.at_least(words * rows);
+    QueryCounts* found = at.found.at_least(rows);
+    check(cudaMemsetAsync(found, 0, rows * sizeof *found, stream));
+    check(cudaEventRecord(slot.start, stream));
+    for (std::size_t r = 0; r < rows; ++r) {
+      decide(at, references_[r], chunk, hits + r * words, declined + r * words, stream);
+      check(cudaMemsetAsync(&found[r].first, 0xff, sizeof found[r].first, stream));
+      launch_count(count, hits + r * words, declined + r * words, found + r, stream);
+      put(range, r, hits + r * words, declined + r * words, stream);
+    }
+    if (question_.any) launch_forget_behind(count, declined, found, static_cast<std::uint32_t>(rows), stream);
+    check(cudaEventRecord(slot.stop, stream));
+    if (work_.wants_bits()) {
+      fetch(slot.hits, hits, words * rows, stream);
+      fetch(slot.declined, declined, words * rows, stream);
+    }
+    check(cudaMemcpyAsync(slot.found.at_least(rows), found, rows * sizeof *found, cudaMemcpyDeviceToHost, stream));
+    check(cudaEventRecord(slot.done, stream));
+    slot.range = range;
+  }
+
+  static void fetch(PinnedArray<std::uint64_t>& to, const std::uint32_t* from, std::size_t words, cudaStream_t stream) {
+    check(cudaMemcpyAsync(to.at_least(words / 2), from, words * sizeof *from, cudaMemcpyDeviceToHost, stream));
+  }
+
+  void decide(Verdicts& at, const exact::Reference& reference, const QueryChunk& chunk, std::uint32_t* hits,
+              std::uint32_t* declined, cudaStream_t stream) {
+    if (question_.lane->exact)
+      return launch_exact_query(reference, chunk, at.lists.at_least(2 * std::size_t{chunk.count}),
+                                at.counts.at_least(3), hits, declined, stream);
+    const std::uint32_t words = row_words(chunk.count);
+    float* columns = at.columns.at_least(std::size_t{words} * 32 * kCoordinates);
+    std::uint32_t* not_finite = at.not_finite.at_least(words);
+    launch_pair_up(reference, chunk, columns, not_finite, stream);
+    launch_lane(*question_.lane, at.exact, {columns, words * 32, chunk.count}, hits, declined, stream);
+    launch_decline(words, not_finite, hits, declined, stream);
+  }
+
+  // The caller's outputs in the memory of the device.
+  void put(const QueryRange& range, std::size_t r, const std::uint32_t* hits, const std::uint32_t* declined,
+           cudaStream_t stream) {
+    const auto count = static_cast<std::uint32_t>(range.count);
+    if (question_.bytes)
+      launch_bytes(count, hits, declined, question_.bytes + r * question_.triangles + range.first, stream);
+    if (question_.bits)
+      check(cudaMemcpyAsync(question_.bits + r * ((question_.triangles + 7) / 8) + range.first / 8, hits,
+                            (range.count + 7) / 8, cudaMemcpyDeviceToDevice, stream));
+  }
+
+  void finish(Slot& slot) {
+    if (!slot.range) return;
+    const QueryRange range = *std::exchange(slot.range, std::nullopt);
+    check(cudaEventSynchronize(slot.done));
+    float milliseconds = 0;
+    check(cudaEventElapsedTime(&milliseconds, slot.start, slot.stop));
+    const double seconds = milliseconds / 1000.0;
+    record_.longest = std::max(record_.longest, seconds);
+    ++record_.chunks;
+    // The next chunk is larger while it then takes less than half of the time that a launch may take.
+    const double fitting = static_cast<double>(range.count) * question_.launch_seconds / 2 / std::max(seconds, 1e-9);
+    const std::uint64_t wanted = std::min(most_, std::max(chunk_, range.count * kGrowth));
+    chunk_ = fitting < static_cast<double>(wanted) ? static_cast<std::uint64_t>(fitting) : wanted;
+    chunk_ = std::max<std::uint64_t>(1 << 12, chunk_ / 64 * 64);
+    const std::size_t rows = references_.size();
+    if (work_.wants_bits()) {
+      work_.take(range, slot.hits.at_least(0), slot.declined.at_least(0),
+                 row_words(static_cast<std::uint32_t>(range.count)) / 2);
+    } else {
+      work_.take(range, std::span<const QueryCounts>(slot.found.at_least(rows), rows));
+    }
+  }
+
+  const DeviceQuestion& question_;
+  QueryWork& work_;
+  int device_;
+  Slot* slots_;
+  std::vector<exact::Reference> references_;
+  bool resident_ = false, pinned_ = false;
+  std::uint64_t most_ = 0, chunk_ = 0;
+  LaunchRecord record_;
+};
+
+class CudaQueryDevice final : public QueryDevice {
+ public:
+  explicit CudaQueryDevice(int wanted) {
+    number = wanted;
+    check(cudaSetDevice(wanted));
+    cudaDeviceProp properties;
+    check(cudaGetDeviceProperties(&properties, wanted));
+    name = properties.name;
+    slots_.reset(new Slot[Run::kSlots]);
+  }
+
+  LaunchRecord run(const DeviceQuestion& question, QueryWork& work) override {
+    check(cudaSetDevice(number));
+    return Run(question, work, number, slots_.get())();
+  }
+
+ private:
+  std::unique_ptr<Slot[]> slots_;
+};
+
+}  // namespace
+
+int count_query_devices(std::string& why_not) {
+  int count = 0;
+  if (cudaGetDeviceCount(&count) != cudaSuccess || count == 0) {
+    cudaGetLastError();  // clears it
+    why_not = "no device";
+    return 0;
+  }
+  return count;
+}
+
+std::unique_ptr<QueryDevice> open_query_device(int number) { return std::make_unique<CudaQueryDevice>(number); }
+
+}  // namespace graze::cuda

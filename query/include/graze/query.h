@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reference triangles against an array of triangles, for C++20: <graze/query_c.h> with owners, spans and vectors. What
+// fields mean stands there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <graze/query_c.h>
+
+namespace graze::query {
+
+using Triangle = std::array<float, 9>;  // x y z of each vertex
+
+// Triangles of a type that begins with their nine floats.
+template <class T>
+graze_triangles rows_of(std::span<const T> triangles) {
+  static_assert(sizeof(T) >= sizeof(Triangle) && alignof(T) % alignof(float) == 0);
+  graze_triangles part = {};
+  part.device = -1;
+  part.count = triangles.size();
+  part.rows = reinterpret_cast<const float*>(triangles.data());
+  part.stride = sizeof(T);
+  return part;
+}
+
+// Triangles whose nine floats lie in nine arrays.
+inline graze_triangles columns_of(const std::array<const float*, 9>& columns, std::uint64_t count) {
+  graze_triangles part = {};
+  part.layout = GRAZE_COLUMNS;
+  part.device = -1;
+  part.count = count;
+  for (int k = 0; k < 9; ++k) part.columns[k] = columns[static_cast<std::size_t>(k)];
+  return part;
+}
+
+// The faces of a mesh, three places of vertices each.
+inline graze_triangles mesh_of(std::span<const std::array<float, 3>> vertices,
+                               std::span<const std::array<std::uint32_t, 3>> faces) {
+  graze_triangles part = {};
+  part.layout = GRAZE_MESH;
+  part.device = -1;
+  part.count = faces.size();
+  part.vertices = vertices.empty() ? nullptr : vertices.data()->data();
+  part.vertex_count = vertices.size();
+  part.faces = faces.empty() ? nullptr : faces.data()->data();
+  return part;
+}
+
+// What a call found; `if (answer)` asks whether it did.
+struct Answer : graze_answer {
+  explicit operator bool() const { return status == GRAZE_OK; }
+  std::string_view what() const { return message; }
+};
+
+// A query of all triangles of a part, to be changed as wished.   Requires: reference and part outlive it.
+inline graze_query query_of(const Triangle& reference, const graze_triangles& part) {
+  graze_query query = {};
+  query.size = sizeof query;
+  query.references = reference.data();
+  query.reference_count = 1;
+  query.parts = &part;
+  query.part_count = 1;
+  query.mode = GRAZE_ALL;
+  return query;
+}
+
+class Context {
+ public:
+  // Throws: std::bad_alloc.
+  Context() : context_(graze_open(), graze_close) {
+    if (!context_) throw std::bad_alloc();
+  }
+
+  Answer run(const graze_query& query) const noexcept {
+    Answer answer;
+    graze_run(context_.get(), &query, &answer);
+    return answer;
+  }
+
+  // Whether any triangle meets the reference: hits is 0 or 1, first the first one that does.
+  Answer any(const Triangle& reference, const graze_triangles& part) const noexcept {
+    graze_query query = query_of(reference, part);
+    query.mode = GRAZE_ANY;
+    return run(query);
+  }
+
+  // How many do.
+  Answer count(const Triangle& reference, const graze_triangles& part) const noexcept {
+    return run(query_of(reference, part));
+  }
+
+  // For each triangle 1: meets it, 0: does not, 2: declined.   Throws: std::bad_alloc for the vector.
+  Answer all(const Triangle& reference, const graze_triangles& part, std::vector<std::uint8_t>& bytes) const {
+    bytes.resize(part.count);
+    graze_query query = query_of(reference, part);
+    query.bytes = bytes.data();
+    return run(query);
+  }
+
+ private:
+  std::unique_ptr<graze_context, void (*)(graze_context*)> context_;
+};
+
+}  // namespace graze::query

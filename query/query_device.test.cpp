@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+// Devices tell what the cores tell: every layout, streamed and resident, every output, some lanes, all strata. Part of
+// graze_device_test; skipped without a device.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "cuda/query/device_rows.h"
+#include "query/testing.h"
+
+namespace graze::query {
+namespace {
+
+class QueryDevice : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (graze_devices() > 0) return;
+    const char* required = std::getenv("GRAZE_REQUIRE_DEVICE");
+    if (required && required[0] == '1') FAIL() << "a device is required, found none";
+    GTEST_SKIP() << "no device";
+  }
+
+  struct Found {
+    Answer answer;
+    std::vector<std::uint8_t> bytes, bits;
+    std::vector<std::uint64_t> list;
+  };
+
+  Found all_of(graze_query query, std::size_t count, bool lists = true) {
+    Found found;
+    found.bytes.resize(count * query.reference_count);
+    found.bits.resize((count + 7) / 8 * query.reference_count);
+    found.list.resize(lists ? count * query.reference_count : 0);
+    query.bytes = found.bytes.data();
+    query.bits = found.bits.data();
+    if (lists) query.list = found.list.data();
+    query.list_room = found.list.size();
+    found.answer = context_.run(query);
+    EXPECT_TRUE(found.answer) << found.answer.what();
+    return found;
+  }
+
+  void expect_same(const Found& left, const Found& right) {
+    EXPECT_EQ(left.bytes, right.bytes);
+    EXPECT_EQ(left.bits, right.bits);
+    EXPECT_EQ(left.list, right.list);
+    EXPECT_EQ(left.answer.hits, right.answer.hits);
+    EXPECT_EQ(left.answer.declined, right.answer.declined);
+    EXPECT_EQ(left.answer.first, right.answer.first);
+    EXPECT_EQ(left.answer.first_reference, right.answer.first_reference);
+    EXPECT_EQ(left.answer.position, right.answer.position);
+  }
+
+  // The same triangles in the memory of device 0.
+  std::unique_ptr<cuda::DeviceMemory> resident(const std::vector<Triangle>& triangles, graze_triangles& part) {
+    auto memory = cuda::device_memory(0, std::max<std::size_t>(1, triangles.size()) * sizeof(Triangle));
+    memory->fill(triangles.data(), triangles.size() * sizeof(Triangle));
+    part = part_of(triangles);
+    part.device = 0;
+    part.rows = static_cast<const float*>(memory->data);
+    return memory;
+  }
+
+  Context context_;
+};
+
+std::vector<Triangle> broken(std::vector<Triangle> triangles) {
+  for (std::size_t i = 3; i < triangles.size(); i += 1001) triangles[i][i % 9] = i % 2 ? NAN : -INFINITY;
+  return triangles;
+}
+
+TEST_F(QueryDevice, StreamedAndResidentAreTheCores) {
+  const std::vector<Triangle> references = {
+      kThesisReference, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {NAN, 0, 0, 1, 0, 0, 0, 1, 0}};
+  for (const std::size_t count : {0, 1, 31, 33, 64, 1000, 100'003, 3'000'001}) {
+    const std::vector<Triangle> triangles = broken(thesis_triangles(count));
+    graze_triangles part = part_of(triangles), on_device;
+    const auto memory = resident(triangles, on_device);
+    graze_query query = query_of(references[0], part);
+    query.reference_count = count < 1'000'000 ? 3 : 1;
+    query.executor = GRAZE_ALL_CORES;
+    const Found cores = all_of(query, count);
+    for (const int executor : {GRAZE_ONE_GPU, GRAZE_ALL_GPUS}) {
+      query.executor = executor;
+      query.parts = &part;
+      expect_same(all_of(query, count), cores);
+      query.parts = &on_device;
+      expect_same(all_of(query, count), cores);
+      const Answer counted = context_.run(query);
+      EXPECT_EQ(counted.hits, cores.answer.hits);
+      EXPECT_EQ(counted.declined, cores.answer.declined);
+      EXPECT_EQ(counted.first, cores.answer.first);
+    }
+    // Outputs on the device, on the caller's stream; 2 is the handle of CUDA's stream of this thread.
+    auto bytes = cuda::device_memory(0, count * 3 + 1), bits = cuda::device_memory(0, (count + 7) / 8 * 3 + 1);
+    query.outputs_on_device = 1;
+    query.stream = reinterpret_cast<void*>(2);
+    query.bytes = static_cast<unsigned char*>(bytes->data);
+    query.bits = static_cast<unsigned char*>(bits->data);
+    ASSERT_TRUE(context_.run(query)) << context_.run(query).what();
+    Found found = cores;
+    bytes->fetch(found.bytes.data(), found.bytes.size());
+    bits->fetch(found.bits.data(), found.bits.size());
+    expect_same(found, cores);
+  }
+}
+
+// The second triangle of each pair of a stratum against a few of the first ones.
+TEST_F(QueryDevice, AllStrataAreTheCores) {
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    std::vector<Triangle> references, triangles;
+    for (std::uint64_t i = 0; i < 200'000; ++i) {
+      const Pair pair = strata::generate(11, row.stratum, i);
+      if (i % 25'000 == 0) references.push_back(triangle(pair.a));
+      triangles.push_back(triangle(pair.b));
+      if (i % 16 == 0) triangles.push_back(references.back());
+    }
+    graze_triangles on_device;
+    const auto memory = resident(triangles, on_device);
+    const graze_triangles part = part_of(triangles);
+    graze_query query = query_of(references[0], part);
+    query.references = references[0].data();
+    query.reference_count = references.size();
+    query.executor = GRAZE_ALL_CORES;
+    const Found cores = all_of(query, triangles.size());
+    EXPECT_GT(cores.answer.hits, 10'000u);
+    query.executor = GRAZE_ONE_GPU;
+    query.parts = &on_device;
+    SCOPED_TRACE(row.id);
+    expect_same(all_of(query, triangles.size()), cores);
+  }
+}
+
+// Each first triangle of a stratum's pairs as the reference of its own second one.
+TEST_F(QueryDevice, ManyReferencesAreTheCores) {
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    std::vector<Triangle> references, triangles;
+    for (std::uint64_t i = 0; i < 500; ++i) {
+      const Pair pair = strata::generate(12, row.stratum, i);
+      references.push_back(triangle(pair.a));
+      triangles.push_back(triangle(pair.b));
+    }
+    const graze_triangles part = part_of(triangles);
+    graze_query query = query_of(references[0], part);
+    query.references = references[0].data();
+    query.reference_count = references.size();
+    query.executor = GRAZE_ALL_CORES;
+    const Found cores = all_of(query, triangles.size());
+    query.executor = GRAZE_ONE_GPU;
+    SCOPED_TRACE(row.id);
+    expect_same(all_of(query, triangles.size()), cores);
+  }
+}
+
+TEST_F(QueryDevice, LayoutsAreTheCores) {
+  const std::vector<Triangle> triangles = broken(thesis_triangles(100'003));
+  std::vector<float> columns(9 * triangles.size());
+  std::vector<std::array<float, 3>> vertices;
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  std::vector<std::array<float, 10>> wide;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
+    for (std::size_t k = 0; k < 9; ++k) columns[k * triangles.size() + i] = t[k];
+    const auto v = static_cast<std::uint32_t>(vertices.size());
+    for (std::size_t k = 0; k < 9; k += 3) vertices.push_back({t[k], t[k + 1], t[k + 2]});
+    faces.push_back({v, v + 1, i == 70'000 ? 4'000'000'000u : v + 2});
+    wide.push_back({t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], 1});
+  }
+  const auto on_device = [](const auto& host) {
+    auto memory = cuda::device_memory(0, host.size() * sizeof host[0]);
+    memory->fill(host.data(), memory->bytes);
+    return memory;
+  };
+  const auto of_columns = on_device(columns), of_vertices = on_device(vertices), of_faces = on_device(faces),
+             of_wide = on_device(wide), of_rows = on_device(triangles);
+  std::array<const float*, 9> at;
+  for (std::size_t k = 0; k < 9; ++k) at[k] = columns.data() + k * triangles.size();
+  graze_triangles host[4] = {columns_of(at, triangles.size()), mesh_of(vertices, faces),
+                             rows_of(std::span<const std::array<float, 10>>(wide)), part_of(triangles)};
+  graze_triangles device[4] = {host[0], host[1], host[2], host[3]};
+  for (graze_triangles& part : device) part.device = 0;
+  for (std::size_t k = 0; k < 9; ++k)
+    device[0].columns[k] = static_cast<const float*>(of_columns->data) + k * triangles.size();
+  device[1].vertices = static_cast<const float*>(of_vertices->data);
+  device[1].faces = static_cast<const std::uint32_t*>(of_faces->data);
+  device[2].rows = static_cast<const float*>(of_wide->data);
+  device[3].rows = static_cast<const float*>(of_rows->data) + 9;  // not where vectors may be read
+  device[3].count = host[3].count -= 1;
+  host[3].rows += 9;
+  for (int k = 0; k < 4; ++k) {
+    SCOPED_TRACE(k);
+    graze_query query = query_of(kThesisReference, host[k]);
+    query.executor = GRAZE_ALL_CORES;
+    const Found cores = all_of(query, host[k].count);
+    query.executor = GRAZE_ONE_GPU;
+    expect_same(all_of(query, host[k].count), cores);
+    query.parts = &device[k];
+    expect_same(all_of(query, host[k].count), cores);
+  }
+}
+
+TEST_F(QueryDevice, LanesAreThoseOfTheCores) {
+  const std::vector<Triangle> triangles = broken(thesis_triangles(1'500'000, 5));
+  graze_triangles on_device;
+  const auto memory = resident(triangles, on_device);
+  const graze_triangles part = part_of(triangles);
+  for (const char* subject : {"interval_overlap/f32", "moller_1997/f64", "separating_axes/f32"}) {
+    for (const char* policy : {"", "/rel:24", "/filtered"}) {
+      const std::string of_core = std::string(subject) + "/cpu" + policy,
+                        of_device = std::string(subject) + "/cuda-nofma" + policy;
+      SCOPED_TRACE(of_core);
+      graze_query query = query_of(kThesisReference, part);
+      query.lane = of_core.c_str();
+      const Found cores = all_of(query, triangles.size(), false);
+      query.lane = of_device.c_str();
+      expect_same(all_of(query, triangles.size(), false), cores);
+      query.parts = &on_device;
+      expect_same(all_of(query, triangles.size(), false), cores);
+    }
+  }
+}
+
+TEST_F(QueryDevice, AnyFindsTheFirst) {
+  const Triangle far = {100, 100, 100, 101, 100, 100, 100, 101, 100};
+  for (const std::size_t at : {0, 99, 4'095, 4'096, 70'000, 2'999'999}) {
+    std::vector<Triangle> triangles(3'000'000, far);
+    triangles[at] = kThesisReference;
+    if (at > 50) triangles[50][3] = triangles[at - 1][2] = NAN;
+    triangles.back() = kThesisReference;
+    graze_triangles on_device;
+    const auto memory = resident(triangles, on_device);
+    const graze_triangles part = part_of(triangles);
+    graze_query query = query_of(kThesisReference, part);
+    query.mode = GRAZE_ANY;
+    for (const graze_triangles* where : std::initializer_list<const graze_triangles*>{&part, &on_device}) {
+      query.parts = where;
+      query.executor = GRAZE_ALL_GPUS;
+      const Answer answer = context_.run(query);
+      EXPECT_EQ(answer.hits, 1u) << answer.what();
+      EXPECT_EQ(answer.first, at);
+      EXPECT_EQ(answer.position, at + 1);
+      EXPECT_EQ(answer.declined, at > 50 ? 2u : 0u);
+    }
+  }
+}
+
+// Parts on every device, and at once in one query.
+TEST_F(QueryDevice, PartsOnAllDevices) {
+  const std::vector<Triangle> triangles = broken(thesis_triangles(500'032));
+  const graze_triangles part = part_of(triangles);
+  graze_query query = query_of(kThesisReference, part);
+  query.executor = GRAZE_ALL_CORES;
+  std::vector<Triangle> all;
+  std::vector<std::unique_ptr<cuda::DeviceMemory>> memories;
+  std::vector<graze_triangles> parts;
+  for (int d = 0; d < graze_devices(); ++d) {
+    all.insert(all.end(), triangles.begin(), triangles.end());
+    memories.push_back(cuda::device_memory(d, triangles.size() * sizeof(Triangle)));
+    memories.back()->fill(triangles.data(), memories.back()->bytes);
+    parts.push_back(part);
+    parts.back().device = d;
+    parts.back().rows = static_cast<const float*>(memories.back()->data);
+  }
+  const graze_triangles of_all = part_of(all);
+  query.parts = &of_all;
+  const Found cores = all_of(query, all.size());
+  query.executor = GRAZE_ALL_GPUS;
+  expect_same(all_of(query, all.size()), cores);
+  query.parts = parts.data();
+  query.part_count = parts.size();
+  expect_same(all_of(query, all.size()), cores);
+}
+
+// Short launches make many chunks; the answer does not change, and none takes longer but the first ones, which are
+// small and teach how long one takes.
+TEST_F(QueryDevice, LaunchesAreSplit) {
+  const std::vector<Triangle> some = thesis_triangles(1 << 20);
+  auto memory = cuda::device_memory(0, std::size_t{36} << 26);
+  memory->fill(some.data(), some.size() * sizeof(Triangle));
+  graze_triangles part = part_of(some);
+  part.count = 1 << 26;
+  part.device = 0;
+  part.rows = static_cast<const float*>(memory->data);
+  graze_query query = query_of(kThesisReference, part);
+  const Answer whole = context_.run(query);
+  query.launch_seconds = 2e-4;
+  const Answer split = context_.run(query);
+  ASSERT_TRUE(whole && split);
+  EXPECT_EQ(whole.hits, 64 * context_.count(kThesisReference, part_of(some)).hits);
+  EXPECT_EQ(split.hits, whole.hits);
+  EXPECT_LT(split.longest_launch, 2e-4);
+  EXPECT_GT(whole.longest_launch, 2e-4);
+}
+
+TEST_F(QueryDevice, LackOfDeviceMemoryIsAValueOrSmallerChunks) {
+  std::vector<std::unique_ptr<cuda::DeviceMemory>> hoard;
+  for (std::size_t bytes = std::size_t{1} << 36; bytes >= std::size_t{1} << 22; bytes /= 2) {
+    try {
+      for (;;) hoard.push_back(cuda::device_memory(0, bytes));
+    } catch (const cuda::DeviceFailure& failure) {
+      EXPECT_TRUE(failure.out_of_memory);
+    }
+  }
+  const std::vector<Triangle> triangles = thesis_triangles(3'000'000);
+  const graze_triangles part = part_of(triangles);
+  graze_query query = query_of(kThesisReference, part);
+  query.executor = GRAZE_ONE_GPU;
+  const Answer answer = Context().run(query);
+  if (!answer) {
+    EXPECT_EQ(answer.status, GRAZE_NO_MEMORY) << answer.what();
+    EXPECT_LT(answer.position, part.count);
+  }
+  hoard.clear();
+  const Answer again = context_.run(query);
+  ASSERT_TRUE(again) << again.what();
+  query.executor = GRAZE_ALL_CORES;
+  EXPECT_EQ(again.hits, context_.run(query).hits);
+}
+
+TEST_F(QueryDevice, CancelsAndGoesOn) {
+  const std::vector<Triangle> triangles = thesis_triangles(5'000'000);
+  const graze_triangles part = part_of(triangles);
+  graze_query query = query_of(kThesisReference, part);
+  query.executor = GRAZE_ONE_GPU;
+  query.progress = [](void*, std::uint64_t, std::uint64_t) { return 1; };
+  const Answer answer = context_.run(query);
+  EXPECT_EQ(answer.status, GRAZE_CANCELLED);
+  EXPECT_LT(answer.position, part.count);
+  query.progress = nullptr;
+  EXPECT_TRUE(context_.run(query));
+}
+
+}  // namespace
+}  // namespace graze::query

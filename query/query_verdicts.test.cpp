@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every exact verdict is that of the oracle, of both its decisions; every other lane's that of the lane.
+#include <gtest/gtest.h>
+
+#include "core/exact/reference.h"
+#include "core/lanes.h"
+#include "oracle/truth.h"
+#include "query/testing.h"
+
+namespace graze::query {
+namespace {
+
+constexpr std::size_t kPairs = 6'000;  // of each stratum
+
+std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
+  std::vector<std::uint8_t> bytes(count, 9);
+  query.bytes = bytes.data();
+  const Answer answer = Context().run(query);
+  EXPECT_TRUE(answer) << answer.what();
+  return bytes;
+}
+
+// The first triangle of each pair as one of many references, against its second one and its neighbours': the slabs
+// must not lose a hit, on whatever side of whatever triangle it is.
+TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
+  constexpr std::size_t kTogether = 8;
+  std::size_t looked_past = 0, hits = 0;
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    for (std::size_t begin = 0; begin < kPairs; begin += kTogether) {
+      std::vector<Triangle> references, triangles;
+      for (std::size_t i = begin; i < begin + kTogether; ++i) {
+        const Pair pair = strata::generate(7, row.stratum, i);
+        references.push_back(triangle(pair.a));
+        triangles.push_back(triangle(pair.b));
+      }
+      const graze_triangles part = part_of(triangles);
+      graze_query query = query_of(references[0], part);
+      query.references = references[0].data();
+      query.reference_count = kTogether;
+      query.executor = GRAZE_ONE_CORE;
+      const std::vector<std::uint8_t> bytes = bytes_of(query, kTogether * kTogether);
+      for (std::size_t r = 0; r < kTogether; ++r) {
+        const exact::Reference prepared = exact::prepare(references[r].data());
+        for (std::size_t t = 0; t < kTogether; ++t) {
+          Pair pair;
+          std::memcpy(pair.a, references[r].data(), sizeof pair.a);
+          std::memcpy(pair.b, triangles[t].data(), sizeof pair.b);
+          const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
+          ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
+          ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
+          const bool beyond = exact::look_past(prepared, triangles[t].data()) == exact::Sight::beyond;
+          ASSERT_FALSE(meets && beyond) << row.id << " 7 " << begin + r << ' ' << begin + t;
+          looked_past += beyond;
+          hits += meets;
+        }
+      }
+    }
+  }
+  EXPECT_GT(hits, 100'000u);
+  EXPECT_GT(looked_past, 300'000u);
+}
+
+TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
+  const std::vector<Triangle> triangles = thesis_triangles(300'000);
+  const graze_triangles part = part_of(triangles);
+  const std::vector<std::uint8_t> bytes = bytes_of(query_of(kThesisReference, part), triangles.size());
+  Pair pair;
+  std::memcpy(pair.a, kThesisReference.data(), sizeof pair.a);
+  const exact::Reference prepared = exact::prepare(kThesisReference.data());
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    std::memcpy(pair.b, triangles[i].data(), sizeof pair.b);
+    const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
+    ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
+    ASSERT_EQ(bytes[i], meets) << i;
+    beyond += exact::look_past(prepared, triangles[i].data()) == exact::Sight::beyond;
+  }
+  EXPECT_GT(beyond, triangles.size() * 4 / 5);  // or else the slabs are not worth their time
+}
+
+TEST(QueryVerdicts, AreThoseOfTheLane) {
+  const std::vector<Triangle> triangles = thesis_triangles(50'000, 3);
+  const graze_triangles part = part_of(triangles);
+  for (const char* id : {"interval_overlap/f32/cpu", "moller_1997/f64/cpu", "guigue_devillers_2003/f32/cpu/rel:24",
+                         "interval_overlap/f32/cpu/bound", "interval_overlap/f32/cpu/filtered"}) {
+    graze_query query = query_of(kThesisReference, part);
+    query.lane = id;
+    const std::vector<std::uint8_t> bytes = bytes_of(query, triangles.size());
+    const LaneName name = *parse_lane_name(id);
+    const Lane published = *find_lane(name.subject + '/' + name.scalar + '/' + name.variant);
+    const Lane lane = name.policy.empty() ? published : lane_under(published, name.policy);
+    Pair pair;
+    std::memcpy(pair.a, kThesisReference.data(), sizeof pair.a);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      std::memcpy(pair.b, triangles[i].data(), sizeof pair.b);
+      const Verdict verdict = decide_one(lane.decide, pair);
+      ASSERT_EQ(bytes[i], verdict == Verdict::declined ? 2 : verdict == Verdict::intersects) << id << ' ' << i;
+    }
+  }
+}
+
+// Where a slab must not say more than it knows: magnitudes at both ends of the floats, and a hair beyond the reference.
+TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
+  for (const float unit : {0x1p-149f, 0x1p-126f, 0x1p-60f, 1.0f, 0x1p60f, 0x1p126f}) {
+    const Triangle reference = {0, 0, 0, unit, 0, 0, 0, unit, 0};
+    const exact::Reference prepared = exact::prepare(reference.data());
+    const Triangle touching = {0, 0, 0, 0, 0, unit, unit, 0, unit},
+                   edge = {unit, unit, 0, 0, unit, 0, unit, unit, unit};
+    for (const Triangle& t : {touching, edge}) EXPECT_EQ(exact::look_past(prepared, t.data()), exact::Sight::open);
+    for (int k = 0; k < 9; ++k) {
+      for (const float bad : {INFINITY, -INFINITY, NAN}) {
+        Triangle broken = touching;
+        broken[static_cast<std::size_t>(k)] = bad;
+        EXPECT_EQ(exact::look_past(prepared, broken.data()), exact::Sight::not_finite);
+        EXPECT_EQ(exact::look_past(exact::prepare(broken.data()), touching.data()), exact::Sight::not_finite);
+      }
+    }
+  }
+  const float most = 0x1.fffffep+127f;
+  const Triangle corners = {most, -most, most, -most, most, most, most, most, -most},
+                 far = {-most, -most, -most, -most, -most, most, most, -most, -most};
+  EXPECT_NE(exact::look_past(exact::prepare(corners.data()), far.data()), exact::Sight::not_finite);
+  EXPECT_EQ(exact::look_past(exact::prepare(corners.data()), corners.data()), exact::Sight::open);
+}
+
+}  // namespace
+}  // namespace graze::query

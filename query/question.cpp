@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "query/question.h"
+
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "cuda/query/device_query.h"
+
+namespace graze::query {
+namespace {
+
+constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 48, kMostReferences = 1 << 16;
+
+// Nanoseconds for a triangle and a reference on one core, for a triangle's way to a device, and until a device has
+// started at all. Measured, see docs/measurements.md; they matter for GRAZE_AUTO alone.
+constexpr double kOnCore = 8, kToDevice = 2, kStart = 3e8;
+constexpr std::uint64_t kWorthThreads = 1 << 14;
+
+[[noreturn]] void refuse(const std::string& what) { throw QueryError(GRAZE_BAD_ARGUMENT, what); }
+
+void expect(bool holds, const std::string& what) {
+  if (!holds) refuse(what);
+}
+
+void expect_aligned(const void* at, const std::string& name) {
+  expect(at != nullptr, name + ": expected a pointer, found NULL");
+  expect(reinterpret_cast<std::uintptr_t>(at) % 4 == 0, name + ": expected a pointer that is a multiple of 4");
+}
+
+std::size_t stride_of(std::size_t stride, std::size_t least, const std::string& name) {
+  if (stride == 0) return least;
+  expect(stride >= least && stride % 4 == 0, name + ": expected a stride of at least " + std::to_string(least) +
+                                                 " bytes that is a multiple of 4, found " + std::to_string(stride));
+  return stride;
+}
+
+cuda::TriangleArray array_of(const graze_triangles& part, const std::string& name) {
+  cuda::TriangleArray array;
+  expect(part.count <= kMostTriangles, name + ": expected at most 2^48 triangles, found " + std::to_string(part.count));
+  array.count = part.count;
+  if (part.count == 0) return array;
+  switch (part.layout) {
+    case GRAZE_ROWS:
+      expect_aligned(part.rows, name + ".rows");
+      array.rows = reinterpret_cast<const char*>(part.rows);
+      array.stride = stride_of(part.stride, 36, name);
+      return array;
+    case GRAZE_COLUMNS:
+      array.layout = cuda::Layout::columns;
+      for (int k = 0; k < 9; ++k) {
+        expect_aligned(part.columns[k], name + ".columns[" + std::to_string(k) + "]");
+        array.columns[k] = part.columns[k];
+      }
+      array.stride = stride_of(part.stride, 4, name);
+      return array;
+    case GRAZE_MESH:
+      array.layout = cuda::Layout::mesh;
+      expect_aligned(part.faces, name + ".faces");
+      expect_aligned(part.vertices, name + ".vertices");
+      array.faces = reinterpret_cast<const char*>(part.faces);
+      array.vertices = reinterpret_cast<const char*>(part.vertices);
+      array.vertex_count = part.vertex_count;
+      array.stride = stride_of(part.stride, 12, name);
+      array.vertex_stride = stride_of(part.vertex_stride, 12, name + ".vertices");
+      return array;
+    default:
+      refuse(name + ": expected a layout of 0 to 2, found " + std::to_string(part.layout));
+  }
+}
+
+// The exact lane of the host stands for both.
+Lane lane_of(const char* id) {
+  const std::string name = id ? id : "exact";
+  if (name == "exact") return *find_lane("exact/f32/cpu");
+  if (const Lane* lane = find_lane(name)) return *lane;
+  std::optional<LaneName> parts = parse_lane_name(name);
+  const std::string policy = parts ? std::exchange(parts->policy, "") : "";
+  const Lane* published = policy.empty() ? nullptr : find_lane(id_of(*parts));
+  if (!published || published->exact)
+    refuse("lane: expected exact or a lane of `graze lanes`, found '" + printable(name) + "'");
+  try {
+    return lane_under(*published, policy);
+  } catch (const UsageError& error) {
+    refuse(std::string("lane: ") + error.what());
+  }
+}
+
+void check_outputs(const graze_query& query, const Question& question) {
+  const bool any = query.mode == GRAZE_ANY;
+  expect(!any || (!query.bytes && !query.bits && !query.list), "GRAZE_ANY: expected no outputs but the answer");
+  expect(query.list || query.list_room == 0, "list: expected a pointer, found NULL");
+  if (query.bits) {
+    for (std::size_t p = 0; p + 1 < question.counts.size(); ++p)
+      expect(question.counts[p] % 64 == 0, "bits: expected parts of a multiple of 64 triangles, but for the last one");
+  }
+  if (!query.outputs_on_device) return;
+  expect(question.places.size() == 1 && question.places[0] >= 0 && !query.list,
+         "outputs_on_device: expected one part in a device's memory, and no list");
+}
+
+int device_count(const std::string& wanted) {
+  std::string why_not;
+  const int count = cuda::count_query_devices(why_not);
+  if (count == 0) throw QueryError(GRAZE_NO_DEVICE, wanted + ": expected a CUDA device, found none: " + why_not);
+  return count;
+}
+
+// Whether a device answers sooner, with the time that it takes to start.
+bool device_is_faster(const Question& question, int threads) {
+  const double triangles = static_cast<double>(question.triangles);
+  const double on_cores = triangles * static_cast<double>(question.references.size() / 9) * kOnCore / threads;
+  std::string why_not;
+  return on_cores > kStart + triangles * kToDevice && cuda::count_query_devices(why_not) > 0;
+}
+
+void choose_executor(const graze_query& query, bool any_lane, Question& question) {
+  const bool resident = std::any_of(question.places.begin(), question.places.end(), [](int p) { return p >= 0; });
+  const int cores = tbb::info::default_concurrency();
+  auto executor = static_cast<graze_executor>(query.executor);
+  if (executor == GRAZE_AUTO) {
+    const bool small = question.triangles * (question.references.size() / 9) < kWorthThreads;
+    const bool on_device = resident || question.lane.is_cuda() || (any_lane && device_is_faster(question, cores));
+    executor = on_device ? GRAZE_ALL_GPUS : small ? GRAZE_ONE_CORE : GRAZE_ALL_CORES;
+  }
+  question.executor = executor;
+  if (executor == GRAZE_ONE_CORE || executor == GRAZE_ALL_CORES) {
+    expect(!resident, "executor: expected GPUs for triangles in a device's memory, found cores");
+    expect(!question.lane.is_cuda(), "lane: expected a lane of the host for cores, found '" + question.lane.id + "'");
+    question.threads = executor == GRAZE_ONE_CORE ? 1 : cores;
+    return;
+  }
+  expect(any_lane || question.lane.is_cuda(), "lane: expected a CUDA lane for GPUs, found '" + question.lane.id + "'");
+  const int count = device_count("executor");
+  if (any_lane) question.lane = *find_lane("exact/f32/cuda");
+  if (!resident) {
+    for (int d = 0; d < (executor == GRAZE_ONE_GPU ? 1 : count); ++d) question.devices.push_back(d);
+    return;
+  }
+  for (const int place : question.places) {
+    expect(place >= 0 && place < count, "parts: expected all of them on devices 0 to " + std::to_string(count - 1) +
+                                            ", or all in the memory of the host, found " + std::to_string(place));
+    if (std::find(question.devices.begin(), question.devices.end(), place) == question.devices.end())
+      question.devices.push_back(place);
+  }
+  expect(executor == GRAZE_ALL_GPUS || question.devices.size() == 1,
+         "executor: expected parts on one device, found more");
+  expect(!query.stream || question.devices.size() == 1, "stream: expected parts on one device, found more");
+}
+
+}  // namespace
+
+Question question_of(const graze_query& query) {
+  Question question;
+  expect(query.size == sizeof query,
+         "size: expected " + std::to_string(sizeof query) + ", found " + std::to_string(query.size));
+  expect(query.mode == GRAZE_ANY || query.mode == GRAZE_ALL,
+         "mode: expected 0 or 1, found " + std::to_string(query.mode));
+  expect(query.executor >= GRAZE_AUTO && query.executor <= GRAZE_ALL_GPUS,
+         "executor: expected 0 to 4, found " + std::to_string(query.executor));
+  expect(query.launch_seconds >= 0,
+         "launch_seconds: expected at least 0, found " + std::to_string(query.launch_seconds));
+  expect(query.reference_count >= 1 && query.reference_count <= kMostReferences,
+         "references: expected 1 to 65536, found " + std::to_string(query.reference_count));
+  expect_aligned(query.references, "references");
+  question.references = {query.references, query.reference_count * 9};
+  expect(query.part_count >= 1 && query.parts, "parts: expected at least one, found none");
+  for (std::uint64_t p = 0; p < query.part_count; ++p) {
+    const graze_triangles& part = query.parts[p];
+    question.parts.push_back(array_of(part, "parts[" + std::to_string(p) + "]"));
+    expect(part.device >= -1, "parts: expected a device, or -1, found " + std::to_string(part.device));
+    question.counts.push_back(part.count);
+    question.places.push_back(part.device);
+    question.triangles += part.count;
+  }
+  expect(question.triangles <= kMostTriangles, "parts: expected at most 2^48 triangles, found more");
+  question.lane = lane_of(query.lane);
+  check_outputs(query, question);
+  choose_executor(query, question.lane.exact && !question.lane.is_cuda(), question);
+  return question;
+}
+
+}  // namespace graze::query

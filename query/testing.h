@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: arrays of triangles, and queries of them.
+#pragma once
+
+#include <cstring>
+#include <vector>
+
+#include <graze/query.h>
+
+#include "core/pair.h"
+#include "strata/strata.h"
+
+namespace graze::query {
+
+inline Triangle triangle(const Vec3<float>* v) {
+  Triangle t;
+  std::memcpy(t.data(), v, sizeof t);
+  return t;
+}
+
+// The thesis's reference, and so many of its random triangles.
+inline const Triangle kThesisReference = {2, -2, 4, 1, 5, -2, 1, -3, -3};
+inline std::vector<Triangle> thesis_triangles(std::size_t count, std::uint64_t seed = 1) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 0; i < count; ++i)
+    triangles.push_back(triangle(strata::generate(seed, strata::Stratum::thesis, i).b));
+  return triangles;
+}
+
+inline graze_triangles part_of(const std::vector<Triangle>& triangles) {
+  return rows_of(std::span<const Triangle>(triangles));
+}
+
+}  // namespace graze::query

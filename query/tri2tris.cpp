@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions of 2012 on the library of today.
+#include <atomic>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "query/include/graze/detect-tri2tris-intersection.h"
+#include "query/include/graze/query_c.h"
+
+namespace {
+
+std::atomic<std::uint8_t> flags = 0;
+
+std::int8_t detect(const triangle_t& ref, const triangle_t* triangles, int count, std::uint8_t* bytes, bool on_gpu) {
+  static const std::unique_ptr<graze_context, void (*)(graze_context*)> context(graze_open(), graze_close);
+  const std::uint8_t config = flags;
+  const bool all = config & COMPUTE_ALL_INTERSECTION;
+  const auto fail = [&](const char* what) -> std::int8_t {
+    if (config & VERBOSE_MODE) std::fprintf(stderr, "tri2tris_intersection_detect: %s\n", what);
+    return -1;
+  };
+  if (count < 0) return fail("expected a size of at least 0, found less");
+  if (!bytes && count > 0) return fail("expected an array for the results, found NULL");
+  graze_triangles part = {};
+  part.count = static_cast<std::uint64_t>(count);
+  part.device = -1;
+  part.rows = reinterpret_cast<const float*>(triangles);
+  graze_query query = {};
+  query.size = sizeof query;
+  query.references = &ref.p1.x;
+  query.reference_count = 1;
+  query.parts = &part;
+  query.part_count = 1;
+  query.mode = all ? GRAZE_ALL : GRAZE_ANY;
+  query.executor = !on_gpu ? GRAZE_ALL_CORES : config & FORCE_SINGLE_GPU_COMPUTATION ? GRAZE_ONE_GPU : GRAZE_ALL_GPUS;
+  if (all) query.bytes = bytes;
+  if (config & NO_WDDM_TDR_WORKAROUND) query.launch_seconds = 1e9;
+  graze_answer answer;
+  if (graze_run(context.get(), &query, &answer) != GRAZE_OK) return fail(answer.message);
+  if (!all && count > 0) {
+    std::memset(bytes, 0, static_cast<std::size_t>(count));
+    if (answer.hits) bytes[answer.first] = 1;
+  }
+  if (answer.hits) return 1;
+  return answer.declined ? fail("expected finite coordinates, found others") : std::int8_t{0};
+}
+
+}  // namespace
+
+extern "C" {
+
+void config_set(uint8_t config) { flags = config; }
+
+void config_reset(void) { flags = 0; }
+
+int8_t tri2tris_intersection_detect_cpu(triangle_t ref, triangle_t tri_array[], int array_sz, uint8_t result_array[]) {
+  return detect(ref, tri_array, array_sz, result_array, false);
+}
+
+int8_t tri2tris_intersection_detect_gpu(triangle_t ref, triangle_t tri_array[], int array_sz, uint8_t result_array[]) {
+  return detect(ref, tri_array, array_sz, result_array, true);
+}
+}

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "analysis/explain.h"
+#include "analysis/neighbours.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
@@ -85,6 +86,30 @@ TEST(Laws, NoImageThatWouldLoseBits) {
   EXPECT_EQ(images(Law::part, pair).size(), 8u);
   pair.a[1].x = 0x1p127f;
   EXPECT_EQ(images(Law::scale, pair).size(), 4u);
+}
+
+// Each way once: 72 orders, and steps by each vertex and by a power of two either way.
+TEST(Laws, NoWayIsMissingAndNoneIsThereTwice) {
+  const Pair pair{{{1, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
+  const auto texts = [](const std::vector<Pair>& pairs) {
+    std::set<std::string> different;
+    for (const Pair& one : pairs) {
+      std::string text;
+      for (int c = 0; c < kCoordinates; ++c) text += corpus::hex_float(coordinates(one)[c]) + ' ';
+      different.insert(text);
+    }
+    return different;
+  };
+  const auto moved = [&](float by) {
+    Pair image = pair;
+    for (int c = 0; c < kCoordinates; ++c) coordinates(image)[c] += by;
+    return *texts({image}).begin();
+  };
+  EXPECT_EQ(orders(pair).size(), 72u);
+  EXPECT_EQ(texts(orders(pair)).size(), 72u);
+  const std::set<std::string> steps = texts(translated(pair));
+  EXPECT_EQ(steps.size(), 9u);  // and the pair itself
+  EXPECT_TRUE(steps.count(moved(4)) && steps.count(moved(-4)));
 }
 
 TEST(Laws, WhatBreaksThem) {

@@ -12,6 +12,7 @@ import unittest
 SCRIPT = pathlib.Path(__file__).with_name("mutate")
 CMAKE = """cmake_minimum_required(VERSION 3.25)
 project(small CXX)
+set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 include_directories(${PROJECT_SOURCE_DIR})
 add_library(small STATIC part/small.cpp)

@@ -52,6 +52,68 @@ TEST(Tally, SumsAreTheTallyOfTheUnion) {
   }
 }
 
+// Blocks of any length: words that are full, begun, or not there at all.
+TEST(Tally, CountsEveryPairOfABlockOfAnyLength) {
+  for (const std::size_t count : {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, std::size_t{128}, std::size_t{130}}) {
+    Bits truth((count + 63) / 64), wrong = truth;
+    for (std::size_t i = 0; i < count; ++i) wrong[i / 64] |= std::uint64_t{1} << i % 64;
+    const Bits none(truth.size());
+    const std::vector<Bucket> buckets(count, Bucket{0});
+    const std::vector<LaneVerdicts> verdicts{{wrong, none}};
+    Tally tally({-1});
+    tally.add(JudgedBlock{count, truth, buckets, verdicts});
+    EXPECT_EQ(tally.pairs(0), count);
+    EXPECT_EQ(tally.lane(0, 0).false_positive, count);
+  }
+}
+
+// Both bits of foreign code say that it failed, one alone is its verdict.
+TEST(Tally, FailuresOfForeignCodeAreCountedAsWhatTheyAre) {
+  struct Code : ForeignCode {
+    void decide(const Pair*, std::size_t, std::uint64_t*, std::uint64_t*) override {}
+    Verdict failure(const Pair&) override { return Verdict::timed_out; }
+  } code;
+  const DecideBlock decide(code);
+  const std::vector<Pair> pairs(4);
+  const Bits truth{0x0}, yes{0x3}, none{0x6};  // intersects, fails, declines, disjoint
+  const std::vector<Bucket> buckets(4, Bucket{0});
+  const std::vector<LaneVerdicts> verdicts{{yes, none, &decide, pairs.data()}};
+  Tally tally({-1});
+  tally.add(JudgedBlock{4, truth, buckets, verdicts});
+  const LaneCounts& counts = tally.lane(0, 0);
+  EXPECT_EQ(counts.false_positive, 1u);
+  EXPECT_EQ(counts.timed_out, 1u);
+  EXPECT_EQ(counts.declined, 1u);
+  EXPECT_EQ(counts.wrong(), 3u);
+}
+
+TEST(Tally, AddsEveryLaneInEveryBucket) {
+  Tally one({-1, 0}), sum({-1, 0});
+  std::uint64_t n = 0;
+  for (int l = 0; l < 2; ++l) {
+    for (int b = -kBucketMost; b <= kBucketMost; ++b) one.add(static_cast<Bucket>(b), l, LaneCounts{++n});
+  }
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) one.add(static_cast<Bucket>(b), static_cast<std::uint64_t>(b + kBucketMost + 1), 1);
+  sum.add(one);
+  sum.add(one);
+  n = 0;
+  for (int l = 0; l < 2; ++l) {
+    for (int b = -kBucketMost; b <= kBucketMost; ++b) EXPECT_EQ(sum.lane(l, static_cast<Bucket>(b)).false_positive, 2 * ++n);
+  }
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    EXPECT_EQ(sum.pairs(static_cast<Bucket>(b)), 2 * static_cast<std::uint64_t>(b + kBucketMost + 1));
+    EXPECT_EQ(sum.intersects(static_cast<Bucket>(b)), 2u);
+  }
+}
+
+TEST(Signature, EachVerdictHasItsMark) {
+  const std::pair<Verdict, char> wrong[] = {{Verdict::disjoint, '-'}, {Verdict::declined, '?'},  {Verdict::crashed, '!'},
+                                            {Verdict::timed_out, '@'}, {Verdict::unstable, '%'}, {Verdict::intersects, '.'}};
+  for (const auto& [verdict, expected] : wrong) EXPECT_EQ(mark(verdict, Verdict::intersects), expected);
+  EXPECT_EQ(mark(Verdict::intersects, Verdict::disjoint), '+');
+  EXPECT_EQ(mark(Verdict::declined, Verdict::declined), '.');
+}
+
 std::vector<std::uint64_t> fields(const LaneCounts& c) {
   return {c.false_positive, c.false_negative, c.declined, c.differs_from_cpu, c.crashed, c.timed_out, c.unstable, c.by_convention};
 }

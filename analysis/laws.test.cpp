@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "analysis/explain.h"
+#include "analysis/neighbours.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
@@ -87,6 +89,66 @@ TEST(Laws, NoImageThatWouldLoseBits) {
   EXPECT_EQ(images(Law::scale, pair).size(), 4u);
 }
 
+// Pairs as text, in their order.
+std::vector<std::string> texts(const std::vector<Pair>& pairs) {
+  std::vector<std::string> all;
+  for (const Pair& pair : pairs) {
+    all.emplace_back();
+    for (int c = 0; c < kCoordinates; ++c) all.back() += corpus::hex_float(coordinates(pair)[c]) + ' ';
+  }
+  return all;
+}
+
+Pair changed(const Pair& pair, float scale, float step) {
+  Pair image;
+  for (int c = 0; c < kCoordinates; ++c) coordinates(image)[c] = coordinates(pair)[c] * scale + step;
+  return image;
+}
+
+// Each way once, the pair itself first.
+TEST(Laws, NoWayIsMissingAndNoneIsThereTwice) {
+  const Pair pair{{{1, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
+  const std::vector<std::pair<std::vector<Pair>, std::size_t>> ways = {{orders(pair), 72},  {mirrored(pair), 8},
+                                                                       {axes(pair), 6},     {scalings(pair), 129},
+                                                                       {translated(pair), 9}, {parts(pair), 9}};
+  for (const auto& [pairs, count] : ways) {
+    const std::vector<std::string> all = texts(pairs);
+    EXPECT_EQ(all.size(), count);
+    EXPECT_EQ(std::set<std::string>(all.begin(), all.end()).size(), count);
+    EXPECT_EQ(all.front(), texts({pair}).front()) << count;
+  }
+}
+
+TEST(Laws, ScaleByThesePowersAndMoveByTheLargestCoordinates) {
+  Pair pair{{{9, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
+  std::vector<Pair> scaled;
+  for (const float k : {2.0f, 0.5f, 16.0f, 0x1p-4f, 0x1p16f, 0x1p-16f, 0x1p64f, 0x1p-64f}) scaled.push_back(changed(pair, k, 0));
+  EXPECT_EQ(texts(images(Law::scale, pair)), texts(scaled));
+  for (int largest = 0; largest < kCoordinates; ++largest) {
+    std::swap(coordinates(pair)[0], coordinates(pair)[largest]);
+    const std::vector<std::string> moved = texts(translated(pair));
+    for (const float step : {8.0f, -8.0f})
+      EXPECT_EQ(std::count(moved.begin(), moved.end(), texts({changed(pair, 1, step)}).front()), 1) << largest;
+    std::swap(coordinates(pair)[0], coordinates(pair)[largest]);
+  }
+}
+
+TEST(Laws, NudgesAreAnUlpAndAThousandthOfTheCoordinateOrOfTheLargest) {
+  Pair pair{};
+  coordinates(pair)[3] = 0x1p-20f;
+  coordinates(pair)[17] = -0x1p-10f;
+  const auto steps = [&](int coordinate) {
+    std::vector<float> all;
+    for (const Pair& moved : nudged(pair, coordinate)) all.push_back(coordinates(moved)[coordinate] - coordinates(pair)[coordinate]);
+    return all;
+  };
+  EXPECT_EQ(steps(3), (std::vector<float>{0x1p-43f, -0x1p-43f, 0x1p-30f, -0x1p-30f}));
+  EXPECT_EQ(steps(0), (std::vector<float>{0x1p-33f, -0x1p-33f, 0x1p-20f, -0x1p-20f}));
+  EXPECT_EQ(steps(16), steps(0));
+  coordinates(pair)[17] = 0;
+  EXPECT_EQ(steps(0), (std::vector<float>{0x1p-43f, -0x1p-43f, 0x1p-30f, -0x1p-30f}));
+}
+
 TEST(Laws, WhatBreaksThem) {
   constexpr Verdict yes = Verdict::intersects, no = Verdict::disjoint, none = Verdict::declined;
   EXPECT_TRUE(breaks(Law::swap, yes, no));
@@ -163,6 +225,59 @@ TEST(Laws, CountsAreThoseOfAPlainLoop) {
     }
   }
   EXPECT_GT(changes, 100u);
+  std::uint64_t all = 0;
+  for (const strata::PairSource& source : spec.sources) {
+    for (std::uint64_t i = 0; i < source.pairs; ++i) {
+      for (const LawInfo& law : kLaws) all += images(law.law, source.pair(i)).size();
+    }
+  }
+  EXPECT_EQ(found.images, all);
+  EXPECT_GT(found.its_images, found.by_oracle);
+  EXPECT_LT(found.its_images, all);
+}
+
+// A lane whose convention leaves touching pairs open is not asked about them, nor about such parts of others.
+TEST(Laws, WhatAConventionLeavesOpenIsNotAsked) {
+  LawSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex", "near_edge_edge"});
+  const Laws all = laws(spec);
+  Lane lane = *spec.lanes[0];
+  lane.outside = kOutsideShared;
+  spec.lanes[0] = &lane;
+  const Laws asked = laws(spec);
+  for (const LawInfo& law : kLaws) {
+    const auto &with = asked.lanes[0].counts[static_cast<std::size_t>(law.law)],
+               &without = all.lanes[0].counts[static_cast<std::size_t>(law.law)];
+    EXPECT_EQ(with[0].pairs, without[0].pairs) << law.id;  // near_edge_edge
+    EXPECT_EQ(with[0].changed, without[0].changed) << law.id;
+    EXPECT_EQ(with[1].pairs, 0u) << law.id;
+  }
+  // The second triangle pierces the first and touches one of its parts, on which alone this lane says that they meet.
+  spec.sources = {{"one", 1, [](std::uint64_t) {
+                     return Pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, -1}, {2, 1, 1}, {6, 1, 0}}};
+                   }}};
+  spec.on_host[0] = DecideBlock(+[](const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+    std::fill_n(intersects, (count + 63) / 64, 0);
+    std::fill_n(declined, (count + 63) / 64, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3<float>(&a)[3] = pairs[i].a;
+      if (a[0].x + a[1].x + a[2].x == 4 && a[0].y + a[1].y + a[2].y == 4 && a[0].x < 3 && a[1].x < 3 && a[2].x < 3)
+        intersects[i / 64] |= std::uint64_t{1} << i % 64;
+    }
+  });
+  EXPECT_EQ(laws(spec).lanes[0].total(Law::part).changed, 1u);
+  lane.outside = kOutsideTouching;
+  EXPECT_EQ(laws(spec).lanes[0].total(Law::part).changed, 0u);
+}
+
+// The steps of foreign code are not known, and those under a tolerance are others.
+TEST(Laws, RangeIsKnownOfPublishedLanesAlone) {
+  Lane lane = *find_lane("moller_1997/f32/cpu");
+  EXPECT_TRUE(knows_range(lane));
+  lane.policy = "rel:16";
+  EXPECT_FALSE(knows_range(lane));
+  lane.policy = "";
+  lane.algorithm = -1;
+  EXPECT_FALSE(knows_range(lane));
 }
 
 TEST(Laws, AreTheSameWhateverTheThreads) {

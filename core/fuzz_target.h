@@ -3,6 +3,7 @@
 // fuzz/targets runs them under libFuzzer, core/fuzz_replay.test.cpp on the stored corpora alone.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string_view>
@@ -30,6 +31,11 @@ inline void must_hold(bool holds, const char* what) {
   std::fprintf(stderr, "expected that %s\n", what);
   std::abort();
 }
+
+// Says that the target got to something worth keeping the input for, which branches do not show or nothing instruments.
+// libFuzzer finds these counters by the section's name.
+__attribute__((used, section("__libfuzzer_extra_counters"))) inline std::uint8_t fuzz_counters[4096];
+inline void reached(std::size_t feature) { fuzz_counters[feature % sizeof fuzz_counters] = 1; }
 
 // What errors of readers must be: one line, and not empty.
 inline void must_be_one_line(std::string_view error) {

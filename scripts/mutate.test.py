@@ -12,6 +12,7 @@ import unittest
 SCRIPT = pathlib.Path(__file__).with_name("mutate")
 CMAKE = """cmake_minimum_required(VERSION 3.25)
 project(small CXX)
+set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 include_directories(${PROJECT_SOURCE_DIR})
 add_library(small STATIC part/small.cpp)
@@ -22,12 +23,12 @@ HEADER = """#pragma once
 inline int twice(int x) { return x + x; }  // 1 + 1 in a comment is no token
 inline int size(const int* x) { return x ? sizeof(int[1]) == 4 : 0; }
 int clamped(int x);
-int count(int x);
+int count(long x);
 """
 SOURCE = """#include "part/small.h"
 // At 10 either gives 10.
 int clamped(int x) { return x < 10 ? x : 10; }
-int count(int x) {
+int count(long x) {
   int n = 0;
   while (x > 0) { ++n; x -= 1; }
   return n;
@@ -117,7 +118,16 @@ class Mutate(unittest.TestCase):
         self.assertGreater(len(more), len(some))
         again, same = self.run_script("--count", "4", "--seed", "5")
         self.assertEqual(same, more)
-        self.assertNotIn("the tests pass without a mutant", again.stdout)
+        self.assertNotIn("pass without a mutant", again.stdout)
+
+    def test_is_not_delayed_by_tests_that_were_timed_before(self):
+        first, _ = self.run_script()
+        # Of the header its test is compiled, of the source the build's own object serves.
+        self.assertRegex(first.stdout, r"(?m)^small part/small.test.cpp part/small.test.cpp: pass without a mutant, in \d")
+        self.assertRegex(first.stdout, r"(?m)^small part/small.test.cpp: pass without a mutant, in \d")
+        again, _ = self.run_script("--again", "survived")
+        self.assertIn("survived     part/small.cpp:9:30", again.stdout)
+        self.assertNotIn("pass without a mutant", again.stdout)
 
     def test_tests_that_fail_without_a_mutant_are_refused(self):
         self.addCleanup((self.root / "part/small.h").write_text, HEADER)
@@ -132,7 +142,8 @@ class Mutate(unittest.TestCase):
         self.assertIn("expected a mutant of part/small.cpp, found none", ran.stdout)
 
     def test_planted_defects_need_the_test_that_is_named(self):
-        self.assertEqual(self.run_script("--planted")[0].returncode, 0)
+        ran, _ = self.run_script("--planted")
+        self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
         ran, _ = self.run_script("--planted", config=(CONFIG % "").replace('"Small.Twice"', '"Small.Count"'))
         self.assertEqual(ran.returncode, 1)
         self.assertIn("twice is thrice: NOT CAUGHT, killed", ran.stdout)

@@ -113,6 +113,15 @@ TEST(Exact, KindsOfNumbersAgree) {
   for (const int count : contacts) EXPECT_GT(count, 0);
 }
 
+// What the comments of error_bound.h derive: no test on pairs comes near to the bounds.
+TEST(ErrorBound, IsShewchuksAndNoMoreThanAFewPercentAbove) {
+  const double e = 0x1p-53, stage_a = (7 + 56 * e) * e;
+  EXPECT_GE(detail::kDeterminantError, stage_a);
+  EXPECT_LE(detail::kDeterminantError, 1.2 * stage_a);
+  EXPECT_GE(detail::determinant_error({3, 5, 7}), 6 * stage_a * 3 * 5 * 7);
+  EXPECT_LE(detail::determinant_error({3, 5, 7}), 1.2 * 6 * stage_a * 3 * 5 * 7);
+}
+
 TEST(Exact, WideIntegersMultiplyAndCompare) {
   using detail::Wide;
   const auto wide = [](std::int64_t x) {

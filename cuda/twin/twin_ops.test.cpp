@@ -250,6 +250,17 @@ TEST(TwinOps, FlushedProductKeepsItsSign) {
   EXPECT_EQ(flushed(0x1p-126f), 0x1p-126f);
 }
 
+// The exact result lies 2^-197 beside the limit, on which double precision rounds it.
+TEST(TwinOps, FmaFlushesByWhatRoundingToDoubleLeavesOut) {
+  const f32 limit = 0x1p-126f, up = (1 + 0x1p-23f) * 0x1p-75f, down = (1 - 0x1p-23f) * 0x1p-76f;  // times: 2^-151 less 2^-197
+  const f32 large = 8384513 * 0x1p-98f, also = 8392705 * 0x1p-99f;                              // times: 2^-151 and 2^-197 more
+  ASSERT_EQ(f64{large} * f64{also}, 0x1p-151 + 0x1p-197);
+  for (const f32 sign : {1.0f, -1.0f}) {
+    EXPECT_EQ(fma_ftz(sign * up, -down, sign * limit), sign * limit);
+    EXPECT_EQ(fma_ftz(sign * large, -also, sign * limit), 0);
+  }
+}
+
 TEST(TwinOps, MinAndMaxThatKeepNan) {
   const f32 nan_value = Limits<f32>::quiet_NaN();
   EXPECT_TRUE(is_nan(min_nan(1.0f, nan_value)));

@@ -196,6 +196,13 @@ std::vector<Slot<f64>> f64_slots() {
   return joined<f64>(parts);
 }
 
+// Of two normal numbers, so that only the result is flushed.
+TEST(TwinOps, SumsBelowTheLeastNormalNumberAreFlushed) {
+  EXPECT_EQ((rounded_add<Rounding::rz, true, f32>(0x1.8p-126f, -0x1p-126f)), 0);
+  EXPECT_EQ((rounded_sub<Rounding::rp, true, f32>(-0x1.8p-126f, -0x1p-126f)), 0);
+  EXPECT_EQ((rounded_add<Rounding::rz, false, f32>(0x1.8p-126f, -0x1p-126f)), 0x1p-127f);
+}
+
 TEST(TwinOps, RoundingF32) { check<semantics_rounding_f32, f32>(f32_slots(), special_values<f32>()); }
 TEST(TwinOps, RoundingF64) { check<semantics_rounding_f64, f64>(f64_slots(), special_values<f64>()); }
 TEST(TwinOps, RoundingF32OnADevice) {

@@ -171,6 +171,21 @@ TEST(TwinGenerator, ReadsFunctionsTablesAndScopes) {
   EXPECT_TRUE(has("mov.pred %p1, %scope2_q"));
 }
 
+TEST(TwinGenerator, AFunctionMayReturnNothing) {
+  std::istringstream in(
+      ".version 9.0\n.target sm_75\n.address_size 64\n.func leave()\n{\nret;\n}\n"
+      ".weak .func  (.param .b64 out) number()\n{\nret;\n}\n");
+  const Module module = read_ptx(in, "f.ptx");
+  ASSERT_EQ(module.kernels.size(), 2u);
+  EXPECT_EQ(module.kernels[0].name, "leave");
+  EXPECT_EQ(module.kernels[0].linkage, "");
+  EXPECT_TRUE(module.kernels[0].returned.empty());
+  EXPECT_EQ(module.kernels[1].name, "number");
+  EXPECT_EQ(module.kernels[1].linkage, ".weak ");
+  ASSERT_EQ(module.kernels[1].returned.size(), 1u);
+  EXPECT_EQ(module.kernels[1].returned[0].bytes, 8);
+}
+
 TEST(TwinGenerator, KeepsTheKernelThatCounts) {
   std::istringstream in(kWithFunctions);
   const Module module = read_ptx(in, "f.ptx"), small = reduced(module, "k");

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of any bits: where contraction is off, the twin of each CUDA lane decides as the host's lane does.
+#include "cuda/twin/twin.h"
+
+#include "core/fuzz_pair.h"
+#include "core/fuzz_target.h"
+#include "core/lanes.h"
+
+namespace graze::cuda {
+namespace {
+
+int code(const DecideBlock& decide, const Pair& pair) {
+  std::uint64_t intersects = 0, declined = 0;
+  decide(&pair, 1, &intersects, &declined);
+  return static_cast<int>(intersects + 2 * declined);
+}
+
+const RegisterFuzzTarget kTwin("twin", [](std::string_view bytes) {
+  const std::optional<Pair> pair = pair_of(bytes);
+  if (!pair) return;
+  std::size_t compared = 0;
+  for (const Lane& lane : lanes()) {
+    if (lane.variant != Variant::cuda_nofma || !twin_block(lane)) continue;
+    const int twin = code(twin_block(lane), *pair);
+    must_hold(twin == code(counterpart(lane, Variant::cpu)->decide, *pair), "a twin without contraction decides as the host does");
+    reached(4 * compared++ + static_cast<std::size_t>(twin));
+  }
+  must_hold(compared >= 10, "five algorithms in two precisions have a twin");
+});
+
+}  // namespace
+}  // namespace graze::cuda

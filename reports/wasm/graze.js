@@ -53,8 +53,11 @@ function graze_of(exports) {
   /** @param {number} at @param {number} count @returns {Point[]} */
   function points_at(at, count) {
     const data = view();
-    return Array.from({ length: count }, (_, i) => [0, 8, 16].map((k) => data.getFloat64(at + 24 * i + k, true)));
+    return Array.from({ length: count }, (_, i) => /** @type {Point} */ ([0, 8, 16].map((k) => data.getFloat64(at + 24 * i + k, true))));
   }
+
+  /** From the repository's root: "core/vec3.h". @param {number} at */
+  const file_at = (at) => text_at(at).replace(/^.*?(?=core\/)/, '');
 
   const lanes = Array.from({ length: exports.lane_count() }, (_, i) => text_at(exports.lane_id(i)));
   const strata = Array.from({ length: exports.stratum_count() }, (_, i) => text_at(exports.stratum_id(i)));
@@ -199,7 +202,7 @@ function graze_of(exports) {
         const step = at + 64 * i;
         const [file, line, site, compared, relation, held, holds] = Array.from({ length: 7 }, (_, k) => data.getInt32(step + 4 * k, true));
         const [left, right, exactLeft, exactRight] = [32, 40, 48, 56].map((k) => data.getFloat64(step + k, true));
-        return { line: `${text_at(file)}:${line}`, site: site < 0 ? '' : kSites[site], relation: compared ? kRelations[relation] : '',
+        return { line: `${file_at(file)}:${line}`, site: site < 0 ? '' : kSites[site], relation: compared ? kRelations[relation] : '',
           held: held !== 0, holds: holds !== 0, left, right, exactLeft, exactRight };
       });
     },
@@ -214,8 +217,8 @@ function graze_of(exports) {
       const at = exports.contractions_at(), data = view();
       return Array.from({ length: count }, (_, i) => {
         const [file, from_file, line, from_line] = [0, 4, 8, 12].map((k) => data.getInt32(at + 16 * i + k, true));
-        const from = text_at(from_file);
-        return { line: `${text_at(file)}:${line}`, from: from && `${from}:${from_line}` };
+        const from = file_at(from_file);
+        return { line: `${file_at(file)}:${line}`, from: from && `${from}:${from_line}` };
       });
     },
   };

@@ -142,7 +142,7 @@ function check_interface() {
   const { sign, least, most } = graze.margin([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.5, 1, 0, 0.5, 0, 1, 0.5]);
   assert.ok(sign === 1 && least <= 0.5 && most >= 0.5 && most - least < 1e-9);
   const output = execFileSync(process.execPath, [fileURLToPath(new URL('example.mjs', import.meta.url)), module], { encoding: 'utf8' });
-  assert.match(output, /touching: intersects, contact point, margin 0 to 0\n/);
+  assert.match(output, /touching: intersects, contact point, margin 0.00 to 0.00\na quarter above: disjoint, contact none, margin 0.250 to 0.250\n/);
   assert.match(output, /cuda-fma: disjoint\n$/);
 }
 

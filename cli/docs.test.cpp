@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/run_graze.h"
+#include "reports/viewer.h"
 
 namespace graze::cli {
 namespace {
@@ -101,6 +102,11 @@ TEST(Docs, ReadmePrintsWhatItSays) { expect_true_commands("README.md", 5); }
 TEST(Docs, TourPrintsWhatItSays) { expect_true_commands("docs/tour.md", 20); }
 
 TEST(Docs, YourOwnCodePrintsWhatItSays) { expect_true_commands("docs/your_own_code.md", 15); }
+
+TEST(Docs, ViewerPrintsWhatItSays) {
+  if (!reports::has_viewer()) GTEST_SKIP() << "this build has no viewer";
+  expect_true_commands("docs/viewer.md", 4);
+}
 
 TEST(Docs, TuningPrintsWhatItSays) { expect_true_commands("docs/tuning.md", 8); }
 

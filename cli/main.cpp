@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
   graze::cli::add_kinds(app, status);
   graze::cli::add_league(app, status);
   graze::cli::add_map(app, status);
+  graze::cli::add_view(app, status);
   graze::cli::add_dump(app, status);
   graze::cli::add_report(app, status);
   graze::cli::add_scene(app, status);

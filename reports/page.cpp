@@ -15,7 +15,8 @@ constexpr char kText[] =
     ;
 constexpr std::string_view kPageTemplate(kText, sizeof kText - 1);
 
-// The text with data in place of what stands in its element of that id.
+}  // namespace
+
 std::string with_data(std::string_view text, const char* id, const Json& data) {
   const std::string start = fmt::format("<script type=\"application/json\" id=\"{}\">", id);
   const std::size_t element = text.find(start);
@@ -32,8 +33,6 @@ std::string with_data(std::string_view text, const char* id, const Json& data) {
   }
   return filled.append(text.substr(end));
 }
-
-}  // namespace
 
 bool has_interactive_page() { return !kPageTemplate.empty(); }
 

@@ -19,6 +19,10 @@ std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_j
 std::string plain_page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                        const nlohmann::ordered_json& choices);
 
+// The template's text with data in place of what stands in its element <script type="application/json" id="…">.
+// Throws: std::logic_error for a text without that element.
+std::string with_data(std::string_view page_template, const char* id, const nlohmann::ordered_json& data);
+
 // All inside a template, in its elements <script type="application/json" id="report">, id="costs" and id="choices".
 // Throws: std::logic_error for a text without them.
 std::string filled(std::string_view page_template, const nlohmann::ordered_json& report,

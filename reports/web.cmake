@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. Where npm cannot fetch its
-# packages, as offline, that string is empty, and reports are plain pages.
+# packages, as offline, that string is empty, and reports are plain pages. The same of the viewer, which holds the module
+# WASM, in VIEWER; empty without one.
 file(MAKE_DIRECTORY ${BUILD})
 file(REMOVE_RECURSE ${BUILD}/src)
-foreach(part index.html package.json package-lock.json tsconfig.json vite.config.js src)
+foreach(part index.html view.html package.json package-lock.json tsconfig.json vite.config.js src)
   file(COPY ${SOURCE}/${part} DESTINATION ${BUILD})
 endforeach()
+
+file(COPY ${SOURCE}/../wasm/graze.js DESTINATION ${BUILD}/src/viewer)
+file(WRITE ${VIEWER} "\"\"\n")
 
 file(SHA256 ${BUILD}/package-lock.json lock)
 set(installed "")
@@ -25,9 +29,16 @@ if(NOT installed STREQUAL lock)
   file(WRITE ${BUILD}/node_modules/installed ${lock})
 endif()
 
-execute_process(COMMAND ${NPM} run --silent build WORKING_DIRECTORY ${BUILD} RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
-if(failed)
-  message(FATAL_ERROR "expected reports/web to build, found:\n${said}")
+function(build script html out)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env GRAZE_WASM=${WASM} ${NPM} run --silent ${script} WORKING_DIRECTORY ${BUILD}
+    RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
+  if(failed)
+    message(FATAL_ERROR "expected reports/web to build, found:\n${said}")
+  endif()
+  file(READ ${BUILD}/dist/${html} page)
+  file(WRITE ${out} "R\"graze_page(${page})graze_page\"\n")
+endfunction()
+build(build index.html ${OUT})
+if(WASM)
+  build(build-viewer view.html ${VIEWER})
 endif()
-file(READ ${BUILD}/dist/index.html page)
-file(WRITE ${OUT} "R\"graze_page(${page})graze_page\"\n")

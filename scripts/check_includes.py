@@ -11,7 +11,7 @@ import re
 import sys
 
 SOURCES = {".h", ".cpp", ".cu", ".cuh", ".inl"}
-GENERATED = {"build_info.h", "embedded.inc", "page_template.inc"}  # by the build, on an include path of their own
+GENERATED = {"build_info.h", "embedded.inc", "page_template.inc", "viewer_template.inc", "canaries.inc"}  # by the build, on an include path of their own
 
 LIBRARIES = [  # what an include names, which library that is, the folder that may see it
     (r"CGAL/|boost/multiprecision/(gmp|mpfr)|gmp(xx)?\.h|mpfr\.h", "CGAL, GMP and MPFR", "oracle"),

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/twin/twin.h"
 
-#include <fmt/format.h>
+#include <cstdio>
 
-#include <map>
-#include <memory>
-#include <vector>
-
-#include "core/error.h"
-#include "cuda/subject/twin_library.h"
 #include "cuda/twin/twin_table.h"
 
 namespace graze::cuda {
@@ -42,25 +36,18 @@ struct TwinTables {
   {}
 #define GRAZE_TABLES_twin_rounded(name) \
   { &twin_##name::kTwinTable, &twin_##name::kTwinTable, &policy_twin_##name::kTwinTable }
+#ifdef __wasm__  // which has no FMA instructions: one table
+#define GRAZE_TABLES_twin_contracted(name) \
+  { nullptr, &twin_##name##_portable::kTwinTable, &policy_twin_##name::kTwinTable }
+#else
 #define GRAZE_TABLES_twin_contracted(name) \
   { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, &policy_twin_##name::kTwinTable }
+#endif
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_TABLES_##twin##_##arithmetic(name),
 constexpr TwinTables kTables[] = {
 #include "core/variants.inc"
 };
 #undef GRAZE_VARIANT
-
-// Those of users' CUDA code, by the lane's id.
-struct ForeignTwin {
-  std::unique_ptr<TwinLibrary> library;
-  std::vector<ContractionSite> sites;
-  double most_seconds = 0;
-};
-
-std::map<std::string, ForeignTwin>& foreign_twins() {
-  static std::map<std::string, ForeignTwin> all;
-  return all;
-}
 
 const TwinTable* twin_table(Variant variant) {
 #if defined(__x86_64__)
@@ -125,37 +112,13 @@ std::string twin_evidence(const Lane& lane) {
   const TwinRow& row = twin_row(lane);
   for (const Proof& proof : kProofs) {
     if (row.decide && proof.hash == row.hash && proof.trace_hash == row.trace_hash) {
-      return fmt::format("twin, verified on {}, nvcc {}, {:.3g} pairs", proof.device, proof.toolkit, proof.pairs);
+      char pairs[32];
+      std::snprintf(pairs, sizeof pairs, "%.3g", proof.pairs);
+      return "twin, verified on " + std::string(proof.device) + ", nvcc " + std::string(proof.toolkit) + ", " + pairs +
+             " pairs";
     }
   }
   return "twin";
-}
-
-void add_foreign_twin(const Lane& lane, const std::filesystem::path& twin, double most_seconds) {
-  ForeignTwin& added = foreign_twins()[lane.id];
-  added.most_seconds = most_seconds;
-  added.library = std::make_unique<TwinLibrary>(twin, lane.scalar);
-  for (const TwinSite& site : added.library->sites())
-    added.sites.push_back({{site.file.c_str(), site.line}, {site.from_file.c_str(), site.from_line}, site.by_ptxas, 0});
-}
-
-double most_seconds(const Lane& lane) { return foreign_twins().at(lane.id).most_seconds; }
-
-std::span<const ContractionSite> contraction_sites(const Lane& lane) {
-  if (!lane.foreign) return twin_row(lane).sites;
-  const auto found = foreign_twins().find(lane.id);
-  return found == foreign_twins().end() ? std::span<const ContractionSite>() : found->second.sites;
-}
-
-Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused) {
-  if (lane.foreign) {
-    const int answer = foreign_twins().at(lane.id).library->decide_fusing(pair, fused);
-    return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
-  }
-  const TwinRow& row = twin_row(lane);
-  if (!row.decide_fusing || fused.size() * 64 < row.sites.size())
-    throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");
-  return row.decide_fusing(pair, fused.data());
 }
 
 }  // namespace graze::cuda

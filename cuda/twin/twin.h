@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <span>
 #include <string>
 
@@ -52,7 +51,7 @@ std::span<const ContractionSite> contraction_sites(const Lane& lane);
 
 // Gives a foreign CUDA lane the sites of its twin, a library of cuda/subject; a verdict may take so many seconds.
 // Throws: as TwinLibrary.
-void add_foreign_twin(const Lane& lane, const std::filesystem::path& twin, double most_seconds);
+void add_foreign_twin(const Lane& lane, const std::string& twin, double most_seconds);
 double most_seconds(const Lane& lane);  // of a verdict.   Requires: a foreign lane with sites
 
 // The verdict of a lane that has contraction sites, with two roundings at every site whose bit is not set: none set is

@@ -9,8 +9,10 @@
 #include "core/decide_each.h"
 #include "cuda/lanes/device_pairs.h"
 #include "cuda/twin/twin_ops_bits.h"
-#include "cuda/twin/twin_ops_rounding.h"
 #include "cuda/twin/twin_table.h"
+#ifndef __wasm__  // which rounds to nearest only, as the published algorithms do
+#include "cuda/twin/twin_ops_rounding.h"
+#endif
 
 namespace graze::cuda {
 inline namespace GRAZE_FP {
@@ -25,13 +27,22 @@ namespace ptx {
 
 const unsigned char* bytes(const void* object) { return static_cast<const unsigned char*>(object); }
 
+// The kernels' parameters as a device has them: addresses of 64 bits, also where those of this processor are shorter.
+u64 address(const void* object) { return reinterpret_cast<std::uintptr_t>(object); }
+struct Block {
+  u64 coordinates;
+  u32 stride = 1, count = 1;
+  explicit Block(const Pair& pair) : coordinates(address(graze::coordinates(pair))) {}
+};
+static_assert(sizeof(Block) == 16 && (sizeof(DevicePairs) == 16 || sizeof(void*) < 8));
+
 // One pair as a block of one: stride 1, so that its coordinates are the 18 arrays. `more`: the kernel's parameters
 // between the block and the words that it writes.
 template <class Kernel, class Fuse, class... More>
 Verdict decide_one(const Pair& pair, const Fuse& fuse, const More&... more) {
-  const DevicePairs block{coordinates(pair), 1, 1};
+  const Block block(pair);
   u32 yes = 0, no_answer = 0;
-  const u32 *yes_at = &yes, *no_answer_at = &no_answer;
+  const u64 yes_at = address(&yes), no_answer_at = address(&no_answer);
   const unsigned char* const parameters[] = {bytes(&block), bytes(&more)..., bytes(&yes_at), bytes(&no_answer_at)};
   Kernel::run(parameters, fuse);
   return yes ? Verdict::intersects : no_answer ? Verdict::declined : Verdict::disjoint;
@@ -53,8 +64,8 @@ void decide_within(const Epsilons& epsilons, const Pair* pairs, std::size_t coun
 template <class Kernel>
 void trace_block(const Pair* pairs, std::size_t count, u64* hashes) {
   for (std::size_t i = 0; i < count; ++i) {
-    const DevicePairs block{coordinates(pairs[i]), 1, 1};
-    const u64* hash_at = hashes + i;
+    const Block block(pairs[i]);
+    const u64 hash_at = address(hashes + i);
     const unsigned char* const parameters[] = {bytes(&block), bytes(&hash_at)};
     Kernel::run(parameters, AllFused{});
   }

@@ -6,7 +6,9 @@ import type { Report } from './report';
 
 export type Vec = [number, number, number];
 export type Frame = 'both' | 'a' | 'b';
-export interface Shape { a: Vec[]; b: Vec[]; contact: Vec[]; line: Vec[]; radius: number; note: string }
+export interface Shape { a: Vec[]; b: Vec[]; contact: Vec[]; line: Vec[]; radius: number; note: string; marks?: Mark[]; names?: { p: Vec; name: string }[] }
+// What else is drawn, in a colour of the style sheet: triangles, three corners each, or polylines of that width.
+export interface Mark { colour: string; triangles?: Vec[]; opacity?: number; lines?: Vec[][]; width?: number; dashed?: boolean }
 export interface View { azimuth: number; elevation: number; zoom: number }
 
 const kLongestToScale = 12;  // axes whose extents differ by more than this are stretched to one length
@@ -90,7 +92,7 @@ export function project(shape: Shape, p: Vec, view: View, width: number, height:
 export function labels(shape: Shape, view: View, width: number, height: number) {
   const at = new Map<string, { x: number; y: number; text: string }>();
   const kAway = 14, kHalfLetter = 3.6;
-  const vertices = [...shape.a.map((p, i) => ({ p, name: `a${i}` })), ...shape.b.map((p, i) => ({ p, name: `b${i}` }))];
+  const vertices = shape.names ?? [...shape.a.map((p, i) => ({ p, name: `a${i}` })), ...shape.b.map((p, i) => ({ p, name: `b${i}` }))];
   const seen = vertices.map(({ p, name }) => ({ ...project(shape, p, view, width, height), name }));
   const middle = { x: width / 2, y: height / 2 };
   for (const { x, y, name } of seen) {

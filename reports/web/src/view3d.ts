@@ -71,6 +71,19 @@ export function picture(shape: Shape): Picture {
     add_line(segments([...points], true), `${name}-edge`, 2, 'shown');
     add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1;  // also where the other hides it
   }
+  for (const { colour, triangles, opacity, lines, width, dashed } of shape.marks ?? []) {
+    if (triangles?.length) {
+      const solid = opacity === undefined;
+      const material = new MeshLambertMaterial({ side: DoubleSide, transparent: !solid, opacity: opacity ?? 1, depthWrite: solid, polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 6 });
+      const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(triangles.flat(), 3));
+      geometry.computeVertexNormals();
+      scene.add(new Mesh(geometry, material));
+      coloured.push({ material, name: colour });
+      made.push(geometry, material);
+    }
+    const ends = (lines ?? []).flatMap((points) => points.slice(1).flatMap((q, i) => [...points[i], ...q]));
+    if (ends.length) add_line(new LineSegmentsGeometry().setPositions(ends), colour, width ?? 1.5, 'shown', dashed);
+  }
   if (shape.line.length > 1) add_line(segments(shape.line, false), '--ink', 1.3, 'shown', true);
   if (shape.contact.length > 2) {
     const material = new MeshBasicMaterial({ side: DoubleSide, depthTest: false, transparent: true, opacity: 0.55 });

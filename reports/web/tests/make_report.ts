@@ -26,6 +26,12 @@ export default function make_report() {
   fuzz('2', 'other');
   run('minimize', 'other', '--executor', 'twin');
   run('report', '--compare', 'other', 'campaign');
+  try {
+    run('view', 'thesis:1:0', '--out', 'view.html');
+    process.env.GRAZE_VIEW = join(folder, 'view.html');
+  } catch {  // a build without the viewer; cli/view.test.cpp says whether it should have one
+    process.env.GRAZE_VIEW = '';
+  }
   process.env.GRAZE_REPORT = join(folder, 'campaign', 'report.html');
   process.env.GRAZE_COMPARE = join(folder, 'campaign', 'compare.html');
   return () => rmSync(folder, { recursive: true });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// node tests/screens.mjs REPORT.html DESKTOP.png PHONE.png: the first screen, as the tour shows it.
+// node tests/screens.mjs PAGE.html DESKTOP.png PHONE.png: the first screen of a report or a viewer, as the docs show it.
 import { execSync } from 'node:child_process';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -11,7 +11,8 @@ const browser = await chromium.launch({ executablePath, args: ['--use-angle=swif
 for (const [path, width, height] of [[desktop, 1280, 800], [phone, 390, 844]]) {
   const page = await browser.newPage({ viewport: { width, height } });
   await page.goto(pathToFileURL(resolve(report)).href);
-  await page.waitForSelector('#glance svg');
+  await page.waitForSelector('#glance svg, #replayed');
+  await page.waitForTimeout(500);  // the viewer's answer comes a moment later
   await page.screenshot({ path });
 }
 await browser.close();

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze view` as users meet it; what its page does is tested in a browser, reports/web/tests/viewer.spec.ts.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+#include "reports/viewer.h"
+
+namespace graze::cli {
+namespace {
+
+class ViewCommand : public CommandTest {
+ protected:
+  void SetUp() override {
+    if (!reports::has_viewer()) GTEST_SKIP() << "this build has no viewer: it takes Node and a compiler for WebAssembly";
+  }
+
+  // What the page holds.
+  nlohmann::json data(const std::string& page) const {
+    const std::string text = contents(shell.folder / page), start = "<script type=\"application/json\" id=\"view\">";
+    const std::size_t begin = text.find(start) + start.size();
+    return nlohmann::json::parse(text.substr(begin, text.find("</script>", begin) - begin));
+  }
+};
+
+TEST_F(ViewCommand, OnePageOfFewMegabytesThatNamesNoOtherFile) {
+  const Ran ran = shell("graze view thesis:1:0");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(ran.out, "Wrote view.html: 1 pair\n");
+  const std::string page = contents(shell.folder / "view.html");
+  EXPECT_LT(page.size(), std::size_t{4} << 20);
+  EXPECT_EQ(page.find(" src="), page.npos);
+  const nlohmann::json held = data("view.html");
+  EXPECT_EQ(held["pairs"][0]["name"], "thesis:1:0");
+  EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().substr(0, 24), "40000000c000000040800000");  // 2 -2 4
+}
+
+TEST_F(ViewCommand, StoredVerdictsOfAllLanesCanariesAmongThem) {
+  expect_done("graze view --out all.html");
+  const nlohmann::json replay = data("all.html")["replay"];
+  EXPECT_EQ(replay["lanes"].size(), 32u);
+  EXPECT_GT(replay["pairs"].size(), 300u);
+  int differ = 0;
+  for (const nlohmann::json& pair : replay["pairs"]) {
+    EXPECT_EQ(pair["verdicts"].get<std::string>().size(), replay["lanes"].size());
+    differ += pair["verdicts"].get<std::string>().find_first_not_of(pair["verdicts"].get<std::string>()[0]) != std::string::npos;
+  }
+  EXPECT_GT(differ, 30);
+}
+
+TEST_F(ViewCommand, FilesFoldersAndMeshes) {
+  std::ofstream(shell.folder / "two.pairs") << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1\n"
+                                               "0 0 0 1 1 0 1 0 0  .75 .75 1 .75 .75 2 .5 .75 2 | name=above\n";
+  std::ofstream(shell.folder / "mesh.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.3 0.3 -1\nv 0.3 0.3 1\nv 2 2 0.5\nf 1 2 3\nf 4 5 6\n";
+  EXPECT_EQ(shell("graze view two.pairs").out, "Wrote view.html: 2 pairs\n");
+  EXPECT_EQ(data("view.html")["pairs"][1]["name"], "above");
+  expect_done("mkdir -p some && cp two.pairs some/a.pairs && cp two.pairs some/b.pairs");
+  EXPECT_EQ(shell("graze view some").out, "Wrote view.html: 4 pairs\n");
+  EXPECT_EQ(shell("graze view mesh.obj --out mesh.html").out, "Wrote mesh.html: 1 pair, 2 triangles\n");
+  expect_done("graze fuzz --pairs 200 --strata thesis,near_edge_edge --lanes '*/f32/cpu' --out run && graze view run --out run.html");
+  EXPECT_GT(data("run.html")["pairs"].size(), 3u);
+}
+
+TEST_F(ViewCommand, BadInputGetsOneLine) {
+  std::filesystem::create_directory(shell.folder / "empty");
+  std::ofstream(shell.folder / "flat.off") << "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  std::ofstream(shell.folder / "words.pairs") << "one two\n";
+  for (const auto& [arguments, status, part] :
+       {std::tuple{"missing.pairs", 1, "missing.pairs: expected a file of pairs, found none"},
+        {"empty", 1, "empty: expected *.pairs in it, or in its cases/, found none"},
+        {"flat.off", 1, "flat.off: expected at least one pair of triangles whose boxes overlap, found none"},
+        {"words.pairs", 1, "words.pairs:1: expected"},
+        {"nowhere:1:1", 2, "expected a stratum"},
+        {"lattice:1:x", 2, "expected a whole number, found 'x'"},
+        {"lattice:1:1 --out empty", 1, "empty"}}) {
+    expect_error(std::string("graze view ") + arguments, status, part);
+  }
+}
+
+// With a display the page is opened, by what stands for xdg-open; without one nothing is.
+TEST_F(ViewCommand, OpensThePageOnlyWhereThereIsADisplay) {
+  expect_done("printf '#!/bin/sh\\necho \"$1\" >> opened\\n' > xdg-open && chmod +x xdg-open");
+  expect_done("unset DISPLAY WAYLAND_DISPLAY; PATH=$PWD:$PATH graze view --out a.html && test ! -e opened");
+  expect_done("DISPLAY=:0 PATH=$PWD:$PATH graze view --out a.html && test \"$(cat opened)\" = a.html");
+}
+
+}  // namespace
+}  // namespace graze::cli

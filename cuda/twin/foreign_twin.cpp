@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The twins of users' CUDA code, which are libraries of cuda/subject; and what is asked of theirs and of ours alike.
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "cuda/subject/twin_library.h"
+#include "cuda/twin/twin.h"
+#include "cuda/twin/twin_table.h"
+
+namespace graze::cuda {
+namespace {
+
+// Those of users' CUDA code, by the lane's id.
+struct ForeignTwin {
+  std::unique_ptr<TwinLibrary> library;
+  std::vector<ContractionSite> sites;
+  double most_seconds = 0;
+};
+
+std::map<std::string, ForeignTwin>& foreign_twins() {
+  static std::map<std::string, ForeignTwin> all;
+  return all;
+}
+
+}  // namespace
+
+void add_foreign_twin(const Lane& lane, const std::string& twin, double most_seconds) {
+  ForeignTwin& added = foreign_twins()[lane.id];
+  added.most_seconds = most_seconds;
+  added.library = std::make_unique<TwinLibrary>(twin, lane.scalar);
+  for (const TwinSite& site : added.library->sites())
+    added.sites.push_back({{site.file.c_str(), site.line}, {site.from_file.c_str(), site.from_line}, site.by_ptxas, 0});
+}
+
+double most_seconds(const Lane& lane) { return foreign_twins().at(lane.id).most_seconds; }
+
+std::span<const ContractionSite> contraction_sites(const Lane& lane) {
+  if (!lane.foreign) return twin_row(lane).sites;
+  const auto found = foreign_twins().find(lane.id);
+  return found == foreign_twins().end() ? std::span<const ContractionSite>() : found->second.sites;
+}
+
+Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused) {
+  if (lane.foreign) {
+    const int answer = foreign_twins().at(lane.id).library->decide_fusing(pair, fused);
+    return answer < 0 ? Verdict::declined : answer > 0 ? Verdict::intersects : Verdict::disjoint;
+  }
+  const TwinRow& row = twin_row(lane);
+  if (!row.decide_fusing || fused.size() * 64 < row.sites.size())
+    throw std::invalid_argument("decide_fusing: no such twin, or too few bits for its sites");
+  return row.decide_fusing(pair, fused.data());
+}
+
+}  // namespace graze::cuda

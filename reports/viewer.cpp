@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/viewer.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <set>
+#include <sstream>
+
+#include "core/lanes.h"
+#include "corpus/pair_format.h"
+#include "cuda/twin/twin.h"
+#include "oracle/truth.h"
+#include "reports/page.h"
+#include "strata/strata.h"
+
+namespace graze::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr char kText[] =
+#include "viewer_template.inc"
+    ;
+constexpr std::string_view kTemplate(kText, sizeof kText - 1);
+constexpr char kCanaries[] =
+#include "canaries.inc"
+    ;
+
+constexpr std::uint64_t kReplaySeed = 20120131;
+constexpr std::uint64_t kReplayed = 16;  // pairs of each stratum
+
+std::string bits_of(const float* numbers, std::size_t count) {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) text += fmt::format("{:08x}", std::bit_cast<std::uint32_t>(numbers[i]));
+  return text;
+}
+
+// The lanes that WebAssembly has too, each with what decides it here.
+std::vector<const Lane*> replayed_lanes() {
+  std::vector<const Lane*> result;
+  for (const Lane& lane : lanes()) {
+    const bool rebuilt = lane.exact || lane.is_cuda() || info_of(lane.variant).arithmetic == Arithmetic::rounded;
+    if (rebuilt && !lane.foreign && !lane.under && cuda::block_on_host(lane)) result.push_back(&lane);
+  }
+  return result;
+}
+
+std::vector<Pair> replayed_pairs() {
+  std::vector<Pair> pairs;
+  std::istringstream text(kCanaries);
+  corpus::PairReader canaries(text, "canaries");
+  while (const auto entry = canaries.next()) pairs.push_back(entry->pair);
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    for (std::uint64_t index = 0; index < kReplayed; ++index)
+      pairs.push_back(strata::generate(kReplaySeed, row.stratum, index));
+  }
+  return pairs;
+}
+
+Json replay() {
+  const std::vector<const Lane*> of = replayed_lanes();
+  Json lanes = Json::array(), pairs = Json::array();
+  for (const Lane* lane : of) lanes.push_back(lane->id);
+  for (const Pair& pair : replayed_pairs()) {
+    const oracle::Truth truth = oracle::truth(pair);
+    std::string verdicts;
+    for (const Lane* lane : of) verdicts += static_cast<char>('0' + static_cast<int>(decide_one(cuda::block_on_host(*lane), pair)));
+    pairs.push_back({{"bits", bits_of(coordinates(pair), kCoordinates)},
+                     {"truth", name(truth.verdict)},
+                     {"contact", name(truth.contact)},
+                     {"verdicts", verdicts}});
+  }
+  return {{"lanes", lanes}, {"pairs", pairs}};
+}
+
+// What stands behind the twins, each once.
+std::string evidence() {
+  std::set<std::string> kinds;
+  for (const Lane* lane : replayed_lanes()) {
+    if (lane->is_cuda() && !lane->exact) kinds.insert(cuda::twin_evidence(*lane));
+  }
+  return fmt::format("{}", fmt::join(kinds, "; "));
+}
+
+}  // namespace
+
+bool has_viewer() { return !kTemplate.empty(); }
+
+std::string viewer_page(const Viewed& viewed) {
+  Json pairs = Json::array(), triangles = Json::array();
+  for (const ViewedPair& one : viewed.pairs)
+    pairs.push_back({{"name", one.name}, {"bits", bits_of(coordinates(one.pair), kCoordinates)}});
+  for (const auto& triangle : viewed.triangles) triangles.push_back(bits_of(&triangle[0].x, 9));
+  return with_data(kTemplate, "view",
+                   {{"format", 1},
+                    {"title", viewed.title},
+                    {"evidence", evidence()},
+                    {"pairs", pairs},
+                    {"triangles", triangles},
+                    {"replay", replay()}});
+}
+
+}  // namespace graze::reports

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// graze.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and what published algorithms say of
+// the same pair in float32 and float64, on the CPU and, by their twins, on the GPU. Needs nothing else: Node 18 or newer,
+// or any browser of 2021 or newer.
+
+/** 18 coordinates, a[0] to a[2], then b[0] to b[2]; each is rounded to float32. @typedef {ArrayLike<number>} Pair */
+/** @typedef {'disjoint' | 'intersects' | 'declined'} Verdict declined: a coordinate is not finite, or a lane cannot decide. */
+/** @typedef {'none' | 'point' | 'segment' | 'area'} Contact */
+/** @typedef {{ verdict: Verdict, contact: Contact, coplanar: boolean, dimensions: [number, number] }} Truth dimensions: of the two hulls, 0 point, 1 segment, 2 triangle. */
+/** @typedef {{ sign: -1 | 0 | 1, least: number, most: number, ulp: number }} Margin 1: disjoint, and at least `least`, at most `most` apart. -1: so deep. 0: they touch. ulp: that of the largest coordinate. */
+/** @typedef {[number, number, number]} Point */
+/** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]] }} Drawing line: of both planes; sections: of it, by a and by b. */
+/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': a value (left). held: in the lane; holds: with 113 bits. */
+/** @typedef {{ line: string, from: string }} Site An operation with one rounding where the source has two, and what it is inlined into. */
+/** @typedef {ReturnType<typeof graze_of>} Graze */
+
+/** @type {readonly Verdict[]} */
+export const kVerdicts = ['disjoint', 'intersects', 'declined'];
+const kContacts = /** @type {const} */ (['none', 'point', 'segment', 'area']);
+const kSites = ['plane_distance', 'parallel', 'orientation', 'separation'];
+const kRelations = ['<', '<=', '==', '>', '>='];
+const kMostPoints = 9;
+
+/**
+ * The functions over an instance of the module.
+ * @param {any} exports
+ */
+function graze_of(exports) {
+  /** @type {WebAssembly.Memory} */
+  const memory = exports.memory;
+  const view = () => new DataView(memory.buffer);  // anew each time: memory that grows leaves views behind
+
+  /** @param {number} at */
+  function text_at(at) {
+    const bytes = new Uint8Array(memory.buffer, at);
+    return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
+  }
+
+  /** @param {string} text */
+  function set_text(text) {
+    const bytes = new TextEncoder().encode(text);
+    const room = new Uint8Array(memory.buffer, exports.text(), bytes.length + 1);
+    room.set(bytes);
+    room[bytes.length] = 0;
+  }
+
+  /** @param {Pair} pair @param {number} at */
+  function set_pair(pair, at = exports.pairs()) {
+    if (pair.length !== 18) throw new RangeError(`expected the 18 coordinates of a pair, found ${pair.length}`);
+    new Float32Array(memory.buffer, at, 18).set(pair);
+  }
+
+  /** @param {number} at @param {number} count @returns {Point[]} */
+  function points_at(at, count) {
+    const data = view();
+    return Array.from({ length: count }, (_, i) => /** @type {Point} */ ([0, 8, 16].map((k) => data.getFloat64(at + 24 * i + k, true))));
+  }
+
+  /** From the repository's root: "core/vec3.h". @param {number} at */
+  const file_at = (at) => text_at(at).replace(/^.*?(?=core\/)/, '');
+
+  const lanes = Array.from({ length: exports.lane_count() }, (_, i) => text_at(exports.lane_id(i)));
+  const strata = Array.from({ length: exports.stratum_count() }, (_, i) => text_at(exports.stratum_id(i)));
+  const verdicts_at = exports.verdicts();
+
+  /** @param {string} name @param {readonly string[]} names @param {string} what */
+  function place(name, names, what) {
+    const found = names.indexOf(name);
+    if (found < 0) throw new RangeError(`expected ${what}, found '${name}'`);
+    return found;
+  }
+
+  /** @param {string} id */
+  const lane = (id) => place(id, lanes, 'one of the lanes');
+
+  /** @param {Pair} pair */
+  function truth_at(pair) {
+    set_pair(pair);
+    return /** @type {number} */ (exports.truth());
+  }
+
+  return {
+    /** The lanes' names, "moller_1997/f32/cuda-fma". */
+    lanes,
+    /** The strata's names. */
+    strata,
+    /** How many pairs fit into one call of the functions below that take several. */
+    room: /** @type {number} */ (exports.room()),
+    /** The module's own functions, for those who know them. */
+    exports,
+
+    /**
+     * What each lane says of the pair; null where a lane cannot have the policy that is set.
+     * @param {Pair} pair @returns {Record<string, Verdict | null>}
+     */
+    decide(pair) {
+      set_pair(pair);
+      return Object.fromEntries(lanes.map((id, i) => [id, exports.decide(i, 1) ? kVerdicts[view().getUint8(verdicts_at)] : null]));
+    },
+
+    /**
+     * The exact verdict, whatever finite coordinates there are.
+     * @param {Pair} pair @returns {Truth}
+     */
+    truth(pair) {
+      const at = truth_at(pair), data = view();
+      const [verdict, contact, , a, b, coplanar] = Array.from({ length: 6 }, (_, i) => data.getInt32(at + 4 * i, true));
+      return { verdict: kVerdicts[verdict], contact: kContacts[contact], coplanar: coplanar !== 0, dimensions: [a, b] };
+    },
+
+    /**
+     * How far from touching the pair is: certified bounds of the distance of disjoint triangles, or of the smallest translation
+     * that parts intersecting ones.
+     * @param {Pair} pair @returns {Margin}
+     */
+    margin(pair) {
+      const at = truth_at(pair), data = view();
+      const sign = /** @type {-1 | 0 | 1} */ (data.getInt32(at + 8, true));
+      return { sign, least: data.getFloat64(at + 32, true), most: data.getFloat64(at + 40, true), ulp: 2 ** data.getInt32(at + 24, true) };
+    },
+
+    /**
+     * The policy of all lanes but the exact ones from now on: '', 'abs:E', 'rel:K', 'bound' or 'filtered'.
+     * @param {string} policy
+     */
+    set_policy(policy) {
+      const number = /^(?:abs|rel):(.+)$/.exec(policy);
+      if (!['', 'bound', 'filtered'].includes(policy) && !(number && Number(number[1]) >= 0 && Number.isFinite(Number(number[1]))))
+        throw new RangeError(`expected abs:E, rel:K, bound, filtered or nothing, found '${policy}'`);
+      set_text(policy);
+      exports.set_policy();
+    },
+
+    /**
+     * The float32 nearest to a decimal or hex float, rounded once; null for what is no number of float32.
+     * @param {string} text @returns {number | null}
+     */
+    parse(text) {
+      if (text.length > 1000) return null;
+      set_text(text);
+      return exports.parse(0) ? view().getFloat32(exports.pairs(), true) : null;
+    },
+
+    /**
+     * The pair of a stratum, the same bits as everywhere.
+     * @param {string} stratum @param {bigint} seed @param {bigint} index @returns {Float32Array}
+     */
+    generate(stratum, seed, index) {
+      exports.generate(place(stratum, strata, 'a stratum'), seed, index, 1);
+      return new Float32Array(memory.buffer, exports.pairs(), 18).slice();
+    },
+
+    /**
+     * The float32 so many steps above the number.
+     * @param {number} x @param {number} ulps
+     */
+    nudged(x, ulps) {
+      view().setFloat32(exports.pairs(), x, true);
+      exports.nudge(0, ulps);
+      return view().getFloat32(exports.pairs(), true);
+    },
+
+    /**
+     * One row of an ulp map: x goes up by `step` ulps from cell to cell, the middle one being the pair's own, and y is `up`
+     * ulps above the pair's. Writes the truth's verdicts, then each lane's; 2 is declined. Null: without the policy.
+     * @param {Pair} pair @param {number} x @param {number} y @param {number} up @param {number} columns @param {number} step
+     * @param {string[]} of @returns {(Uint8Array | null)[]}
+     */
+    map_row(pair, x, y, up, columns, step, of) {
+      set_pair(pair, exports.centre());
+      exports.map_row(x, y, up, columns, step);
+      const cells = () => new Uint8Array(memory.buffer, verdicts_at, columns).slice();
+      exports.decide_truth(columns);
+      return [cells(), ...of.map((id) => (exports.decide(lane(id), columns) ? cells() : null))];
+    },
+
+    /**
+     * What to draw besides the two triangles.
+     * @param {Pair} pair @returns {Drawing}
+     */
+    drawing(pair) {
+      set_pair(pair);
+      const at = exports.draw(), data = view();
+      const [contact, line, a, b] = [0, 4, 8, 12].map((k) => data.getInt32(at + k, true));
+      const points = at + 16, after = points + 24 * kMostPoints;
+      return {
+        contact: points_at(points, contact), line: points_at(after, line),
+        sections: [points_at(after + 48, a), points_at(after + 96, b)],
+      };
+    },
+
+    /**
+     * The comparisons of a lane without a policy, in order, and the values that its policy would see; null where they are not known.
+     * @param {Pair} pair @param {string} id @returns {Step[] | null}
+     */
+    steps(pair, id) {
+      set_pair(pair);
+      const count = exports.steps(lane(id));
+      if (count < 0) return null;
+      const at = exports.steps_at(), data = view();
+      return Array.from({ length: count }, (_, i) => {
+        const step = at + 64 * i;
+        const [file, line, site, compared, relation, held, holds] = Array.from({ length: 7 }, (_, k) => data.getInt32(step + 4 * k, true));
+        const [left, right, exactLeft, exactRight] = [32, 40, 48, 56].map((k) => data.getFloat64(step + k, true));
+        return { line: `${file_at(file)}:${line}`, site: site < 0 ? '' : kSites[site], relation: compared ? kRelations[relation] : '',
+          held: held !== 0, holds: holds !== 0, left, right, exactLeft, exactRight };
+      });
+    },
+
+    /**
+     * The contractions that make a cuda-fma lane without a policy decide otherwise than cuda-nofma; none where it does not.
+     * @param {Pair} pair @param {string} id @returns {Site[]}
+     */
+    contractions(pair, id) {
+      set_pair(pair);
+      const count = exports.contractions(lane(id));
+      const at = exports.contractions_at(), data = view();
+      return Array.from({ length: count }, (_, i) => {
+        const [file, from_file, line, from_line] = [0, 4, 8, 12].map((k) => data.getInt32(at + 16 * i + k, true));
+        const from = file_at(from_file);
+        return { line: `${file_at(file)}:${line}`, from: from && `${from}:${from_line}` };
+      });
+    },
+  };
+}
+
+/**
+ * Makes the module ready.
+ * @param {BufferSource | WebAssembly.Module} bytes of graze.wasm @returns {Promise<Graze>}
+ */
+export async function load(bytes) {
+  const module = bytes instanceof WebAssembly.Module ? bytes : await WebAssembly.compile(bytes);
+  const { exports } = await WebAssembly.instantiate(module);
+  /** @type {any} */ (exports)._initialize();
+  return graze_of(exports);
+}

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// The module against the native build, and its interface.   node graze.test.mjs REFERENCE GRAZE.WASM PAIRS
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { load } from './graze.js';
+
+const [reference, module, pairs] = process.argv.slice(2);
+const graze = await load(readFileSync(module));
+const { exports } = graze;
+const kSeed = 20120131n, kBlock = 1000, kFew = 5;
+
+// As reference.cpp has it.
+class Hash {
+  value = 0x811c9dc5;
+  scratch = new DataView(new ArrayBuffer(8));
+  add(bytes) {
+    let hash = this.value;
+    for (let i = 0; i < bytes.length; ++i) hash = Math.imul(hash ^ bytes[i], 0x01000193);
+    this.value = hash >>> 0;
+    return this;
+  }
+  whole(x) {
+    this.scratch.setInt32(0, x, true);
+    this.add(new Uint8Array(this.scratch.buffer, 0, 4));
+  }
+  number(x) {
+    this.scratch.setFloat64(0, Number.isNaN(x) ? 0.25 : x, true);
+    this.add(new Uint8Array(this.scratch.buffer));
+  }
+}
+
+const bytes = (at, count) => new Uint8Array(exports.memory.buffer, at, count);
+const line_of = (place) => Number(place.split(':').at(-1));
+const pair_at = (i) => new Float32Array(exports.memory.buffer, exports.pairs() + 72 * i, 18).slice();
+const filled = (make) => {
+  const hash = new Hash();
+  make(hash);
+  return hash.value;
+};
+
+function truths(count) {
+  const all = Array.from({ length: count }, (_, i) => pair_at(i));
+  return filled((hash) => {
+    for (const pair of all) {
+      bytes(exports.pairs(), 72).set(new Uint8Array(pair.buffer));
+      const data = new DataView(exports.memory.buffer, exports.truth());
+      for (let k = 0; k < 7; ++k) hash.whole(data.getInt32(4 * k, true));
+      hash.number(data.getFloat64(32, true));
+      hash.number(data.getFloat64(40, true));
+    }
+  });
+}
+
+function steps(lane, few) {
+  return filled((hash) => {
+    for (const pair of few) {
+      const found = graze.steps(pair, lane);
+      if (!found) continue;
+      hash.whole(found.reduce((sum, { line, held, left, right }) => (sum + filled((step) => {
+        step.whole(line_of(line));
+        step.whole(Number(held));
+        step.number(left);
+        step.number(right);
+      })) | 0, 0));
+      for (const { line } of graze.contractions(pair, lane)) hash.whole(line_of(line));
+    }
+  });
+}
+
+// The same number as the native line's.
+function compute(what, stratum, block, count) {
+  const draw = () => exports.generate(graze.strata.indexOf(stratum), kSeed, BigInt(block * kBlock), count);
+  draw();
+  if (what === 'pairs') return new Hash().add(bytes(exports.pairs(), 72 * count)).value;
+  if (what === 'truth') return truths(count);
+  const [kind, id] = what.includes(':') && /^(trace|steps):/.test(what) ? what.split(/:(.*)/s) : ['', what];
+  const [subject, scalar, variant, policy] = id.split('/');
+  const lane = graze.lanes.indexOf(`${subject}/${scalar}/${variant}`);
+  assert.ok(lane >= 0, `the module has no lane ${id}`);
+  if (kind === 'steps') return steps(id, Array.from({ length: Math.min(kFew, count) }, (_, i) => pair_at(i)));
+  if (kind === 'trace') {
+    assert.ok(exports.trace(lane, count), `${id} has no trace`);
+    return new Hash().add(bytes(exports.hashes(), 8 * count)).value;
+  }
+  if (policy) graze.set_policy(policy);
+  const has = exports.decide(lane, count);
+  if (policy) graze.set_policy('');
+  assert.ok(has, `${what}: the module cannot decide`);
+  return new Hash().add(bytes(exports.verdicts(), count)).value;
+}
+
+// The fused multiply-add on rationals: x, y and z are integers times 2^-149.
+function fused_exactly(x, y, z) {
+  const whole = (v) => BigInt(v * 2 ** 149);  // exact: v < 2^128 stays a double
+  let sum = whole(x) * whole(y) + (whole(z) << 149n);  // times 2^-298
+  if (sum === 0n) return 0;
+  const negative = sum < 0n;
+  if (negative) sum = -sum;
+  const bits = BigInt(sum.toString(2).length);
+  const drop = bits - 24n > 149n ? bits - 24n : 149n;  // below the 24th bit, or below 2^-149
+  let kept = sum >> drop;
+  const rest = sum - (kept << drop), half = 1n << (drop - 1n);
+  if (rest > half || (rest === half && (kept & 1n))) kept += 1n;
+  const value = Number(kept) * 2 ** Number(drop - 200n) * 2 ** -98;
+  return negative ? -value : value;
+}
+
+function check_fused() {
+  let state = 1;
+  const below = (n) => {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;  // Numerical Recipes; enough for this
+    return Math.floor((state / 2 ** 32) * n);
+  };
+  let halfway = 0;
+  for (let i = 0; i < 100_000; ++i) {
+    const exponent = -100 + below(80), total = -160 + below(40);
+    const x = (1 + below(4095)) * 2 ** exponent, y = (1 + below(4095)) * 2 ** Math.max(-149, total - exponent);
+    const z = (below(2 ** 21) - 2 ** 20) * 2 ** (-149 + below(8));
+    const exact = fused_exactly(x, y, z);
+    assert.equal(exports.fused(x, y, z) + 0, exact + 0, `fused(${x}, ${y}, ${z})`);
+    halfway += Number(Math.fround(Math.fround(x * y) + z) !== exact);
+  }
+  assert.ok(halfway > 1000, `two roundings differ from one on ${halfway} of the cases: too few to test anything`);
+}
+
+function check_interface() {
+  assert.equal(graze.parse('0.1'), Math.fround(0.1));
+  assert.equal(graze.parse('-0x1.8p+1'), -3);
+  // Between two floats; rounded to double first, it would be the other one.
+  assert.equal(graze.parse('1.000000059604644775390626'), 1 + 2 ** -23);
+  for (const text of ['', 'x', '1e39', '1 2', '0x']) assert.equal(graze.parse(text), null, text);
+  assert.equal(graze.nudged(0, -1), -(2 ** -149));
+  assert.throws(() => graze.set_policy('abs:x'), /expected abs:E/);
+  assert.throws(() => graze.decide([1, 2]), /expected the 18 coordinates/);
+  const case_1 = [0, -2, 6, 0, 5, 0, 0, -3, 0, -2, -2, 0, 2, -3, 0, 3, -1, 0];  // of 2012
+  assert.deepEqual(graze.truth(case_1), { verdict: 'intersects', contact: 'segment', coplanar: false, dimensions: [2, 2] });
+  const { contact, sections } = graze.drawing(case_1);
+  assert.deepEqual(contact.map(([, y]) => y).sort(), [-1.6, -2.5]);  // worked out by hand in corpus/classic/thesis_2012.pairs
+  assert.equal(sections.every((ends) => ends.length === 2), true);
+  const { sign, least, most } = graze.margin([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.5, 1, 0, 0.5, 0, 1, 0.5]);
+  assert.ok(sign === 1 && least <= 0.5 && most >= 0.5 && most - least < 1e-9);
+  const output = execFileSync(process.execPath, [fileURLToPath(new URL('example.mjs', import.meta.url)), module], { encoding: 'utf8' });
+  assert.match(output, /touching: intersects, contact point, margin 0.00 to 0.00\na quarter above: disjoint, contact none, margin 0.250 to 0.250\n/);
+  assert.match(output, /cuda-fma: disjoint\n$/);
+}
+
+function compare() {
+  const lines = execFileSync(reference, [pairs], { encoding: 'utf8', maxBuffer: 2 ** 30 }).trim().split('\n');
+  const each = Math.ceil(Number(pairs) / graze.strata.length);
+  const compared = new Map();
+  for (const line of lines) {
+    const [what, stratum, block, expected] = line.split(' ');
+    const count = Math.min(each - Number(block) * kBlock, kBlock);
+    assert.equal(compute(what, stratum, Number(block), count), Number(expected), `${what} on block ${block} of ${stratum}`);
+    compared.set(what, (compared.get(what) ?? 0) + count);
+  }
+  const lanes = graze.lanes.filter((id) => compared.has(id));
+  assert.deepEqual(lanes, graze.lanes);
+  const kinds = (kind) => [...compared.keys()].filter((what) => what.startsWith(kind)).length;
+  assert.ok(kinds('trace:') > 0 && kinds('steps:') > 0);
+  console.log(`${compared.get('pairs')} pairs of ${graze.strata.length} strata: 0 differences in the verdicts of ${lanes.length} lanes and the truth, in the trace hashes of ${kinds('trace:')} lanes`);
+}
+
+check_fused();
+check_interface();
+compare();

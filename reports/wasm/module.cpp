@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+// graze.wasm: what the viewer decides with. Its functions work on buffers of the module's own; graze.js knows them.
+#include <cstring>
+#include <vector>
+
+#include "analysis/blame.h"
+#include "analysis/lane_trace.h"
+#include "core/exact/exact.h"
+#include "core/lanes.h"
+#include "core/margin/margin.h"
+#include "core/text.h"
+#include "cuda/twin/twin.h"
+#include "reports/wasm/drawing.h"
+#include "reports/wasm/quad.h"
+#include "strata/strata.h"
+
+#define GRAZE_EXPORT(name) extern "C" [[clang::export_name(#name)]]
+
+namespace graze::reports::wasm {
+namespace {
+
+constexpr std::size_t kRoom = 1024;   // pairs at once
+constexpr std::size_t kText = 65536;  // bytes of a text
+
+Pair pairs_in[kRoom];
+Pair map_centre;
+char text_in[kText];
+std::uint8_t verdicts_out[kRoom];
+std::uint64_t hashes_out[kRoom];
+
+struct TruthOut {
+  std::int32_t verdict, contact, margin_sign, dimension_a, dimension_b, coplanar, log2_ulp, unused;
+  double least, most;  // of |margin|, certified
+} truth_out;
+
+struct StepOut {
+  const char* file;
+  std::int32_t line, site, compared, relation, held, holds;
+  double left, right, exact_left, exact_right;
+};
+std::vector<StepOut> steps_out;
+Drawing drawing_out;
+
+struct SiteOut {
+  const char *file, *from_file;
+  std::int32_t line, from_line;
+};
+std::vector<SiteOut> sites_out;
+
+// Those that the module can decide, and by what: under the policy that was set last.
+struct Decider {
+  const Lane* lane;
+  DecideBlock decide;
+};
+
+std::vector<Decider>& deciders() {
+  static std::vector<Decider> all = [] {
+    std::vector<Decider> found;
+    for (const Lane& lane : lanes()) {
+      if (DecideBlock block = cuda::block_on_host(lane)) found.push_back({&lane, block});
+    }
+    return found;
+  }();
+  return all;
+}
+
+// Null where the lane cannot have the policy. Exact lanes have none, and stay as they are.
+DecideBlock block_under(const Lane& lane, std::string_view policy) {
+  if (policy.empty() || lane.exact) return cuda::block_on_host(lane);
+  const bool by_bounds = policy == "bound" || policy == "filtered";
+  if (by_bounds && !lane.info->right_without_rounding) return nullptr;
+  return cuda::block_on_host(lane_under(lane, policy));
+}
+
+Verdict truth_of(const Pair& pair) {
+  return !is_finite(pair)                                ? Verdict::declined
+         : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects
+                                                         : Verdict::disjoint;
+}
+
+void nudge_in(Pair& pair, int coordinate, int ulps) {
+  float& x = coordinates(pair)[coordinate];
+  if (ulps != 0) x = strata::nudged(x, ulps);  // a step of zero would turn -0 into +0
+}
+
+void decide_into(const DecideBlock& decide, std::size_t count) {
+  std::uint64_t intersects[kRoom / 64], declined[kRoom / 64];
+  decide(pairs_in, count, intersects, declined);
+  for (std::size_t i = 0; i < count; ++i) {
+    verdicts_out[i] = static_cast<std::uint8_t>(
+        verdict_of_bits(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
+  }
+}
+
+}  // namespace
+
+GRAZE_EXPORT(room) int room() { return kRoom; }
+GRAZE_EXPORT(pairs) Pair* pairs() { return pairs_in; }
+GRAZE_EXPORT(text) char* text() { return text_in; }
+GRAZE_EXPORT(verdicts) std::uint8_t* verdicts() { return verdicts_out; }
+GRAZE_EXPORT(hashes) std::uint64_t* hashes() { return hashes_out; }
+
+GRAZE_EXPORT(lane_count) int lane_count() { return static_cast<int>(deciders().size()); }
+GRAZE_EXPORT(lane_id) const char* lane_id(int lane) { return deciders()[lane].lane->id.c_str(); }
+
+GRAZE_EXPORT(stratum_count) int stratum_count() { return strata::kStrataCount; }
+GRAZE_EXPORT(stratum_id) const char* stratum_id(int stratum) { return strata::kStrata[stratum].id.data(); }
+
+// The pairs with indices from `first` on.
+GRAZE_EXPORT(generate) void generate(int stratum, std::uint64_t seed, std::uint64_t first, int count) {
+  for (int i = 0; i < count; ++i)
+    pairs_in[i] = strata::generate(seed, strata::kStrata[stratum].stratum, first + static_cast<std::uint64_t>(i));
+}
+
+// The number that the text spells, rounded once to float32.   Returns: whether it spells one.
+GRAZE_EXPORT(parse) int parse(int coordinate) {
+  const std::optional<float> value = parse_float32(text_in);
+  if (value) coordinates(pairs_in[0])[coordinate] = *value;
+  return value.has_value();
+}
+
+// The policy in the text for all lanes, until the next call; empty: zero.   Requires: abs:E, rel:K, bound or filtered.
+GRAZE_EXPORT(set_policy) void set_policy() {
+  for (Decider& decider : deciders()) decider.decide = block_under(*decider.lane, text_in);
+}
+
+// Returns: whether the lane has the policy; then the verdicts of the pairs are written.
+GRAZE_EXPORT(decide) int decide(int lane, int count) {
+  const DecideBlock& block = deciders()[lane].decide;
+  if (!block) return 0;
+  decide_into(block, count);
+  return 1;
+}
+
+// The exact verdicts of the pairs.
+GRAZE_EXPORT(decide_truth) void decide_truth(int count) {
+  for (int i = 0; i < count; ++i) verdicts_out[i] = static_cast<std::uint8_t>(truth_of(pairs_in[i]));
+}
+
+// Returns: whether the lane has trace hashes (cuda/lanes/trace.h); then those of the pairs are written.
+GRAZE_EXPORT(trace) int trace(int lane, int count) {
+  const cuda::TraceBlock twin = cuda::twin_trace(*deciders()[lane].lane);
+  if (twin) twin(pairs_in, count, hashes_out);
+  return twin != nullptr;
+}
+
+// x y + z, rounded once, as the twins have it; for the test.
+GRAZE_EXPORT(fused) float fused(float x, float y, float z) { return __builtin_fmaf(x, y, z); }
+
+// What is exactly so of the first pair.   Exact: but for the margin, of which these are bounds; 0 is exact.
+GRAZE_EXPORT(truth) const TruthOut* truth() {
+  const Pair& pair = pairs_in[0];
+  truth_out = {};
+  truth_out.verdict = static_cast<std::int32_t>(truth_of(pair));
+  if (!is_finite(pair)) return &truth_out;
+  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
+  const MarginBounds bounds = r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, static_cast<Verdict>(r.intersects));
+  truth_out = {r.intersects, r.contact + 1, r.margin_sign, r.dimension_a, r.dimension_b, r.coplanar, log2_ulp(pair), 0, bounds.lo, bounds.hi};
+  return &truth_out;
+}
+
+// The coordinate of the first pair, so many ulps higher.
+GRAZE_EXPORT(nudge) void nudge(int coordinate, int ulps) { nudge_in(pairs_in[0], coordinate, ulps); }
+
+// The pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`, one in `step` columns: coordinate
+// x goes up by so many ulps from pair to pair, y is `up` ulps above the centre's.
+GRAZE_EXPORT(centre) Pair* centre() { return &map_centre; }
+GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) {
+  for (int i = 0; i < columns; ++i) {
+    pairs_in[i] = map_centre;
+    nudge_in(pairs_in[i], x, (i - columns / 2) * step);
+    nudge_in(pairs_in[i], y, up);
+  }
+}
+
+// The comparisons of the lane on the first pair, and the values that it asked its policy about; beside them the same
+// along the same path with 113 bits.   Returns: how many; -1 where they are not known to be the lane's own.
+GRAZE_EXPORT(steps) int steps(int lane) {
+  const Lane& of = *deciders()[lane].lane;
+  steps_out.clear();
+  if (of.algorithm < 0) return -1;
+  const analysis::Replay replay = analysis::replay(of, pairs_in[0]);
+  if (replay.evidence == analysis::Evidence::none) return -1;
+  const Trace<Quad> exact = run_traced<Quad>(of.algorithm, pairs_in[0], path_of(replay.run));
+  for (std::size_t i = 0; i < replay.run.seen.size(); ++i) {
+    const Seen<double>& seen = replay.run.seen[i];
+    const Seen<Quad>& right = exact.seen[i];
+    steps_out.push_back({seen.where.file_name(), static_cast<std::int32_t>(seen.where.line()),
+                         seen.site ? static_cast<std::int32_t>(*seen.site) : -1, seen.compared,
+                         static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left, seen.right,
+                         static_cast<double>(right.left.value), static_cast<double>(right.right.value)});
+  }
+  return static_cast<int>(steps_out.size());
+}
+GRAZE_EXPORT(steps_at) const StepOut* steps_at() { return steps_out.data(); }
+
+// The contractions that make the lane's verdict on the first pair another one than that of the same source without
+// contraction; see analysis/blame.h.   Returns: how many.
+GRAZE_EXPORT(contractions) int contractions(int lane) {
+  sites_out.clear();
+  const Lane& of = *deciders()[lane].lane;
+  if (cuda::contraction_sites(of).empty()) return 0;
+  for (const cuda::ContractionSite& site : analysis::blame(of, pairs_in[0]).sites)
+    sites_out.push_back({site.at.file, site.from.file, site.at.line, site.from.line});
+  return static_cast<int>(sites_out.size());
+}
+GRAZE_EXPORT(contractions_at) const SiteOut* contractions_at() { return sites_out.data(); }
+
+// Of the first pair.
+GRAZE_EXPORT(draw) const Drawing* draw() {
+  drawing_out = drawing_of(pairs_in[0]);
+  return &drawing_out;
+}
+
+}  // namespace graze::reports::wasm

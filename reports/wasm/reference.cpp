@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// The native build's side of the comparison with graze.wasm: prints, for blocks of pairs of every stratum, hashes of what
+// every lane says. graze.test.mjs computes the same with the module.   reference PAIRS
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "analysis/blame.h"
+#include "analysis/lane_trace.h"
+#include "core/exact/exact.h"
+#include "core/margin/margin.h"
+#include "cuda/twin/twin.h"
+#include "strata/strata.h"
+
+namespace graze {
+namespace {
+
+constexpr std::uint64_t kSeed = 20120131;
+constexpr std::size_t kBlock = 1000;
+constexpr const char* kPolicies[] = {"abs:0.001", "rel:24", "bound", "filtered"};
+
+// FNV-1a of 32 bits, which JavaScript computes as quickly.
+struct Hash {
+  std::uint32_t value = 0x811c9dc5u;
+  void add(const void* bytes, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i)
+      value = (value ^ static_cast<const unsigned char*>(bytes)[i]) * 0x01000193u;
+  }
+  template <class Value>
+  void add_value(Value value_of) {
+    add(&value_of, sizeof value_of);
+  }
+  void add_number(double x) { add_value(std::isnan(x) ? 0.25 : x); }  // of NaN the bits differ
+};
+
+void print(const char* what, const char* of, std::uint64_t block, Hash hash) {
+  std::printf("%s %s %llu %u\n", what, of, static_cast<unsigned long long>(block), hash.value);
+}
+
+Hash verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
+  std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
+  decide(pairs.data(), pairs.size(), yes.data(), none.data());
+  Hash hash;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    hash.add_value(static_cast<std::uint8_t>(verdict_of_bits(yes[i / 64] >> i % 64 & 1, none[i / 64] >> i % 64 & 1)));
+  return hash;
+}
+
+Hash truths(const std::vector<Pair>& pairs) {
+  Hash hash;
+  for (const Pair& pair : pairs) {
+    const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
+    const MarginBounds bounds =
+        r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, r.intersects ? Verdict::intersects : Verdict::disjoint);
+    for (const std::int32_t x : {std::int32_t{r.intersects}, r.contact + 1, r.margin_sign, r.dimension_a, r.dimension_b,
+                                 std::int32_t{r.coplanar}, log2_ulp(pair)})
+      hash.add_value(x);
+    hash.add_number(bounds.lo);
+    hash.add_number(bounds.hi);
+  }
+  return hash;
+}
+
+// What the viewer explains with, of one lane. Compilers evaluate the arguments of a call in different orders, so that
+// the steps' order does not count.
+Hash steps(const Lane& lane, const std::vector<Pair>& pairs) {
+  Hash hash;
+  for (const Pair& pair : pairs) {
+    const analysis::Replay replay = analysis::replay(lane, pair);
+    if (replay.evidence == analysis::Evidence::none) continue;
+    std::uint32_t sum = 0;
+    for (const Seen<double>& seen : replay.run.seen) {
+      Hash step;
+      step.add_value(static_cast<std::int32_t>(seen.where.line()));
+      step.add_value(std::int32_t{seen.held});
+      step.add_number(seen.left);
+      step.add_number(seen.right);
+      sum += step.value;
+    }
+    hash.add_value(sum);
+    if (cuda::contraction_sites(lane).empty()) continue;
+    for (const cuda::ContractionSite& site : analysis::blame(lane, pair).sites)
+      hash.add_value(std::int32_t{site.at.line});
+  }
+  return hash;
+}
+
+void print_block(const std::string& of, std::uint64_t block, const std::vector<Pair>& pairs) {
+  Hash drawn;
+  drawn.add(pairs.data(), pairs.size() * sizeof(Pair));
+  print("pairs", of.c_str(), block, drawn);
+  print("truth", of.c_str(), block, truths(pairs));
+  const std::vector<Pair> few(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, pairs.size())));
+  for (const Lane& lane : lanes()) {
+    const DecideBlock decide = cuda::block_on_host(lane);
+    if (!decide || lane.variant == Variant::cpu_fma || lane.variant == Variant::cpu_fast) continue;
+    print(lane.id.c_str(), of.c_str(), block, verdicts(decide, pairs));
+    if (const cuda::TraceBlock trace = cuda::twin_trace(lane)) {
+      std::vector<std::uint64_t> hashes(pairs.size());
+      trace(pairs.data(), pairs.size(), hashes.data());
+      Hash hash;
+      hash.add(hashes.data(), hashes.size() * sizeof hashes[0]);
+      print(("trace:" + lane.id).c_str(), of.c_str(), block, hash);
+    }
+    if (block > 0) continue;  // once a stratum
+    if (lane.algorithm >= 0) print(("steps:" + lane.id).c_str(), of.c_str(), block, steps(lane, few));
+    for (const char* policy : kPolicies) {
+      const bool by_bounds = policy[0] == 'b' || policy[0] == 'f';
+      if (lane.exact || (by_bounds && !lane.info->right_without_rounding)) continue;
+      if (const DecideBlock under = cuda::block_on_host(lane_under(lane, policy)))
+        print((lane.id + '/' + policy).c_str(), of.c_str(), block, verdicts(under, pairs));
+    }
+  }
+}
+
+void print_all(std::uint64_t count) {
+  const std::uint64_t each = (count + strata::kStrataCount - 1) / strata::kStrataCount;
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    for (std::uint64_t first = 0; first < each; first += kBlock) {
+      std::vector<Pair> pairs;
+      for (std::uint64_t i = first; i < std::min(each, first + kBlock); ++i)
+        pairs.push_back(strata::generate(kSeed, row.stratum, i));
+      print_block(std::string(row.id), first / kBlock, pairs);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace graze
+
+int main(int, char** argv) { graze::print_all(argv[1] ? std::strtoull(argv[1], nullptr, 10) : 1000); }

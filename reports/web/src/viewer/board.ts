@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The drawing: turned by dragging its ground, changed by dragging a vertex.
+import { orbit, view_of } from '../camera';
+import { choice, h } from '../dom';
+import { axes, framed_half_height, good_view, project, type Vec } from '../drawing';
+import { svg_projection } from '../projection';
+import { has_webgl, picture, type Picture } from '../view3d';
+import { kCentres, type Centre, type Model } from './model';
+import { placed, type Field, type Placed } from './shape';
+
+const kReach = 16;  // pixels around a vertex in which it is taken hold of
+const kTurn = Math.PI / 18;
+const kFlat: Vec[] = [[0, 0, 0], [1, 0, 0], [0, 1, 0]];  // where no triangle is
+
+export function board(model: Model, fields: () => Field | null) {
+  let magnified = 1, now: Placed, drawn: Picture | null = null, old: Picture | null = null;
+  const canvas = h('canvas', {}), paper = h('div', { class: 'paper' }), note = h('span', { class: 'scale-note' });
+  const ground = h('div', { class: 'board', id: 'board', tabindex: 0, role: 'application', 'aria-roledescription': 'turnable drawing' }, canvas, paper);
+  const surround = h('div', {}, ground);
+  place();
+  const { camera, set } = orbit(ground, best_view(), draw, draw);
+
+  // A direction from which what is shown is not seen edge-on.
+  function best_view() {
+    const seen = [now.shape.a, now.shape.b].filter((polygon) => polygon.length > 2);
+    return good_view({ ...now.shape, a: seen[0] ?? kFlat, b: seen[1] ?? seen[0] ?? kFlat });
+  }
+
+  function place() {
+    now = placed(model, model.graze.drawing(model.pair), magnified, fields());
+  }
+
+  function draw() {
+    if (!ground.clientWidth) return;
+    const flat = !has_webgl();
+    ground.classList.toggle('flat', flat);
+    if (flat) return paper.replaceChildren(svg_projection(now.shape, view_of(camera), ground.clientWidth, ground.clientHeight));
+    drawn ??= picture(now.shape);
+    drawn.draw(canvas, camera);
+    old?.dispose();  // only now: programs that nothing uses would be compiled anew
+    old = null;
+  }
+
+  let last_name = '';
+  function update() {
+    const { truth } = model.decided, name = model.name.replace(/, changed$/, '');
+    if (name !== last_name) magnified = 1;  // another pair, seen from where there is most to see
+    place();
+    if (name !== last_name) set(best_view());
+    last_name = name;
+    old ??= drawn;
+    drawn = null;
+    note.textContent = now.shape.note;
+    centre_choice.querySelector('select')!.value = model.centre;
+    ground.setAttribute('aria-label', `Two triangles, ${truth.verdict}, contact ${truth.contact}. Arrow keys turn and magnify; h lists all keys.`);
+    draw();
+  }
+
+  function magnify(by: number) {
+    magnified = Math.min(2 ** 60, Math.max(0.25, magnified * by));
+    update();
+  }
+  const turn = (azimuth: number, elevation: number) => {
+    const view = view_of(camera);
+    set({ azimuth: view.azimuth + azimuth * kTurn, elevation: view.elevation + elevation * kTurn });
+  };
+  function reset() {
+    magnified = 1;
+    place();
+    set(best_view());
+    model.set({ centre: 'both triangles' });
+  }
+
+  const local = (event: PointerEvent) => {
+    const box = ground.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height };
+  };
+  // The vertex under the pointer; the foremost of several.
+  function taken(event: PointerEvent): number | null {
+    const { x, y, width, height } = local(event);
+    let best: { v: number; away: number; depth: number } | null = null;
+    for (let v = 0; v < (fields() ? 3 : 6); ++v) {
+      const p = [0, 1, 2].map((k) => (model.pair[3 * v + k] - now.middle[k]) / now.unit[k]) as Vec;
+      const at = project(now.shape, p, view_of(camera), width, height), away = Math.hypot(at.x - x, at.y - y);
+      if (away < kReach && (!best || away < best.away - 2 || (away < best.away + 2 && at.depth > best.depth))) best = { v, away, depth: at.depth };
+    }
+    return best && best.v;
+  }
+  // Before the orbit's own listener: a press on a vertex moves that, in the plane of the screen.
+  surround.addEventListener('pointerdown', (event) => {
+    const v = event.button === 0 ? taken(event) : null;
+    if (v === null) return;
+    event.stopPropagation();
+    event.preventDefault();
+    ground.focus({ preventScroll: true });
+    surround.setPointerCapture(event.pointerId);
+    const start = { x: event.clientX, y: event.clientY }, from = model.pair.slice(), placed_then = now, { height } = local(event);
+    model.set({ chosen: 3 * v + (model.chosen % 3) });
+    model.start_moving();
+    const { right, up } = axes(view_of(camera));
+    const pixel = (2 * framed_half_height(now.shape)) / height / camera.zoom;
+    const move = (next: PointerEvent) => {
+      const across = (next.clientX - start.x) * pixel, along = (start.y - next.clientY) * pixel;
+      model.change((pair) => {
+        for (let k = 0; k < 3; ++k) pair[3 * v + k] = from[3 * v + k] + (right[k] * across + up[k] * along) * placed_then.unit[k];
+      });
+    };
+    surround.addEventListener('pointermove', move);
+    const end = () => {
+      surround.removeEventListener('pointermove', move);
+      model.stop_moving();
+    };
+    surround.addEventListener('pointerup', end, { once: true });
+    surround.addEventListener('pointercancel', end, { once: true });
+  }, { capture: true });
+  surround.addEventListener('pointermove', (event) => {
+    const v = event.buttons ? null : taken(event);
+    if (event.buttons) return;
+    ground.toggleAttribute('data-over', v !== null);
+    if (v !== null) ground.dataset.over = `${v < 3 ? 'a' : 'b'}[${v % 3}]`;
+  });
+  ground.addEventListener('wheel', (event) => {
+    if (document.activeElement !== ground) return;  // else the page scrolls
+    event.preventDefault();
+    magnify(2 ** (-event.deltaY / 200));
+  }, { passive: false });
+  new ResizeObserver(draw).observe(ground);
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
+
+  const button = (text: string, label: string, action: () => void) => h('button', { type: 'button', 'aria-label': label, title: label, onclick: action }, text);
+  const centre_choice = choice('Centre', kCentres.map((centre) => [centre, centre]), model.centre, (centre) => model.set({ centre: centre as Centre }));
+  const toggles = (['planes', 'axes', 'ids', 'coordinates'] as const).map((what) => {
+    const box = h('button', { type: 'button', 'data-shows': what, onclick: () => model.set({ shows: { ...model.shows, [what]: !model.shows[what] } }) }, what);
+    return { what, box };
+  });
+  const element = h('figure', { class: 'stage' }, surround,
+    h('div', { class: 'stage-tools' }, centre_choice, button('÷16', 'Magnify less', () => magnify(1 / 16)), button('×16', 'Magnify', () => magnify(16)), button('Reset', 'Reset the view', reset)),
+    h('div', { class: 'chips', role: 'group', 'aria-label': 'Shown in the drawing' }, toggles.map(({ box }) => box)),
+    h('figcaption', {}, h('span', { class: 'key-a' }, 'a'), h('span', { class: 'key-b' }, 'b'), h('span', { class: 'key-contact' }, 'contact'), h('span', { class: 'key-line' }, 'the planes’ line, with both sections'), note));
+  return {
+    element, turn, magnify, reset,
+    update: () => {
+      toggles.forEach(({ what, box }) => box.setAttribute('aria-pressed', String(model.shows[what])));
+      update();
+    },
+  };
+}

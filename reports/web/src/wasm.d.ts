@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
+// graze.wasm as vite.config.js has it: compressed by gzip, in base64.
+declare module 'graze.wasm' {
+  const base64: string;
+  export default base64;
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of `graze view`, watched: it must fetch nothing, leave the console clean, and say what the native build says.
+import { execFileSync } from 'node:child_process';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import AxeBuilder from '@axe-core/playwright';
+import { expect, test as base, type Page } from '@playwright/test';
+import { pixels } from './page';
+
+const file = () => process.env.GRAZE_VIEW!;
+const url = () => pathToFileURL(file()).href;
+const kCells = 256;
+
+function without_webgl() {
+  const real = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) {
+    return kind.startsWith('webgl') ? null : (real as Function).call(this, kind, ...rest);
+  } as typeof real;
+}
+
+// Without WebGL, which takes most of the time where there is no GPU, but in the tests that ask for it.
+const test = base.extend<{ webgl: boolean; viewer: Page }>({
+  webgl: [false, { option: true }],
+  viewer: async ({ page, webgl }, use) => {
+    if (!webgl) await page.addInitScript(without_webgl);
+    test.skip(!file(), 'this build has no viewer');
+    const fetched: string[] = [], said: string[] = [];
+    page.on('request', (request) => {
+      const asked = request.url().split('#')[0];
+      if (asked !== url() && !asked.startsWith('data:') && !asked.startsWith('blob:')) fetched.push(asked);
+    });
+    page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
+    page.on('pageerror', (error) => said.push(`error: ${error.message}`));
+    await page.goto(url());
+    await page.waitForSelector('#replayed');
+    await use(page);
+    expect(fetched, 'fetched').toEqual([]);
+    expect(said, 'on the console').toEqual([]);
+  },
+});
+
+const coordinate = (page: Page, c: number) => page.locator(`[data-coordinate="${c}"]`);
+const verdict = (page: Page, lane: string) => page.locator(`[data-lane="${lane}"]`);
+const name = (page: Page) => page.locator('h1').textContent();
+
+// The verdicts on the page, without their marks.
+const verdicts = (page: Page) => page.locator('[data-lane]').evaluateAll((cells) =>
+  Object.fromEntries(cells.map((cell) => [cell.getAttribute('data-lane')!, cell.textContent!.replace(/[^a-z]/g, '')])));
+
+test('it checks itself by stored verdicts, and says on how many pairs', async ({ viewer }) => {
+  const said = (await viewer.locator('#replayed').textContent())!;
+  const [, pairs, lanes] = /^Same as the native build on (\d+) pairs, (\d+) lanes each\.$/.exec(said)!.map(Number);
+  expect(pairs).toBeGreaterThan(300);
+  expect(await viewer.locator('[data-lane]').count()).toBe(lanes);
+});
+
+test('where a verdict differs from the stored one it shows none', async ({ page }) => {
+  test.skip(!file());
+  const altered = join(dirname(file()), 'altered.html'), text = readFileSync(file(), 'utf8'), stored = /"verdicts":"([012])/;
+  writeFileSync(altered, text.replace(stored, (_, first) => `"verdicts":"${first === '1' ? 0 : 1}`));
+  await page.goto(pathToFileURL(altered).href);
+  await expect(page.locator('#warning')).toContainText(/decides otherwise than the native build: stored pair 1, projected_sat\/f32\/cpu: here \w+, natively \w+\./);
+  await expect(page.locator('[data-lane]')).toHaveCount(0);
+});
+
+test('it says what graze check says', async ({ viewer }) => {
+  for (let pair = 0; pair < 3; ++pair) {
+    await viewer.locator('button', { hasText: 'check line' }).click();
+    const line = (await viewer.locator('.copied code').textContent())!;
+    const checked = JSON.parse(execFileSync(process.env.GRAZE!, ['check', '-', '--json', '--executor', 'twin'], { input: line, encoding: 'utf8' })) as { truth: { verdict: string; contact: string }; lanes: Record<string, string> };
+    const shown = await verdicts(viewer);
+    for (const [lane, said] of Object.entries(shown)) expect(checked.lanes[lane], lane).toBe(said);
+    await expect(viewer.locator('#truth')).toContainText(`Truth: ${checked.truth.verdict}`);
+    if (checked.truth.contact !== 'none') await expect(viewer.locator('#truth')).toContainText(`contact: ${checked.truth.contact}`);
+    const before = await name(viewer);
+    await viewer.keyboard.press('Shift+n');  // one on which more is to be seen
+    await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
+  }
+});
+
+test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer }) => {
+  await viewer.goto(`${url()}#p=3dcccccd3e4ccccd3e99999a3ecccccd3f6666663e4ccccd3f3333333dcccccd3f19999a3dcccccd3e4ccccd3e99999a3f0000003f0000003f666666be99999a3f4ccccd3ecccccd`);
+  await viewer.reload();
+  await expect(viewer.locator('#summary')).toContainText('CPU and GPU differ: guigue_devillers_2003/f64.');
+  await expect(verdict(viewer, 'guigue_devillers_2003/f64/cuda-fma')).toHaveAttribute('aria-pressed', 'true');
+  await expect(verdict(viewer, 'guigue_devillers_2003/f64/cuda-fma')).toHaveAttribute('aria-label', 'guigue_devillers_2003/f64/cuda-fma: disjoint, wrong, not what the CPU says');
+  await expect(viewer.locator('#why')).toContainText('CPU and GPU run the same source, and part at core/algorithms/guigue_devillers_2003.h:115');
+  await expect(viewer.locator('#why')).toContainText('contraction');
+});
+
+test('every key does what the help says', async ({ viewer }) => {
+  test.slow();
+  const board = viewer.locator('#board');
+  await board.focus();
+  const looks = () => board.locator('svg').innerHTML();
+  const value = (c: number) => coordinate(viewer, c).inputValue();
+  const changes = (of: () => Promise<unknown>) => async (key: string) => {
+    const before = await of();
+    await viewer.keyboard.press(key);
+    await expect.poll(of, { message: key }).not.toEqual(before);
+  };
+  const moves = (c: number, by: number) => async (key: string) => {
+    const before = Number(await value(c));
+    await viewer.keyboard.press(key);
+    await expect.poll(async () => Number(await value(c)), { message: key }).toBe(before + by);
+  };
+  const chosen = (c: number) => async (key: string) => {
+    await viewer.keyboard.press(key);
+    await expect(coordinate(viewer, c), key).toHaveClass(/chosen/);
+  };
+  const shown = (what: string) => changes(() => viewer.locator(`[data-shows="${what}"]`).getAttribute('aria-pressed'));
+  const names = () => name(viewer), field = async () => (await viewer.locator('#field').textContent())!;
+  const expected: [string, (key: string) => Promise<void>][] = [
+    ['t', changes(names)], ['←', changes(looks)], ['→', changes(looks)], ['↑', changes(looks)], ['↓', changes(looks)],
+    ['a', moves(0, -0.0625)], ['d', moves(3, 0.0625)], ['s', moves(1, -0.0625)], ['w', moves(4, 0.0625)], ['q', moves(2, -0.0625)], ['e', moves(8, 0.0625)],
+    ['o', shown('axes')], ['c', shown('coordinates')], ['i', shown('ids')], ['p', shown('planes')],
+    ['g', changes(() => viewer.locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'))],
+    ['+', changes(field)], ['-', changes(field)], ['space', changes(field)], ['n', changes(names)], ['b', changes(names)],
+    ...['0', '1', '2', '3', '4', '5'].map((key, v) => [key, chosen(3 * v)] as [string, (key: string) => Promise<void>]),
+    ['y', chosen(16)], ['z', chosen(17)], ['x', chosen(15)], ['[', changes(() => value(15))], [']', changes(() => value(15))],
+    ['f', changes(() => viewer.getByLabel('Centre').inputValue())], ['Home', changes(() => viewer.getByLabel('Centre').inputValue())],
+    ['u', changes(() => value(15))], ['r', changes(() => value(15))],
+    ['h', async (key) => { await viewer.keyboard.press(key); await expect(viewer.locator('#help')).toBeVisible(); await viewer.keyboard.press(key); await expect(viewer.locator('#help')).toBeHidden(); }],
+  ];
+  const kNames: Record<string, string> = { '←': 'ArrowLeft', '→': 'ArrowRight', '↑': 'ArrowUp', '↓': 'ArrowDown', space: ' ' };
+  for (const [key, check] of expected) await check(kNames[key] ?? key);
+  const listed = await viewer.locator('#help kbd').allTextContents();
+  expect(expected.map(([key]) => key).sort()).toEqual(listed.sort());
+});
+
+test('steps are of one ulp, of 256 with Shift, of 65,536 with Alt', async ({ viewer }) => {
+  await coordinate(viewer, 0).fill('1');
+  await coordinate(viewer, 0).blur();
+  for (const [key, expected] of [[']', 1 + 2 ** -23], ['[', 1], ['Shift+BracketRight', 1 + 2 ** -15], ['Shift+BracketLeft', 1], ['Alt+BracketRight', 1 + 2 ** -7], ['Alt+BracketLeft', 1]] as const) {
+    await viewer.keyboard.press(key);
+    await expect.poll(async () => Math.fround(Number(await coordinate(viewer, 0).inputValue()))).toBe(Math.fround(expected));
+  }
+});
+
+test.describe('by WebGL', () => {
+test.use({ webgl: true });
+test('dragging a vertex decides anew, says what changed, and is one step to undo', async ({ viewer }) => {
+  await viewer.keyboard.press('t');
+  await expect(coordinate(viewer, 9)).toHaveValue('-2');
+  const board = viewer.locator('#board'), box = (await board.boundingBox())!;
+  // A vertex is where the pointer takes hold of it: found by trying, as a person does by looking.
+  let held = false;
+  for (let x = 20; x < box.width - 20 && !held; x += 20) {
+    for (let y = 20; y < box.height - 20 && !held; y += 20) {
+      await viewer.mouse.move(box.x + x, box.y + y);
+      held = (await board.getAttribute('data-over')) === 'b[0]';
+    }
+  }
+  expect(held).toBe(true);
+  await viewer.mouse.down();
+  await viewer.mouse.move(box.x + box.width - 5, box.y + 5, { steps: 5 });
+  await viewer.mouse.up();
+  await expect.poll(() => coordinate(viewer, 9).inputValue()).not.toBe('-2');
+  expect(await name(viewer)).toContain(', changed');
+  await viewer.keyboard.press('u');
+  await expect(coordinate(viewer, 9)).toHaveValue('-2');
+  expect(await name(viewer)).not.toContain('changed');
+  await expect(board).not.toHaveClass(/flat/);
+  expect((await pixels(board.locator('canvas'))).length).toBeGreaterThan(2000);  // something is drawn
+});
+});
+
+test('a changed verdict is announced', async ({ viewer }) => {
+  await viewer.keyboard.press('t');
+  await coordinate(viewer, 9).fill('100');
+  await coordinate(viewer, 12).fill('101');
+  await coordinate(viewer, 15).fill('102');
+  await coordinate(viewer, 15).blur();
+  await expect(viewer.locator('#flips')).toContainText(/moller_1997|projected_sat/);
+  await expect(viewer.locator('#flips')).toContainText('now says disjoint');
+  await expect(viewer.locator('#flips')).toHaveAttribute('aria-live', 'polite');
+});
+
+test('coordinates are typed, pasted, refused; the pair is in the link', async ({ viewer }) => {
+  await coordinate(viewer, 4).fill('0x1.8p+1');
+  await coordinate(viewer, 4).blur();
+  await expect(coordinate(viewer, 4)).toHaveValue('3');
+  await coordinate(viewer, 4).fill('three');
+  await coordinate(viewer, 4).blur();
+  await expect(viewer.locator('.message')).toHaveText("expected a number of float32 for a[1].y, found 'three'");
+  const paste = (text: string) => coordinate(viewer, 0).evaluate((field, pasted) => {
+    const data = new DataTransfer();
+    data.setData('text', pasted);
+    field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
+  }, text);
+  await paste('1 2 3');
+  await expect(viewer.locator('.message')).toHaveText('expected the 18 coordinates of a pair, found 3 numbers');
+  await paste(`[${Array.from({ length: 18 }, (_, i) => i + 0.5).join(', ')}]`);
+  await expect(coordinate(viewer, 17)).toHaveValue('17.5');
+  await viewer.locator('#copies button', { hasText: 'link' }).click();
+  const link = (await viewer.locator('.copied code').textContent())!;
+  await expect.poll(() => viewer.url()).toBe(link);
+  await viewer.keyboard.press('t');
+  await expect.poll(() => viewer.url()).not.toBe(link);
+  await viewer.goto(link);
+  await expect(coordinate(viewer, 17)).toHaveValue('17.5');
+  for (const [kind, text] of [['C', 'const float a[3][3]'], ['CUDA', '__constant__ float3'], ['Python', 'float.fromhex'], ['OBJ', 'f 4 5 6']]) {
+    await viewer.locator('#copies button').getByText(kind, { exact: true }).click();
+    await expect(viewer.locator('.copied code')).toContainText(text);
+  }
+});
+
+test('the ulp map is drawn whole, and a cell gives its pair', async ({ viewer }) => {
+  const told = viewer.locator('#map-told');
+  await viewer.locator('#map').scrollIntoViewIfNeeded();
+  await expect(told).toContainText(/^256 × 256 cells of \d lanes and the truth, decided in \d+ ms$/, { timeout: 20_000 });
+  const lane = viewer.locator('#map canvas').last();
+  expect(await lane.evaluate((canvas: HTMLCanvasElement) => canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height).data.every((value, i) => i % 4 < 3 || value === 255))).toBe(true);
+  const before = await coordinate(viewer, 9).inputValue(), box = (await lane.boundingBox())!;
+  await lane.click({ position: { x: box.width / 4, y: box.height / 2 } });
+  await expect.poll(() => coordinate(viewer, 9).inputValue()).not.toBe(before);
+  expect(kCells).toBe(await lane.evaluate((canvas: HTMLCanvasElement) => canvas.width));
+});
+
+test('tolerances are decided too: filtered is right everywhere but for logic', async ({ viewer }) => {
+  await viewer.locator('button', { hasText: 'Next with a wrong verdict' }).click();
+  await expect(viewer.locator('#summary')).toContainText('wrong', { timeout: 30_000 });
+  await viewer.getByLabel('Held for zero').selectOption('filtered');
+  await expect(viewer.locator('#summary')).toContainText('under filtered');
+  await expect(verdict(viewer, 'guigue_devillers_2003/f32/cpu')).not.toHaveClass(/bad/);
+  await expect(verdict(viewer, 'moller_1997/f32/cuda-fma')).toHaveText('–');
+  await viewer.getByLabel('Held for zero').selectOption('abs');
+  await expect(viewer.locator('#summary')).toContainText('under abs:');
+});
+
+test('without WebGL it draws an SVG, a phone shows all of it, axe finds nothing', async ({ viewer: page }) => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.emulateMedia({ colorScheme: 'dark', reducedMotion: 'reduce' });
+  await page.reload();
+  await expect(page.locator('#board svg polygon.triangle-b')).toHaveCount(1);
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390);
+  expect((await new AxeBuilder({ page }).analyze()).violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`)).toEqual([]);
+});

@@ -40,7 +40,7 @@ function(graze_wasm_object name source)
 endfunction()
 
 set(wasm_objects "")
-foreach(source core/lanes core/policies core/text analysis/blame analysis/lane_trace reports/wasm/drawing reports/wasm/library)
+foreach(source core/exact_blocks/decide core/lanes core/policies core/text analysis/blame analysis/lane_trace reports/wasm/drawing reports/wasm/library)
   get_filename_component(name ${source} NAME)
   graze_wasm_object(${name} ${source}.cpp)
 endforeach()

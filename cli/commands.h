@@ -37,6 +37,8 @@ void add_trade(CLI::App& app, int& status);
 void add_tune(CLI::App& app, int& status);
 void add_prove_twin(CLI::App& app, int& status);
 void add_view(CLI::App& app, int& status);
+void add_query(CLI::App& app, int& status);
+void add_bench(CLI::App& app, int& status);
 
 // --lanes, --subject and --executor, which every verb that runs lanes has; the last not where twins stand for devices.
 struct LaneOptions {

@@ -110,6 +110,8 @@ TEST(Docs, ViewerPrintsWhatItSays) {
 
 TEST(Docs, TuningPrintsWhatItSays) { expect_true_commands("docs/tuning.md", 8); }
 
+TEST(Docs, QueryPrintsWhatItSays) { expect_true_commands("docs/query.md", 7); }
+
 TEST(Docs, AbridgesAsBefore) {
   EXPECT_EQ(abridged({"a", "…", "z"}, {"a", "b", "c", "y"}), (Lines{"a", "…", "y"}));
   EXPECT_EQ(abridged({"a", "…"}, {"b", "c"}), (Lines{"b", "…"}));

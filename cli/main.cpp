@@ -63,6 +63,8 @@ int main(int argc, char** argv) {
   graze::cli::add_trade(app, status);
   graze::cli::add_tune(app, status);
   graze::cli::add_prove_twin(app, status);
+  graze::cli::add_query(app, status);
+  graze::cli::add_bench(app, status);
   try {
     expect_verb(app, argc > 1 ? argv[1] : "");
     app.parse(argc, argv);

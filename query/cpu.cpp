@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks of 64 triangles: turned into columns, looked past by the slabs of each reference four at a time, and what is
-// left open decided one by one. Other lanes get pairs.
+// Blocks of 64 triangles: turned into columns, looked past by the slabs of each reference four at a time. What is left
+// open gathers until there are enough to decide side by side. Other lanes get all pairs.
 #include "query/cpu.h"
 
 #include <tbb/parallel_for.h>
@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/exact/exact.h"
 #include "core/exact/reference.h"
+#include "core/exact_blocks/decide.h"
 #include "core/pair.h"
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -40,13 +40,21 @@ unsigned mask_of(FourBits bits) {
 #endif
 }
 
+Four magnitude(Four x) { return greater(x, -x); }
+
+Four load(const float* at) {
+  Four four;
+  std::memcpy(&four, at, sizeof four);
+  return four;
+}
+
+void store(float* at, Four four) { std::memcpy(at, &four, sizeof four); }
+
 // Up to 64 triangles: as rows where the array has them so, and as columns.
 struct Block {
   alignas(16) float columns[9][kBlock];
   float copy[kBlock][9];
   const float* rows[kBlock];
-  alignas(16) float most[kBlock];
-  std::uint64_t not_finite = 0;
 
   void read(const cuda::TriangleArray& array, std::uint64_t first, std::size_t count) {
     for (std::size_t i = 0; i < kBlock; ++i) {
@@ -57,50 +65,70 @@ struct Block {
         array.load(place, copy[i]);
         rows[i] = copy[i];
       }
-      for (std::size_t k = 0; k < 9; ++k) columns[k][i] = rows[i][k];
     }
-    not_finite = 0;
-    const Four zero = {};
     for (std::size_t i = 0; i < kBlock; i += 4) {
-      Four all = column(0, i) * 0.0f, size = greater(column(0, i), -column(0, i));
-      for (std::size_t k = 1; k < 9; ++k) {
-        all += column(k, i) * 0.0f;  // not a number, from the first that is not finite on
-        size = greater(size, greater(column(k, i), -column(k, i)));
-      }
-      std::memcpy(most + i, &size, sizeof size);
-      not_finite |= std::uint64_t{mask_of(all != zero)} << i;
+      transpose(i, 0);
+      transpose(i, 4);
+      for (std::size_t j = i; j < i + 4; ++j) columns[8][j] = rows[j][8];
     }
   }
 
-  Four column(std::size_t k, std::size_t i) const {
-    Four four;
-    std::memcpy(&four, columns[k] + i, sizeof four);
-    return four;
+  // Rows i to i + 3 and coordinates k to k + 3.
+  void transpose(std::size_t i, std::size_t k) {
+    const Four a = load(rows[i] + k), b = load(rows[i + 1] + k), c = load(rows[i + 2] + k), d = load(rows[i + 3] + k);
+    const Four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5),
+               more_ab = __builtin_shufflevector(a, b, 2, 6, 3, 7), more_cd = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+    store(columns[k] + i, __builtin_shufflevector(ab, cd, 0, 1, 4, 5));
+    store(columns[k + 1] + i, __builtin_shufflevector(ab, cd, 2, 3, 6, 7));
+    store(columns[k + 2] + i, __builtin_shufflevector(more_ab, more_cd, 0, 1, 4, 5));
+    store(columns[k + 3] + i, __builtin_shufflevector(more_ab, more_cd, 2, 3, 6, 7));
   }
 
-  // Which triangles lie beyond a slab; see exact::look_past.   Requires: nothing of those that are not finite.
-  std::uint64_t beyond(const exact::Reference& reference) const {
+  std::uint64_t not_finite() const {
     std::uint64_t result = 0;
     for (std::size_t i = 0; i < kBlock; i += 4) {
-      FourBits bits = {};
-      Four size;
-      std::memcpy(&size, most + i, sizeof size);
-      for (const exact::Slab& s : reference.slabs) {
-        const Four a = s.x * column(0, i) + s.y * column(1, i) + s.z * column(2, i),
-                   b = s.x * column(3, i) + s.y * column(4, i) + s.z * column(5, i),
-                   c = s.x * column(6, i) + s.y * column(7, i) + s.z * column(8, i);
-        bits |=
-            (lesser(lesser(a, b), c) > s.high + s.error * size) | (greater(greater(a, b), c) < s.low - s.error * size);
-      }
-      result |= std::uint64_t{mask_of(bits)} << i;
+      Four all = {};  // not a number, from the first coordinate that is not finite on
+      for (std::size_t k = 0; k < 9; ++k) all += load(columns[k] + i) * 0.0f;
+      result |= std::uint64_t{mask_of(all != all)} << i;
     }
     return result;
+  }
+
+  struct Sights {
+    std::uint64_t beyond = 0, not_finite = 0;
+  };
+
+  // exact::look_past, four at a time.   Returns: beyond means nothing where a triangle is not finite.
+  Sights look_past(const exact::Reference& reference) const {
+    Sights sights;
+    for (std::size_t i = 0; i < kBlock; i += 4) {
+      Four v[9];
+      for (std::size_t k = 0; k < 9; ++k) v[k] = load(columns[k] + i);
+      Four most = magnitude(v[0]);
+      for (std::size_t k = 1; k < 9; ++k) most = greater(most, magnitude(v[k]));
+      FourBits beyond = {};
+      for (int k = 0; k < exact::kSlabs; ++k) {
+        const exact::Slab& s = reference.slabs[k];
+        const Four a = s.x * v[0] + s.y * v[1] + s.z * v[2], b = s.x * v[3] + s.y * v[4] + s.z * v[5],
+                   c = s.x * v[6] + s.y * v[7] + s.z * v[8];
+        if (k == 0) {
+          const Four none = (a + b + c) * 0.0f;
+          sights.not_finite |= std::uint64_t{mask_of(none != none)} << i;
+        }
+        beyond |=
+            (lesser(lesser(a, b), c) > s.high + s.error * most) | (greater(greater(a, b), c) < s.low - s.error * most);
+      }
+      sights.beyond |= std::uint64_t{mask_of(beyond)} << i;
+    }
+    return sights;
   }
 };
 
 class Worker {
  public:
-  explicit Worker(const CpuQuestion& question) : question_(question), pairs_(question.lane->exact ? 0 : kBlock) {
+  explicit Worker(const CpuQuestion& question)
+      : question_(question), pairs_(question.lane->exact ? kTogether : kBlock) {
+    open_.reserve(kTogether);
     for (std::size_t r = 0; r < question.references.size() / 9; ++r) {
       const float* reference = question.references.data() + 9 * r;
       finite_.push_back(std::all_of(reference, reference + 9, [](float x) { return std::isfinite(x); }));
@@ -116,30 +144,55 @@ class Worker {
     for (std::size_t w = 0; w < words; ++w) {
       const std::size_t count = std::min<std::uint64_t>(kBlock, range.count - w * kBlock);
       block_.read(question_.parts[range.part], range.first_in_part + w * kBlock, count);
+      const std::uint64_t all = ~std::uint64_t{0} >> (kBlock - count);
       for (std::size_t r = 0; r < references_.size(); ++r) {
-        const std::uint64_t all = ~std::uint64_t{0} >> (kBlock - count);
         std::uint64_t &hits = hits_[r * words + w], &declined = declined_[r * words + w];
-        hits = declined = 0;
-        if (finite_[r]) decide(r, all & ~block_.not_finite, hits, declined);
-        declined |= finite_[r] ? all & block_.not_finite : all;
+        hits = 0;
+        declined = all;
+        if (!finite_[r]) continue;
+        if (question_.lane->exact) {
+          const Block::Sights sights = block_.look_past(references_[r]);
+          declined = all & sights.not_finite;
+          gather(r, all & ~(sights.not_finite | sights.beyond), hits);
+        } else {
+          const std::uint64_t not_finite = all & block_.not_finite();
+          decide(r, all & ~not_finite, hits, declined);
+          declined |= not_finite;
+        }
       }
     }
+    decide_open();
     work.take(range, hits_.data(), declined_.data(), words);
   }
 
  private:
   static constexpr float kOrigin[9] = {};
 
-  // Of the wanted triangles.
+  static constexpr std::size_t kTogether = 256;
+
+  // What the slabs leave open; the bits are set when they are decided.
+  void gather(std::size_t r, std::uint64_t open, std::uint64_t& hits) {
+    for (std::uint64_t left = open; left != 0; left &= left - 1) {
+      float* pair = coordinates(pairs_[open_.size()]);
+      std::memcpy(pair, references_[r].v, sizeof references_[r].v);
+      std::memcpy(pair + 9, block_.rows[std::countr_zero(left)], sizeof references_[r].v);
+      open_.push_back({&hits, left & -left});
+      if (open_.size() == kTogether) decide_open();
+    }
+  }
+
+  void decide_open() {
+    std::uint64_t hits[kTogether / 64], declined[kTogether / 64];
+    if (!open_.empty()) exact::decide(coordinates(pairs_[0]), open_.size(), hits, declined);
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+      if (hits[i / 64] >> i % 64 & 1) *open_[i].word |= open_[i].bit;
+    }
+    open_.clear();
+  }
+
+  // By another lane, of the wanted triangles.
   void decide(std::size_t r, std::uint64_t wanted, std::uint64_t& hits, std::uint64_t& declined) {
     const exact::Reference& reference = references_[r];
-    if (question_.lane->exact) {
-      for (std::uint64_t left = wanted & ~block_.beyond(reference); left != 0; left &= left - 1) {
-        const int i = std::countr_zero(left);
-        if (exact::intersects(reference.v, block_.rows[i])) hits |= left & -left;
-      }
-      return;
-    }
     for (std::size_t i = 0; i < kBlock; ++i) {
       std::memcpy(coordinates(pairs_[i]), reference.v, sizeof reference.v);
       std::memcpy(coordinates(pairs_[i]) + 9, block_.rows[i], sizeof reference.v);
@@ -154,6 +207,10 @@ class Worker {
   std::vector<char> finite_;
   Block block_;
   std::vector<Pair> pairs_;
+  struct Open {
+    std::uint64_t *word, bit;  // its place in hits_
+  };
+  std::vector<Open> open_;
   std::vector<std::uint64_t> hits_, declined_;
 };
 

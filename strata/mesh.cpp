@@ -138,6 +138,25 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
   return ends;
 }
 
+// Finds the candidates: of one body with itself, of several between them.
+void pair_up(MeshPairs& result, const std::vector<std::size_t>& ends, const std::filesystem::path& file) {
+  const auto add = [&](const Box& p, const Box& q) {
+    if (result.candidates.size() == kMostCandidates) {
+      fail(file.string(), "at most 2^28 pairs of triangles whose boxes overlap", "more");
+    }
+    result.candidates.push_back(std::minmax({p.info(), q.info()}));
+  };
+  std::vector<Box> boxes = boxes_of(result.triangles, 0, ends[0]);
+  if (ends.size() == 1) CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), add);
+  // Each body with all before it.
+  for (std::size_t body = 1; body < ends.size(); ++body) {
+    std::vector<Box> others = boxes_of(result.triangles, ends[body - 1], ends[body]);
+    CGAL::box_intersection_d(boxes.begin(), boxes.end(), others.begin(), others.end(), add);
+    boxes.insert(boxes.end(), others.begin(), others.end());
+  }
+  std::sort(result.candidates.begin(), result.candidates.end());
+}
+
 }  // namespace
 
 Pair MeshPairs::pair(std::size_t index) const {
@@ -155,23 +174,21 @@ MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std
     ends.push_back(result.triangles.size());
   }
   if (!poses.empty()) ends = put_poses(result, poses, read_poses(poses, result.content_hash));
-
-  const auto add = [&](const Box& p, const Box& q) {
-    if (result.candidates.size() == kMostCandidates) {
-      fail(files[0].string(), "at most 2^28 pairs of triangles whose boxes overlap", "more");
-    }
-    result.candidates.push_back(std::minmax({p.info(), q.info()}));
-  };
-  std::vector<Box> boxes = boxes_of(result.triangles, 0, ends[0]);
-  if (ends.size() == 1) CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), add);
-  // Each body with all before it.
-  for (std::size_t body = 1; body < ends.size(); ++body) {
-    std::vector<Box> others = boxes_of(result.triangles, ends[body - 1], ends[body]);
-    CGAL::box_intersection_d(boxes.begin(), boxes.end(), others.begin(), others.end(), add);
-    boxes.insert(boxes.end(), others.begin(), others.end());
-  }
+  pair_up(result, ends, files[0]);
   if (result.candidates.empty()) fail(files[0].string(), "at least one pair of triangles whose boxes overlap", "none");
-  std::sort(result.candidates.begin(), result.candidates.end());
+  return result;
+}
+
+MeshPairs read_triangles(const std::filesystem::path& file) {
+  MeshPairs result;
+  result.content_hash = fnv1a("");
+  add_mesh(result, file);
+  return result;
+}
+
+MeshPairs read_self_pairs(const std::filesystem::path& file) {
+  MeshPairs result = read_triangles(file);
+  pair_up(result, {result.triangles.size()}, file);
   return result;
 }
 

@@ -41,4 +41,8 @@ MeshPairs read_mesh_pairs(const std::filesystem::path& file,
 // Requires: at least one file, and one alone where there are poses.
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});
 
+// The triangles of a mesh alone; and with the candidate pairs of the mesh against itself, which may be none.
+MeshPairs read_triangles(const std::filesystem::path& file);
+MeshPairs read_self_pairs(const std::filesystem::path& file);
+
 }  // namespace graze::strata

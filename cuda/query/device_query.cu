@@ -11,6 +11,7 @@
 #include <cstring>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "cuda/lanes/device_memory.cuh"
@@ -117,7 +118,7 @@ class Run {
       references_.push_back(exact::prepare(question.references.data() + 9 * r));
     resident_ = std::any_of(question.places.begin(), question.places.end(), [&](int p) { return p == device; });
     pinned_ = !resident_ && std::all_of(question.parts.begin(), question.parts.end(), [](const TriangleArray& part) {
-      return part.packed() && is_pinned(part.rows);
+      return part.count == 0 || (part.packed() && is_pinned(part.rows));
     });
     most_ = !question.lane->exact ? kMostOfLane : resident_ ? kMostResident : kMostStreamed;
     most_ = std::max<std::uint64_t>(1 << 12, most_ / references_.size() / 64 * 64);
@@ -131,19 +132,21 @@ class Run {
 
   // However a run ends, nothing of it may still be running: the caller's memory goes.
   ~Run() {
-    for (int k = 0; k < kSlots; ++k) slots_[k].range.reset();
-    cudaDeviceSynchronize();
+    bool busy = false;
+    for (int k = 0; k < kSlots; ++k) busy = std::exchange(slots_[k].range, std::nullopt) || busy;
+    if (busy || failed_) cudaDeviceSynchronize();
   }
 
   LaunchRecord operator()() {
     const int slots = resident_ ? 2 : kSlots;
-    for (int k = 0;; k = (k + 1) % slots) {
+    int k = 0;
+    for (;; k = (k + 1) % slots) {
       finish(slots_[k]);
       QueryRange range;
       if (!work_.next(resident_ ? device_ : -1, chunk_, range)) break;
       start(slots_[k], resident_ ? slots_[0] : slots_[k], range);
     }
-    for (int k = 0; k < slots; ++k) finish(slots_[k]);
+    for (int left = 1; left < slots; ++left) finish(slots_[(k + left) % slots]);  // the oldest first
     return record_;
   }
 
@@ -152,6 +155,7 @@ class Run {
  private:
   // Triangles in the device's memory have one stream, so that slots can share what kernels write.
   void start(Slot& slot, Slot& shared, const QueryRange& range) {
+    failed_ = true;  // until all of it is started
     const auto count = static_cast<std::uint32_t>(range.count);
     const cudaStream_t stream =
         resident_ && question_.stream ? static_cast<cudaStream_t>(question_.stream) : cudaStream_t{shared.stream};
@@ -190,6 +194,7 @@ class Run {
     check(cudaMemcpyAsync(slot.found.at_least(rows), found, rows * sizeof *found, cudaMemcpyDeviceToHost, stream));
     check(cudaEventRecord(slot.done, stream));
     slot.range = range;
+    failed_ = false;
   }
 
   static void fetch(PinnedArray<std::uint64_t>& to, const std::uint32_t* from, std::size_t words, cudaStream_t stream) {
@@ -248,16 +253,31 @@ class Run {
   int device_;
   Slot* slots_;
   std::vector<exact::Reference> references_;
-  bool resident_ = false, pinned_ = false;
+  bool resident_ = false, pinned_ = false, failed_ = false;
   std::uint64_t most_ = 0, chunk_ = 0;
   LaunchRecord record_;
+};
+
+// Makes a device the current one, and at its end that which was before: the thread is the caller's.
+class Current {
+ public:
+  explicit Current(int device) {
+    check(cudaGetDevice(&before_));
+    check(cudaSetDevice(device));
+  }
+  Current(const Current&) = delete;
+  Current& operator=(const Current&) = delete;
+  ~Current() { cudaSetDevice(before_); }
+
+ private:
+  int before_ = 0;
 };
 
 class CudaQueryDevice final : public QueryDevice {
  public:
   explicit CudaQueryDevice(int wanted) {
     number = wanted;
-    check(cudaSetDevice(wanted));
+    const Current current(wanted);
     cudaDeviceProp properties;
     check(cudaGetDeviceProperties(&properties, wanted));
     name = properties.name;
@@ -265,7 +285,7 @@ class CudaQueryDevice final : public QueryDevice {
   }
 
   LaunchRecord run(const DeviceQuestion& question, QueryWork& work) override {
-    check(cudaSetDevice(number));
+    const Current current(number);
     return Run(question, work, number, slots_.get())();
   }
 

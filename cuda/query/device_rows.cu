@@ -20,6 +20,7 @@ class Memory final : public DeviceMemory {
 
   void fill(const void* from, std::size_t block) override {
     check(cudaSetDevice(device_));
+    if (block == 0) return;
     std::size_t done = std::min(block, bytes);
     char* to = static_cast<char*>(data);
     check(cudaMemcpy(to, from, done, cudaMemcpyHostToDevice));

@@ -176,9 +176,9 @@ void launch_exact_query(const exact::Reference& reference, const QueryChunk& chu
       chunk.array.packed() && chunk.first % 4 == 0 && reinterpret_cast<std::uintptr_t>(chunk.array.rows) % 16 == 0;
   const std::uint32_t tiles = (chunk.count + kTile - 1) / kTile, wanted = (tiles + kWarps - 1) / kWarps;
   const std::uint32_t blocks = std::min(wanted, static_cast<std::uint32_t>(processors) * 6);
-  if (tiles % 2 == 1) {  // the other half of a word of 64 bits
-    check(cudaMemsetAsync(hits + tiles, 0, sizeof *hits, stream));
-    check(cudaMemsetAsync(declined + tiles, 0, sizeof *declined, stream));
+  if (const std::size_t behind = (row_words(chunk.count) - tiles) * sizeof *hits; behind > 0) {
+    check(cudaMemsetAsync(hits + tiles, 0, behind, stream));
+    check(cudaMemsetAsync(declined + tiles, 0, behind, stream));
   }
   const QueryPairs pairs{reference, chunk};
   const Places left{lists, counts}, second{lists + chunk.count, counts + 1}, third{lists, counts + 2};

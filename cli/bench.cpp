@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze bench`: the tables of the thesis of 2012 again, on this machine.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/bench_rows.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/screen.h"
+#include "core/error.h"
+#include "fuzz/campaign/campaign.h"
+#include "reports/terminal.h"
+#include "reports/text_table.h"
+#include "strata/mesh.h"
+
+namespace graze::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> sizes = {"1e4", "1e5", "1e6", "1e7"};
+  std::vector<std::string> lanes = {"interval_overlap/f32/cpu",           "guigue_devillers_2003/f32/cpu",
+                                    "interval_overlap/f32/cpu/filtered",  "interval_overlap/f32/cuda-fma",
+                                    "guigue_devillers_2003/f32/cuda-fma", "interval_overlap/f32/cuda-fma/filtered"};
+  std::string mesh;
+  bool json = false;
+};
+
+double rate(const BenchRow& row) { return static_cast<double>(row.triangles) / row.seconds; }
+
+std::string words(const BenchMachine& machine) {
+  std::string text = fmt::format("{}, {} threads", fuzz::machine_name(), machine.cores);
+  if (machine.devices.empty()) return text + "; no CUDA device\n";
+  return text + fmt::format("; {} x {}: copies within it {:.0f} GB/s, from the host {:.1f} GB/s\n",
+                            machine.devices.size(), machine.devices[0], machine.copy_bytes_per_second / 1e9,
+                            machine.to_device_bytes_per_second / 1e9);
+}
+
+nlohmann::ordered_json json_of(const Bench& bench) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const BenchRow& row : bench.rows) {
+    nlohmann::ordered_json line = {{"array", row.array},     {"triangles", row.triangles}, {"mode", row.mode},
+                                   {"lane", row.lane},       {"executor", row.executor},   {"data", row.data},
+                                   {"seconds", row.seconds}, {"per_second", rate(row)},    {"hits", row.hits}};
+    if (row.build_seconds > 0) line["build_seconds"] = row.build_seconds;
+    if (row.mismatches) line["mismatches"] = *row.mismatches;
+    rows.push_back(std::move(line));
+  }
+  nlohmann::ordered_json machine = {
+      {"processor", fuzz::machine_name()}, {"threads", bench.machine.cores}, {"devices", bench.machine.devices}};
+  if (!bench.machine.devices.empty()) {
+    machine["copy_bytes_per_second"] = bench.machine.copy_bytes_per_second;
+    machine["to_device_bytes_per_second"] = bench.machine.to_device_bytes_per_second;
+  }
+  nlohmann::ordered_json crossover = nullptr;
+  if (bench.crossover > 0) crossover = bench.crossover;
+  return {{"machine", machine}, {"crossover", crossover}, {"rows", rows}};
+}
+
+// A table for each array.
+std::string tables_of(const Bench& bench) {
+  using reports::Align;
+  std::string text;
+  for (std::size_t begin = 0, end; begin < bench.rows.size(); begin = end) {
+    const BenchRow& head = bench.rows[begin];
+    reports::TextTable table({{head.array + ", " + reports::grouped(head.triangles), Align::left},
+                              {"by", Align::left},
+                              {"ms", Align::point},
+                              {"10^6/s", Align::point},
+                              {"hits"},
+                              {"wrong"}});
+    for (end = begin; end < bench.rows.size() && bench.rows[end].array == head.array &&
+                      (bench.rows[end].triangles == head.triangles || bench.rows[end].data == "resident");
+         ++end) {
+      const BenchRow& row = bench.rows[end];
+      table.add({row.lane + (row.mode == "any" ? ", any" : ""),
+                 row.executor + (row.data == "resident" ? ", resident" : ""),
+                 fmt::format("{:.3f}", row.seconds * 1e3),
+                 row.mode == "any" ? "" : fmt::format("{:.1f}", rate(row) / 1e6),
+                 reports::grouped(row.hits),
+                 {row.mismatches ? reports::grouped(*row.mismatches) : "", row.mismatches.value_or(0) > 0}});
+    }
+    text += table.text(output_screen()) + "\n";
+  }
+  return text;
+}
+
+// What a device could do at most, and what the exact lane did.
+std::string shares(const Bench& bench) {
+  std::string text;
+  for (const char* data : {"resident", "host"}) {
+    const BenchRow* best = nullptr;
+    for (const BenchRow& row : bench.rows) {
+      if (row.lane == "exact" && row.mode == "all" && row.executor == "one GPU" && row.data == data &&
+          (!best || rate(row) > rate(*best)))
+        best = &row;
+    }
+    if (!best) continue;
+    const bool resident = best->data == "resident";
+    const double limit = resident ? bench.machine.copy_bytes_per_second : bench.machine.to_device_bytes_per_second;
+    text += fmt::format("exact, one GPU, {}: at most {:.1f} x 10^9 triangles/s, {:.1f} GB/s, {:.0f} % of {}\n", data,
+                        rate(*best) / 1e9, rate(*best) * 36 / 1e9, rate(*best) * 3600 / limit,
+                        resident ? "a copy within it" : "a copy from pinned memory");
+  }
+  return text;
+}
+
+void bench(const Options& options, int& status) {
+  BenchOptions wanted;
+  for (const std::string& size : options.sizes) wanted.sizes.push_back(std::stoull(size));
+  wanted.lanes = options.lanes;
+  if (!options.mesh.empty()) {
+    wanted.mesh_name = std::filesystem::path(options.mesh).filename().string();
+    for (const auto& t : strata::read_triangles(options.mesh).triangles)
+      wanted.mesh.push_back({t[0].x, t[0].y, t[0].z, t[1].x, t[1].y, t[1].z, t[2].x, t[2].y, t[2].z});
+  }
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  const bool on_terminal = isatty(STDERR_FILENO);
+  const Bench result = measure(wanted, [&](const BenchRow& row) {
+    if (on_terminal)
+      fmt::print(stderr, "\r{} triangles, {}, {}, {}\033[K", reports::grouped(row.triangles), row.lane, row.executor,
+                 row.data);
+    return !interrupted;
+  });
+  if (on_terminal) fmt::print(stderr, "\r\033[K");
+  if (interrupted) {
+    status = kInterrupted;
+    return;
+  }
+  if (options.json) {
+    fmt::print("{}\n", json_of(result).dump(1));
+    return;
+  }
+  fmt::print("{}\n{}{}", words(result.machine), tables_of(result), shares(result));
+  if (!result.machine.devices.empty()) {
+    fmt::print("crossover: {}\n", result.crossover == 0
+                                      ? "none; with copies all cores are faster"
+                                      : fmt::format("with copies one GPU is faster than all cores from {} triangles on",
+                                                    reports::grouped(result.crossover)));
+  }
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "bench", "Time the thesis's question on this machine: one triangle against many, by all executors");
+  auto options = std::make_shared<Options>();
+  command->add_option("--triangles", options->sizes, "Sizes of the arrays of the thesis's random triangles")
+      ->delimiter(',')
+      ->transform(whole_number(1, std::uint64_t{1} << 34))
+      ->capture_default_str()
+      ->option_text("N,…");
+  command->add_option("--mesh", options->mesh, "The triangles of a mesh too, against its middle one")
+      ->check(not_empty())
+      ->option_text("FILE");
+  command->add_option("--lanes", options->lanes, "Lanes beside the exact one: of the host on cores, CUDA lanes on GPUs")
+      ->delimiter(',')
+      ->capture_default_str()
+      ->option_text("LANE,…");
+  command->add_flag("--json", options->json, "One JSON object");
+  command->callback([options, &status] { bench(*options, status); });
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/bench_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+
+#include "core/error.h"
+#include "core/lanes.h"
+#include "cuda/query/device_query.h"
+#include "cuda/query/device_rows.h"
+#include "oracle/aabb_tree.h"
+#include "strata/strata.h"
+
+namespace graze::cli {
+namespace {
+
+using query::Answer;
+using query::Triangle;
+
+constexpr std::uint64_t kDrawn = 1'000'000;   // distinct ones; larger arrays repeat them
+constexpr std::uint64_t kInTree = 1'000'000;  // more would take minutes and gigabytes
+constexpr std::uint64_t kOnOneCore = 100'000'000;
+constexpr int kTimes = 3;
+constexpr Triangle kThesis = {2, -2, 4, 1, 5, -2, 1, -3, -3};
+
+struct Array {
+  std::string name;
+  Triangle reference;
+  std::vector<Triangle> triangles;
+};
+
+Array thesis_array(std::uint64_t count) {
+  Array array{"thesis", kThesis, std::vector<Triangle>(count)};
+  const std::uint64_t drawn = std::min(count, kDrawn);
+  for (std::uint64_t i = 0; i < drawn; ++i) {
+    const Pair pair = strata::generate(1, strata::Stratum::thesis, i);
+    std::memcpy(array.triangles[i].data(), pair.b, sizeof(Triangle));
+  }
+  for (std::uint64_t i = drawn; i < count; i += drawn)
+    std::copy_n(array.triangles.begin(), std::min(drawn, count - i), array.triangles.begin() + static_cast<long>(i));
+  return array;
+}
+
+// A hit among the first hundred, and no other.
+Array any_array(std::uint64_t count) {
+  Array array{"thesis", kThesis, std::vector<Triangle>(count, Triangle{9, 9, 9, 9, 8, 9, 9, 9, 8})};
+  array.triangles[std::min<std::uint64_t>(99, count - 1)] = kThesis;
+  return array;
+}
+
+double seconds_of(const std::function<void()>& run) {
+  const auto start = std::chrono::steady_clock::now();
+  run();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+class Measuring {
+ public:
+  Measuring(const BenchOptions& options, const std::function<bool(const BenchRow&)>& told)
+      : options_(options), told_(told), devices_(graze_devices()) {
+    bench_.machine.cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    for (int d = 0; d < devices_; ++d) bench_.machine.devices.push_back(cuda::open_query_device(d)->name);
+    if (devices_ == 0) return;
+    const cuda::DeviceSpeeds speeds = cuda::measure_speeds(0, std::size_t{1} << 32);
+    bench_.machine.copy_bytes_per_second = speeds.copy;
+    bench_.machine.to_device_bytes_per_second = speeds.to_device;
+  }
+
+  Bench operator()() {
+    for (const std::uint64_t count : options_.sizes) measure(thesis_array(count));
+    if (!options_.mesh.empty()) measure({options_.mesh_name, options_.mesh[options_.mesh.size() / 2], options_.mesh});
+    find_crossover();
+    return std::move(bench_);
+  }
+
+ private:
+  void measure(const Array& array) {
+    const graze_triangles host = query::rows_of(std::span<const Triangle>(array.triangles));
+    std::vector<std::uint8_t> exact(array.triangles.size());
+    by_executors(array, host, "all", "exact", exact, nullptr);
+    for (const std::string& lane : options_.lanes) by_executors(array, host, "all", lane, exact, &exact);
+    if (array.name == "thesis") {
+      const Array with_hit = any_array(array.triangles.size());
+      std::vector<std::uint8_t> none;
+      by_executors(with_hit, query::rows_of(std::span<const Triangle>(with_hit.triangles)), "any", "exact", none,
+                   nullptr);
+    }
+    if (array.triangles.size() <= kInTree) by_tree(array);
+  }
+
+  // Verdicts of the lane go to `bytes`, or, beside exact ones, are compared with them.
+  void by_executors(const Array& array, const graze_triangles& host, const std::string& mode, const std::string& lane,
+                    std::vector<std::uint8_t>& bytes, const std::vector<std::uint8_t>* exact) {
+    BenchRow row{array.name, host.count, "", "host", mode, lane, 0, 0, 0, {}};
+    graze_query query = query::query_of(array.reference, host);
+    query.mode = mode == "any" ? GRAZE_ANY : GRAZE_ALL;
+    const bool on_host = lane == "exact" || lane.find("/cuda") == lane.npos;
+    const bool on_device = lane == "exact" || !on_host;
+    query.lane = lane.c_str();
+    if (on_host) {
+      if (host.count <= kOnOneCore) add(row, query, GRAZE_ONE_CORE, "one core", &bytes, exact);
+      if (bench_.machine.cores > 1) add(row, query, GRAZE_ALL_CORES, "all cores", &bytes, exact);
+    }
+    if (!on_device || devices_ == 0) return;
+    add(row, query, GRAZE_ONE_GPU, "one GPU", &bytes, exact);
+    if (devices_ > 1) add(row, query, GRAZE_ALL_GPUS, fmt::format("{} GPUs", devices_), &bytes, exact);
+    row.data = "resident";
+    std::vector<std::unique_ptr<cuda::DeviceMemory>> memories;
+    std::vector<graze_triangles> parts;
+    for (int d = 0; d < devices_; ++d) {
+      memories.push_back(cuda::device_memory(d, host.count * sizeof(Triangle)));
+      memories.back()->fill(host.rows, host.count * sizeof(Triangle));
+      parts.push_back(host);
+      parts.back().device = d;
+      parts.back().rows = static_cast<const float*>(memories.back()->data);
+      if (d > 0 && mode == "any") break;
+    }
+    query.parts = parts.data();
+    add(row, query, GRAZE_ONE_GPU, "one GPU", nullptr, nullptr);
+    if (devices_ == 1 || mode == "any") return;
+    query.part_count = parts.size();  // the array once on each device
+    row.triangles = host.count * parts.size();
+    add(row, query, GRAZE_ALL_GPUS, fmt::format("{} GPUs", devices_), nullptr, nullptr);
+  }
+
+  void add(BenchRow row, graze_query query, int executor, const std::string& name, std::vector<std::uint8_t>* bytes,
+           const std::vector<std::uint8_t>* exact) {
+    row.executor = name;
+    query.executor = executor;
+    std::vector<std::uint8_t> found;
+    if (exact) found.resize(exact->size());
+    row.seconds = 1e9;
+    for (int k = 0; k <= kTimes; ++k) {
+      graze_query asked = query;
+      // The first time for the verdicts, and to warm up; then for the count alone.
+      if (k == 0 && bytes && query.mode == GRAZE_ALL) asked.bytes = exact ? found.data() : bytes->data();
+      const Answer answer = context_.run(asked);
+      if (answer.status == GRAZE_BAD_ARGUMENT) throw UsageError(std::string(answer.what()));
+      if (!answer) throw std::runtime_error(fmt::format("{}, {}: {}", name, row.lane, answer.what()));
+      row.hits = answer.hits;
+      if (k > 0) row.seconds = std::min(row.seconds, answer.seconds);
+    }
+    if (exact) {
+      row.mismatches = 0;
+      for (std::size_t i = 0; i < found.size(); ++i) *row.mismatches += found[i] != (*exact)[i];
+    }
+    tell(row);
+  }
+
+  void by_tree(const Array& array) {
+    std::optional<oracle::AabbTree> tree;
+    BenchRow row{array.name, array.triangles.size(), "one core", "host", "all", "CGAL AABB tree", 1e9, 0, 0, {}};
+    row.build_seconds = seconds_of([&] { tree.emplace(array.triangles); });
+    for (int k = 0; k < kTimes; ++k)
+      row.seconds = std::min(row.seconds, seconds_of([&] { row.hits = tree->count(array.reference); }));
+    tell(row);
+  }
+
+  void tell(const BenchRow& row) {
+    bench_.rows.push_back(row);
+    if (!told_(row)) throw std::runtime_error("interrupted");
+  }
+
+  void find_crossover() {
+    const auto time_of = [&](const BenchRow& like, const char* executor) {
+      for (const BenchRow& row : bench_.rows) {
+        if (row.array == "thesis" && row.triangles == like.triangles && row.lane == "exact" && row.mode == "all" &&
+            row.data == "host" && row.executor == executor)
+          return row.seconds;
+      }
+      return 0.0;
+    };
+    for (const BenchRow& row : bench_.rows) {
+      if (row.executor != "one GPU" || row.data != "host") continue;
+      const double cores = time_of(row, "all cores"), device = time_of(row, "one GPU");
+      if (cores == 0 || device == 0) continue;
+      if (device >= cores) {
+        bench_.crossover = 0;
+      } else if (bench_.crossover == 0) {
+        bench_.crossover = row.triangles;
+      }
+    }
+  }
+
+  const BenchOptions& options_;
+  const std::function<bool(const BenchRow&)>& told_;
+  int devices_;
+  query::Context context_;
+  Bench bench_;
+};
+
+}  // namespace
+
+Bench measure(const BenchOptions& options, const std::function<bool(const BenchRow&)>& told) {
+  return Measuring(options, told)();
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze query`: which triangles of a mesh meet a reference, by one lane and executor or by several, compared.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/query_input.h"
+#include "cli/query_self.h"
+#include "cli/screen.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "corpus/pair_format.h"
+#include "fuzz/files.h"
+#include "reports/terminal.h"
+
+namespace graze::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostMismatches = 1000;  // kept as cases
+const std::vector<std::string> kExecutors = {"auto", "one-core", "all-cores", "one-gpu", "all-gpus"};
+
+struct QueryOptions {
+  std::vector<std::string> files;
+  std::string self;
+  bool any = false, all = false, json = false;
+  std::vector<std::string> lanes, executors;
+  std::string obj, pairs, mismatches;
+};
+
+// A lane and an executor, and what they said.
+struct Run {
+  std::string lane, executor;
+  query::Answer answer;
+  std::vector<std::uint8_t> bytes;
+};
+
+std::string name_of(int executor) { return kExecutors.at(static_cast<std::size_t>(executor)); }
+
+// The lanes that the patterns match; `exact` is the exact lane, on whatever runs it.
+std::vector<std::string> lanes_of(const std::vector<std::string>& globs) {
+  if (globs.empty()) return {"exact"};
+  std::vector<std::string> ids;
+  for (const std::string& glob : globs) {
+    if (glob == "exact") {
+      ids.push_back(glob);
+      continue;
+    }
+    add_policy_lanes(glob);
+    const std::size_t before = ids.size();
+    for (const Lane& lane : graze::lanes()) {
+      if (matches_any({glob}, lane.id) && std::find(ids.begin(), ids.end(), lane.id) == ids.end())
+        ids.push_back(lane.id);
+    }
+    if (ids.size() == before) throw UsageError("--lanes: expected a pattern that matches a lane, found '" + glob + "'");
+  }
+  return ids;
+}
+
+struct Told {
+  const std::atomic<bool>& interrupted;
+  Progress progress;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+};
+
+int tell(void* user, std::uint64_t done, std::uint64_t triangles) {
+  Told& told = *static_cast<Told*>(user);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - told.start).count();
+  const double left =
+      seconds / static_cast<double>(std::max<std::uint64_t>(done, 1)) * static_cast<double>(triangles - done);
+  if (const auto line = told.progress.line(done, seconds, left)) fmt::print(stderr, "{}", *line);
+  return told.interrupted;
+}
+
+// The triangles on which another run says something else than the first one, and what each says.
+std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const std::vector<query::Triangle>& references,
+                                         const std::vector<query::Triangle>& triangles, std::uint64_t& count) {
+  constexpr const char* kWords[] = {"disjoint", "intersects", "declined"};
+  std::vector<corpus::Entry> entries;
+  for (std::size_t p = 0; p < runs[0].bytes.size(); ++p) {
+    if (std::all_of(runs.begin(), runs.end(), [&](const Run& run) { return run.bytes[p] == runs[0].bytes[p]; }))
+      continue;
+    if (count++ >= kMostMismatches) continue;
+    const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
+    corpus::Entry entry{pair_of(references[reference], triangles[triangle]),
+                        {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}};
+    for (const Run& run : runs) {
+      std::string key = "said_by_" + run.lane + (run.executor == "auto" ? "" : "_" + run.executor);
+      for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '.' ? c : '_';
+      entry.fields.push_back({key, kWords[run.bytes[p]]});
+    }
+    entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+void write_pairs(const std::string& file, const std::vector<corpus::Entry>& entries) {
+  std::ostringstream text;
+  corpus::write_header(text);
+  for (const corpus::Entry& entry : entries) corpus::write_entry(text, entry);
+  fuzz::write_whole(file, text.str());
+}
+
+// What the first run found, as files.
+void write_hits(const QueryOptions& options, const Run& run, const std::vector<query::Triangle>& references,
+                const std::vector<query::Triangle>& triangles) {
+  std::vector<corpus::Entry> entries;
+  ObjGroup hits{"hits", {}};
+  for (std::size_t p = 0; p < run.bytes.size(); ++p) {
+    if (run.bytes[p] != 1) continue;
+    const std::size_t triangle = p % triangles.size(), reference = p / triangles.size();
+    entries.push_back({pair_of(references[reference], triangles[triangle]),
+                       {{"name", fmt::format("reference_{}_triangle_{}", reference, triangle)}}});
+    hits.triangles.push_back(triangles[triangle]);
+  }
+  if (!options.pairs.empty()) write_pairs(options.pairs, entries);
+  if (!options.obj.empty()) fuzz::write_whole(options.obj, obj_of({{"reference", references}, hits}));
+}
+
+Json json_of(const Run& run) {
+  Json first = nullptr;
+  if (run.answer.hits > 0) first = run.answer.first;
+  return {{"triangles", run.answer.triangles},       {"hits", run.answer.hits},       {"first", first},
+          {"declined", run.answer.declined},         {"seconds", run.answer.seconds}, {"lane", run.lane},
+          {"executor", name_of(run.answer.executor)}};
+}
+
+std::string words_of(const Run& run, bool any, std::size_t references) {
+  const query::Answer& answer = run.answer;
+  const std::string reference = references == 1 ? "the reference" : fmt::format("one of {} references", references);
+  std::string text =
+      any ? answer.hits ? fmt::format("triangle {} meets {}", answer.first, reference)
+                        : fmt::format("no triangle of {} meets {}", reports::grouped(answer.triangles), reference)
+          : fmt::format("{} of {} triangles meet{} {}", reports::grouped(answer.hits),
+                        reports::grouped(answer.triangles), answer.hits == 1 ? "s" : "", reference);
+  if (references > 1 && !any)
+    text = fmt::format("{} hits among {} triangles and {} references", reports::grouped(answer.hits),
+                       reports::grouped(answer.triangles), references);
+  if (!any && answer.hits > 0) text += fmt::format(", the first is {}", answer.first);
+  if (answer.declined > 0) text += fmt::format("; {} declined", reports::grouped(answer.declined));
+  return text + fmt::format(" ({}, {})\n", run.lane, name_of(answer.executor));
+}
+
+std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::Triangle>& references,
+                         const std::vector<query::Triangle>& triangles, int& status) {
+  std::vector<Run> runs;
+  for (const std::string& lane : lanes_of(options.lanes)) {
+    for (const std::string& executor : options.executors) runs.push_back({lane, executor, {}, {}});
+  }
+  if (options.any && runs.size() > 1) throw UsageError("--any: expected one lane and one executor, found more");
+  const query::Context context;
+  const std::atomic<bool>& interrupted = catch_interrupts();
+  for (Run& run : runs) {
+    Told told{interrupted, Progress("triangles", triangles.size(), isatty(STDERR_FILENO), error_screen())};
+    const graze_triangles part = query::rows_of(std::span<const query::Triangle>(triangles));
+    graze_query query = query::query_of(references[0], part);
+    query.references = references[0].data();
+    query.reference_count = references.size();
+    query.lane = run.lane.c_str();
+    query.executor =
+        static_cast<int>(std::find(kExecutors.begin(), kExecutors.end(), run.executor) - kExecutors.begin());
+    query.mode = options.any ? GRAZE_ANY : GRAZE_ALL;
+    query.progress = tell;
+    query.user = &told;
+    if (!options.any) run.bytes.resize(triangles.size() * references.size());
+    query.bytes = options.any ? nullptr : run.bytes.data();
+    run.answer = context.run(query);
+    fmt::print(stderr, "{}", told.progress.end());
+    if (run.answer.status == GRAZE_CANCELLED) {
+      fmt::print(stderr, "graze: interrupted after {} triangles\n", reports::grouped(run.answer.position));
+      status = kInterrupted;
+      return {};
+    }
+    if (run.answer.status == GRAZE_BAD_ARGUMENT) throw UsageError(std::string(run.answer.what()));
+    if (!run.answer) throw std::runtime_error(std::string(run.answer.what()));
+  }
+  return runs;
+}
+
+void query_mesh(const QueryOptions& options, int& status) {
+  if (options.files.size() != 2)
+    throw UsageError(fmt::format("expected a reference and a mesh, found {} files", options.files.size()));
+  if (options.any && (!options.obj.empty() || !options.pairs.empty()))
+    throw UsageError("--any: expected neither --obj nor --pairs, which have all hits");
+  const std::vector<query::Triangle> references = read_references(options.files[0]),
+                                     triangles = read_mesh(options.files[1]);
+  const std::vector<Run> runs = runs_of(options, references, triangles, status);
+  if (runs.empty()) return;
+  write_hits(options, runs[0], references, triangles);
+  std::uint64_t count = 0;
+  std::vector<corpus::Entry> mismatches;
+  if (runs.size() > 1) mismatches = mismatches_of(runs, references, triangles, count);
+  const std::string kept = options.mismatches.empty() ? "mismatches.pairs" : options.mismatches;
+  if (!mismatches.empty()) write_pairs(kept, mismatches);
+  if (options.json) {
+    Json json = json_of(runs[0]);
+    if (runs.size() > 1) {
+      json["mismatches"] = count;
+      for (std::size_t r = 1; r < runs.size(); ++r) json["others"].push_back(json_of(runs[r]));
+    }
+    fmt::print("{}\n", json.dump());
+    return;
+  }
+  for (const Run& run : runs) fmt::print("{}", words_of(run, options.any, references.size()));
+  if (runs.size() == 1) return;
+  if (count == 0) {
+    fmt::print("no mismatch\n");
+    return;
+  }
+  fmt::print("{} mismatch{}, {} of them kept in {}\n", reports::grouped(count), count == 1 ? "" : "es",
+             mismatches.size(), printable(kept));
+  fmt::print("Next: graze explain {}\n", shell_word(kept));
+}
+
+}  // namespace
+
+void add_query(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("query", "Find the triangles of a mesh that meet a reference triangle");
+  command->footer("Example: graze query arm.off#0 arm.off --json");
+  auto options = std::make_shared<QueryOptions>();
+  command
+      ->add_option("files", options->files,
+                   "The reference, a text file of nine numbers or MESH#FACE, and the mesh (OFF, OBJ, STL, PLY)")
+      ->option_text("REF MESH");
+  command->add_option("--self", options->self, "Instead: the pairs of this mesh's own triangles that pierce each other")
+      ->check(not_empty())
+      ->excludes("files")
+      ->option_text("MESH");
+  CLI::Option* any = command->add_flag("--any", options->any, "Stop at the first triangle that does");
+  command->add_flag("--all", options->all, "Find all (the default)")->excludes(any);
+  options->executors = {"auto"};
+  command->add_option("--executor", options->executors, "What decides; several are compared")
+      ->delimiter(',')
+      ->transform(one_of(kExecutors, Chosen::word))
+      ->option_text("auto|one-core|all-cores|one-gpu|all-gpus,…");
+  add_globs(*command, "--lanes", options->lanes, "Which lanes decide, `exact` by default; several are compared");
+  command->add_flag("--json", options->json, "One JSON object");
+  command->add_option("--obj", options->obj, "Write reference and hits as an OBJ file")
+      ->check(not_empty())
+      ->option_text("FILE");
+  command->add_option("--pairs", options->pairs, "Write the hits as pairs")->check(not_empty())->option_text("FILE");
+  command
+      ->add_option("--mismatches", options->mismatches,
+                   "Where triangles go on which lanes or executors differ (mismatches.pairs)")
+      ->check(not_empty())
+      ->option_text("FILE");
+  command->callback([options, &status] {
+    if (options->self.empty()) return query_mesh(*options, status);
+    if (options->any || !options->lanes.empty() || options->executors != std::vector<std::string>{"auto"})
+      throw UsageError("--self: expected neither --any, --lanes nor --executor: it is exact, on all cores");
+    query_self({options->self, options->json, options->obj, options->pairs});
+  });
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze query` and `graze bench` as a user meets them.
+#include <nlohmann/json.hpp>
+
+#include "cli/run_graze.h"
+
+namespace graze::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// A square of two triangles, one that pierces it, one that touches it in a point, one that shares a vertex with it, one
+// that is far away, and the square's first triangle again, shifted by less than float32 tells apart from touching.
+constexpr const char* kMesh = R"(v 0 0 0
+v 4 0 0
+v 4 4 0
+v 0 4 0
+v 3 1 -1
+v 3 1 1
+v 3.5 1 1
+v 3 2 0
+v 1 2 5
+v 2 1 5
+v 0 0 3
+v 0 -3 3
+v 9 9 9
+v 9 8 9
+v 9 9 8
+f 1 2 3
+f 1 3 4
+f 5 6 7
+f 8 9 10
+f 1 11 12
+f 13 14 15
+)";
+
+class QueryCommand : public CommandTest {
+ protected:
+  QueryCommand() {
+    std::ofstream(shell.folder / "mesh.obj") << kMesh;
+    std::ofstream(shell.folder / "ref.txt") << "# the square's first half\n0 0 0, 4 0 0,\n4 4 0\n";
+  }
+
+  Json json(const std::string& command) const {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, 0) << command << ran.err;
+    return Json::parse(ran.out);
+  }
+
+  std::string out(const std::string& command) const {
+    const Ran ran = shell(command);
+    EXPECT_EQ(ran.status, 0) << command << ran.err;
+    return ran.out;
+  }
+};
+
+TEST_F(QueryCommand, FindsAllOrAny) {
+  EXPECT_EQ(out("graze query ref.txt mesh.obj"),
+            "5 of 6 triangles meet the reference, the first is 0 (exact, one-core)\n");
+  EXPECT_EQ(out("graze query mesh.obj#3 mesh.obj --executor all-cores"),
+            "2 of 6 triangles meet the reference, the first is 0 (exact, all-cores)\n");
+  EXPECT_EQ(out("graze query mesh.obj#5 mesh.obj --any"), "triangle 5 meets the reference (exact, one-core)\n");
+  EXPECT_EQ(out("echo 99 99 99 98 99 99 99 98 99 > far; graze query far mesh.obj --any"),
+            "no triangle of 6 meets the reference (exact, one-core)\n");
+  EXPECT_EQ(out("cat far >> ref.txt; graze query ref.txt mesh.obj"),
+            "5 hits among 6 triangles and 2 references, the first is 0 (exact, one-core)\n");
+}
+
+TEST_F(QueryCommand, JsonIsOneObject) {
+  const Json found = json("graze query mesh.obj#3 mesh.obj --json");
+  EXPECT_EQ(found["triangles"], 6);
+  EXPECT_EQ(found["hits"], 2);
+  EXPECT_EQ(found["first"], 0);
+  EXPECT_EQ(found["declined"], 0);
+  EXPECT_GT(found["seconds"], 0);
+  EXPECT_EQ(found["lane"], "exact");
+  EXPECT_TRUE(json("echo 99 99 99 98 99 99 99 98 99 > far; graze query far mesh.obj --json")["first"].is_null());
+}
+
+TEST_F(QueryCommand, WritesHits) {
+  expect_done("graze query mesh.obj#3 mesh.obj --obj hits.obj --pairs hits.pairs");
+  const std::string obj = contents(shell.folder / "hits.obj");
+  EXPECT_TRUE(obj.starts_with("g reference\nv 3 2 0\nv 1 2 5\nv 2 1 5\nf 1 2 3\ng hits\nv 0 0 0\n")) << obj;
+  EXPECT_EQ(json("graze query mesh.obj#3 hits.obj --json")["hits"], 3);  // the reference is there too
+  const Ran checked = shell("graze check hits.pairs --truth-only | grep -c 'truth: intersects'");
+  EXPECT_EQ(checked.out, "2\n");
+}
+
+// Triangles that share a vertex, which one algorithm calls disjoint: the example of the README.
+TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
+  std::ofstream(shell.folder / "mesh.obj") << "v .1 .2 .3\nv .5 .5 .9\nv -.3 .8 .4\nv 9 9 9\nf 1 2 3\nf 4 2 3\n";
+  std::ofstream(shell.folder / "ref.txt") << "0.1 0.2 0.3  0.4 0.9 0.2  0.7 0.1 0.6\n";
+  EXPECT_EQ(out("graze query ref.txt mesh.obj --lanes 'exact,guigue*/f32/cpu,guigue*/f32/cpu/filtered'"),
+            "1 of 2 triangles meets the reference, the first is 0 (exact, one-core)\n"
+            "0 of 2 triangles meet the reference (guigue_devillers_2003/f32/cpu, one-core)\n"
+            "1 of 2 triangles meets the reference, the first is 0 (guigue_devillers_2003/f32/cpu/filtered, one-core)\n"
+            "1 mismatch, 1 of them kept in mismatches.pairs\nNext: graze explain mismatches.pairs\n");
+  const std::string kept = contents(shell.folder / "mismatches.pairs");
+  EXPECT_NE(kept.find("said_by_exact=intersects said_by_guigue_devillers_2003_f32_cpu=disjoint "
+                      "said_by_guigue_devillers_2003_f32_cpu_filtered=intersects\n"),
+            std::string::npos)
+      << kept;
+  expect_done("graze explain mismatches.pairs --lanes '*/f32/cpu'");
+  expect_done("graze minimize mismatches.pairs --lanes 'guigue*/f32/cpu' --out small.pairs");
+  const Json found = json("graze query ref.txt mesh.obj --lanes exact --executor one-core,all-cores --json");
+  EXPECT_EQ(found["mismatches"], 0);
+  EXPECT_EQ(found["others"][0]["executor"], "all-cores");
+  EXPECT_EQ(found["others"][0]["hits"], found["hits"]);
+}
+
+TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
+  EXPECT_EQ(out("graze query --self mesh.obj"),
+            "6 triangles: 1 pair pierces each other, 1 touches without a common vertex\n"
+            "neighbours that share nothing more: 1 an edge, 2 a vertex\n"
+            "the first pair that pierces: triangles 0 and 2\n");
+  const Json found = json("graze query --self mesh.obj --json --pairs p.pairs --obj p.obj");
+  EXPECT_EQ(found["first"], Json({0, 2}));
+  EXPECT_EQ(found["common_edge"], 1);
+  EXPECT_NE(out("graze check p.pairs --truth-only").find("contact segment"), std::string::npos);
+  EXPECT_EQ(
+      json("printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n' > one.obj; graze query --self one.obj --json")["hits"],
+      0);
+  // Folded over on itself, and twice the same.
+  EXPECT_EQ(json("printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nv .1 .2 0\\nf 1 2 3\\nf 1 2 4\\nf 2 3 1\\n' > f.obj; "
+                 "graze query --self f.obj --json")["hits"],
+            3);
+}
+
+TEST_F(QueryCommand, ErrorsAreOneLine) {
+  expect_error("graze query", 2, "expected a reference and a mesh, found 0 files\n");
+  expect_error("graze query ref.txt", 2, "found 1 files\n");
+  expect_error("graze query ref.txt no.obj", 1, "no.obj: expected a mesh file");
+  expect_error("graze query no.txt mesh.obj", 1,
+               "no.txt: expected a file of nine numbers for each reference, found none\n");
+  expect_error("echo 1 2 3 > r; graze query r mesh.obj", 1, "r: expected nine numbers for each reference, found 3\n");
+  expect_error("echo 1 2 x > r; graze query r mesh.obj", 1,
+               "r:1: expected a coordinate that is finite in float32, found \"x\"");
+  expect_error("graze query mesh.obj#6 mesh.obj", 1, "mesh.obj: expected a face below 6, found 6\n");
+  expect_error("graze query mesh.obj#a mesh.obj", 2, "expected MESH#FACE with a whole number, found 'a'\n");
+  expect_error("graze query ref.txt mesh.obj --lanes nosuch", 2,
+               "expected a pattern that matches a lane, found 'nosuch'\n");
+  expect_error("graze query ref.txt mesh.obj --executor twin", 2, "one-gpu or all-gpus, found 'twin'");
+  expect_error("graze query ref.txt mesh.obj --executor one-core --lanes 'moller_1997/f32/cuda-fma'", 2,
+               "expected a lane of the host for cores");
+  expect_error("graze query ref.txt mesh.obj --any --lanes '*/f32/cpu'", 2,
+               "expected one lane and one executor, found more\n");
+  expect_error("graze query ref.txt mesh.obj --any --pairs p", 2, "expected neither --obj nor --pairs");
+  expect_error("graze query --self mesh.obj --any", 2, "--self: expected neither --any, --lanes nor --executor");
+  expect_error("graze query --self mesh.obj ref.txt", 2, "--self");
+  expect_error("mkdir d; graze query ref.txt mesh.obj --pairs d", 1, "d");
+  if (shell("graze query ref.txt mesh.obj --executor one-gpu").status != 0)
+    expect_error("graze query ref.txt mesh.obj --executor one-gpu", 1, "expected a CUDA device, found none: ");
+}
+
+TEST_F(QueryCommand, BenchMeasuresAndCompares) {
+  const Json found =
+      json("graze bench --triangles 1e3,2e4 --mesh mesh.obj --lanes interval_overlap/f32/cpu,exact/f32/cpu --json");
+  EXPECT_GE(found["machine"]["threads"], 1);
+  int exact = 0, others = 0, trees = 0;
+  std::uint64_t hits = 0;
+  for (const Json& row : found["rows"]) {
+    EXPECT_GT(row["seconds"], 0);
+    EXPECT_NEAR(row["per_second"].get<double>() * row["seconds"].get<double>(), row["triangles"].get<double>(), 1);
+    const bool of_20000 = row["triangles"] == 20000 && row["mode"] == "all";
+    if (row["lane"] == "exact" && of_20000) {
+      hits = row["hits"];
+      ++exact;
+    }
+    if (row["lane"] == "exact/f32/cpu") {
+      EXPECT_EQ(row["mismatches"], 0);
+    }
+    if (row["lane"] == "interval_overlap/f32/cpu" && of_20000 && row["executor"] == "one core") {
+      EXPECT_GT(row["mismatches"], 0);
+      ++others;
+    }
+    if (row["lane"] == "CGAL AABB tree" && of_20000) {
+      ++trees;
+      EXPECT_LE(row["hits"], hits);  // without the degenerate ones
+      EXPECT_GT(row["hits"].get<double>(), 0.95 * static_cast<double>(hits));
+    }
+    if (row["mode"] == "any") {
+      EXPECT_EQ(row["hits"], 1);
+    }
+  }
+  EXPECT_GE(exact, 1);
+  EXPECT_GE(others, 1);
+  EXPECT_EQ(trees, 1);
+  EXPECT_NE(out("graze bench --triangles 1000").find("thesis, 1,000"), std::string::npos);
+  expect_error("graze bench --triangles 0", 2, "expected a whole number from 1 to");
+  expect_error("graze bench --mesh no.obj", 1, "no.obj: expected a mesh file");
+  expect_error("graze bench --triangles 10 --lanes nosuch", 2, "found 'nosuch'");
+}
+
+}  // namespace
+}  // namespace graze::cli

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/query_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "fuzz/files.h"
+#include "strata/mesh.h"
+#include "strata/mesh_readers/lines.h"
+
+namespace graze::cli {
+namespace {
+
+std::vector<query::Triangle> read_numbers(const std::string& file) {
+  if (!std::filesystem::is_regular_file(file))
+    throw std::runtime_error(file + ": expected a file of nine numbers for each reference, found none");
+  std::string text = fuzz::read_whole(file);
+  std::replace(text.begin(), text.end(), ',', ' ');
+  strata::Lines lines({file, text}, '#');
+  std::vector<float> numbers;
+  while (lines.next()) {
+    for (std::size_t i = 0; i < lines.words().size(); ++i) numbers.push_back(lines.coordinate(i));
+  }
+  if (numbers.empty() || numbers.size() % 9 != 0)
+    throw std::runtime_error(
+        fmt::format("{}: expected nine numbers for each reference, found {}", file, numbers.size()));
+  std::vector<query::Triangle> references(numbers.size() / 9);
+  std::memcpy(references.data(), numbers.data(), numbers.size() * sizeof(float));
+  return references;
+}
+
+}  // namespace
+
+std::vector<query::Triangle> read_references(const std::string& name) {
+  const std::size_t hash = name.rfind('#');
+  if (hash == name.npos || std::filesystem::exists(name)) return read_numbers(name);
+  const std::optional<std::uint64_t> face = parse_whole(name.substr(hash + 1));
+  if (!face) throw UsageError(name + ": expected MESH#FACE with a whole number, found '" + name.substr(hash + 1) + "'");
+  const std::string file = name.substr(0, hash);
+  const std::vector<query::Triangle> triangles = read_mesh(file);
+  if (*face >= triangles.size())
+    throw std::runtime_error(fmt::format("{}: expected a face below {}, found {}", file, triangles.size(), *face));
+  return {triangles[*face]};
+}
+
+std::vector<query::Triangle> read_mesh(const std::string& file) {
+  std::vector<query::Triangle> triangles;
+  for (const auto& t : strata::read_triangles(file).triangles) {
+    triangles.emplace_back();
+    std::memcpy(triangles.back().data(), t.data(), sizeof(query::Triangle));
+  }
+  return triangles;
+}
+
+Pair pair_of(const query::Triangle& a, const query::Triangle& b) {
+  Pair pair;
+  std::memcpy(pair.a, a.data(), sizeof a);
+  std::memcpy(pair.b, b.data(), sizeof b);
+  return pair;
+}
+
+std::string obj_of(const std::vector<ObjGroup>& groups) {
+  std::string text;
+  std::size_t vertex = 1;
+  for (const ObjGroup& group : groups) {
+    text += "g " + group.name + "\n";
+    for (const query::Triangle& t : group.triangles) {
+      for (std::size_t k = 0; k < 9; k += 3) text += fmt::format("v {:.9g} {:.9g} {:.9g}\n", t[k], t[k + 1], t[k + 2]);
+      text += fmt::format("f {} {} {}\n", vertex, vertex + 1, vertex + 2);
+      vertex += 3;
+    }
+  }
+  return text;
+}
+
+}  // namespace graze::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `graze query` is about: reference triangles, and the triangles of a mesh.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <graze/query.h>
+
+#include "core/pair.h"
+
+namespace graze::cli {
+
+// Of a text file with nine numbers for each reference, or of MESH#FACE, one triangle of a mesh, the first one being 0.
+// Throws: std::runtime_error that names the file and the line; UsageError of a face that is no whole number.
+std::vector<query::Triangle> read_references(const std::string& name);
+
+std::vector<query::Triangle> read_mesh(const std::string& file);
+
+Pair pair_of(const query::Triangle& a, const query::Triangle& b);
+
+// The triangles as an OBJ file, in named groups.
+struct ObjGroup {
+  std::string name;
+  std::vector<query::Triangle> triangles;
+};
+std::string obj_of(const std::vector<ObjGroup>& groups);
+
+}  // namespace graze::cli

@@ -191,20 +191,22 @@ function graze_of(exports) {
 
     /**
      * The comparisons of a lane without a policy, in order, and the values that its policy would see; null where they are not known.
-     * @param {Pair} pair @param {string} id @returns {Step[] | null}
+     * own: whether the values are known to be the lane's; otherwise a rule of contraction gave them, and the lane's verdict.
+     * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[] } | null}
      */
     steps(pair, id) {
       set_pair(pair);
       const count = exports.steps(lane(id));
       if (count < 0) return null;
       const at = exports.steps_at(), data = view();
-      return Array.from({ length: count }, (_, i) => {
+      const steps = Array.from({ length: count }, (_, i) => {
         const step = at + 64 * i;
         const [file, line, site, compared, relation, held, holds] = Array.from({ length: 7 }, (_, k) => data.getInt32(step + 4 * k, true));
         const [left, right, exactLeft, exactRight] = [32, 40, 48, 56].map((k) => data.getFloat64(step + k, true));
         return { line: `${file_at(file)}:${line}`, site: site < 0 ? '' : kSites[site], relation: compared ? kRelations[relation] : '',
           held: held !== 0, holds: holds !== 0, left, right, exactLeft, exactRight };
       });
+      return { own: exports.evidence() < 2, steps };
     },
 
     /**

@@ -56,7 +56,7 @@ function truths(count) {
 function steps(lane, few) {
   return filled((hash) => {
     for (const pair of few) {
-      const found = graze.steps(pair, lane);
+      const found = graze.steps(pair, lane)?.steps;
       if (!found) continue;
       hash.whole(found.reduce((sum, { line, held, left, right }) => (sum + filled((step) => {
         step.whole(line_of(line));

@@ -39,6 +39,7 @@ struct StepOut {
   double left, right, exact_left, exact_right;
 };
 std::vector<StepOut> steps_out;
+int steps_evidence = 0;
 Drawing drawing_out;
 
 struct SiteOut {
@@ -77,6 +78,8 @@ Verdict truth_of(const Pair& pair) {
          : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Verdict::intersects
                                                          : Verdict::disjoint;
 }
+
+double shown(const Quad& x) { return std::abs(x.value) <= x.error ? 0 : static_cast<double>(x.value); }
 
 void nudge_in(Pair& pair, int coordinate, int ulps) {
   float& x = coordinates(pair)[coordinate];
@@ -181,17 +184,21 @@ GRAZE_EXPORT(steps) int steps(int lane) {
   if (of.algorithm < 0) return -1;
   const analysis::Replay replay = analysis::replay(of, pairs_in[0]);
   if (replay.evidence == analysis::Evidence::none) return -1;
+  steps_evidence = static_cast<int>(replay.evidence);
   const Trace<Quad> exact = run_traced<Quad>(of.algorithm, pairs_in[0], path_of(replay.run));
   for (std::size_t i = 0; i < replay.run.seen.size(); ++i) {
     const Seen<double>& seen = replay.run.seen[i];
     const Seen<Quad>& right = exact.seen[i];
+    const bool alike = compare_numbers(right.left, right.right) == 0;
     steps_out.push_back({seen.where.file_name(), static_cast<std::int32_t>(seen.where.line()),
                          seen.site ? static_cast<std::int32_t>(*seen.site) : -1, seen.compared,
                          static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left, seen.right,
-                         static_cast<double>(right.left.value), static_cast<double>(right.right.value)});
+                         shown(right.left), alike ? shown(right.left) : shown(right.right)});
   }
   return static_cast<int>(steps_out.size());
 }
+// How well they are known, as analysis::Evidence has it.
+GRAZE_EXPORT(evidence) int evidence() { return steps_evidence; }
 GRAZE_EXPORT(steps_at) const StepOut* steps_at() { return steps_out.data(); }
 
 // The contractions that make the lane's verdict on the first pair another one than that of the same source without

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compiler's long double as a number for the algorithms. In WebAssembly it has 113 bits and exponents to 2^16383,
-// in software: most determinants of float32 numbers are exact in it.
+// The compiler's long double as a number for the algorithms, with a bound of its error. In WebAssembly it has 113 bits and
+// exponents to 2^16383, in software. What the bounds cannot tell from equal counts as equal, as in oracle/multiprecision.h.
 #pragma once
 
 #include <cmath>
@@ -9,19 +9,37 @@
 namespace graze::reports::wasm {
 
 struct Quad {
-  long double value = 0;
+  static constexpr long double kUnit = 0x1p-112L;  // twice the unit roundoff, for the roundings of the bounds
+
+  long double value = 0, error = 0;
 
   Quad() = default;
   template <class Number>
   explicit Quad(Number x) : value(static_cast<long double>(x)) {}
+  Quad(long double v, long double propagated) : value(v), error(propagated + kUnit * std::abs(v)) {}
 
-  friend Quad operator+(Quad l, Quad r) { return Quad(l.value + r.value); }
-  friend Quad operator-(Quad l, Quad r) { return Quad(l.value - r.value); }
-  friend Quad operator*(Quad l, Quad r) { return Quad(l.value * r.value); }
-  friend Quad operator/(Quad l, Quad r) { return Quad(l.value / r.value); }
-  friend Quad operator-(Quad x) { return Quad(-x.value); }
-  friend Quad sqrt(Quad x) { return Quad(std::sqrt(x.value)); }
-  friend std::partial_ordering compare_numbers(Quad l, Quad r) { return l.value <=> r.value; }
+  friend Quad operator+(const Quad& l, const Quad& r) { return {l.value + r.value, l.error + r.error}; }
+  friend Quad operator-(const Quad& l, const Quad& r) { return {l.value - r.value, l.error + r.error}; }
+  friend Quad operator*(const Quad& l, const Quad& r) {
+    return {l.value * r.value, (std::abs(l.value) + l.error) * r.error + std::abs(r.value) * l.error};
+  }
+  friend Quad operator/(const Quad& l, const Quad& r) {
+    const long double ratio = l.value / r.value, divisor = std::abs(r.value) - r.error;
+    return {ratio, divisor > 0 ? (l.error + std::abs(ratio) * r.error) / divisor : INFINITY};
+  }
+  friend Quad operator-(const Quad& x) {
+    Quad result = x;
+    result.value = -x.value;
+    return result;
+  }
+  friend Quad sqrt(const Quad& x) {
+    const long double root = std::sqrt(x.value);
+    return {root, x.error == 0 ? 0 : x.value > x.error ? x.error / root : std::sqrt(std::abs(x.value) + x.error)};
+  }
+  friend std::partial_ordering compare_numbers(const Quad& l, const Quad& r) {
+    if (std::abs(l.value - r.value) <= l.error + r.error) return std::partial_ordering::equivalent;
+    return l.value <=> r.value;
+  }
 };
 
 }  // namespace graze::reports::wasm

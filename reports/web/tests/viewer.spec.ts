@@ -89,6 +89,27 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
   await expect(viewer.locator('#why')).toContainText('contraction');
 });
 
+test('what it says of a contraction is what graze explain finds', async ({ viewer }) => {
+  await viewer.getByLabel('Pairs of').selectOption('near_edge_edge');
+  let compared = 0;
+  for (let pair = 0; pair < 4; ++pair) {
+    const before = await name(viewer);
+    await viewer.locator('button', { hasText: 'Next where CPU and GPU differ' }).click();
+    await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
+    const chosen = (await viewer.locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'))!;
+    await expect(viewer.locator('#why-title')).toContainText(chosen);
+    const explained = JSON.parse(execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', chosen, '--json'], { encoding: 'utf8' })) as { lanes: { lane: string; cause: string; contractions: { at: string }[] }[] };
+    const lane = explained.lanes.find((one) => one.lane === chosen);
+    if (!lane) continue;  // right on the GPU, wrong on the CPU
+    expect(lane.cause, chosen).toBe('contraction');
+    const said = viewer.locator('.because');
+    await expect(said).toContainText('contraction');
+    for (const { at } of lane.contractions.slice(0, 2)) await expect(said).toContainText(at);
+    ++compared;
+  }
+  expect(compared).toBeGreaterThan(0);
+});
+
 test('every key does what the help says', async ({ viewer }) => {
   test.slow();
   const board = viewer.locator('#board');

@@ -55,7 +55,7 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
       }
     }
     update();
-    say(`no such pair found among ${Math.min(kSearched, length()).toLocaleString('en-US')}`);
+    say(`no such pair among these ${Math.min(kSearched, length()).toLocaleString('en-US')}; choose a stratum at "Pairs of", such as thesis or near_edge_edge`);
   }
 
   const options = [...(given.length && !of_stratum ? [['given', data.title]] : []), ['special', 'special cases of 2012'], ...graze.strata.map((id) => [id, `stratum ${id}`])] as [string, string][];

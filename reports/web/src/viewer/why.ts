@@ -7,10 +7,19 @@ import type { Model } from './model';
 
 const code = (text: string) => h('code', {}, text);
 const number = (x: number) => (Object.is(x, -0) ? '-0' : x === 0 || !Number.isFinite(x) || (Number.isInteger(x) && Math.abs(x) < 1e6) ? String(x) : figure(x));
-const compared = (step: Step, exact = false) => {
-  const [left, right] = exact ? [step.exactLeft, step.exactRight] : [step.left, step.right];
-  return step.relation ? `${number(left)} ${step.relation} ${number(right)}` : number(left);
-};
+// Numbers that differ are shown with as many digits as it takes to see that.
+function both(left: number, right: number): [string, string] {
+  for (let digits = 4; left !== right && number(left) === number(right) && digits <= 17; ++digits) {
+    const longer = [left, right].map((x) => String(Number(x.toPrecision(digits))));
+    if (longer[0] !== longer[1]) return [longer[0], longer[1]];
+  }
+  return [number(left), number(right)];
+}
+function compared(step: Step, exact = false) {
+  const [left, right] = exact ? both(step.exactLeft, step.exactRight) : both(step.left, step.right);
+  return step.relation ? `${left} ${step.relation} ${right}` : left;
+}
+const kMostPlaces = 2;
 const outcome = (held: boolean) => (held ? 'yes' : 'no');
 
 // The first comparison that two runs of one algorithm decide differently; up to it they are the same comparisons.
@@ -21,7 +30,7 @@ function parting(run: Step[], other: Step[]): [Step, Step] | null {
 }
 
 function beside_the_cpu(model: Model, run: Step[], cpu: string): Child[] {
-  const { lane, graze, pair } = model, other = graze.steps(pair, cpu), found = other && parting(run, other);
+  const { lane, graze, pair } = model, other = graze.steps(pair, cpu), found = other && parting(run, other.steps);
   const sites = graze.contractions(pair, lane);
   const parts: Child[] = [];
   if (found) {
@@ -32,7 +41,7 @@ function beside_the_cpu(model: Model, run: Step[], cpu: string): Child[] {
   if (sites.length) {
     const places = [...new Map(sites.map((site) => [`${site.line} ${site.from}`, site])).values()];
     parts.push('The cause is ', h('strong', {}, 'contraction'), ': for the GPU, nvcc fuses ', code('a * b + c'), ' into one operation with one rounding at ',
-      places.map(({ line, from }, i) => [i ? ' and ' : '', code(line), from ? [' called at ', code(from)] : '']), '; the CPU rounds twice. Rounded twice there, the GPU says what the CPU says.');
+      places.slice(0, kMostPlaces).map(({ line, from }, i) => [i ? ' and ' : '', code(line), from ? [' called at ', code(from)] : '']), places.length > kMostPlaces && `, and at ${places.length - kMostPlaces} more`, ', where the CPU rounds twice. Fused there alone, the verdict is already the GPU’s.');
   }
   return parts;
 }
@@ -41,9 +50,10 @@ function beside_exact(run: Step[]): Child[] {
   const wrong = run.find((step) => step.relation && step.held !== step.holds);
   if (!wrong) return ['Every comparison goes as it does with 113 bits: the ', h('strong', {}, 'logic'), ' of the algorithm is wrong here, not rounding.'];
   const numbers = [wrong.left, wrong.right, wrong.exactLeft, wrong.exactRight];
-  const lost = numbers.slice(0, 2).some((x) => !Number.isFinite(x)) ? 'overflow' : numbers.slice(0, 2).every((x) => x === 0) && numbers.slice(2).some((x) => x !== 0) ? 'underflow, or numbers that cancel' : 'rounding';
+  const lost = numbers.slice(0, 2).some((x) => !Number.isFinite(x)) ? 'the numbers left their range, by overflow or underflow'
+    : numbers.slice(0, 2).every((x) => x === 0) && numbers.slice(2).some((x) => x !== 0) ? 'lost to zero, by underflow or in a difference' : 'rounding';
   return ['The first comparison that goes wrong is at ', code(wrong.line), ': the lane computes ', code(compared(wrong)), ` (${outcome(wrong.held)}), with 113 bits it is `,
-    code(compared(wrong, true)), ` (${outcome(wrong.holds)}): `, h('strong', {}, lost), '.'];
+    code(compared(wrong, true)), ` (${outcome(wrong.holds)}): `, h('strong', {}, lost), '. ', code('graze explain'), ' says which comparison decides.'];
 }
 
 function steps_table(run: Step[]) {
@@ -62,7 +72,7 @@ export function why(model: Model) {
     const { lane, graze, pair, decided, policy } = model, verdict = decided.verdicts[lane], cpu = model.counterpart(lane, 'cpu');
     const right = model.wrong(lane) ? 'wrong' : 'right';
     title.replaceChildren('Why does ', code(lane), ` say ${verdict ?? 'nothing'}?`);
-    const run = graze.steps(pair, lane);
+    const known = graze.steps(pair, lane), run = known?.steps;
     const parts: Child[] = [];
     if (verdict === null) parts.push('This lane has no such policy.');
     else if (decided.truth.verdict === 'declined') parts.push('A coordinate is not finite.');
@@ -73,6 +83,7 @@ export function why(model: Model) {
       const apart = !policy && model.differs(lane) && cpu ? beside_the_cpu(model, run, cpu) : [];
       parts.push(plain, apart.length ? apart : right === 'wrong' && !policy ? beside_exact(run) : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all go as they do with 113 bits, but the verdict stands.' : 'go as they do with 113 bits.'}`);
     }
+    if (known && !known.own) parts.push(' (The numbers are those of a rule of contraction that gives the lane’s verdict; they may not be the lane’s own.)');
     text.replaceChildren(h('span', {}, parts));
     const open = more.querySelector('details')?.open ?? false;
     more.replaceChildren(...(run ? [steps_table(run)] : []));

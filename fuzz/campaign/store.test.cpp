@@ -106,7 +106,8 @@ TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {
         Edit{"UPDATE batch SET counts = zeroblob(9)", 0}, Edit{"UPDATE batch SET counts = 7 WHERE id = 7", 6},
         Edit{"INSERT INTO batch SELECT 8, source, first, pairs, counts, checksum FROM batch WHERE id = 3", 7},
         Edit{"UPDATE campaign SET text = replace(text, 'seed', 'sead')", 7}, Edit{"DELETE FROM campaign", 7},
-        Edit{"UPDATE campaign SET checksum = 1", 7}, Edit{"DROP TABLE campaign", 7}, Edit{"DROP TABLE batch", 0}}) {
+        Edit{"UPDATE campaign SET checksum = 1", 7}, Edit{"DROP TABLE campaign", 7}, Edit{"DROP TABLE batch", 0},
+        Edit{"DELETE FROM campaign; DELETE FROM batch", 0}}) {
     write_whole(file(c), bytes);
     SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE).exec(sql);
     expect_one_line_of_damage(c, sql);
@@ -141,6 +142,33 @@ TEST_F(StoreTest, GapsAreFilled) {
     EXPECT_EQ(run(c), whole) << sql;
     fs::remove_all(c.directory);
   }
+}
+
+// Rows that check, but are not of the source's 400 pairs, or of the shard's share of them.
+TEST_F(StoreTest, RangesThatTheStoreDoesNotHoldAreFoundOut) {
+  int number = 0;
+  const auto refused = [&](const Shard& shard, const PairRange& range) {
+    Campaign c = campaign("range" + std::to_string(number++));
+    c.shard = shard;
+    {
+      Store store(store_spec(c));
+      commit(store, c, range);
+    }
+    return refusal(c);
+  };
+  const Shard middle{2, 4};  // 100 to 200
+  for (const PairRange& range : {PairRange{0, 0, 400}, {0, 399, 1}, {1, 200, 200}}) EXPECT_EQ(refused({}, range), "") << range.first;
+  for (const PairRange& range : {PairRange{0, 0, 401}, {0, 399, 2}, {0, 400, 1}, {0, 500, 3}})
+    EXPECT_NE(refused({}, range).find("do not agree; --discard-damaged"), std::string::npos) << range.first;
+  for (const PairRange& range : {PairRange{0, 100, 100}, {0, 199, 1}}) EXPECT_EQ(refused(middle, range), "") << range.first;
+  for (const PairRange& range : {PairRange{0, 99, 2}, {0, 0, 50}, {0, 199, 2}, {0, 200, 1}, {0, 300, 10}})
+    EXPECT_NE(refused(middle, range).find("do not agree; --discard-damaged"), std::string::npos) << range.first;
+}
+
+TEST(FirstDifference, SaysWhatWasExpectedAndFound) {
+  EXPECT_EQ(first_difference({{"scene", "B\u00e4r"}}, {{"scene", 7}}), "scene \"B\u00e4r\", found 7");
+  EXPECT_EQ(first_difference({{"lanes", {"a", "b"}}}, {{"lanes", {"a"}}}), "lanes/1 \"b\", found none");
+  EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"b", true}}), "b none, found true");
 }
 
 TEST_F(StoreTest, DamageOfAnotherCampaignIsNoReasonToDiscardIt) {

@@ -171,6 +171,11 @@ TEST(TwinGenerator, ReadsFunctionsTablesAndScopes) {
   EXPECT_TRUE(has("mov.pred %p1, %scope2_q"));
 }
 
+TEST(TwinGenerator, AParameterHasAtMostAsManyBytesAsAnIntCounts) {
+  EXPECT_EQ(parameter(".param .align 4 .b8 p[2147483647]").value().bytes, 2147483647);
+  EXPECT_FALSE(parameter(".param .align 8 .b64 p[268435456]"));
+}
+
 TEST(TwinGenerator, AFunctionMayReturnNothing) {
   std::istringstream in(
       ".version 9.0\n.target sm_75\n.address_size 64\n.func leave()\n{\nret;\n}\n"

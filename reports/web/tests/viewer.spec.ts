@@ -90,6 +90,7 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
 });
 
 test('what it says of a contraction is what graze explain finds', async ({ viewer }) => {
+  test.slow();
   await viewer.getByLabel('Pairs of').selectOption('near_edge_edge');
   let compared = 0;
   for (let pair = 0; pair < 4; ++pair) {

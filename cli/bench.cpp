@@ -59,32 +59,25 @@ nlohmann::ordered_json json_of(const Bench& bench) {
   return {{"machine", machine}, {"crossover", crossover}, {"rows", rows}};
 }
 
-// A table for each array.
-std::string tables_of(const Bench& bench) {
+// The rows of one array.
+std::string table_of(const Bench& bench, std::size_t group) {
   using reports::Align;
-  std::string text;
-  for (std::size_t begin = 0, end; begin < bench.rows.size(); begin = end) {
-    const BenchRow& head = bench.rows[begin];
-    reports::TextTable table({{head.array + ", " + reports::grouped(head.triangles), Align::left},
-                              {"by", Align::left},
-                              {"ms", Align::point},
-                              {"10^6/s", Align::point},
-                              {"hits"},
-                              {"wrong"}});
-    for (end = begin; end < bench.rows.size() && bench.rows[end].array == head.array &&
-                      (bench.rows[end].triangles == head.triangles || bench.rows[end].data == "resident");
-         ++end) {
-      const BenchRow& row = bench.rows[end];
-      table.add({row.lane + (row.mode == "any" ? ", any" : ""),
-                 row.executor + (row.data == "resident" ? ", resident" : ""),
-                 fmt::format("{:.3f}", row.seconds * 1e3),
-                 row.mode == "any" ? "" : fmt::format("{:.1f}", rate(row) / 1e6),
-                 reports::grouped(row.hits),
-                 {row.mismatches ? reports::grouped(*row.mismatches) : "", row.mismatches.value_or(0) > 0}});
-    }
-    text += table.text(output_screen()) + "\n";
+  std::vector<std::vector<reports::Cell>> lines;
+  std::string head;
+  for (const BenchRow& row : bench.rows) {
+    if (row.group != group) continue;
+    if (head.empty()) head = row.array + ", " + reports::grouped(row.triangles);
+    lines.push_back({row.lane + (row.mode == "any" ? ", any" : ""),
+                     row.executor + (row.data == "resident" ? ", resident" : ""),
+                     fmt::format("{:.3f}", row.seconds * 1e3),
+                     row.mode == "any" ? "" : fmt::format("{:.1f}", rate(row) / 1e6),
+                     reports::grouped(row.hits),
+                     {row.mismatches ? reports::grouped(*row.mismatches) : "", row.mismatches.value_or(0) > 0}});
   }
-  return text;
+  reports::TextTable table(
+      {{head, Align::left}, {"by", Align::left}, {"ms", Align::point}, {"10^6/s", Align::point}, {"hits"}, {"wrong"}});
+  for (std::vector<reports::Cell>& line : lines) table.add(std::move(line));
+  return table.text(output_screen());
 }
 
 // What a device could do at most, and what the exact lane did.
@@ -118,13 +111,28 @@ void bench(const Options& options, int& status) {
   }
   const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);
-  const Bench result = measure(wanted, [&](const BenchRow& row) {
-    if (on_terminal)
-      fmt::print(stderr, "\r{} triangles, {}, {}, {}\033[K", reports::grouped(row.triangles), row.lane, row.executor,
-                 row.data);
-    return !interrupted;
-  });
-  if (on_terminal) fmt::print(stderr, "\r\033[K");
+  std::size_t printed = 0;  // arrays
+  const auto print_table = [&](const Bench& bench) {
+    if (on_terminal) fmt::print(stderr, "\r\033[K");
+    if (options.json) return;
+    fmt::print("{}{}\n", printed == 0 ? words(bench.machine) + "\n" : "", table_of(bench, printed));
+    ++printed;
+    std::fflush(stdout);
+  };
+  Bench result;
+  try {
+    result = measure(wanted, [&](const Bench& bench) {
+      const BenchRow& row = bench.rows.back();
+      if (row.group > printed) print_table(bench);
+      if (on_terminal)
+        fmt::print(stderr, "\r{} triangles, {}, {}, {}\033[K", reports::grouped(row.triangles), row.lane, row.executor,
+                   row.data);
+      return !interrupted;
+    });
+    print_table(result);
+  } catch (const std::runtime_error&) {
+    if (!interrupted) throw;
+  }
   if (interrupted) {
     status = kInterrupted;
     return;
@@ -133,7 +141,7 @@ void bench(const Options& options, int& status) {
     fmt::print("{}\n", json_of(result).dump(1));
     return;
   }
-  fmt::print("{}\n{}{}", words(result.machine), tables_of(result), shares(result));
+  fmt::print("{}", shares(result));
   if (!result.machine.devices.empty()) {
     fmt::print("crossover: {}\n", result.crossover == 0
                                       ? "none; with copies all cores are faster"

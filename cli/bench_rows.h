@@ -21,6 +21,7 @@ struct BenchOptions {
 };
 
 struct BenchRow {
+  std::size_t group;  // rows of one array
   std::string array;  // "thesis", or the name of a mesh
   std::uint64_t triangles;
   std::string executor;               // "one core", "all cores", "one GPU", "2 GPUs"
@@ -45,7 +46,8 @@ struct Bench {
   std::uint64_t crossover = 0;
 };
 
-// Tells each row as it is measured.   Throws: std::runtime_error of what went wrong.
-Bench measure(const BenchOptions& options, const std::function<bool(const BenchRow&)>& told);
+// Tells each row as it is measured, the last one of what there is so far; false ends it.   Throws: std::runtime_error
+// of what went wrong.
+Bench measure(const BenchOptions& options, const std::function<bool(const Bench&)>& told);
 
 }  // namespace graze::cli

@@ -24,7 +24,7 @@ std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
 // must not lose a hit, on whatever side of whatever triangle it is.
 TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   constexpr std::size_t kTogether = 8;
-  std::size_t looked_past = 0, hits = 0;
+  std::size_t looked_past = 0, screened = 0, hits = 0;
   for (const strata::StratumInfo& row : strata::kStrata) {
     for (std::size_t begin = 0; begin < kPairs; begin += kTogether) {
       std::vector<Triangle> references, triangles;
@@ -50,6 +50,10 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
           ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
           const bool beyond = exact::look_past(prepared, triangles[t].data()) == exact::Sight::beyond;
           ASSERT_FALSE(meets && beyond) << row.id << " 7 " << begin + r << ' ' << begin + t;
+          const exact::detail::Finding found = exact::detail::screen_in_floats(prepared, triangles[t].data());
+          ASSERT_FALSE(found == exact::detail::Finding::disjoint && meets) << row.id << " 7 " << begin + r;
+          ASSERT_FALSE(found == exact::detail::Finding::crosses && !meets) << row.id << " 7 " << begin + r;
+          screened += found != exact::detail::Finding::unsure;
           looked_past += beyond;
           hits += meets;
         }
@@ -58,6 +62,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   }
   EXPECT_GT(hits, 100'000u);
   EXPECT_GT(looked_past, 300'000u);
+  EXPECT_GT(screened, 300'000u);
 }
 
 TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
@@ -67,15 +72,19 @@ TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
   Pair pair;
   std::memcpy(pair.a, kThesisReference.data(), sizeof pair.a);
   const exact::Reference prepared = exact::prepare(kThesisReference.data());
-  std::size_t beyond = 0;
+  std::size_t beyond = 0, unsure = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     std::memcpy(pair.b, triangles[i].data(), sizeof pair.b);
     const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
     ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
     ASSERT_EQ(bytes[i], meets) << i;
-    beyond += exact::look_past(prepared, triangles[i].data()) == exact::Sight::beyond;
+    const bool parted = exact::look_past(prepared, triangles[i].data()) == exact::Sight::beyond;
+    beyond += parted;
+    unsure +=
+        !parted && exact::detail::screen_in_floats(prepared, triangles[i].data()) == exact::detail::Finding::unsure;
   }
   EXPECT_GT(beyond, triangles.size() * 4 / 5);  // or else the slabs are not worth their time
+  EXPECT_LT(unsure, triangles.size() / 50);     // nor the screen
 }
 
 TEST(QueryVerdicts, AreThoseOfTheLane) {

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// One triangle prepared against many: slabs that hold it, each between two parallel planes. A triangle beyond a slab is
-// disjoint, which four of them show of most triangles in floats, certified; what they leave open goes to the screen.
+// One triangle prepared against many: two slabs that hold it, each between two parallel planes, and its box. A triangle
+// beyond a slab is disjoint, which they show of most triangles in floats, certified; what they leave open goes to a
+// screen, in floats as well, then to that of core/exact/screen.h.
 //
-// The slabs of a triangle are square to its normal and, within its plane, to its edges. Their directions may be off by
-// any rounding, for what counts is where the reference lies along the direction as it is stored. With d its direction
-// and |d| the sum of its magnitudes, at most 1/4, a height d . v is off by less than 3.001 2^-24 |d| m, m being the
-// triangle's largest magnitude, and by 2^-146 where something underflows; nothing overflows.
+// The slabs are square to the triangle's normal and, within its plane, to its longest edge: its thinnest ones. Their
+// directions may be off by any rounding, for what counts is where the reference lies along the direction as it is
+// stored. With d its direction and |d| the sum of its magnitudes, at most 1/4, a height d . v is off by less than
+// 3.001 2^-24 |d| m, m being the triangle's largest magnitude, and by 2^-146 where something underflows; nothing
+// overflows.
 #pragma once
 
-#include "core/exact/grid.h"
+#include "core/exact/by_planes.h"
+#include "core/exact/triangles.h"
 #include "core/exact/vector.h"
 
 namespace graze::exact {
@@ -19,10 +22,11 @@ struct Slab {
   float x, y, z, low, high, error;
 };
 
-inline constexpr int kSlabs = 4;
+inline constexpr int kSlabs = 2;
 
 struct Reference {
   float v[9];
+  float low[3], high[3];  // its box
   Slab slabs[kSlabs];
 };
 
@@ -97,11 +101,18 @@ inline Reference prepare(const float* v) {
     return r;
   }
   for (int i = 0; i < 3; ++i) at[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+  Direction longest{0, 0, 0};
+  for (int i = 0; i < 3; ++i) {
+    const Direction edge = at[i == 2 ? 0 : i + 1] - at[i];
+    longest = detail::dot<double>(edge, edge) > detail::dot<double>(longest, longest) ? edge : longest;
+    const float x = r.v[i], y = r.v[i + 3], z = r.v[i + 6];
+    r.low[i] = detail::lesser(detail::lesser(x, y), z);
+    r.high[i] = detail::greater(detail::greater(x, y), z);
+  }
   const Direction n = detail::cross<double>(at[1] - at[0], at[2] - at[0]);
-  const Direction square[kSlabs] = {n, detail::cross<double>(n, at[1] - at[0]), detail::cross<double>(n, at[2] - at[1]),
-                                    detail::cross<double>(n, at[0] - at[2])};
-  const Direction axes[kSlabs] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};  // for segments and points
-  for (int k = 0; k < kSlabs; ++k) r.slabs[k] = detail::slab_along(is_zero(square[k]) ? axes[k] : square[k], v);
+  const bool flat = is_zero(n);  // a segment or a point: any direction does
+  r.slabs[0] = detail::slab_along(flat ? Direction{1, 0, 0} : n, v);
+  r.slabs[1] = detail::slab_along(flat ? Direction{0, 1, 0} : detail::cross<double>(n, longest), v);
   return r;
 }
 
@@ -127,4 +138,36 @@ GRAZE_HD inline Sight look_past(const Reference& r, const float* t) {
   return beyond ? Sight::beyond : Sight::open;
 }
 
+namespace detail {
+
+// Floats with one bound of the error of all determinants of a pair.
+struct FloatNumbers {
+  using D = float;
+  using M = float;
+  using T = float;
+  float bound;
+  GRAZE_HD bool positive(float x) const { return x > bound; }
+  GRAZE_HD bool negative(float x) const { return x < -bound; }
+  GRAZE_HD bool zero(float) const { return false; }
+  GRAZE_HD bool is_proper(const Vec<float>&) const { return false; }
+};
+
+// The screen in floats. As in core/exact/error_bound.h, with e = 2^-24, a determinant is off by less than 8 e times the
+// sum of its six products, none of them larger than that of the extents. These lie within 2^-24 and 2^40: nothing
+// overflows, and what underflows is off by less than 6 * 2^40 * 2^-150, a small part of the least bound, 48 * 2^-96.
+// Requires: finite coordinates.   Returns: disjoint, crosses, or unsure, as of all other extents.
+GRAZE_HD inline Finding screen_in_floats(const Reference& r, const float* t) {
+  float extent[3];
+  for (int i = 0; i < 3; ++i) {
+    extent[i] = greater(greater(r.high[i], t[i]), greater(t[i + 3], t[i + 6])) -
+                lesser(lesser(r.low[i], t[i]), lesser(t[i + 3], t[i + 6]));
+  }
+  const float least = lesser(lesser(extent[0], extent[1]), extent[2]),
+              most = greater(greater(extent[0], extent[1]), extent[2]);
+  if (!(least >= 0x1p-24f && most <= 0x1p40f)) return Finding::unsure;
+  const FloatNumbers numbers{6 * 8 * 0x1p-24f * extent[0] * extent[1] * extent[2]};
+  return by_planes(triangles<FloatNumbers>(r.v, t), numbers);
+}
+
+}  // namespace detail
 }  // namespace graze::exact

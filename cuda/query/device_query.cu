@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queries on a device: chunks go through slots, two or three at a time, so that the host's part of one chunk (packing,
 // taking results), the copies of another and the kernels of a third overlap. Triangles in the device's own memory are
-// read where they are, on one stream; those of the host come through pinned memory, with a stream for each slot.
+// read where they are, those of the host come through pinned memory; each slot has a stream of its own.
 #include "cuda/query/device_query.h"
 
 #include <cuda_runtime.h>
@@ -21,7 +21,7 @@
 namespace graze::cuda {
 namespace {
 
-constexpr std::uint64_t kFirstOfAny = 1 << 12, kFirstOfAll = 1 << 20, kGrowth = 8;
+constexpr std::uint64_t kFirstOfAny = 1 << 12, kFirstOfAll = 1 << 20, kFirstResident = 1 << 23, kGrowth = 8;
 constexpr std::uint64_t kMostResident = 1 << 25, kMostStreamed = 1 << 20, kMostOfLane = 1 << 20;
 
 // Pinned memory of the host that grows and is freed with its owner.
@@ -125,9 +125,11 @@ class Run {
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all));
     // Of the lists, the verdicts and, where they are copied, the triangles in all slots; at most half of what is free.
-    const std::size_t bytes = (resident_ ? 16 : 3 * 60) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
+    const std::size_t bytes = (resident_ ? 32 : 3 * 60) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
     while (most_ > 1 << 12 && most_ * bytes > free / 2) most_ /= 2;
-    chunk_ = std::min(most_, question.any ? kFirstOfAny : kFirstOfAll);
+    // The time that a launch may take is not known to be too short for the first ones.
+    const bool at_leisure = resident_ && question.lane->exact && question.launch_seconds >= 0.05;
+    chunk_ = std::min(most_, question.any ? kFirstOfAny : at_leisure ? kFirstResident : kFirstOfAll);
   }
 
   // However a run ends, nothing of it may still be running: the caller's memory goes.
@@ -144,7 +146,7 @@ class Run {
       finish(slots_[k]);
       QueryRange range;
       if (!work_.next(resident_ ? device_ : -1, chunk_, range)) break;
-      start(slots_[k], resident_ ? slots_[0] : slots_[k], range);
+      start(slots_[k], question_.stream && resident_ ? slots_[0] : slots_[k], range);
     }
     for (int left = 1; left < slots; ++left) finish(slots_[(k + left) % slots]);  // the oldest first
     return record_;
@@ -153,7 +155,8 @@ class Run {
   static constexpr int kSlots = 3;
 
  private:
-  // Triangles in the device's memory have one stream, so that slots can share what kernels write.
+  // On the caller's stream chunks follow each other, so that slots can share what kernels write. On ours the last steps
+  // of one chunk, which have little to do, overlap with the first ones of the next.
   void start(Slot& slot, Slot& shared, const QueryRange& range) {
     failed_ = true;  // until all of it is started
     const auto count = static_cast<std::uint32_t>(range.count);
@@ -205,7 +208,7 @@ class Run {
               std::uint32_t* declined, cudaStream_t stream) {
     if (question_.lane->exact)
       return launch_exact_query(reference, chunk, at.lists.at_least(2 * std::size_t{chunk.count}),
-                                at.counts.at_least(3), hits, declined, stream);
+                                at.counts.at_least(kQueryLists), hits, declined, stream);
     const std::uint32_t words = row_words(chunk.count);
     float* columns = at.columns.at_least(std::size_t{words} * 32 * kCoordinates);
     std::uint32_t* not_finite = at.not_finite.at_least(words);
@@ -267,7 +270,10 @@ class Current {
   }
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
-  ~Current() { cudaSetDevice(before_); }
+  ~Current() {
+    cudaGetLastError();  // of a call that failed here, or whoever asks next would find it
+    cudaSetDevice(before_);
+  }
 
  private:
   int before_ = 0;

@@ -14,7 +14,12 @@ class Memory final : public DeviceMemory {
  public:
   Memory(int device, std::size_t wanted) : device_(device) {
     check(cudaSetDevice(device_));
-    data = memory_.at_least(wanted);
+    try {
+      data = memory_.at_least(wanted);
+    } catch (const DeviceFailure&) {
+      cudaGetLastError();  // or the next check would find it
+      throw;
+    }
     bytes = wanted;
   }
 

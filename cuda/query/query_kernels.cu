@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A warp takes tiles of 32 triangles, which it fetches ahead into shared memory by asynchronous copies: the memory's
 // speed bounds all of this. The slabs of the reference decide most triangles; those that they leave open gather in a
-// queue of the warp until there are 32, which the screen then decides together; what that leaves is listed for the
-// steps of the exact decision.
+// queue of the warp until there are 32, which the screen in floats then decides together; what that leaves, one in a
+// hundred or so, is listed for the screen in doubles and the steps of the exact decision.
 #include "cuda/query/query_kernels.cuh"
 
 #include <cuda_pipeline_primitives.h>
@@ -13,6 +13,7 @@ namespace graze::cuda {
 namespace {
 
 constexpr int kWarps = 4, kStages = 4, kTile = 32, kTileFloats = 9 * kTile, kQueue = 2 * kTile;
+constexpr int kBlocks = 7;  // of a multiprocessor, which has shared memory for so many
 
 struct WarpMemory {
   alignas(16) float tile[kStages][kTileFloats];
@@ -46,18 +47,17 @@ __device__ void fetch(const QueryChunk& chunk, bool by_vectors, std::uint32_t ti
   __pipeline_commit();
 }
 
-// The screen for one queued triangle of each thread.
+// The screen in floats for one queued triangle of each thread.
 __device__ void decide_queued(const exact::Reference& reference, const WarpMemory& warp, std::uint32_t slot,
                               Places left, std::uint32_t* hits) {
   float t[9];
   for (int k = 0; k < 9; ++k) t[k] = warp.queued[k][slot];
-  Finding found = exact::detail::screen(reference.v, t);
-  if (found == Finding::unsure && exact::detail::shared_vertex(reference.v, t) >= 0) found = Finding::intersects;
-  if (found == Finding::crosses || found == Finding::intersects) set_bit(hits, warp.place[slot]);
+  const Finding found = exact::detail::screen_in_floats(reference, t);
+  if (found == Finding::crosses) set_bit(hits, warp.place[slot]);
   if (found == Finding::unsure) left.add(warp.place[slot]);
 }
 
-__global__ void __launch_bounds__(kWarps * 32, 6)
+__global__ void __launch_bounds__(kWarps * 32, kBlocks)
     decide_chunk(const __grid_constant__ QueryPairs pairs, bool by_vectors, Places left, std::uint32_t* hits,
                  std::uint32_t* declined) {
   __shared__ WarpMemory memory[kWarps];
@@ -96,6 +96,22 @@ __global__ void __launch_bounds__(kWarps * 32, 6)
     stage = (stage + 1) % kStages;
   }
   if (lane < queued) decide_queued(pairs.reference, warp, lane, left, hits);
+}
+
+// The screen in doubles for those that were listed.
+__global__ void __launch_bounds__(kThreads, 3)
+    screen_listed(const __grid_constant__ QueryPairs pairs, Places from, Places left, std::uint32_t* hits) {
+  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
+    const std::uint32_t i = from.at[n];
+    float c[kCoordinates];
+    load(pairs, i, c);
+    const Finding found = exact::detail::screen(c, c + 9);
+    if (found == Finding::crosses || (found == Finding::unsure && exact::detail::shared_vertex(c, c + 9) >= 0)) {
+      set_bit(hits, i);
+    } else if (found == Finding::unsure) {
+      left.add(i);
+    }
+  }
 }
 
 __global__ void __launch_bounds__(kThreads)
@@ -168,23 +184,26 @@ std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) 
 
 void launch_exact_query(const exact::Reference& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream) {
-  check(cudaMemsetAsync(counts, 0, 3 * sizeof *counts, stream));
+  check(cudaMemsetAsync(counts, 0, kQueryLists * sizeof *counts, stream));
   int device = 0, processors = 0;
   check(cudaGetDevice(&device));
   check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
   const bool by_vectors =
       chunk.array.packed() && chunk.first % 4 == 0 && reinterpret_cast<std::uintptr_t>(chunk.array.rows) % 16 == 0;
   const std::uint32_t tiles = (chunk.count + kTile - 1) / kTile, wanted = (tiles + kWarps - 1) / kWarps;
-  const std::uint32_t blocks = std::min(wanted, static_cast<std::uint32_t>(processors) * 6);
+  const std::uint32_t blocks = std::min(wanted, static_cast<std::uint32_t>(processors) * kBlocks);
   if (const std::size_t behind = (row_words(chunk.count) - tiles) * sizeof *hits; behind > 0) {
     check(cudaMemsetAsync(hits + tiles, 0, behind, stream));
     check(cudaMemsetAsync(declined + tiles, 0, behind, stream));
   }
   const QueryPairs pairs{reference, chunk};
-  const Places left{lists, counts}, second{lists + chunk.count, counts + 1}, third{lists, counts + 2};
-  decide_chunk<<<blocks, kWarps * 32, 0, stream>>>(pairs, by_vectors, left, hits, declined);
+  // Each list takes the memory of the one before the last, which nobody needs any more.
+  Places left[kQueryLists];
+  for (std::uint32_t k = 0; k < kQueryLists; ++k) left[k] = {lists + (k % 2) * chunk.count, counts + k};
+  decide_chunk<<<blocks, kWarps * 32, 0, stream>>>(pairs, by_vectors, left[0], hits, declined);
   check(cudaGetLastError());
-  launch_exact_steps(pairs, left, second, third, hits, nullptr, stream);
+  screen_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits);
+  launch_exact_steps(pairs, left[1], left[2], left[3], hits, nullptr, stream);
 }
 
 void launch_pair_up(const exact::Reference& reference, const QueryChunk& chunk, float* columns,

@@ -23,7 +23,9 @@ struct QueryChunk {
 // The words of 32 bits that a row of verdicts takes: whole thread blocks of every kernel.
 constexpr std::uint32_t row_words(std::uint32_t count) { return (count + 255) / 256 * 8; }
 
-// The exact verdicts on a chunk: bit i % 32 of word i / 32. `lists`: room for 2 * count places; `counts`: three.
+inline constexpr int kQueryLists = 4;
+
+// The exact verdicts on a chunk: bit i % 32 of word i / 32. `lists`: room for 2 * count places; `counts`: kQueryLists.
 void launch_exact_query(const exact::Reference& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream);
 

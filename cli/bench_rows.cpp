@@ -152,11 +152,23 @@ class Measuring {
       row.hits = answer.hits;
       if (k > 0) row.seconds = std::min(row.seconds, answer.seconds);
     }
+    if (row.lane == "exact" && row.mode == "all") expect_hits(row);
     if (exact) {
       row.mismatches = 0;
       for (std::size_t i = 0; i < found.size(); ++i) *row.mismatches += found[i] != (*exact)[i];
     }
     tell(row);
+  }
+
+  // All executors must tell the same of one array, which lies there once for each device.
+  void expect_hits(const BenchRow& row) const {
+    for (const BenchRow& other : bench_.rows) {
+      if (other.group != row.group || other.lane != "exact" || other.mode != "all") continue;
+      if (other.hits * row.triangles == row.hits * other.triangles) continue;
+      throw std::runtime_error(fmt::format("{} {}: expected {} hits among {}, as by {}, found {} among {}",
+                                           row.executor, row.data, other.hits, other.triangles, other.executor,
+                                           row.hits, row.triangles));
+    }
   }
 
   void by_tree(const Array& array) {

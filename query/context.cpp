@@ -105,6 +105,8 @@ void graze_context::answer(const graze_query& query, graze_answer& answer) {
   answer.first_reference = found.reference;
   if (failed) std::rethrow_exception(failed);
   if (found.cancelled) throw QueryError(GRAZE_CANCELLED, "cancelled by the progress callback");
+  if (found.position != question.triangles && !(query.mode == GRAZE_ANY && found.hits != 0))
+    throw QueryError(GRAZE_FAILED, "expected all triangles to be answered, found some that are not");
 }
 
 void graze_context::run(const graze_query& query, graze_answer& result) noexcept {

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 48, kMostReferences = 1 << 16;
 
-// Nanoseconds for a triangle and a reference on one core, for a triangle's way to a device, and until a device has
-// started at all. Measured, see docs/measurements.md; they matter for GRAZE_AUTO alone.
-constexpr double kOnCore = 8, kToDevice = 2, kStart = 3e8;
+// Nanoseconds for a triangle and a reference on one core, and for a triangle's way to a device, measured on an H200 and
+// its host (docs/measurements.md); and until CUDA has started, taken, not measured. They matter for GRAZE_AUTO alone.
+constexpr double kOnCore = 11, kToDevice = 0.7, kStart = 3e8;
 constexpr std::uint64_t kWorthThreads = 1 << 14;
 
 [[noreturn]] void refuse(const std::string& what) { throw QueryError(GRAZE_BAD_ARGUMENT, what); }

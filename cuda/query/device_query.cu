@@ -129,6 +129,7 @@ class Run {
     while (most_ > 1 << 12 && most_ * bytes > free / 2) most_ /= 2;
     // The time that a launch may take is not known to be too short for the first ones.
     const bool at_leisure = resident_ && question.lane->exact && question.launch_seconds >= 0.05;
+    if (resident_ && !question.stream) wait_for_default_stream();
     chunk_ = std::min(most_, question.any ? kFirstOfAny : at_leisure ? kFirstResident : kFirstOfAll);
   }
 
@@ -155,6 +156,13 @@ class Run {
   static constexpr int kSlots = 3;
 
  private:
+  // Our streams do not wait for the default one, on which the caller may just have copied triangles: cudaMemcpy from
+  // pageable memory returns before they have arrived.
+  void wait_for_default_stream() {
+    check(cudaEventRecord(slots_[0].start, cudaStreamLegacy));
+    for (int k = 0; k < kSlots; ++k) check(cudaStreamWaitEvent(slots_[k].stream, slots_[0].start));
+  }
+
   // On the caller's stream chunks follow each other, so that slots can share what kernels write. On ours the last steps
   // of one chunk, which have little to do, overlap with the first ones of the next.
   void start(Slot& slot, Slot& shared, const QueryRange& range) {

@@ -31,6 +31,7 @@ class Memory final : public DeviceMemory {
     check(cudaMemcpy(to, from, done, cudaMemcpyHostToDevice));
     for (; done < bytes; done += std::min(done, bytes - done))  // whole blocks but at the end
       check(cudaMemcpy(to + done, to, std::min(done, bytes - done), cudaMemcpyDeviceToDevice));
+    check(cudaDeviceSynchronize());  // a copy from pageable memory returns before it has arrived
   }
 
   void fetch(void* to, std::size_t count) const override {

@@ -12,7 +12,9 @@ export default defineConfig({
   outputDir: process.env.GRAZE_TEST_OUTPUT ?? join(tmpdir(), 'graze-page-test-results'),
   globalSetup: './tests/make_report.ts',
   workers: 1,
-  timeout: 60_000,
+  // A busy machine is slow, not wrong.
+  timeout: 180_000,
+  expect: { timeout: 30_000 },
   reporter: 'list',
   use: {
     viewport: { width: 1360, height: 900 },

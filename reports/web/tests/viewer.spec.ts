@@ -117,7 +117,10 @@ test('every key does what the help says', async ({ viewer }) => {
   await board.focus();
   const looks = () => board.locator('svg').innerHTML();
   const value = (c: number) => coordinate(viewer, c).inputValue();
+  // What was asked for before is drawn by now, or else two keys that undo each other would look like none.
+  const drawn = () => viewer.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   const changes = (of: () => Promise<unknown>) => async (key: string) => {
+    await drawn();
     const before = await of();
     await viewer.keyboard.press(key);
     await expect.poll(of, { message: key }).not.toEqual(before);

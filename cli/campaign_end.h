@@ -14,6 +14,6 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
                     const std::vector<strata::LeftOut>& left_out = {});
 
 // The same of a shard.
-void print_shard(const std::string& out, const fuzz::Json& summary);
+void print_shard(const std::string& out, const fuzz::Json& summary, bool json);
 
 }  // namespace graze::cli

@@ -200,11 +200,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     return kInterrupted;
   }
   if (!campaign.shard.whole()) {
-    if (options.json) {
-      std::cout << outcome.summary.dump(1) << '\n';
-    } else {
-      print_shard(options.out, outcome.summary);
-    }
+    print_shard(options.out, outcome.summary, options.json);
     return 0;
   }
   print_campaign(options.out, outcome, options.json, left_out);
@@ -233,7 +229,11 @@ int start(const FuzzOptions& options) {
 
 }  // namespace
 
-void print_shard(const std::string& out, const Json& summary) {
+void print_shard(const std::string& out, const Json& summary, bool json) {
+  if (json) {
+    std::cout << summary.dump(1) << '\n';
+    return;
+  }
   std::cout << fmt::format("Shard {}: {} pairs, {} disagreements, {} signatures\nWrote {}/campaign.sqlite\n"
                            "Next, when all shards are done: graze merge DIR… --out campaign\n",
                            summary["shard"].get<std::string>(), reports::grouped(summary["pairs"]),

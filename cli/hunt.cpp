@@ -106,12 +106,12 @@ int hunt(const HuntOptions& options) {
                interrupted ? "interrupted" : "the time is over");
     if (interrupted) return kInterrupted;
   }
-  if (options.json) {
-    std::cout << summary.dump(1) << '\n';
+  if (!options.shard.whole()) {
+    if (complete || options.json) print_shard(options.out, summary, options.json);
     return 0;
   }
-  if (!options.shard.whole()) {
-    if (complete) print_shard(options.out, summary);
+  if (options.json) {
+    std::cout << summary.dump(1) << '\n';
     return 0;
   }
   reports::print_summary(std::cout, summary, oracle, output_screen());

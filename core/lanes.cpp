@@ -9,7 +9,6 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "core/decide_each.h"
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"
 #include "core/host_blocks.h"

@@ -59,17 +59,18 @@ struct Chunk {
   const float* pairs;
   std::uint64_t *intersects, *declined;  // words of zeros
 
-  // Those from `first` on.
-  HWY_INLINE Coordinates from(std::size_t first) const {
+  // number(i): that of the i-th of them.
+  template <class Number>
+  HWY_INLINE Coordinates side_by_side(const Number& number) const {
     const float* where[kAtOnce];
-    for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + (first + i) * kFloats;
+    for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + number(i) * kFloats;
     return Coordinates(where);
   }
-
+  HWY_INLINE Coordinates from(std::size_t first) const {
+    return side_by_side([&](std::size_t i) HWY_ATTR { return first + i; });
+  }
   HWY_INLINE Coordinates at(const std::uint16_t* numbers) const {
-    const float* where[kAtOnce];
-    for (std::size_t i = 0; i < kAtOnce; ++i) where[i] = pairs + numbers[i] * kFloats;
-    return Coordinates(where);
+    return side_by_side([&](std::size_t i) HWY_ATTR { return std::size_t{numbers[i]}; });
   }
 
   static void set(std::uint64_t* words, unsigned which, const std::uint16_t* numbers) {

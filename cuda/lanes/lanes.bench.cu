@@ -23,6 +23,7 @@
 #include "core/lanes.h"
 #include "cuda/engine/sweep.h"
 #include "cuda/lanes/device.h"
+#include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
@@ -66,18 +67,6 @@ __global__ void read_pairs(DevicePairs pairs, std::uint32_t* bits) {
   const std::uint32_t word = __ballot_sync(0xffffffffu, sum > 0);
   if (threadIdx.x % 32 == 0) bits[i / 32] = word;
 }
-
-class Event {
- public:
-  Event() { check(cudaEventCreate(&event_)); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-  ~Event() { cudaEventDestroy(event_); }
-  operator cudaEvent_t() const { return event_; }
-
- private:
-  cudaEvent_t event_ = nullptr;
-};
 
 // Counts items (pairs) and bytes for each launch.
 template <class Launch>

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/query/query_kernels.cuh"
@@ -59,18 +60,6 @@ class Stream {
 
  private:
   cudaStream_t stream_ = nullptr;
-};
-
-class Event {
- public:
-  Event() { check(cudaEventCreate(&event_)); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-  ~Event() { cudaEventDestroy(event_); }
-  operator cudaEvent_t() const { return event_; }
-
- private:
-  cudaEvent_t event_ = nullptr;
 };
 
 // What kernels of a chunk write.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cuda/lanes/device_event.cuh"
 #include "cuda/lanes/device_memory.cuh"
 
 namespace graze::cuda {
@@ -47,9 +48,7 @@ class Memory final : public DeviceMemory {
 
 template <class Copy>
 double best_seconds(const Copy& copy) {
-  cudaEvent_t start, stop;
-  check(cudaEventCreate(&start));
-  check(cudaEventCreate(&stop));
+  const Event start, stop;
   float best = 1e9f;
   for (int k = 0; k < 6; ++k) {
     float milliseconds;
@@ -60,8 +59,6 @@ double best_seconds(const Copy& copy) {
     check(cudaEventElapsedTime(&milliseconds, start, stop));
     best = std::min(best, milliseconds);
   }
-  check(cudaEventDestroy(start));
-  check(cudaEventDestroy(stop));
   return best / 1000.0;
 }
 

@@ -141,18 +141,19 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
 }
 
 // What the parts of a hunt kept in their rounds, as the campaign's, which draws its cases from it.
-void join_rounds(const std::vector<StoreSpec>& stores, const Sums& sums, Campaign& campaign) {
+// held: pairs of each part.
+void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::uint64_t>& held, const Sums& sums, Campaign& campaign) {
   std::vector<KeptRound> rounds;
-  for (const StoreSpec& store : stores) {
-    std::uint64_t held = 0, kept = 0;
-    for_each_row(store, [&](const PairRange& range, const StoredCounts&) { held += range.pairs; });
+  for (std::size_t i = 0; i < stores.size(); ++i) {
+    const StoreSpec& store = stores[i];
+    std::uint64_t kept = 0;
     for (KeptRound& round : read_rounds(store)) {
       kept += round.pairs;
       rounds.push_back(std::move(round));
     }
-    if (kept != held)
+    if (kept != held[i])
       throw std::runtime_error(fmt::format("{}: expected the rounds of its {} pairs, found those of {}; copy it again, or: {}",
-                                           rounds_folder(store.directory).string(), held, kept,
+                                           rounds_folder(store.directory).string(), held[i], kept,
                                            command_of(store.spec, store.shard, store.directory)));
   }
   std::sort(rounds.begin(), rounds.end(), [](const KeptRound& l, const KeptRound& r) { return l.first < r.first; });
@@ -228,6 +229,7 @@ Outcome merge(const MergeOptions& options) {
   campaign.directory = fresh_beside(options.out);
 
   Sums sums(campaign.sources, static_cast<int>(under_test.lanes.size()));
+  std::vector<std::uint64_t> held(stores.size());
   std::optional<Store> partial;
   try {
     if (options.partial) partial.emplace(store_spec(campaign));
@@ -236,6 +238,7 @@ Outcome merge(const MergeOptions& options) {
         expect_sealed(stores[i]);
         for_each_row(stores[i], [&](const PairRange& range, const StoredCounts& counts) {
           sums.add(range, counts, i);
+          held[i] += range.pairs;
           if (partial) partial->commit(range, counts);
         });
       } catch (const DamagedStore& error) {
@@ -250,7 +253,7 @@ Outcome merge(const MergeOptions& options) {
       }
     }
     if (!partial) expect_no_gaps(stores, sums, options.out);
-    if (hunt) join_rounds(stores, sums, campaign);
+    if (hunt) join_rounds(stores, held, sums, campaign);
     Outcome outcome = partial ? write_results(campaign, *partial, sums.gaps().empty()) : write_merged(campaign, sums);
     partial.reset();
     for (const auto& [machine, run] : timings_of(stores)) append_timing(campaign.directory, run, outcome.oracle);

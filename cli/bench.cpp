@@ -11,6 +11,7 @@
 #include "cli/interrupt.h"
 #include "cli/screen.h"
 #include "core/error.h"
+#include "core/exact_blocks/decide.h"
 #include "fuzz/campaign/campaign.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
@@ -24,14 +25,14 @@ struct Options {
   std::vector<std::string> lanes = {"interval_overlap/f32/cpu",           "guigue_devillers_2003/f32/cpu",
                                     "interval_overlap/f32/cpu/filtered",  "interval_overlap/f32/cuda-fma",
                                     "guigue_devillers_2003/f32/cuda-fma", "interval_overlap/f32/cuda-fma/filtered"};
-  std::string mesh;
+  std::string mesh, plot;
   bool json = false;
 };
 
 double rate(const BenchRow& row) { return static_cast<double>(row.triangles) / row.seconds; }
 
 std::string words(const BenchMachine& machine) {
-  std::string text = fmt::format("{}, {} threads", fuzz::machine_name(), machine.cores);
+  std::string text = fmt::format("{}, {} threads, {}", fuzz::machine_name(), machine.cores, exact::decide_target());
   if (machine.devices.empty()) return text + "; no CUDA device\n";
   return text + fmt::format("; {} x {}: copies within it {:.0f} GB/s, from the host {:.1f} GB/s\n",
                             machine.devices.size(), machine.devices[0], machine.copy_bytes_per_second / 1e9,
@@ -48,8 +49,10 @@ nlohmann::ordered_json json_of(const Bench& bench) {
     if (row.mismatches) line["mismatches"] = *row.mismatches;
     rows.push_back(std::move(line));
   }
-  nlohmann::ordered_json machine = {
-      {"processor", fuzz::machine_name()}, {"threads", bench.machine.cores}, {"devices", bench.machine.devices}};
+  nlohmann::ordered_json machine = {{"processor", fuzz::machine_name()},
+                                    {"vectors", exact::decide_target()},
+                                    {"threads", bench.machine.cores},
+                                    {"devices", bench.machine.devices}};
   if (!bench.machine.devices.empty()) {
     machine["copy_bytes_per_second"] = bench.machine.copy_bytes_per_second;
     machine["to_device_bytes_per_second"] = bench.machine.to_device_bytes_per_second;
@@ -137,6 +140,11 @@ void bench(const Options& options, int& status) {
     status = kInterrupted;
     return;
   }
+  if (!options.plot.empty()) {
+    std::string machine = words(result.machine);
+    machine.pop_back();  // the end of the line
+    fuzz::write_whole(options.plot, bench_plot(result, machine));
+  }
   if (options.json) {
     fmt::print("{}\n", json_of(result).dump(1));
     return;
@@ -168,6 +176,9 @@ void add_bench(CLI::App& app, int& status) {
       ->delimiter(',')
       ->capture_default_str()
       ->option_text("LANE,…");
+  command->add_option("--plot", options->plot, "A picture of it: exact verdicts a second against the size of the array")
+      ->check(not_empty())
+      ->option_text("FILE.svg");
   command->add_flag("--json", options->json, "One JSON object");
   command->callback([options, &status] { bench(*options, status); });
 }

@@ -16,6 +16,9 @@
 #include "cuda/query/device_rows.h"
 #include "oracle/aabb_tree.h"
 #include "strata/strata.h"
+#ifdef GRAZE_EMBREE
+#include "cli/embree_tree.h"
+#endif
 
 namespace graze::cli {
 namespace {
@@ -97,7 +100,12 @@ class Measuring {
       by_executors(with_hit, query::rows_of(std::span<const Triangle>(with_hit.triangles)), "any", "exact", none,
                    nullptr);
     }
-    if (array.triangles.size() <= kInTree) by_tree(array);
+    if (array.triangles.size() <= kInTree) {
+      by_tree<oracle::AabbTree>(array, "CGAL AABB tree");
+#ifdef GRAZE_EMBREE
+      by_tree<EmbreeTree>(array, "Embree");
+#endif
+    }
     ++group_;
   }
 
@@ -171,10 +179,10 @@ class Measuring {
     }
   }
 
-  void by_tree(const Array& array) {
-    std::optional<oracle::AabbTree> tree;
-    BenchRow row{group_, array.name, array.triangles.size(), "one core", "host", "all", "CGAL AABB tree", 1e9, 0,
-                 0,      {}};
+  template <class Tree>
+  void by_tree(const Array& array, const char* name) {
+    std::optional<Tree> tree;
+    BenchRow row{group_, array.name, array.triangles.size(), "one core", "host", "all", name, 1e9, 0, 0, {}};
     row.build_seconds = seconds_of([&] { tree.emplace(array.triangles); });
     for (int k = 0; k < kTimes; ++k)
       row.seconds = std::min(row.seconds, seconds_of([&] { row.hits = tree->count(array.reference); }));

@@ -50,4 +50,8 @@ struct Bench {
 // of what went wrong.
 Bench measure(const BenchOptions& options, const std::function<bool(const Bench&)>& told);
 
+// An SVG of 900 x 420: triangles of the thesis a second, exact, against the size of the array, both by decades; one
+// line for each executor. `machine`: its words.
+std::string bench_plot(const Bench& bench, const std::string& machine);
+
 }  // namespace graze::cli

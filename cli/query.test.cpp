@@ -153,8 +153,9 @@ TEST_F(QueryCommand, ErrorsAreOneLine) {
 }
 
 TEST_F(QueryCommand, BenchMeasuresAndCompares) {
-  const Json found =
-      json("graze bench --triangles 1e3,2e4 --mesh mesh.obj --lanes interval_overlap/f32/cpu,exact/f32/cpu --json");
+  const Json found = json(
+      "graze bench --triangles 1e3,2e4 --mesh mesh.obj --lanes interval_overlap/f32/cpu,exact/f32/cpu --json --plot "
+      "speed.svg");
   EXPECT_GE(found["machine"]["threads"], 1);
   int exact = 0, others = 0, trees = 0;
   std::uint64_t hits = 0;
@@ -178,6 +179,9 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
       EXPECT_LE(row["hits"], hits);  // without the degenerate ones
       EXPECT_GT(row["hits"].get<double>(), 0.95 * static_cast<double>(hits));
     }
+    if (row["lane"] == "Embree" && of_20000) {
+      EXPECT_EQ(row["hits"], hits);
+    }
     if (row["mode"] == "any") {
       EXPECT_EQ(row["hits"], 1);
     }
@@ -185,6 +189,20 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
   EXPECT_GE(exact, 1);
   EXPECT_GE(others, 1);
   EXPECT_EQ(trees, 1);
+  std::set<std::string> executors;
+  for (const Json& row : found["rows"]) {
+    if (row["lane"] == "exact" && row["mode"] == "all" && row["array"] == "thesis")
+      executors.insert(row["executor"].get<std::string>() + (row["data"] == "resident" ? ", resident" : ""));
+  }
+  const std::string plot = out("cat speed.svg");
+  for (const std::string& executor : executors) EXPECT_NE(plot.find(">" + executor + "</text>"), std::string::npos);
+  const auto count = [&](const std::string& what) {
+    std::size_t n = 0;
+    for (std::size_t at = 0; (at = plot.find(what, at)) != plot.npos; ++at) ++n;
+    return n;
+  };
+  EXPECT_EQ(count("<polyline"), executors.size());
+  EXPECT_EQ(count("<circle"), 2 * executors.size());  // two sizes
   EXPECT_NE(out("graze bench --triangles 1000").find("thesis, 1,000"), std::string::npos);
   expect_error("graze bench --triangles 0", 2, "expected a whole number from 1 to");
   expect_error("graze bench --mesh no.obj", 1, "no.obj: expected a mesh file");

@@ -30,7 +30,6 @@ using Four = float __attribute__((vector_size(16)));
 using FourBits = std::int32_t __attribute__((vector_size(16)));
 
 Four lesser(Four x, Four y) { return x < y ? x : y; }
-Four greater(Four x, Four y) { return x < y ? y : x; }
 
 unsigned mask_of(FourBits bits) {
 #if defined(__SSE2__)
@@ -40,7 +39,7 @@ unsigned mask_of(FourBits bits) {
 #endif
 }
 
-Four magnitude(Four x) { return greater(x, -x); }
+Four magnitude(Four x) { return std::bit_cast<Four>(std::bit_cast<FourBits>(x) & 0x7fffffff); }
 
 Four load(const float* at) {
   Four four;
@@ -95,30 +94,28 @@ struct Block {
   }
 
   struct Sights {
-    std::uint64_t beyond = 0, not_finite = 0;
+    std::uint64_t beyond = 0, large = 0;  // large: the sum of the magnitudes is no finite number
   };
 
-  // exact::look_past, four at a time.   Returns: beyond means nothing where a triangle is not finite.
+  // exact::is_beyond, four at a time.
   Sights look_past(const exact::Reference& reference) const {
     Sights sights;
     for (std::size_t i = 0; i < kBlock; i += 4) {
       Four v[9];
       for (std::size_t k = 0; k < 9; ++k) v[k] = load(columns[k] + i);
-      Four most = magnitude(v[0]);
-      for (std::size_t k = 1; k < 9; ++k) most = greater(most, magnitude(v[k]));
+      Four size = magnitude(v[0]);
+      for (std::size_t k = 1; k < 9; ++k) size += magnitude(v[k]);
       FourBits beyond = {};
-      for (int k = 0; k < exact::kSlabs; ++k) {
-        const exact::Slab& s = reference.slabs[k];
-        const Four a = s.x * v[0] + s.y * v[1] + s.z * v[2], b = s.x * v[3] + s.y * v[4] + s.z * v[5],
-                   c = s.x * v[6] + s.y * v[7] + s.z * v[8];
-        if (k == 0) {
-          const Four none = (a + b + c) * 0.0f;
-          sights.not_finite |= std::uint64_t{mask_of(none != none)} << i;
-        }
-        beyond |=
-            (lesser(lesser(a, b), c) > s.high + s.error * most) | (greater(greater(a, b), c) < s.low - s.error * most);
+      for (const exact::Slab& s : reference.slabs) {
+        const Four a = s.x * v[0] + s.y * v[1] + s.z * v[2] - s.middle,
+                   b = s.x * v[3] + s.y * v[4] + s.z * v[5] - s.middle,
+                   c = s.x * v[6] + s.y * v[7] + s.z * v[8] - s.middle;
+        const FourBits of_a = std::bit_cast<FourBits>(a),
+                       signs = (of_a ^ std::bit_cast<FourBits>(b)) | (of_a ^ std::bit_cast<FourBits>(c));
+        beyond |= (lesser(lesser(magnitude(a), magnitude(b)), magnitude(c)) > s.half + s.error * size) & (signs >= 0);
       }
       sights.beyond |= std::uint64_t{mask_of(beyond)} << i;
+      sights.large |= std::uint64_t{mask_of(~(size <= 0x1.fffffep+127f))} << i;
     }
     return sights;
   }
@@ -152,8 +149,8 @@ class Worker {
         if (!finite_[r]) continue;
         if (question_.lane->exact) {
           const Block::Sights sights = block_.look_past(references_[r]);
-          declined = all & sights.not_finite;
-          gather(r, all & ~(sights.not_finite | sights.beyond), hits);
+          declined = all & sights.large ? all & block_.not_finite() : 0;
+          gather(r, all & ~(declined | sights.beyond), hits);
         } else {
           const std::uint64_t not_finite = all & block_.not_finite();
           decide(r, all & ~not_finite, hits, declined);

@@ -48,7 +48,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
           const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
           ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
           ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
-          const bool beyond = exact::look_past(prepared, triangles[t].data()) == exact::Sight::beyond;
+          const bool beyond = exact::is_beyond(prepared, triangles[t].data());
           ASSERT_FALSE(meets && beyond) << row.id << " 7 " << begin + r << ' ' << begin + t;
           const exact::detail::Finding found = exact::detail::screen_in_floats(prepared, triangles[t].data());
           ASSERT_FALSE(found == exact::detail::Finding::disjoint && meets) << row.id << " 7 " << begin + r;
@@ -78,7 +78,7 @@ TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
     const bool meets = oracle::cgal_verdict(pair) == Verdict::intersects;
     ASSERT_EQ(meets, oracle::gmp_contact(pair) != Contact::none);
     ASSERT_EQ(bytes[i], meets) << i;
-    const bool parted = exact::look_past(prepared, triangles[i].data()) == exact::Sight::beyond;
+    const bool parted = exact::is_beyond(prepared, triangles[i].data());
     beyond += parted;
     unsure +=
         !parted && exact::detail::screen_in_floats(prepared, triangles[i].data()) == exact::detail::Finding::unsure;
@@ -115,21 +115,31 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
     const exact::Reference prepared = exact::prepare(reference.data());
     const Triangle touching = {0, 0, 0, 0, 0, unit, unit, 0, unit},
                    edge = {unit, unit, 0, 0, unit, 0, unit, unit, unit};
-    for (const Triangle& t : {touching, edge}) EXPECT_EQ(exact::look_past(prepared, t.data()), exact::Sight::open);
+    for (const Triangle& t : {touching, edge}) EXPECT_FALSE(exact::is_beyond(prepared, t.data()));
     for (int k = 0; k < 9; ++k) {
       for (const float bad : {INFINITY, -INFINITY, NAN}) {
         Triangle broken = touching;
         broken[static_cast<std::size_t>(k)] = bad;
-        EXPECT_EQ(exact::look_past(prepared, broken.data()), exact::Sight::not_finite);
-        EXPECT_EQ(exact::look_past(exact::prepare(broken.data()), touching.data()), exact::Sight::not_finite);
+        for (const auto& [r, t] : {std::pair(reference, broken), std::pair(broken, touching)}) {
+          const exact::Reference either = exact::prepare(r.data());
+          EXPECT_FALSE(exact::is_beyond(either, t.data()));
+          EXPECT_EQ(exact::detail::screen_in_floats(either, t.data()), exact::detail::Finding::unsure);
+        }
       }
     }
   }
   const float most = 0x1.fffffep+127f;
   const Triangle corners = {most, -most, most, -most, most, most, most, most, -most},
                  far = {-most, -most, -most, -most, -most, most, most, -most, -most};
-  EXPECT_NE(exact::look_past(exact::prepare(corners.data()), far.data()), exact::Sight::not_finite);
-  EXPECT_EQ(exact::look_past(exact::prepare(corners.data()), corners.data()), exact::Sight::open);
+  const exact::Reference prepared = exact::prepare(corners.data());
+  for (const Triangle& t : {corners, far}) EXPECT_FALSE(exact::is_beyond(prepared, t.data()));
+  // The sum of its magnitudes overflows, but it is finite.
+  const std::vector<Triangle> triangles = {corners, far, {most, NAN, 0, 0, 0, 0, 0, 0, most}};
+  const graze_triangles part = part_of(triangles);
+  const std::vector<std::uint8_t> bytes = bytes_of(query_of(corners, part), triangles.size());
+  EXPECT_EQ(bytes[0], 1);
+  EXPECT_NE(bytes[1], 2);
+  EXPECT_EQ(bytes[2], 2);
 }
 
 }  // namespace

@@ -29,7 +29,28 @@ GRAZE_HD typename Numbers::T determinant(const VecOf<Numbers>& o, const VecOf<Nu
   return dot<typename Numbers::T>(cross<typename Numbers::M>(q - o, r - o), s - o);
 }
 
-// Unsure of coplanar and degenerate pairs, whatever the numbers.
+// Whether the line of a segment p, of whose ends and the vertices between some are on different sides of the plane of a
+// proper triangle, or in it and beside it, goes through the triangle q: whether no two edges are on different sides.
+template <class Numbers>
+GRAZE_HD Finding by_line(const VecOf<Numbers> (&p)[3], const Sides& of_p, const VecOf<Numbers> (&q)[3],
+                         const Numbers& numbers) {
+  const unsigned first = of_p.above != 0 ? of_p.above : of_p.in, second = of_p.below != 0 ? of_p.below : of_p.in;
+  const VecOf<Numbers> from = pick(p, first & 1   ? 0
+                                      : first & 2 ? 1
+                                                  : 2),
+                       to = pick(p, second & 1   ? 0
+                                    : second & 2 ? 1
+                                                 : 2);
+  bool left = false, right = false;
+  for (int i = 0; i < 3; ++i) {
+    const auto side = determinant<Numbers>(from, to, q[i], q[i == 2 ? 0 : i + 1]);
+    left = left || numbers.positive(side);
+    right = right || numbers.negative(side);
+  }
+  return left && right ? Finding::disjoint : Finding::intersects;
+}
+
+// Unsure of coplanar pairs in numbers that round, and of pairs without a plane.
 template <class Numbers>
 GRAZE_HD Finding by_planes(const Triangles<Numbers>& t, const Numbers& numbers = {}) {
   const NormalOf<Numbers> normal_a = normal<Numbers>(t.a);
@@ -41,6 +62,8 @@ GRAZE_HD Finding by_planes(const Triangles<Numbers>& t, const Numbers& numbers =
   if (!of_a.known() || !of_b.known()) return Finding::unsure;
   if (of_b.in == 7 && numbers.is_proper(normal_a)) return Finding::coplanar;
   if (of_a.in == 7 && numbers.is_proper(normal_b)) return Finding::coplanar;
+  if (of_b.in == 7 && numbers.is_proper(normal_b)) return by_line(t.a, of_a, t.b, numbers);  // a is a segment
+  if (of_a.in == 7 && numbers.is_proper(normal_a)) return by_line(t.b, of_b, t.a, numbers);
   if (of_a.in == 7 || of_b.in == 7) return Finding::unsure;
 
   const Turn turn = lone_vertices(of_a, of_b);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hand examples and laws of the exact decision. analysis/truth_over_strata.test.cpp compares it with the oracle in every stratum.
+// Hand examples and laws of the exact decision. analysis/truth_over_strata.test.cpp compares it with the oracle in
+// every stratum.
 #include "core/exact/exact.h"
 
 #include <gtest/gtest.h>
@@ -106,11 +107,66 @@ TEST(Exact, KindsOfNumbersAgree) {
     ++contacts[r.contact + 1];
     ASSERT_EQ(by_axes(triangles<NarrowNumbers>(a, b, 0)), r) << i;
     ASSERT_EQ(by_axes(triangles<IntNumbers>(a, b, 0)), r) << i;
+    ASSERT_EQ(by_axes(triangles<ResidueNumbers>(a, b, 0)), r) << i;
     ASSERT_EQ(by_axes(triangles<WideNumbers>(a, b)), r) << i;
     ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects) << i;
     ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects) << i;
   }
   for (const int count : contacts) EXPECT_GT(count, 0);
+}
+
+// Up to the widest grid that they hold: coordinates of 24 bits, some moved by up to 10 bits, in planes that they share
+// or nearly share, so that determinants are zero, small beside their products, or of 108 bits.
+TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
+  std::mt19937_64 random(9);
+  long by_contact[4] = {}, widest = 0, pairs = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    using namespace detail;
+    float c[18];
+    const int shift = static_cast<int>(random() % 11), kind = i % 4;
+    for (float& x : c) x = static_cast<float>(static_cast<std::int64_t>(random() & 0x1ffffff) - 0x1000000);
+    if (kind == 1)  // vertices in each other's planes
+      for (int k = 2; k < 18; k += 3) c[k] = 2 * c[k - 1] - (i % 3 == 0 && k == 17 ? 1.0f : 0.0f);
+    if (kind == 2)  // a vertex on an edge, or beside it
+      for (int k = 0; k < 3; ++k) c[9 + k] = (c[k] + c[3 + k]) / 2;
+    if (kind == 3)  // small ones and large ones
+      for (float& x : c) x = std::floor(std::ldexp(x, -static_cast<int>(random() % 25)));
+    for (int k = 0; k < 18; k += 1 + static_cast<int>(random() % 3)) c[k] = std::ldexp(c[k], kind == 1 ? 0 : shift);
+    if (kind == 2 && (i & 4)) c[9] = std::nextafter(c[9], INFINITY);
+    const Grid grid = grid_of(c, c + 9);
+    if (!ResidueNumbers::holds(grid)) continue;
+    ++pairs;
+    widest += grid.bits == kResidueBits;
+    const Relation r = by_axes(triangles<IntNumbers>(c, c + 9, grid.exponent));
+    ++by_contact[r.contact + 1];
+    ASSERT_EQ(by_axes(triangles<ResidueNumbers>(c, c + 9, grid.exponent)), r) << i;
+    ASSERT_EQ(decide<ResidueNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
+  }
+  EXPECT_GT(pairs, 100'000);
+  EXPECT_GT(widest, 5'000);
+  for (const long count : by_contact) EXPECT_GT(count, 100);
+}
+
+// At the ends of what they hold: the largest determinant, one of 2^62 and its neighbours, zero.
+TEST(Exact, ResiduesKnowTheirSigns) {
+  using detail::Residue, detail::Whole;
+  const double most = 0x1p35 - 1;
+  for (const double edge : {1.0, 3.0, 0x1p25 - 1, 0x1p25, most}) {
+    for (const double other : {1.0, 0x1p26 + 1, most}) {
+      // x y z - u v w in every order of size: with 128 bits beside it.
+      const double of[6] = {edge, other, most, most, edge, other};
+      for (int less = -2; less <= 2; ++less) {
+        const auto product = [](double x, double y, double z) { return Residue(Whole{x}) * Whole{y} * Whole{z}; };
+        const Residue found = product(of[0], of[1], of[2]) - product(of[3], of[4], of[5]) + Residue(less);
+        EXPECT_EQ(found.sign(), (less > 0) - (less < 0)) << edge << ' ' << other << ' ' << less;
+        const Residue large = product(of[0], of[1], of[2]) + Residue(less), minus = Residue(0) - large;
+        const auto exact =
+            static_cast<__int128>(of[0]) * static_cast<__int128>(of[1]) * static_cast<__int128>(of[2]) + less;
+        EXPECT_EQ(large.sign(), (exact > 0) - (exact < 0));
+        EXPECT_EQ(minus.sign(), -large.sign());
+      }
+    }
+  }
 }
 
 // What the comments of error_bound.h derive: no test on pairs comes near to the bounds.

@@ -5,6 +5,7 @@
 //   bounded    doubles with an error bound; see core/exact/error_bound.h
 //   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; in floats so up to 6 bits:
 //              6 * 2^(3 * 7) < 2^24
+//   residue    up to 34 bits, on devices: a double, and an integer modulo 2^64 for where the double is small
 //   int128     up to 30 bits: minors fit in 64 bits; up to 40 bits: less than 6 * 2^(3 * 41) < 2^127
 //   wide       up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant than 6 * 2^(3 * 91) < 2^319;
 //              else multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840
@@ -15,6 +16,7 @@
 
 #include "core/exact/error_bound.h"
 #include "core/exact/grid.h"
+#include "core/exact/residue.h"
 #include "core/exact/results.h"
 #include "core/exact/vector.h"
 #include "core/exact/wide_integer.h"
@@ -47,7 +49,8 @@ struct ExactNumbers {
   GRAZE_HD bool is_proper(const Vec<M>& normal) const { return !is_zero(normal); }
 };
 
-inline constexpr int kSingleBits = 6, kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40, kLongBits = 90,
+inline constexpr int kSingleBits = 6, kResidueBits = 34, kDoubleBits = 15, kNarrowBits = 30, kIntBits = 40,
+                     kLongBits = 90,
                      kFloatBits = 277;  // of all floats, as multiples of 2^-149
 using DoubleNumbers = ExactNumbers<double, double, double, kDoubleBits, Stage::doubles>;
 using NarrowNumbers = ExactNumbers<std::int64_t, std::int64_t, Int128, kNarrowBits, Stage::int128>;
@@ -61,6 +64,8 @@ struct SingleNumbers : ExactNumbers<float, float, float, kSingleBits, Stage::dou
     return grid.bits <= kSingleBits && grid.exponent >= -30 && grid.exponent <= 30;
   }
 };
+
+using ResidueNumbers = ExactNumbers<Whole, Residue, Residue, kResidueBits, Stage::int128>;
 
 // Kinds of numbers, the smallest first.
 template <class Kind, class... Larger>

@@ -5,10 +5,12 @@
 //
 // The slabs are square to the triangle's normal and, within its plane, to its longest edge: its thinnest ones. Their
 // directions may be off by any rounding, for what counts is where the reference lies along the direction as it is
-// stored. With d its direction and |d| the sum of its magnitudes, at most 1/4, a height d . v is off by less than
-// 3.001 2^-24 |d| m, m being the triangle's largest magnitude, and by 2^-146 where something underflows; nothing
-// overflows.
+// stored. With d its direction and |d| the sum of its magnitudes, at most 1/4, a height d . v - middle is off by less
+// than 4.001 2^-23 (|d| m + |middle|) whatever the rounding mode, m being the triangle's largest magnitude, and by
+// 2^-146 where something underflows; nothing overflows.
 #pragma once
+
+#include <algorithm>
 
 #include "core/exact/by_planes.h"
 #include "core/exact/triangles.h"
@@ -16,10 +18,10 @@
 
 namespace graze::exact {
 
-// The reference lies between low and high along the direction. `error` times the largest magnitude of a triangle
-// bounds the rounding of its heights, and of the comparison itself.
+// Heights of the reference, x v.x + y v.y + z v.z - middle, are at most `half` either way. `error` times the sum of a
+// triangle's magnitudes bounds the rounding of its heights, and of the comparison itself.
 struct Slab {
-  float x, y, z, low, high, error;
+  float x, y, z, middle, half, error;
 };
 
 inline constexpr int kSlabs = 2;
@@ -66,26 +68,27 @@ inline Slab slab_along(const Vec<double>& direction, const float* v) {
          0,
          0,
          0};
-  double low = 0, high = 0, terms = 0;
+  double heights[3], terms = 0;
   for (int i = 0; i < 3; ++i) {
     const double x = double(s.x) * v[3 * i], y = double(s.y) * v[3 * i + 1], z = double(s.z) * v[3 * i + 2];
-    const double height = x + y + z;
-    low = i == 0 || height < low ? height : low;
-    high = i == 0 || height > high ? height : high;
+    heights[i] = x + y + z;
     const double sum = size_of(x) + size_of(y) + size_of(z);
     terms = sum > terms ? sum : terms;
   }
-  // Twice over: the sum in doubles, rounding to float, and the addition of the triangle's error to it in float.
-  const double slack = terms * 0x1p-50 + 0x1p-140;
-  s.low = static_cast<float>(low - size_of(low) * 0x1p-21 - slack);
-  s.high = static_cast<float>(high + size_of(high) * 0x1p-21 + slack);
-  s.error = static_cast<float>(8 * 0x1p-24 * (size_of(s.x) + size_of(s.y) + size_of(s.z)));
+  const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
+  s.middle = static_cast<float>(low / 2 + high / 2);
+  const double half = std::max(high - s.middle, s.middle - low);
+  // The sums in doubles, the rounding to float, and what `middle` adds to the error of a height; and the addition of
+  // the triangle's error to it in float.
+  const double slack = terms * 0x1p-50 + size_of(s.middle) * 0x1p-20 + 0x1p-140;
+  s.half = static_cast<float>(half + half * 0x1p-20 + slack);
+  s.error = static_cast<float>(12 * 0x1p-24 * (size_of(s.x) + size_of(s.y) + size_of(s.z)));
   return s;
 }
 
 }  // namespace detail
 
-// Past a reference that is not finite nothing else is.
+// Of a reference that is not finite no slab shows anything, and the screen in floats is unsure.
 inline Reference prepare(const float* v) {
   using Direction = detail::Vec<double>;
   Reference r;
@@ -98,6 +101,7 @@ inline Reference prepare(const float* v) {
   if (!finite) {
     const float none = __builtin_nanf("");
     for (Slab& s : r.slabs) s = {none, none, none, none, none, none};
+    for (int i = 0; i < 3; ++i) r.low[i] = -(r.high[i] = __builtin_inff());
     return r;
   }
   for (int i = 0; i < 3; ++i) at[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
@@ -116,26 +120,29 @@ inline Reference prepare(const float* v) {
   return r;
 }
 
-// What the slabs show of a triangle.
-enum class Sight { beyond, open, not_finite };
+// The sum of its nine magnitudes: not finite where one of them is not, or it overflows.
+GRAZE_HD inline float size_of(const float* t) {
+  float sum = detail::magnitude(t[0]);
+  for (int i = 1; i < 9; ++i) sum += detail::magnitude(t[i]);
+  return sum;
+}
 
-// Returns: beyond: disjoint, for certain.   Exact: whatever the rounding mode, with contraction and without.
-GRAZE_HD inline Sight look_past(const Reference& r, const float* t) {
-  using detail::greater, detail::lesser, detail::magnitude;
-  float most = magnitude(t[0]);
-  for (int i = 1; i < 9; ++i) most = greater(most, magnitude(t[i]));
+// Returns: true: the triangle is beyond one of the slabs, so disjoint, for certain; never where it is not finite.
+// Exact: whatever the rounding mode, with contraction and without.
+GRAZE_HD inline bool is_beyond(const Reference& r, const float* t) {
+  using detail::bits_of, detail::lesser, detail::magnitude;
+  const float size = size_of(t);
   bool beyond = false;
   for (int k = 0; k < kSlabs; ++k) {
     const Slab& s = r.slabs[k];
-    const float a = s.x * t[0] + s.y * t[1] + s.z * t[2], b = s.x * t[3] + s.y * t[4] + s.z * t[5],
-                c = s.x * t[6] + s.y * t[7] + s.z * t[8];
-    // The height of a vertex is finite exactly when the vertex is; and so is a sum of three, each within 1/4 of a
-    // float.
-    if (k == 0 && !(magnitude(a + b + c) <= 0x1.fffffep+127f)) return Sight::not_finite;
-    beyond = beyond || lesser(lesser(a, b), c) > s.high + s.error * most ||
-             greater(greater(a, b), c) < s.low - s.error * most;
+    const float a = s.x * t[0] + s.y * t[1] + s.z * t[2] - s.middle,
+                b = s.x * t[3] + s.y * t[4] + s.z * t[5] - s.middle,
+                c = s.x * t[6] + s.y * t[7] + s.z * t[8] - s.middle;
+    const std::uint32_t signs = (bits_of(a) ^ bits_of(b)) | (bits_of(a) ^ bits_of(c));
+    beyond |= (lesser(lesser(magnitude(a), magnitude(b)), magnitude(c)) > s.half + s.error * size) &
+              (static_cast<std::int32_t>(signs) >= 0);
   }
-  return beyond ? Sight::beyond : Sight::open;
+  return beyond;
 }
 
 namespace detail {
@@ -155,7 +162,7 @@ struct FloatNumbers {
 // The screen in floats. As in core/exact/error_bound.h, with e = 2^-24, a determinant is off by less than 8 e times the
 // sum of its six products, none of them larger than that of the extents. These lie within 2^-24 and 2^40: nothing
 // overflows, and what underflows is off by less than 6 * 2^40 * 2^-150, a small part of the least bound, 48 * 2^-96.
-// Requires: finite coordinates.   Returns: disjoint, crosses, or unsure, as of all other extents.
+// Returns: disjoint, crosses, or unsure, as of all other extents and of what is not finite.
 GRAZE_HD inline Finding screen_in_floats(const Reference& r, const float* t) {
   float extent[3];
   for (int i = 0; i < 3; ++i) {
@@ -164,7 +171,7 @@ GRAZE_HD inline Finding screen_in_floats(const Reference& r, const float* t) {
   }
   const float least = lesser(lesser(extent[0], extent[1]), extent[2]),
               most = greater(greater(extent[0], extent[1]), extent[2]);
-  if (!(least >= 0x1p-24f && most <= 0x1p40f)) return Finding::unsure;
+  if (!(least >= 0x1p-24f && most <= 0x1p40f && size_of(t) <= 0x1p60f)) return Finding::unsure;
   const FloatNumbers numbers{6 * 8 * 0x1p-24f * extent[0] * extent[1] * extent[2]};
   return by_planes(triangles<FloatNumbers>(r.v, t), numbers);
 }

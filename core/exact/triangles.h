@@ -24,6 +24,7 @@ struct Triangles {
 GRAZE_HD inline void convert(float x, double, float& out) { out = x; }
 GRAZE_HD inline void convert(float x, double, double& out) { out = static_cast<double>(x); }
 GRAZE_HD inline void convert(float x, double scale, std::int64_t& out) { out = static_cast<std::int64_t>(x * scale); }
+GRAZE_HD inline void convert(float x, double scale, Whole& out) { out.value = x * scale; }
 GRAZE_HD inline void convert(float x, double scale, Wide<2>& out) {
   const double integer = x < 0 ? x * -scale : x * scale;
   const auto high = static_cast<std::uint64_t>(integer * 0x1p-64);

@@ -63,7 +63,7 @@ void DeviceExact::empty_lists(std::uint32_t pairs, cudaStream_t stream) {
 
 void DeviceExact::decide_listed(DevicePairs pairs, std::uint32_t* intersects, unsigned long long* stages,
                                 cudaStream_t stream) {
-  launch_exact_steps(pairs, left_[0], left_[1], left_[2], intersects, stages, stream);
+  launch_exact_steps(pairs, left_, intersects, stages, stream);
 }
 
 void DeviceExact::decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,

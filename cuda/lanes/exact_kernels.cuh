@@ -30,8 +30,8 @@ class DeviceExact {
   void empty_lists(std::uint32_t pairs, cudaStream_t stream);
   void decide_listed(DevicePairs pairs, std::uint32_t* intersects, unsigned long long* stages, cudaStream_t stream);
 
-  DeviceArray<std::uint32_t> places_[3], counts_;
-  Places left_[3];
+  DeviceArray<std::uint32_t> places_[4], counts_;
+  Places left_[4];
 };
 
 // Starts the kernels of a CUDA lane, which write as DeviceExact::decide does.

@@ -22,8 +22,8 @@
 namespace graze::cuda {
 namespace {
 
-constexpr std::uint64_t kFirstOfAny = 1 << 12, kFirstOfAll = 1 << 20, kFirstResident = 1 << 23, kGrowth = 8;
-constexpr std::uint64_t kMostResident = 1 << 25, kMostStreamed = 1 << 20, kMostOfLane = 1 << 20;
+constexpr std::uint64_t kFirstOfAny = 1 << 12, kFirstOfAll = 1 << 20, kFirstResident = 1 << 25, kGrowth = 8;
+constexpr std::uint64_t kMostResident = 1 << 27, kMostStreamed = 1 << 20, kMostOfLane = 1 << 20;
 
 // Pinned memory of the host that grows and is freed with its owner.
 template <class T>

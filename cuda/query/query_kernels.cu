@@ -1,25 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A warp takes tiles of 32 triangles, which it fetches ahead into shared memory by asynchronous copies: the memory's
-// speed bounds all of this. The slabs of the reference decide most triangles; those that they leave open gather in a
-// queue of the warp until there are 32, which the screen in floats then decides together; what that leaves, one in a
-// hundred or so, is listed for the screen in doubles and the steps of the exact decision.
+// What follows the slabs: the screen in doubles, the steps of the exact decision, counts, and pairs for other lanes.
 #include "cuda/query/query_kernels.cuh"
-
-#include <cuda_pipeline_primitives.h>
 
 #include "cuda/lanes/exact_steps.cuh"
 
 namespace graze::cuda {
 namespace {
-
-constexpr int kWarps = 4, kStages = 4, kTile = 32, kTileFloats = 9 * kTile, kQueue = 2 * kTile;
-constexpr int kBlocks = 7;  // of a multiprocessor, which has shared memory for so many
-
-struct WarpMemory {
-  alignas(16) float tile[kStages][kTileFloats];
-  float queued[9][kQueue];
-  std::uint32_t place[kQueue];
-};
 
 // How the steps of the exact decision read a pair.
 struct QueryPairs {
@@ -32,73 +18,32 @@ __device__ void load(const QueryPairs& pairs, std::uint32_t i, float* c) {
   pairs.chunk.array.load(pairs.chunk.first + i, c + 9);
 }
 
-// Starts to fetch the tile; nothing where it lies beyond the end.
-__device__ void fetch(const QueryChunk& chunk, bool by_vectors, std::uint32_t tile, float* to) {
-  const std::uint32_t lane = threadIdx.x % 32;
-  const std::uint64_t at = std::uint64_t{tile} * kTile;
-  if (by_vectors && at + kTile <= chunk.count) {
-    const auto* from = reinterpret_cast<const float4*>(chunk.array.rows + (chunk.first + at) * 36);
-    for (std::uint32_t k = lane; k < kTileFloats / 4; k += 32) __pipeline_memcpy_async(to + 4 * k, from + k, 16);
-  } else if (at + lane < chunk.count) {
-    float t[9];
-    chunk.array.load(chunk.first + at + lane, t);
-    for (int k = 0; k < 9; ++k) to[9 * lane + k] = t[k];
+// Decides what is listed: by numbers of its grid where that is small, as where triangles touch it often is. What is not
+// finite is declined.
+__global__ void __launch_bounds__(kThreads, 2)
+    decide_on_grid(const __grid_constant__ QueryPairs pairs, Places from, Places left, std::uint32_t* hits,
+                   std::uint32_t* declined) {
+  using Numbers = exact::detail::ResidueNumbers;
+  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
+    const std::uint32_t i = from.at[n];
+    float c[kCoordinates];
+    load(pairs, i, c);
+    bool finite = true;
+    for (int k = 0; k < kCoordinates; ++k) finite = finite && is_finite(c[k]);
+    const Grid grid = exact::detail::grid_of(c, c + 9);
+    if (!finite) {
+      set_bit(declined, i);
+    } else if (exact::detail::shared_vertex(c, c + 9) >= 0) {
+      set_bit(hits, i);
+    } else if (!Numbers::holds(grid)) {
+      left.add(i);
+    } else if (exact::detail::decide<Numbers>(c, c + 9, grid.exponent)) {
+      set_bit(hits, i);
+    }
   }
-  __pipeline_commit();
 }
 
-// The screen in floats for one queued triangle of each thread.
-__device__ void decide_queued(const exact::Reference& reference, const WarpMemory& warp, std::uint32_t slot,
-                              Places left, std::uint32_t* hits) {
-  float t[9];
-  for (int k = 0; k < 9; ++k) t[k] = warp.queued[k][slot];
-  const Finding found = exact::detail::screen_in_floats(reference, t);
-  if (found == Finding::crosses) set_bit(hits, warp.place[slot]);
-  if (found == Finding::unsure) left.add(warp.place[slot]);
-}
-
-__global__ void __launch_bounds__(kWarps * 32, kBlocks)
-    decide_chunk(const __grid_constant__ QueryPairs pairs, bool by_vectors, Places left, std::uint32_t* hits,
-                 std::uint32_t* declined) {
-  __shared__ WarpMemory memory[kWarps];
-  WarpMemory& warp = memory[threadIdx.x / 32];
-  const QueryChunk& chunk = pairs.chunk;
-  const std::uint32_t lane = threadIdx.x % 32, step = gridDim.x * kWarps, tiles = (chunk.count + kTile - 1) / kTile;
-  std::uint32_t ahead = blockIdx.x * kWarps + threadIdx.x / 32, queued = 0;
-  for (int stage = 0; stage < kStages - 1; ++stage, ahead += step) fetch(chunk, by_vectors, ahead, warp.tile[stage]);
-  int stage = 0;
-  for (std::uint32_t tile = blockIdx.x * kWarps + threadIdx.x / 32; tile < tiles; tile += step, ahead += step) {
-    fetch(chunk, by_vectors, ahead, warp.tile[(stage + kStages - 1) % kStages]);
-    __pipeline_wait_prior(kStages - 1);
-    __syncwarp();
-    const std::uint32_t i = tile * kTile + lane;
-    float t[9];
-    for (int k = 0; k < 9; ++k) t[k] = warp.tile[stage][9 * lane + k];
-    const exact::Sight sight = i < chunk.count ? exact::look_past(pairs.reference, t) : exact::Sight::beyond;
-    const std::uint32_t open = __ballot_sync(0xffffffffu, sight == exact::Sight::open);
-    const std::uint32_t not_finite = __ballot_sync(0xffffffffu, sight == exact::Sight::not_finite);
-    if (lane == 0) {
-      declined[tile] = not_finite;
-      hits[tile] = 0;
-    }
-    if (sight == exact::Sight::open) {
-      const std::uint32_t slot = queued + static_cast<std::uint32_t>(__popc(open & ((1u << lane) - 1)));
-      for (int k = 0; k < 9; ++k) warp.queued[k][slot] = t[k];
-      warp.place[slot] = i;
-    }
-    queued += static_cast<std::uint32_t>(__popc(open));
-    __syncwarp();
-    if (queued >= kTile) {
-      queued -= kTile;
-      decide_queued(pairs.reference, warp, queued + lane, left, hits);
-      __syncwarp();
-    }
-    stage = (stage + 1) % kStages;
-  }
-  if (lane < queued) decide_queued(pairs.reference, warp, lane, left, hits);
-}
-
-// The screen in doubles for those that were listed.
+// The screen in doubles for those that this left.
 __global__ void __launch_bounds__(kThreads, 3)
     screen_listed(const __grid_constant__ QueryPairs pairs, Places from, Places left, std::uint32_t* hits) {
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
@@ -106,11 +51,8 @@ __global__ void __launch_bounds__(kThreads, 3)
     float c[kCoordinates];
     load(pairs, i, c);
     const Finding found = exact::detail::screen(c, c + 9);
-    if (found == Finding::crosses || (found == Finding::unsure && exact::detail::shared_vertex(c, c + 9) >= 0)) {
-      set_bit(hits, i);
-    } else if (found == Finding::unsure) {
-      left.add(i);
-    }
+    if (found == Finding::crosses) set_bit(hits, i);
+    if (found == Finding::unsure) left.add(i);
   }
 }
 
@@ -185,25 +127,15 @@ std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) 
 void launch_exact_query(const exact::Reference& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream) {
   check(cudaMemsetAsync(counts, 0, kQueryLists * sizeof *counts, stream));
-  int device = 0, processors = 0;
-  check(cudaGetDevice(&device));
-  check(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
-  const bool by_vectors =
-      chunk.array.packed() && chunk.first % 4 == 0 && reinterpret_cast<std::uintptr_t>(chunk.array.rows) % 16 == 0;
-  const std::uint32_t tiles = (chunk.count + kTile - 1) / kTile, wanted = (tiles + kWarps - 1) / kWarps;
-  const std::uint32_t blocks = std::min(wanted, static_cast<std::uint32_t>(processors) * kBlocks);
-  if (const std::size_t behind = (row_words(chunk.count) - tiles) * sizeof *hits; behind > 0) {
-    check(cudaMemsetAsync(hits + tiles, 0, behind, stream));
-    check(cudaMemsetAsync(declined + tiles, 0, behind, stream));
-  }
+  check(cudaMemsetAsync(declined, 0, row_words(chunk.count) * sizeof *declined, stream));
   const QueryPairs pairs{reference, chunk};
   // Each list takes the memory of the one before the last, which nobody needs any more.
   Places left[kQueryLists];
   for (std::uint32_t k = 0; k < kQueryLists; ++k) left[k] = {lists + (k % 2) * chunk.count, counts + k};
-  decide_chunk<<<blocks, kWarps * 32, 0, stream>>>(pairs, by_vectors, left[0], hits, declined);
-  check(cudaGetLastError());
-  screen_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits);
-  launch_exact_steps(pairs, left[1], left[2], left[3], hits, nullptr, stream);
+  launch_slabs(reference, chunk, left[0], hits, stream);
+  decide_on_grid<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits, declined);
+  screen_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], hits);
+  launch_large_steps(pairs, left[2], left[3], hits, nullptr, stream);
 }
 
 void launch_pair_up(const exact::Reference& reference, const QueryChunk& chunk, float* columns,

@@ -25,6 +25,11 @@ constexpr std::uint32_t row_words(std::uint32_t count) { return (count + 255) / 
 
 inline constexpr int kQueryLists = 4;
 
+// What the slabs of the reference and the screen in floats show of a chunk: all words of `hits` are written, and what
+// is left open is listed.
+void launch_slabs(const exact::Reference& reference, const QueryChunk& chunk, Places left, std::uint32_t* hits,
+                  cudaStream_t stream);
+
 // The exact verdicts on a chunk: bit i % 32 of word i / 32. `lists`: room for 2 * count places; `counts`: kQueryLists.
 void launch_exact_query(const exact::Reference& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream);

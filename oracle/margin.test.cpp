@@ -153,6 +153,33 @@ TEST(ExactDepth, IsTheShortestPartingPush) {
   }
 }
 
+// On small integers the bounds' directions are exact: those of integers are the same.
+TEST(ExactSeparation, IsAlongTheDirectionsOfTheBounds) {
+  PairSource source(Kind::lattice3, kSeed + 4);
+  int reached = 0;  // how often a separation is the distance
+  for (int n = 0; n < 3000; ++n) {
+    const Pair pair = source.next();
+    const Grid grid = grid_of(pair);
+    const LargePair large = large_integers(pair, grid);
+    const MarginFrame frame = make_margin_frame(pair);
+    const bool disjoint = cgal_verdict(pair) == Verdict::disjoint;
+    const double distance = disjoint ? rounded(exact_distance(large, grid.exponent)) : 0;
+    bool is_distance = false;
+    for (int d = 0; d < kDirections; ++d) {
+      const Vec3<mpz_class> exact = integer_direction(large.a, large.b, d);
+      const Vec3<double> expected = direction(frame, d);
+      const double scale = std::ldexp(1.0, (d < kFromEdgeA ? 2 : d < kFromVertex ? 3 : 1) * grid.exponent);
+      ASSERT_EQ((Vec3<double>{exact.x.get_d() * scale, exact.y.get_d() * scale, exact.z.get_d() * scale}), expected) << d << hex(pair);
+      const SquaredMargin separation = exact_separation(large, grid.exponent, d);
+      ASSERT_LE(rounded(separation), distance) << d << hex(pair);
+      is_distance = is_distance || (disjoint && rounded(separation) == distance);
+    }
+    ASSERT_EQ(is_distance, disjoint) << hex(pair);
+    reached += is_distance;
+  }
+  EXPECT_GT(reached, 500);
+}
+
 // Square roots that lie exactly, or all but exactly, half-way between two doubles.
 TEST(Rounded, RoundsOnceToNearestEven) {
   const mpz_class half = (mpz_class(1) << 53) + 1;  // 2^53 + 1, half-way between two doubles

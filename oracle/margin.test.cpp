@@ -181,6 +181,25 @@ TEST(ExactSeparation, IsAlongTheDirectionsOfTheBounds) {
   EXPECT_GT(reached, 500);
 }
 
+TEST(BucketFromBounds, IsTheOneThatBoundsLeave) {
+  const auto bucket = [](double lo, double hi, Verdict verdict) {
+    Bucket found = 99;
+    return bucket_from_bounds({lo, hi, 0, 0}, verdict, -3, found) ? int{found} : 99;
+  };
+  constexpr Verdict yes = Verdict::intersects, no = Verdict::disjoint;
+  EXPECT_EQ(bucket(0, 0, yes), 0);
+  EXPECT_EQ(bucket(0, 1, yes), 99);
+  EXPECT_EQ(bucket(-1, 1, yes), 99);
+  EXPECT_EQ(bucket(1, 1, yes), make_bucket(-1, 3));
+  EXPECT_EQ(bucket(1, 1.999, yes), make_bucket(-1, 3));
+  EXPECT_EQ(bucket(1, 2, yes), 99);
+  EXPECT_EQ(bucket(1, 1, no), make_bucket(1, 3));
+  EXPECT_EQ(bucket(0.999, 1, no), 99);
+  EXPECT_EQ(bucket(0, 1, no), 99);
+  // Of a disjoint pair a distance below all buckets is in the least, however little is known of it.
+  EXPECT_EQ(bucket(0, 0x1p-60, no), make_bucket(1, kBucketLowest));
+}
+
 // lo <= margin <= hi, without a rounding.
 bool holds(const MarginBounds& bounds, const SquaredMargin& exact) {
   const mpq_class lo(bounds.lo), hi(bounds.hi), unit(std::ldexp(1.0, exact.exponent));

@@ -24,6 +24,8 @@ endif()
 # Five seconds for each fuzz target, and what they take to build; an hour by hand: scripts/fuzz --seconds 400.
 add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 5 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
 set_tests_properties(scripts.Fuzz PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)
+# Of a minute and more: they begin first.
+set_tests_properties(scripts.Fuzz scripts.Torture scripts.test.torture PROPERTIES COST 100)
 if(GRAZE_LIBFUZZER)
   add_test(NAME scripts.FuzzEngine COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 5 --build ${CMAKE_BINARY_DIR}/fuzz-engine --program $<TARGET_FILE:graze_engine_targets>)
 endif()

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/margin/margin.h"
+#include "core/margin/single_precision.h"
 #include "oracle/exact_margin.h"
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
@@ -151,6 +152,94 @@ TEST(ExactDepth, IsTheShortestPartingPush) {
     }
     EXPECT_GT(tried, 30);
   }
+}
+
+// On small integers the bounds' directions are exact: those of integers are the same.
+TEST(ExactSeparation, IsAlongTheDirectionsOfTheBounds) {
+  PairSource source(Kind::lattice3, kSeed + 4);
+  int reached = 0;  // how often a separation is the distance
+  for (int n = 0; n < 3000; ++n) {
+    const Pair pair = source.next();
+    const Grid grid = grid_of(pair);
+    const LargePair large = large_integers(pair, grid);
+    const MarginFrame frame = make_margin_frame(pair);
+    const bool disjoint = cgal_verdict(pair) == Verdict::disjoint;
+    const double distance = disjoint ? rounded(exact_distance(large, grid.exponent)) : 0;
+    bool is_distance = false;
+    for (int d = 0; d < kDirections; ++d) {
+      const Vec3<mpz_class> exact = integer_direction(large.a, large.b, d);
+      const Vec3<double> expected = direction(frame, d);
+      const double scale = std::ldexp(1.0, (d < kFromEdgeA ? 2 : d < kFromVertex ? 3 : 1) * grid.exponent);
+      ASSERT_EQ((Vec3<double>{exact.x.get_d() * scale, exact.y.get_d() * scale, exact.z.get_d() * scale}), expected) << d << hex(pair);
+      const SquaredMargin separation = exact_separation(large, grid.exponent, d);
+      ASSERT_LE(rounded(separation), distance) << d << hex(pair);
+      is_distance = is_distance || (disjoint && rounded(separation) == distance);
+    }
+    ASSERT_EQ(is_distance, disjoint) << hex(pair);
+    reached += is_distance;
+  }
+  EXPECT_GT(reached, 500);
+}
+
+TEST(BucketFromBounds, IsTheOneThatBoundsLeave) {
+  const auto bucket = [](double lo, double hi, Verdict verdict) {
+    Bucket found = 99;
+    return bucket_from_bounds({lo, hi, 0, 0}, verdict, -3, found) ? int{found} : 99;
+  };
+  constexpr Verdict yes = Verdict::intersects, no = Verdict::disjoint;
+  EXPECT_EQ(bucket(0, 0, yes), 0);
+  EXPECT_EQ(bucket(0, 1, yes), 99);
+  EXPECT_EQ(bucket(-1, 1, yes), 99);
+  EXPECT_EQ(bucket(1, 1, yes), make_bucket(-1, 3));
+  EXPECT_EQ(bucket(1, 1.999, yes), make_bucket(-1, 3));
+  EXPECT_EQ(bucket(1, 2, yes), 99);
+  EXPECT_EQ(bucket(1, 1, no), make_bucket(1, 3));
+  EXPECT_EQ(bucket(0.999, 1, no), 99);
+  EXPECT_EQ(bucket(0, 1, no), 99);
+  // Of a disjoint pair a distance below all buckets is in the least, however little is known of it.
+  EXPECT_EQ(bucket(0, 0x1p-60, no), make_bucket(1, kBucketLowest));
+}
+
+// lo <= margin <= hi, without a rounding.
+bool holds(const MarginBounds& bounds, const SquaredMargin& exact) {
+  const mpq_class lo(bounds.lo), hi(bounds.hi), unit(std::ldexp(1.0, exact.exponent));
+  const mpq_class squared = mpq_class(exact.numerator) / mpq_class(exact.denominator) * unit * unit;
+  return lo * lo <= squared && squared <= hi * hi;
+}
+
+TEST(GuessedDistance, BoundsHoldTheExactDistance) {
+  int finite = 0;
+  const auto expect_held = [&](const Pair& pair) {
+    Vec3<double> a[3], b[3];
+    for (int i = 0; i < 3; ++i) a[i] = widen(pair.a[i]), b[i] = widen(pair.b[i]);
+    const MarginBounds bounds = first_attempt::distance_bounds(a, b, first_attempt::seem_nearest(a, b).features);
+    if (!std::isfinite(bounds.hi) || bounds.lo < 0) return;
+    ++finite;
+    ASSERT_TRUE(holds(bounds, exact_margin(pair, Verdict::disjoint))) << hex(pair);
+  };
+  for (const Kind kind : {Kind::uniform, Kind::lattice3, Kind::near, Kind::coplanar, Kind::flat}) {
+    PairSource source(kind, kSeed + 5);
+    for (int n = 0; n < 2000; ++n) {
+      const Pair pair = source.next();
+      if (cgal_verdict(pair) == Verdict::disjoint) expect_held(pair);
+    }
+  }
+  // Two vertices all but along an axis: a connection of one term, whose root is rounded down.
+  for (int n = 0; n < 500; ++n) {
+    const float off = std::ldexp(1 + static_cast<float>(n) / 256, -26);
+    expect_held(oracle_test::pair_of({0, 0, 0, -1, 0.25f, 0, -1, 0, 0.5f, 1, off, 0, 2, 0.125f, 0, 2, 0, 0.5f}));
+  }
+  EXPECT_GT(finite, 5000);
+}
+
+// What the comments of quick_depth.h derive: no test on pairs comes near to them.
+TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
+  const double u = 0x1p-24, overlap = 98 * u * (3 * 5 * 7), length = 8 * u * (5 * 7 + 7 * 3 + 3 * 5);
+  const first_attempt::AxisErrors<float> errors({3, 5, 7}, u);
+  EXPECT_GE(errors.overlap, overlap);
+  EXPECT_LE(errors.overlap, 1.01 * overlap);
+  EXPECT_GE(errors.length, length);
+  EXPECT_LE(errors.length, 1.01 * length);
 }
 
 // Square roots that lie exactly, or all but exactly, half-way between two doubles.

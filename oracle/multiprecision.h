@@ -27,16 +27,17 @@ class Multi {
     mpfr_init2(m_, precision);
     mpfr_set_d(m_, x, MPFR_RNDN);
   }
-  Multi(const Multi& other) {
+  Multi(const Multi& other) : exact_(other.exact_) {
     mpfr_init2(m_, mpfr_get_prec(other.m_));
     mpfr_set(m_, other.m_, MPFR_RNDN);
   }
-  Multi(Multi&& other) noexcept {
+  Multi(Multi&& other) noexcept : exact_(other.exact_) {
     mpfr_init2(m_, MPFR_PREC_MIN);
     mpfr_swap(m_, other.m_);
   }
   Multi& operator=(Multi other) noexcept {
     mpfr_swap(m_, other.m_);
+    std::swap(exact_, other.exact_);
     return *this;
   }
   ~Multi() { mpfr_clear(m_); }

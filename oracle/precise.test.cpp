@@ -35,6 +35,42 @@ TEST(Ball, ARadiusHoldsBothErrors) {
   EXPECT_EQ(Ball::scaled(-7, 3), -4);
 }
 
+TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
+  EXPECT_TRUE(Multi(0.1).exact());  // no operation made it
+  EXPECT_TRUE((Multi(1) / Multi(4)).exact());
+  const Multi third = Multi(1) / Multi(3);
+  EXPECT_FALSE(third.exact());
+  Multi copy(third), assigned(1);
+  EXPECT_FALSE(copy.exact());
+  const Multi moved(std::move(copy));
+  EXPECT_FALSE(moved.exact());
+  assigned = moved;
+  EXPECT_FALSE(assigned.exact());
+}
+
+// An underflow is what is rounded below the least normal number, 2^-126; there and above nothing is lost.
+TEST(Multi, UnderflowsBelowTheLeastNormalNumber) {
+  const mpfr_exp_t emin = mpfr_get_emin();
+  Multi::precision = 24;
+  Multi::subnormals = true;
+  mpfr_set_emin(-148);
+  const auto event = [](double l, double r) {
+    Multi::first_event = 0;
+    Multi(l) * Multi(r);
+    return Multi::first_event;
+  };
+  const double more = 1 + 0x1p-23;
+  EXPECT_EQ(event(0x1p-126 * more, more), 0);  // rounded, and normal
+  EXPECT_EQ(event(0x1p-126, 1), 0);
+  EXPECT_EQ(event(0x1p-127 * more, more), -1);
+  EXPECT_EQ(event(0x1p-126, 0.5), 0);  // subnormal, and exact
+  EXPECT_EQ(event(0x1p-100, 0x1p-60), -1);
+  mpfr_set_emin(emin);
+  Multi::subnormals = false;
+  Multi::first_event = 0;
+  Multi::precision = 53;
+}
+
 // MPFR with a format's mantissa and exponents, subnormals included, is that format.
 TEST(Precise, WithBothLimitsIsTheCpuLane) {
   int overflows = 0, underflows = 0;

@@ -142,5 +142,57 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   EXPECT_EQ(bytes[2], 2);
 }
 
+// The slabs are the thinnest ones: square to the normal and to the longest edge, whichever that is. A worse one loses
+// no hit, and time.
+TEST(Reference, SlabsAreSquareToTheNormalAndTheLongestEdge) {
+  const Vec3<double> corners[3] = {{1, 2, 3}, {9, -6, 5}, {4, 1, 2.5}};
+  const Vec3<double> longest = corners[1] - corners[0];
+  const Vec3<double> normal = cross(longest, corners[2] - corners[0]), across = cross(normal, longest);
+  for (std::size_t first = 0; first < 3; ++first) {
+    Triangle t;
+    for (std::size_t i = 0; i < 9; ++i)
+      t[i] = static_cast<float>(component(corners[(first + i / 3) % 3], static_cast<int>(i % 3)));
+    const exact::Reference r = exact::prepare(t.data());
+    for (int k = 0; k < exact::kSlabs; ++k) {
+      const exact::Slab& s = r.slabs[k];
+      const Vec3<double> d{s.x, s.y, s.z}, off = cross(d, k == 0 ? normal : across);
+      const double size = std::sqrt(dot(normal, normal) * (k == 0 ? 1 : dot(longest, longest)) * dot(d, d));
+      EXPECT_LT(std::sqrt(dot(off, off)), 1e-6 * size) << first << ' ' << k;
+      const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
+      EXPECT_LE(sum, 0.25 * (1 + 0x1p-22));
+      EXPECT_NEAR(s.error, 12 * 0x1p-24 * sum, 1e-5 * s.error);
+      double half = 0;
+      for (const Vec3<double>& v : corners) half = std::max(half, std::abs(dot(d, v) - s.middle));
+      EXPECT_TRUE(s.half > half + std::abs(s.middle) * 0x1p-21 && s.half - half < 1e-5) << first << ' ' << k;
+      double other = 0;  // no other middle is better
+      for (const Vec3<double>& v : corners) other = std::max(other, s.middle - dot(d, v));
+      EXPECT_NEAR(half, other, 1e-6);
+    }
+  }
+  // A segment or a point has no normal: along the axes.
+  const Triangle segment = {1, 1, 1, 2, 2, 2, 3, 3, 3}, point = {5, 6, 7, 5, 6, 7, 5, 6, 7};
+  for (const Triangle& t : {segment, point}) {
+    const exact::Reference r = exact::prepare(t.data());
+    EXPECT_TRUE(r.slabs[0].x == 0.25f && r.slabs[0].y == 0 && r.slabs[0].z == 0);
+    EXPECT_TRUE(r.slabs[1].x == 0 && r.slabs[1].y == 0.25f && r.slabs[1].z == 0);
+  }
+}
+
+TEST(Reference, LooksAtNineNumbersAndDecidesWithinItsExtents) {
+  const Triangle reference = {0, 0, 0, 4, 0, 0, 0, 4, 0};
+  std::vector<float> behind = {0, 0, 9, 1, 0, 9, 0, 1, 9, 3e38f};  // a triangle, and what may lie behind it
+  EXPECT_TRUE(exact::is_beyond(exact::prepare(reference.data()), behind.data()));
+  using exact::detail::Finding;
+  for (const auto& [extent, decided] :
+       {std::pair{0x1p-24f, true}, {0x1p-25f, false}, {0x1p40f, true}, {0x1p41f, false}}) {
+    Triangle a = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, b = {0.25f, 0.25f, 0, 0.25f, 0.25f, 1, 0.5f, 0.25f, 1};
+    for (float& x : a) x *= extent;
+    for (float& x : b) x *= extent;
+    EXPECT_EQ(exact::detail::screen_in_floats(exact::prepare(a.data()), b.data()),
+              decided ? Finding::crosses : Finding::unsure)
+        << extent;
+  }
+}
+
 }  // namespace
 }  // namespace graze::query

@@ -97,7 +97,7 @@ TEST(Exact, DecidesWhereNoMachineNumberReaches) {
 TEST(Exact, KindsOfNumbersAgree) {
   std::mt19937 random(5);
   const auto coordinate = [&] { return static_cast<float>(static_cast<int>(random() % 7) - 3); };
-  int contacts[4] = {};
+  int contacts[4] = {}, crossings = 0;
   for (int i = 0; i < 20'000; ++i) {
     float a[9], b[9];
     for (float& x : a) x = coordinate();
@@ -111,7 +111,16 @@ TEST(Exact, KindsOfNumbersAgree) {
     ASSERT_EQ(by_axes(triangles<WideNumbers>(a, b)), r) << i;
     ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects) << i;
     ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects) << i;
+    // By planes a pair crosses where no vertex lies in the other's plane; it is then more than a touch.
+    const Triangles<DoubleNumbers> t = triangles<DoubleNumbers>(a, b);
+    const Finding found = by_planes(t);
+    const bool apart_from_planes = (sides(t.a, normal<DoubleNumbers>(t.a), t.b, DoubleNumbers()).in |
+                                    sides(t.b, normal<DoubleNumbers>(t.b), t.a, DoubleNumbers()).in) == 0;
+    ASSERT_TRUE(found != Finding::crosses || (r.margin_sign == -1 && apart_from_planes)) << i;
+    ASSERT_TRUE(r.margin_sign != -1 || !apart_from_planes || found == Finding::crosses) << i;
+    crossings += found == Finding::crosses;
   }
+  EXPECT_GT(crossings, 0);
   for (const int count : contacts) EXPECT_GT(count, 0);
 }
 

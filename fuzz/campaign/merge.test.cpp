@@ -3,6 +3,8 @@
 // run.
 #include "fuzz/campaign/merge.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <random>
 
@@ -11,7 +13,9 @@
 #include "fuzz/campaign/campaign_testing.h"
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/rank_stores.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/ranks/rank_campaign.h"
+#include "strata/mesh.h"
 
 namespace graze::fuzz {
 namespace {
@@ -164,6 +168,25 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   expect(parts, {"found damage: it is empty"});
   write_whole(database("of3-2"), good);
   EXPECT_EQ(refusal(parts), "");
+}
+
+// The command that runs a part of a campaign again asks for the pairs that the campaign asked for, and no mesh's.
+TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
+  fs::create_directories(root_);
+  const std::string file = (root_ / "mesh.off").string();
+  write_whole(file, "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n");
+  const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
+  ASSERT_EQ(mesh.size(), 6u);
+  const Json of_mesh = {{"files", {file}}, {"content", fmt::format("{:016x}", mesh.content_hash)}};
+  const auto command = [&](const char* strata, std::uint64_t pairs, bool with_mesh) {
+    Json spec = {{"seed", 3}, {"pairs", pairs}, {"strata", Json::parse(strata)}, {"lanes", {"exact/f32/cpu"}}};
+    if (with_mesh) spec["mesh"] = of_mesh;
+    return command_of(spec, {2, 3}, "o");
+  };
+  const std::string of_lanes = " --lanes exact/f32/cpu --shard 2/3 --out o";
+  EXPECT_EQ(command(R"(["thesis"])", 50, false), "graze fuzz --pairs 50 --seed 3 --strata thesis" + of_lanes);
+  EXPECT_EQ(command(R"(["thesis", "mesh"])", 56, true), "graze fuzz --mesh " + file + " --pairs 50 --seed 3 --strata thesis" + of_lanes);
+  EXPECT_EQ(command(R"(["mesh"])", 6, true), "graze fuzz --mesh " + file + " --seed 3" + of_lanes);
 }
 
 TEST_F(MergeTest, WhatRanTheLanesIsSaidOfAll) {

@@ -202,6 +202,25 @@ TEST_F(StoreTest, OtherBuildsFormatsAndProcessesAreRefused) {
   EXPECT_EQ(refusal(c), file(c).string() + ": expected format 5, found 3; choose another --out");
 }
 
+// Crashes and the like are counted of foreign lanes, also behind lanes of ours, and of no others.
+TEST_F(StoreTest, ResultsOfForeignLanesSayMore) {
+  struct Foreign : ForeignCode {
+    void decide(const Pair*, std::size_t, std::uint64_t*, std::uint64_t*) override {}
+    Verdict failure(const Pair&) override { return Verdict::crashed; }
+  };
+  static Foreign code;
+  static const AlgorithmInfo info{"foreign", "test", "", "", "", false};
+  add_lanes({{"", &info, Scalar::f32, Variant::cpu, "", {}, -1, code, false, false, true, 0, ""}});
+  const std::string id = lanes().back().id;
+  StoreSpec spec = store_spec(campaign("foreign"));
+  spec.lanes = {"moller_1997/f32/cpu", id};
+  const Json rows = Store(spec).results()["strata"]["degenerate"]["lanes"];
+  for (const char* what : {"crashed", "timed_out", "unstable", "by_convention"}) {
+    EXPECT_EQ(rows[id].value(what, -1), 0) << what;
+    EXPECT_FALSE(rows["moller_1997/f32/cpu"].contains(what)) << what;
+  }
+}
+
 // Equal batches become rows of their sum, as the digits of a binary number do.
 TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
   const Campaign parts = campaign("parts"), whole = campaign("whole");

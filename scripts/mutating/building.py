@@ -17,7 +17,7 @@ from mutating import tokens
 
 NOT_SWITCHED = 98  # exit status, as in switches.h
 # Subscripts out of range end the test, rather than find what lies there.
-CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS"]
+CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds", "-fsanitize-undefined-trap-on-error"]
 MEMORY = 8 << 30  # bytes of addresses, of each compiler and test
 
 
@@ -60,14 +60,15 @@ class Commands:
         return [words[0], f"-I{folder}", *words[1:], *included, "-o", str(out), "-c", str(with_source)]
 
     def precompiled(self, source, words):
-        """A header of all that the source and our headers include in angle brackets, compiled once for all mutants."""
+        """A header of all that the source and our headers include in angle brackets, compiled once for all mutants; but
+        for Highway's, which are included once for each instruction set."""
         with self.lock:
             said = subprocess.run([*words, "-E", "-dI", str(self.root / source)], cwd=self.build, capture_output=True, text=True, check=True).stdout
             names, ours = set(), True
             for line in said.splitlines():
                 if place := re.match(r'# \d+ "[^"]*"((?: \d)*)$', line):
                     ours = " 3" not in place.group(1)  # 3: a header of the system
-                elif ours and (name := re.match(r"#\s*include\s*(<[^>]+>)", line)):
+                elif ours and (name := re.match(r"#\s*include\s*(<(?!hwy/)[^>]+>)", line)):
                     names.add(f"#include {name.group(1)}\n")
             text = "".join(sorted(names))
             header = self.out / "precompiled" / hashlib.sha256((" ".join(words) + text).encode()).hexdigest()[:16] / "all.h"

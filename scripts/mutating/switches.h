@@ -26,12 +26,14 @@ struct Asked {
     std::fclose(file);
   }
 };
-inline bool is_chosen(int id) {
-  static Asked asked;
+inline Asked asked;  // before all that a source initialises, as this header comes first
+// Unoptimised code as well: a switch stands in the innermost loops.
+#define GRAZE_INLINE [[gnu::always_inline]]
+GRAZE_INLINE inline bool is_chosen(int id) {
   asked.of[id] = true;
   return asked.chosen == id;
 }
-constexpr bool on(int id) { return std::is_constant_evaluated() ? false : is_chosen(id); }
+GRAZE_INLINE constexpr bool on(int id) { return std::is_constant_evaluated() ? false : is_chosen(id); }
 
 template <int id>
 struct Switch {};
@@ -42,11 +44,11 @@ struct Half {
 
 #define GRAZE_BINARY(op, other)                                                               \
   template <class Left, int id>                                                               \
-  constexpr Half<Left, id> operator op(Left&& left, Switch<id>) {                             \
+  GRAZE_INLINE constexpr Half<Left, id> operator op(Left&& left, Switch<id>) {                \
     return {static_cast<Left&&>(left)};                                                       \
   }                                                                                           \
   template <class Left, int id, class Right>                                                  \
-  constexpr decltype(auto) operator op(Half<Left, id> half, Right&& right) {                  \
+  GRAZE_INLINE constexpr decltype(auto) operator op(Half<Left, id> half, Right&& right) {     \
     using Result = decltype(half.left op right);                                              \
     if (on(id)) {                                                                             \
       if constexpr (requires { static_cast<Result>(half.left other right); })                 \
@@ -72,11 +74,11 @@ GRAZE_BINARY(>>, <<)
 
 #define GRAZE_ASSIGNMENT(op, other)                                                           \
   template <class Right, int id>                                                              \
-  constexpr Half<Right, id> operator op(Switch<id>, Right&& right) {                          \
+  GRAZE_INLINE constexpr Half<Right, id> operator op(Switch<id>, Right&& right) {             \
     return {static_cast<Right&&>(right)};                                                     \
   }                                                                                           \
   template <class Left, class Right, int id>                                                  \
-  constexpr Left& operator op(Left& left, Half<Right, id> right) {                            \
+  GRAZE_INLINE constexpr Left& operator op(Left& left, Half<Right, id> right) {               \
     if (!on(id)) return left op right.left, left;                                             \
     if constexpr (requires { left other right.left; })                                        \
       return left other right.left, left;                                                     \
@@ -96,24 +98,24 @@ struct Minus {};
 template <int id, bool up>
 struct Step {};
 template <int id, class Value>
-constexpr bool operator->*(Not<id>, Value&& value) {
+GRAZE_INLINE constexpr bool operator->*(Not<id>, Value&& value) {
   return on(id) ? !static_cast<bool>(value) : static_cast<bool>(value);
 }
 template <int id, class Value>
-constexpr Value operator->*(Minus<id>, const Value& value) {
+GRAZE_INLINE constexpr Value operator->*(Minus<id>, const Value& value) {
   return on(id) ? static_cast<Value>(-value) : value;
 }
 template <int id, bool up, class Value>
-constexpr Value& operator->*(Step<id, up>, Value& value) {
+GRAZE_INLINE constexpr Value& operator->*(Step<id, up>, Value& value) {
   return on(id) != up ? ++value : --value;
 }
 
 template <int id, class... Values>
-constexpr auto min(const Values&... values) {
+GRAZE_INLINE constexpr auto min(const Values&... values) {
   return on(id) ? std::max(values...) : std::min(values...);
 }
 template <int id, class... Values>
-constexpr auto max(const Values&... values) {
+GRAZE_INLINE constexpr auto max(const Values&... values) {
   return on(id) ? std::min(values...) : std::max(values...);
 }
 

@@ -34,9 +34,9 @@ test('every card draws, with one WebGL context for all', async ({ page, report }
     await board.scrollIntoViewIfNeeded();
     await expect(async () => {
       const painted = await board.locator('canvas').evaluate((canvas: HTMLCanvasElement) => {
-        const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', { willReadFrequently: true })!;
-        copy.drawImage(canvas, 0, 0);
-        return copy.getImageData(0, 0, canvas.width, canvas.height).data.some((value) => value > 0);
+        const copy = new OffscreenCanvas(canvas.width / 4, canvas.height / 4).getContext('2d', { willReadFrequently: true })!;
+        copy.drawImage(canvas, 0, 0, copy.canvas.width, copy.canvas.height);
+        return copy.getImageData(0, 0, copy.canvas.width, copy.canvas.height).data.some((value) => value > 0);
       });
       expect(painted).toBe(true);
     }).toPass({ timeout: 5000 });

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-import { pathToFileURL } from 'node:url';
 import { expect, test } from '@playwright/test';
 import type { Report } from '../src/report';
+import { compare_url } from './page';
 
 test('two campaigns compared: what changed on top, rates, kinds gained and lost', async ({ page }) => {
   test.skip(!process.env.GRAZE_COMPARE, 'GRAZE_REPORT names a single report');
   const said: string[] = [];
   page.on('console', (message) => said.push(message.text()));
   page.on('pageerror', (error) => said.push(error.message));
-  await page.goto(pathToFileURL(process.env.GRAZE_COMPARE!).href);
+  await page.goto(compare_url());
   const { compare } = JSON.parse((await page.locator('#report').textContent())!) as Report;
   const section = page.locator('#compare');
   await expect(section).toContainText(`seed ${compare!.other.seed}`);
@@ -23,6 +23,7 @@ test('two campaigns compared: what changed on top, rates, kinds gained and lost'
   await section.locator('input[type=checkbox]').check();
   await expect(rows).toHaveCount(Math.min(60, compare!.rates.length));
   expect(compare!.kinds_compared).toBe(true);
+  expect(compare!.gained.length + compare!.lost.length).toBeGreaterThan(0);
   for (const [what, kinds] of [['gained', compare!.gained], ['lost', compare!.lost]] as const) {
     await expect(section).toContainText(`Kinds of failure ${what}: ${kinds.length ? kinds.length.toLocaleString('en-US') : 'none'}`);
     for (const { key } of kinds.slice(0, 5)) await expect(section).toContainText(key);

@@ -16,30 +16,36 @@ test('the cards have all sorts of kinds', async ({ report }) => {
 
 test('title, sentence, lanes and verdicts of a card do not contradict each other', async ({ page, report }) => {
   await page.locator('button', { hasText: 'Open all' }).click();
+  await expect(page.locator('.card .kind-lanes .all')).toHaveCount(report.cards.length);
+  const cards = await page.locator('.card').evaluateAll((all) => all.map((card) => {  // at once: a question for each text takes long
+    const texts = (where: string) => [...card.querySelectorAll(where)].map((one) => one.textContent!.replace(/\s+/g, ' ').trim());
+    return {
+      id: card.id, title: texts('summary .card-title'), count: texts('summary .card-count'), sentences: texts('.sentences li'),
+      lanes: texts('.kind-lanes'), all: texts('.kind-lanes .all'), here: texts('.kind-lanes .here'), targets: texts('.verdicts thead th'),
+      marked: [...card.querySelectorAll('.verdicts tbody tr')].flatMap((row) => [...row.querySelectorAll('td')].flatMap((cell, column) =>
+        (cell.className === 'bad' ? [{ name: row.querySelector('th')!.textContent!, column }] : []))),
+    };
+  }));
   let partly = 0;
   for (const [i, { kind, sentences, verdicts }] of report.cards.entries()) {
-    const card = page.locator(`#kind-${i + 1}`);
-    await expect(card.locator('summary .card-title')).toHaveText(
-      `${kind.subject}: ${kind.cause}${kind.line ? ` at ${place_of(kind.line)}` : ''}, ${kind.shape} pairs`);
-    await expect(card.locator('summary .card-count')).toHaveText(new RegExp(`^${kind.pairs.toLocaleString('en-US')} pairs?, ${kind.signatures.toLocaleString('en-US')} signatures?$`));
-    const first = (await card.locator('.sentences li').first().textContent())!;
+    const card = cards[i];
+    expect(card.id).toBe(`kind-${i + 1}`);
+    expect(card.title).toEqual([`${kind.subject}: ${kind.cause}${kind.line ? ` at ${place_of(kind.line)}` : ''}, ${kind.shape} pairs`]);
+    expect(card.count[0]).toMatch(new RegExp(`^${kind.pairs.toLocaleString('en-US')} pairs?, ${kind.signatures.toLocaleString('en-US')} signatures?$`));
+    const first = card.sentences[0];
     expect(first).toBe(sentences[0]);
     expect(first.startsWith(`${kind.subject}/`), first).toBe(true);
     expect(first).toContain(kind.line);
     // Of the lanes that it names, those that it says are wrong on the pair shown are marked in the table.
-    const said = (await card.locator('.kind-lanes .all').textContent())!.split(', ').map((lane) => `${kind.subject}/${lane}`);
+    const said = card.all[0].split(', ').map((lane) => `${kind.subject}/${lane}`);
     expect(said).toEqual(kind.lanes);
-    const here = card.locator('.kind-lanes .here');
-    const claimed = (await here.count()) ? (await here.textContent())!.split(', ').map((lane) => `${kind.subject}/${lane}`) : said;
-    partly += await here.count();
-    const targets = await card.locator('.verdicts thead th').allTextContents();
-    const marked = await card.locator('.verdicts tbody tr').evaluateAll((rows) => rows.flatMap((row) => [...row.querySelectorAll('td')].flatMap((cell, column) =>
-      (cell.className === 'bad' ? [{ name: row.querySelector('th')!.textContent!, column }] : []))));
-    const wrong = marked.map(({ name, column }) => `${name}/${targets[column]}`);
+    const claimed = card.here.length > 0 ? card.here[0].split(', ').map((lane) => `${kind.subject}/${lane}`) : said;
+    partly += card.here.length;
+    const wrong = card.marked.map(({ name, column }) => `${name}/${card.targets[column]}`);
     expect(wrong.sort()).toEqual(verdicts.filter((verdict) => verdict.wrong).map((verdict) => report.lanes[verdict.lane].id).sort());
     expect(claimed.length).toBeGreaterThan(0);
     expect(claimed).toEqual(said.filter((lane) => wrong.includes(lane)));
-    const [yes, of] = kind.settled, text = (await card.locator('.kind-lanes').textContent())!;
+    const [yes, of] = kind.settled, text = card.lanes[0];
     expect(text.includes('The cause is settled for')).toBe(yes < of);
     if (yes < of) expect(text).toContain(`settled for ${yes.toLocaleString('en-US')} of ${of.toLocaleString('en-US')} lanes looked at`);
   }

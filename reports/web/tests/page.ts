@@ -5,13 +5,14 @@ import { expect, test as base, type Locator, type Page } from '@playwright/test'
 import type { Costs, Report } from '../src/report';
 
 export const url = () => pathToFileURL(process.env.GRAZE_REPORT!).href;
+export const compare_url = () => pathToFileURL(process.env.GRAZE_COMPARE || process.env.GRAZE_REPORT!).href;
 
 export const test = base.extend<{ report: Report; costs: Costs | null; watched: void }>({
   watched: [async ({ page }, use) => {
     const fetched: string[] = [], said: string[] = [];
     page.on('request', (request) => {
       const asked = request.url().split('#')[0];
-      if (asked !== url() && !asked.startsWith('data:')) fetched.push(asked);
+      if (asked !== url() && asked !== compare_url() && !asked.startsWith('data:')) fetched.push(asked);
     });
     page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
     page.on('pageerror', (error) => said.push(`error: ${error.message}`));

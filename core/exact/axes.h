@@ -91,11 +91,11 @@ GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n,
 // The axes that decide. When D has a volume, its faces are square to 11 axes: the normals of a and b, and the products
 // of their edges. When it has none, they show whether its plane holds the origin. An axis too many does no harm.
 template <class Numbers>
-GRAZE_HD AxisEvidence look(const Triangles<Numbers>& t, bool verdict_only) {
+GRAZE_HD AxisEvidence look(const Triangles<Numbers>& t) {
   AxisEvidence seen;
   const typename Numbers::M zero(0);
   NormalOf<Numbers> n{zero, zero, zero};
-  for (int axis = 0; axis < 11 && !(verdict_only && seen.separated); ++axis) {
+  for (int axis = 0; axis < 11; ++axis) {
     const int i = axis / 3, j = axis % 3;
     const NormalOf<Numbers> along =
         axis == 10  ? normal<Numbers>(t.a)

@@ -43,7 +43,7 @@ GRAZE_HD void directions(const Vec<D> (&v)[3], unsigned mask, Vec<D>& first, Vec
 // b; their insides meet, so the common set, which is that of A and B, has dimension dim A + dim B - dim F.
 template <class Numbers>
 GRAZE_HD Relation by_axes(const Triangles<Numbers>& t) {
-  const AxisEvidence seen = look<Numbers>(t, false);
+  const AxisEvidence seen = look<Numbers>(t);
   VecOf<Numbers> v[4];
   const VecOf<Numbers> zero = t.a[0] - t.a[0];
   const auto dimension = [&](unsigned in_a, unsigned in_b) {

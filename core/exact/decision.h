@@ -2,7 +2,7 @@
 // The steps of the exact decision: the screen, a shared vertex, and the smallest kind of numbers that holds the pair.
 #pragma once
 
-#include "core/exact/by_axes.h"
+#include "core/exact/axes.h"
 #include "core/exact/by_planes.h"
 #include "core/exact/numbers.h"
 #include "core/exact/results.h"
@@ -12,16 +12,81 @@
 
 namespace graze::exact::detail {
 
+// A vertex in the projection that keeps a plane's triangles in shape: along an axis that is not square to its normal.
+template <class D>
+struct Flat {
+  D x, y;
+};
+
+template <class D, class M>
+GRAZE_HD Flat<D> flatten(const Vec<D>& v, const Vec<M>& n) {
+  const bool along_z = !(n.z == M(0)), along_x = !(n.x == M(0));
+  return {along_z ? v.x : along_x ? v.y : v.z, along_z ? v.y : along_x ? v.z : v.x};
+}
+
+// Whether an edge of p, which turns left or right, has all of q strictly on its other side.
+template <class M, class D>
+GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]) {
+  const M zero(0);
+  bool parts = false;
+  for (int i = 0; i < 3; ++i) {
+    const Flat<D>&from = p[i], &to = p[i == 2 ? 0 : i + 1];
+    const D x = to.x - from.x, y = to.y - from.y;
+    bool all = true;
+    for (const Flat<D>& v : q) {
+      const M side = M(x) * (v.y - from.y) - M(y) * (v.x - from.x);
+      all = all && (left ? side < zero : side > zero);
+    }
+    parts = parts || all;
+  }
+  return parts;
+}
+
+// Requires: coplanar triangles with area; n and m are their normals.
+template <class Numbers>
+GRAZE_HD bool coplanar_meet(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, const NormalOf<Numbers>& m) {
+  using M = typename Numbers::M;
+  Flat<typename Numbers::D> a[3], b[3];
+  for (int i = 0; i < 3; ++i) {
+    a[i] = flatten(t.a[i], n);
+    b[i] = flatten(t.b[i], n);
+  }
+  const M zero(0);
+  const M of_a = !(n.z == zero)   ? n.z
+                 : !(n.x == zero) ? n.x
+                                  : n.y,
+          of_b = !(n.z == zero)   ? m.z
+                 : !(n.x == zero) ? m.x
+                                  : m.y;
+  return !edge_parts<M>(a, of_a > zero, b) && !edge_parts<M>(b, of_b > zero, a);
+}
+
+// Requires: two segments or points.
+template <class Numbers>
+GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
+  using T = typename Numbers::T;
+  const auto along = [](const VecOf<Numbers>(&v)[3]) {  // zero of a point
+    const VecOf<Numbers> edge = v[1] - v[0], zero = v[0] - v[0];
+    return edge.x == zero.x && edge.y == zero.y && edge.z == zero.z ? v[2] - v[0] : edge;
+  };
+  const NormalOf<Numbers> n = cross<typename Numbers::M>(along(t.a), along(t.b));
+  if (!(dot<T>(n, t.b[0] - t.a[0]) == T(0))) return false;
+  AxisEvidence seen;
+  look_flat<Numbers>(t, n, seen);
+  return !seen.separated;
+}
+
 // Requires: the numbers hold the pair's grid, which has this exponent.
 template <class Numbers>
 GRAZE_HD bool decide(const float* a, const float* b, int exponent) {
   const Triangles<Numbers> t = triangles<Numbers>(a, b, exponent);
   const Finding found = by_planes(t);
-  if (found == Finding::unsure) return !look<Numbers>(t, true).separated;
+  if (found == Finding::unsure) return segments_meet(t);
   if (found != Finding::coplanar) return found != Finding::disjoint;
-  const NormalOf<Numbers> n = normal<Numbers>(t.a);
-  AxisEvidence seen;
-  look_flat<Numbers>(t, is_zero(n) ? normal<Numbers>(t.b) : n, seen);
+  const NormalOf<Numbers> n = normal<Numbers>(t.a), m = normal<Numbers>(t.b);
+  if (!is_zero(n) && !is_zero(m)) return coplanar_meet(t, n, m);
+  AxisEvidence seen;  // a segment or a point in the plane of a triangle
+  look_flat<Numbers>(t, is_zero(n) ? m : n, seen);
   return !seen.separated;
 }
 

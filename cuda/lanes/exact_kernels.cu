@@ -12,9 +12,8 @@ namespace {
 using exact::Stage;
 using exact::detail::Finding;
 
-__global__ void __launch_bounds__(kThreads, 3)
-    decide_most(DevicePairs pairs, Places small, Places left, std::uint32_t* intersects, std::uint32_t* declined,
-                unsigned long long* stages) {
+__global__ void __launch_bounds__(kThreads, 3) decide_most(DevicePairs pairs, Places left, std::uint32_t* intersects,
+                                                           std::uint32_t* declined, unsigned long long* stages) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
   bool finite = true;
   Finding found = Finding::disjoint;
@@ -24,7 +23,7 @@ __global__ void __launch_bounds__(kThreads, 3)
     for (float x : c) finite = finite && is_finite(x);
     if (finite) found = exact::detail::screen(c, c + 9);
     if (found == Finding::unsure && exact::detail::shared_vertex(c, c + 9) >= 0) found = Finding::intersects;
-    if (found == Finding::unsure) (SmallNumbers::hold(exact::detail::grid_of(c, c + 9)) ? small : left).add(i);
+    if (found == Finding::unsure) left.add(i);
   }
   const std::uint32_t yes_word = __ballot_sync(0xffffffffu, found == Finding::crosses || found == Finding::intersects);
   const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
@@ -71,7 +70,7 @@ void DeviceExact::decide(DevicePairs pairs, std::uint32_t* intersects, std::uint
                          unsigned long long* stages, cudaStream_t stream) {
   if (pairs.count == 0) return;
   empty_lists(pairs.count, stream);
-  decide_most<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], left_[1], intersects, declined, stages);
+  decide_most<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], intersects, declined, stages);
   decide_listed(pairs, intersects, stages, stream);
 }
 

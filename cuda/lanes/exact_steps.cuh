@@ -26,8 +26,6 @@ __device__ void count(unsigned long long* stages, Stage stage, std::uint32_t pai
 
 __device__ void set_bit(std::uint32_t* words, std::uint32_t i) { atomicOr(&words[i / 32], 1u << i % 32); }
 
-using SmallNumbers = NumberKinds<exact::detail::SingleNumbers, exact::detail::DoubleNumbers>;
-
 // The decision in the smallest of the kinds that holds the grid.
 template <class Kinds>
 __device__ bool decide_in(const float* c, const Grid& grid) {
@@ -103,13 +101,12 @@ void launch_large_steps(const Pairs& pairs, Places first, Places second, std::ui
   check(cudaGetLastError());
 }
 
-// Decides the pairs of the first list, and those of the second one, which no small numbers hold; the other ones are for
-// what the steps leave to each other, and empty.
+// Decides the pairs of the first list; the other ones are for what the steps leave to each other, and empty.
 template <class Pairs>
 void launch_exact_steps(const Pairs& pairs, const Places (&left)[4], std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {
   using namespace exact::detail;
-  decide_by<SmallNumbers, Stage::doubles>
+  decide_by<NumberKinds<SingleNumbers, DoubleNumbers>, Stage::doubles>
       <<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);
   decide_by<NumberKinds<ResidueNumbers>, Stage::int128>
       <<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);

@@ -6,18 +6,11 @@ import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import AxeBuilder from '@axe-core/playwright';
 import { expect, test as base, type Page } from '@playwright/test';
-import { pixels } from './page';
+import { pixels, without_webgl } from './page';
 
 const file = () => process.env.GRAZE_VIEW!;
 const url = () => pathToFileURL(file()).href;
 const kCells = 256;
-
-function without_webgl() {
-  const real = HTMLCanvasElement.prototype.getContext;
-  HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) {
-    return kind.startsWith('webgl') ? null : (real as Function).call(this, kind, ...rest);
-  } as typeof real;
-}
 
 // Without WebGL, which takes most of the time where there is no GPU, but in the tests that ask for it.
 const test = base.extend<{ webgl: boolean; viewer: Page }>({

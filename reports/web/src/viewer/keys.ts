@@ -11,7 +11,7 @@ const kPressed = 'button, summary, a, input';  // elements with a use of their o
 // The key's own name, whatever Shift and Alt make of it.
 const base = (event: KeyboardEvent) => ({ BracketLeft: '[', BracketRight: ']' })[event.code] ?? (event.key.length === 1 ? event.key.toLowerCase() : event.key);
 
-export function keys(all: Key[]) {
+export function keys(all: Key[], active: () => boolean) {
   const table = (rows: Key[]) => rows.map(({ shown, does }) => h('tr', {}, h('th', { scope: 'row' }, shown.split(' ').map((key, i) => [i ? ' ' : '', h('kbd', {}, key)])), h('td', {}, does)));
   const on = h('input', { type: 'checkbox', checked: true });
   const help = h('dialog', { id: 'help', 'aria-labelledby': 'help-title' }, h('h2', { id: 'help-title' }, 'Keys'),
@@ -19,7 +19,7 @@ export function keys(all: Key[]) {
     h('table', { class: 'plain' }, h('tbody', {}, h('tr', {}, h('th', { colspan: 2, scope: 'colgroup' }, 'As in 2012')), table(all.filter((key) => key.of_2012)), h('tr', {}, h('th', { colspan: 2, scope: 'colgroup' }, 'New')), table(all.filter((key) => !key.of_2012)))),
     h('label', {}, on, ' keys of one letter act'), h('form', { method: 'dialog' }, h('button', {}, 'Close')));
   document.addEventListener('keydown', (event) => {
-    if (event.ctrlKey || event.metaKey || event.defaultPrevented) return;
+    if (!active() || event.ctrlKey || event.metaKey || event.defaultPrevented) return;
     const target = event.target as Element, name = base(event), found = all.find((key) => key.keys.includes(name));
     if (!found || target.matches(kTyping) || (help.open && name !== 'h')) return;
     if (found.on_board && (target.matches(kPressed) || !(target.matches('body, .board')))) return;

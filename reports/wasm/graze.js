@@ -10,7 +10,7 @@
 /** @typedef {{ sign: -1 | 0 | 1, least: number, most: number, ulp: number }} Margin 1: disjoint, and at least `least`, at most `most` apart. -1: so deep. 0: they touch. ulp: that of the largest coordinate. */
 /** @typedef {[number, number, number]} Point */
 /** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]] }} Drawing line: of both planes; sections: of it, by a and by b. */
-/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': a value (left). held: in the lane; holds: with 113 bits. */
+/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, result: number, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': a value (left). held: in the lane; holds: with 113 bits. result: which of the run's computed numbers left is, -1 for none. */
 /** @typedef {{ line: string, from: string }} Site An operation with one rounding where the source has two, and what it is inlined into. */
 /** @typedef {ReturnType<typeof graze_of>} Graze */
 
@@ -201,10 +201,10 @@ function graze_of(exports) {
       const at = exports.steps_at(), data = view();
       const steps = Array.from({ length: count }, (_, i) => {
         const step = at + 64 * i;
-        const [file, line, site, compared, relation, held, holds] = Array.from({ length: 7 }, (_, k) => data.getInt32(step + 4 * k, true));
+        const [file, line, site, compared, relation, held, holds, result] = Array.from({ length: 8 }, (_, k) => data.getInt32(step + 4 * k, true));
         const [left, right, exactLeft, exactRight] = [32, 40, 48, 56].map((k) => data.getFloat64(step + k, true));
         return { line: `${file_at(file)}:${line}`, site: site < 0 ? '' : kSites[site], relation: compared ? kRelations[relation] : '',
-          held: held !== 0, holds: holds !== 0, left, right, exactLeft, exactRight };
+          held: held !== 0, holds: holds !== 0, result, left, right, exactLeft, exactRight };
       });
       return { own: exports.evidence() < 2, steps };
     },

@@ -35,7 +35,7 @@ struct TruthOut {
 
 struct StepOut {
   const char* file;
-  std::int32_t line, site, compared, relation, held, holds;
+  std::int32_t line, site, compared, relation, held, holds, result;
   double left, right, exact_left, exact_right;
 };
 std::vector<StepOut> steps_out;
@@ -192,7 +192,7 @@ GRAZE_EXPORT(steps) int steps(int lane) {
     const bool alike = compare_numbers(right.left, right.right) == 0;
     steps_out.push_back({seen.where.file_name(), static_cast<std::int32_t>(seen.where.line()),
                          seen.site ? static_cast<std::int32_t>(*seen.site) : -1, seen.compared,
-                         static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left, seen.right,
+                         static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left_result, seen.left, seen.right,
                          shown(right.left), alike ? shown(right.left) : shown(right.right)});
   }
   return static_cast<int>(steps_out.size());

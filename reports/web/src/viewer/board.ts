@@ -51,6 +51,8 @@ export function board(model: Model, fields: () => Field | null) {
     old ??= drawn;
     drawn = null;
     note.textContent = now.shape.note;
+    contact_key.hidden = now.shape.contact.length === 0;
+    line_key.hidden = now.shape.line.length === 0;
     centre_choice.querySelector('select')!.value = model.centre;
     ground.setAttribute('aria-label', `Two triangles, ${truth.verdict}, contact ${truth.contact}. Arrow keys turn and magnify; h lists all keys.`);
     draw();
@@ -133,10 +135,11 @@ export function board(model: Model, fields: () => Field | null) {
     const box = h('button', { type: 'button', 'data-shows': what, onclick: () => model.set({ shows: { ...model.shows, [what]: !model.shows[what] } }) }, what);
     return { what, box };
   });
+  const contact_key = h('span', { class: 'key-contact' }, 'contact'), line_key = h('span', { class: 'key-line' }, 'the planes’ line, with both sections');
   const element = h('figure', { class: 'stage' }, surround,
     h('div', { class: 'stage-tools' }, centre_choice, button('÷16', 'Magnify less', () => magnify(1 / 16)), button('×16', 'Magnify', () => magnify(16)), button('Reset', 'Reset the view', reset)),
     h('div', { class: 'chips', role: 'group', 'aria-label': 'Shown in the drawing' }, toggles.map(({ box }) => box)),
-    h('figcaption', {}, h('span', { class: 'key-a' }, 'a'), h('span', { class: 'key-b' }, 'b'), h('span', { class: 'key-contact' }, 'contact'), h('span', { class: 'key-line' }, 'the planes’ line, with both sections'), note));
+    h('figcaption', {}, h('span', { class: 'key-a' }, 'a'), h('span', { class: 'key-b' }, 'b'), contact_key, line_key, note));
   return {
     element, turn, magnify, reset,
     update: () => {

@@ -46,5 +46,6 @@ export function matrix(model: Model) {
     if (flipped.length) told.textContent = `${flipped.slice(0, kMostSaid).join('; ')}${flipped.length > kMostSaid ? `; and ${flipped.length - kMostSaid} more` : ''}.`;
   }
   const key = h('p', { class: 'small' }, h('b', { class: 'bad' }, '✗'), ' wrong, ', h('u', {}, '≠'), ' not what the CPU says. Press a verdict to learn why.');
-  return { element: h('div', {}, table, key, told), update };
+  const asked = h('p', { class: 'small' }, 'Do the triangles share a point? What each lane says, an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU:');
+  return { element: h('div', { class: 'verdicts-of-all' }, asked, table, key), told, update };
 }

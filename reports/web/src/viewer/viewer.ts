@@ -132,10 +132,12 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     say(note ?? '');
   }
   return {
-    head: [name, h('div', { class: 'chips' }, tool('Undo', () => model.travel('past') || say('nothing to undo')), tool('Redo', () => model.travel('future') || say('nothing to redo')), tool('CPU or GPU', other_processor), tool('Random triangles', () => many.again()), tool('Keys (h)', () => pressed.toggle())),
-      h('p', { class: 'small', id: 'replayed' }, said)],
-    body: [h('div', { class: 'column' }, h('div', { class: 'seen' }, drawing.element, many.element, message, from.element), typed.element, copied.element),
-      h('div', { class: 'column' }, h('div', { class: 'said' }, truth, summary, verdicts.element), because.element, ulps.element,
+    head: [name, h('p', { class: 'small', id: 'replayed' }, said)],
+    body: [
+      h('div', { class: 'column' }, h('div', { class: 'seen' }, drawing.element, many.element, verdicts.told, message),
+        h('div', { class: 'tools' }, h('div', { class: 'chips' }, tool('Undo', () => model.travel('past') || say('nothing to undo')), tool('Redo', () => model.travel('future') || say('nothing to redo')), tool('CPU or GPU', other_processor), tool('Random triangles', () => many.again()), tool('Keys (h)', () => pressed.toggle())), from.element),
+        typed.element, copied.element),
+      h('div', { class: 'column' }, h('div', { class: 'said' }, truth, summary), verdicts.element, because.element, ulps.element,
         h('section', { id: 'policy', 'aria-labelledby': 'policy-title' }, h('h2', { id: 'policy-title' }, 'Tolerances'), policy(model)),
         h('p', { class: 'small', id: 'evidence' }, `CUDA lanes: ${data.evidence}; here in WebAssembly.`))],
     help: pressed.help,

@@ -117,6 +117,37 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
   expect(compared).toBeGreaterThan(0);
 });
 
+test('ranges on a line are those by which the lane decides, and the axis is the margin’s', async ({ viewer }) => {
+  const seen: Record<string, number> = {};
+  for (let pair = 0; pair < 2; ++pair) {
+    const before = await name(viewer);
+    await viewer.keyboard.press('Shift+n');
+    await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
+    const said = await viewer.evaluate(async () => {
+      const all: { lane: string; verdict: string; text: string }[] = [];
+      for (const cell of document.querySelectorAll<HTMLElement>('[data-lane]')) {
+        const lane = cell.dataset.lane!;
+        if (/nofma|guigue|exact/.test(lane)) continue;
+        cell.click();
+        await new Promise((done) => setTimeout(done, 100));
+        all.push({ lane, verdict: cell.textContent!.replace(/[^a-z]/g, ''), text: document.querySelector('#ranges .compared')?.textContent ?? '' });
+      }
+      return all;
+    });
+    for (const { lane, verdict, text } of said) {
+      const subject = lane.split('/')[0];
+      if (!text) continue;  // decided before it came to ranges, or compares none
+      expect(text).toContain(`In ${lane} the two ranges `);
+      expect(/^In \S+ the two ranges are \S+ apart;/.test(text), `${lane} says ${verdict}: ${text}`).toBe(verdict === 'disjoint');
+      seen[subject] = (seen[subject] ?? 0) + 1;
+    }
+    const [, margin] = /(?:disjoint|intersects), (?:contact: \w+, )?([\d.]+(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?) \(/.exec((await viewer.locator('#truth').textContent())!) ?? [];
+    if (margin) await expect(viewer.locator('#ranges')).toContainText(new RegExp(`(ends|by) ${margin}( before b begins)?; that is the margin`));
+  }
+  expect(Object.keys(seen).sort()).toEqual(['interval_overlap', 'moller_1997', 'projected_sat', 'separating_axes']);
+  expect(await viewer.locator('#ranges svg rect').count()).toBeGreaterThan(3);
+});
+
 test('every key does what the help says', async ({ viewer }) => {
   test.slow();
   const board = viewer.locator('#board');

@@ -14,6 +14,7 @@ import { keys } from './keys';
 import { map } from './map';
 import { matrix } from './matrix';
 import { kCentres, Model } from './model';
+import { on_a_line } from './on_a_line';
 import { policy } from './policy';
 import { sources } from './sources';
 import { why } from './why';
@@ -61,7 +62,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     later = window.setTimeout(update_later, 60);
   });
   const verdicts = matrix(model), because = why(model), many = field(model, data, () => update_drawing()), drawing = board(model, many.current), typed = coordinates(model, say),
-    ulps = map(model, module), from = sources(model, data, say), copied = copies(model, around.link);
+    ulps = map(model, module), line = on_a_line(model), from = sources(model, data, say), copied = copies(model, around.link);
   const name = h('h1', {}), truth = h('p', { class: 'truth', id: 'truth' }), summary = h('p', { id: 'summary' });
 
   // At once: what is said. With the next frame: what is drawn. After a moment of rest: what takes longer.
@@ -83,6 +84,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
   }
   function update_later() {
     because.update();
+    line.update();
     copied.update();
     ulps.update();
     if (around.active()) around.keep(model);
@@ -119,7 +121,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     ...['x', 'y', 'z'].map((key, k) => ({ keys: [key], shown: key, does: `choose its ${key}`, press: () => model.set({ chosen: model.vertex + k }) })),
     { keys: ['['], shown: '[', does: 'the chosen coordinate an ulp down; with Shift 256, with Alt 65,536', press: (event) => model.step(-by(event)) },
     { keys: [']'], shown: ']', does: 'the same, up', press: (event) => model.step(by(event)) },
-    { keys: ['f'], shown: 'f', does: 'what is in the middle: both triangles, the chosen vertex, the contact', press: () => model.set({ centre: kCentres[(kCentres.indexOf(model.centre) + 1) % kCentres.length] }) },
+    { keys: ['f'], shown: 'f', does: 'what is in the middle: both triangles, the chosen vertex, the contact or gap', press: () => model.set({ centre: kCentres[(kCentres.indexOf(model.centre) + 1) % kCentres.length] }) },
     { keys: ['Home'], shown: 'Home', does: 'the view as it was', on_board: true, press: () => drawing.reset() },
     { keys: ['u'], shown: 'u', does: 'undo', press: () => model.travel('past') || say('nothing to undo') },
     { keys: ['r'], shown: 'r', does: 'redo', press: () => model.travel('future') || say('nothing to redo') },
@@ -137,7 +139,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
       h('div', { class: 'column' }, h('div', { class: 'seen' }, drawing.element, many.element, verdicts.told, message),
         h('div', { class: 'tools' }, h('div', { class: 'chips' }, tool('Undo', () => model.travel('past') || say('nothing to undo')), tool('Redo', () => model.travel('future') || say('nothing to redo')), tool('CPU or GPU', other_processor), tool('Random triangles', () => many.again()), tool('Keys (h)', () => pressed.toggle())), from.element),
         typed.element, copied.element),
-      h('div', { class: 'column' }, h('div', { class: 'said' }, truth, summary), verdicts.element, because.element, ulps.element,
+      h('div', { class: 'column' }, h('div', { class: 'said' }, truth, summary), verdicts.element, because.element, line.element, ulps.element,
         h('section', { id: 'policy', 'aria-labelledby': 'policy-title' }, h('h2', { id: 'policy-title' }, 'Tolerances'), policy(model)),
         h('p', { class: 'small', id: 'evidence' }, `CUDA lanes: ${data.evidence}; here in WebAssembly.`))],
     help: pressed.help,

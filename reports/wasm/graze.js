@@ -198,7 +198,8 @@ function graze_of(exports) {
     /**
      * The comparisons of a lane without a policy, in order, and the values that its policy would see; null where they are not known.
      * own: whether the values are known to be the lane's; otherwise a rule of contraction gave them, and the lane's verdict.
-     * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[] } | null}
+     * with_113_bits: what the algorithm says in such numbers throughout.
+     * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[], with_113_bits: Verdict } | null}
      */
     steps(pair, id) {
       set_pair(pair);
@@ -212,7 +213,7 @@ function graze_of(exports) {
         return { line: `${file_at(file)}:${line}`, site: site < 0 ? '' : kSites[site], relation: compared ? kRelations[relation] : '',
           held: held !== 0, holds: holds !== 0, result, left, right, exactLeft, exactRight };
       });
-      return { own: exports.evidence() < 2, steps };
+      return { own: exports.evidence() < 2, steps, with_113_bits: kVerdicts[exports.with_113_bits()] };
     },
 
     /**

@@ -2,17 +2,17 @@
 // Why the chosen lane says what it says: where its run parts from that of the CPU, or from numbers of 113 bits.
 import { h, type Child } from '../dom';
 import { apart, differing } from './apart';
-import type { Step } from './graze.js';
+import type { Graze, Step, Verdict } from './graze.js';
 import type { Model } from './model';
 import { code, compared, outcome, quoted } from './numbers';
 
-function beside_exact(run: Step[]): Child[] {
+function beside_exact(run: Step[], says: Verdict, with_113_bits: Verdict): Child[] {
   const wrong = run.find((step) => step.relation && step.held !== step.holds);
-  if (!wrong) return ['Every comparison goes as it does with 113 bits: the ', h('strong', {}, 'logic'), ' of the algorithm is wrong here, not rounding.'];
+  if (with_113_bits === says || !wrong) return ['With 113 bits the algorithm says ', h('strong', {}, with_113_bits), ' as well: its ', h('strong', {}, 'logic'), ' is wrong here, not rounding.'];
   const numbers = [wrong.left, wrong.right, wrong.exactLeft, wrong.exactRight];
   const lost = numbers.slice(0, 2).some((x) => !Number.isFinite(x)) ? 'the numbers left their range, by overflow or underflow'
     : numbers.slice(0, 2).every((x) => x === 0) && numbers.slice(2).some((x) => x !== 0) ? 'lost to zero, by underflow or in a difference' : 'rounding';
-  return ['The first comparison that goes wrong is at ', quoted(wrong.line), 'The lane computes ', code(compared(wrong)), ` (${outcome(wrong.held)}), with 113 bits it is `,
+  return ['With 113 bits the algorithm says ', h('strong', {}, with_113_bits), '. The first comparison that goes otherwise in the lane is at ', quoted(wrong.line), 'The lane computes ', code(compared(wrong)), ` (${outcome(wrong.held)}), with 113 bits it is `,
     code(compared(wrong, true)), ` (${outcome(wrong.holds)}): `, h('strong', {}, lost), '. ', code('graze explain'), ' says which comparison decides.'];
 }
 
@@ -29,20 +29,20 @@ export function why(model: Model) {
   const text = h('div', { class: 'because' }), more = h('div', {}), title = h('h2', { id: 'why-title' });
 
   // Of a lane alone.
-  function alone(run: Step[] | undefined): Child[] {
-    const { lane, decided, policy } = model;
-    if (decided.verdicts[lane] === null) return ['This lane has no such policy.'];
+  function alone(known: ReturnType<Graze['steps']>): Child[] {
+    const { lane, decided, policy } = model, run = known?.steps, says = decided.verdicts[lane];
+    if (says === null) return ['This lane has no such policy.'];
     if (decided.truth.verdict === 'declined') return ['A coordinate is not finite.'];
     if (!run) return [lane.startsWith('exact/') ? 'It is the exact decision: integers of as many bits as it takes.' : 'Its steps are not known.'];
     const wrong = model.wrong(lane) && !policy;
     return [policy ? 'Without the policy: ' : h('strong', { class: wrong ? 'bad' : '' }, `It is ${wrong ? 'wrong' : 'right'}. `),
-      wrong ? beside_exact(run) : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all go as they do with 113 bits, but the verdict stands.' : 'go as they do with 113 bits.'}`];
+      wrong ? beside_exact(run, says, known!.with_113_bits) : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all go as they do with 113 bits, but the verdict stands.' : 'go as they do with 113 bits.'}`];
   }
 
   function update() {
     const { lane, graze, pair, decided, policy } = model, gpu = policy ? undefined : differing(model, lane), known = graze.steps(pair, lane);
     title.replaceChildren(...(gpu ? ['Why do CPU and GPU differ?'] : ['Why does ', code(lane), ` say ${decided.verdicts[lane] ?? 'nothing'}?`]));
-    text.replaceChildren(h('div', {}, gpu ? apart(model, gpu) : h('p', {}, alone(known?.steps),
+    text.replaceChildren(h('div', {}, gpu ? apart(model, gpu) : h('p', {}, alone(known),
       known && !known.own && ' (The numbers are those of a rule of contraction that gives the lane’s verdict; they may not be the lane’s own.)')));
     const open = more.querySelector('details')?.open ?? false;
     more.replaceChildren(...(known ? [steps_table(known.steps)] : []));

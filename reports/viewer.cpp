@@ -96,7 +96,7 @@ std::string viewer_page(const Viewed& viewed) {
   for (const ViewedPair& one : viewed.pairs)
     pairs.push_back({{"name", one.name}, {"bits", bits_of(coordinates(one.pair), kCoordinates)}});
   for (const auto& triangle : viewed.triangles) triangles.push_back(bits_of(&triangle[0].x, 9));
-  Json data = {{"format", 1}, {"title", viewed.title}, {"pairs", pairs}, {"triangles", triangles}};
+  Json data = {{"format", 1}, {"title", viewed.title}, {"pairs", pairs}, {"triangles", triangles}, {"opens", viewed.opens_with_triangles ? "triangles" : "pair"}};
   data.update(viewer_checks());
   return with_data(kTemplate, "view", data);
 }

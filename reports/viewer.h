@@ -19,7 +19,8 @@ struct ViewedPair {
 struct Viewed {
   std::string title;              // of the pairs' list
   std::vector<ViewedPair> pairs;  // none: the special cases of 2012
-  std::vector<std::array<Vec3<float>, 3>> triangles;  // of a mesh, to be seen against the first triangle of a pair
+  std::vector<std::array<Vec3<float>, 3>> triangles;  // of a mesh or a query, to be seen against the first triangle of a pair
+  bool opens_with_triangles = false;  // all of them at once, rather than a pair
 };
 
 // What keeps the page small.

@@ -106,6 +106,17 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
     expect(variant).toBe('cuda-fma');
     await expect(viewer.locator('.because')).toContainText(new RegExp(`^${subject} in float(32|64) says \\w+ on the CPU \\((right|wrong)\\) and ${says} on the GPU`));
     const explained = JSON.parse(execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', chosen, '--json'], { encoding: 'utf8' })) as { lanes: { lane: string; cause: string; contractions: { at: string }[] }[] };
+    // A lane of the CPU that is wrong by logic is said to be so, and no other.
+    const causes = JSON.parse(execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', '*/cpu', '--json'], { encoding: 'utf8' })) as typeof explained;
+    for (const { lane: wrong, cause } of causes.lanes.slice(0, 4)) {
+      await verdict(viewer, wrong).click();
+      await expect(viewer.locator('#why-title')).toContainText(/^Why do(es)? /);
+      if (/Why do CPU/.test((await viewer.locator('#why-title').textContent())!)) continue;
+      await expect(viewer.locator('#why-title')).toContainText(wrong);
+      expect(/its logic is wrong here/.test((await viewer.locator('.because').textContent())!), `${wrong}: ${cause}`).toBe(cause === 'logic');
+    }
+    await verdict(viewer, chosen).click();
+    await expect(viewer.locator('#why-title')).toContainText('Why do CPU and GPU differ?');
     const lane = explained.lanes.find((one) => one.lane === chosen);
     if (!lane) continue;  // right on the GPU, wrong on the CPU
     expect(lane.cause, chosen).toBe('contraction');
@@ -146,6 +157,30 @@ test('ranges on a line are those by which the lane decides, and the axis is the 
   }
   expect(Object.keys(seen).sort()).toEqual(['interval_overlap', 'moller_1997', 'projected_sat', 'separating_axes']);
   expect(await viewer.locator('#ranges svg rect').count()).toBeGreaterThan(3);
+});
+
+test('a query is shown with all triangles, its hits and what a lane gets wrong', async ({ page }) => {
+  test.skip(!file(), 'this build has no viewer');
+  const folder = dirname(file()), kSide = 24, at = (i: number, j: number) => [i, j, Math.fround(0.3 * Math.sin(i) * Math.cos(0.7 * j))];
+  const vertices = Array.from({ length: (kSide + 1) ** 2 }, (_, v) => `v ${at(v % (kSide + 1), Math.floor(v / (kSide + 1))).join(' ')}`);
+  const faces = Array.from({ length: kSide ** 2 }, (_, c) => 1 + (c % kSide) + Math.floor(c / kSide) * (kSide + 1)).map((v) => `f ${v} ${v + 1} ${v + kSide + 2}\nf ${v} ${v + kSide + 2} ${v + kSide + 1}`);
+  writeFileSync(join(folder, 'hills.obj'), [...vertices, ...faces, ''].join('\n'));
+  writeFileSync(join(folder, 'ref.txt'), '2 3 -2  21 5 -2  11 22 3\n');
+  const graze = (...args: string[]) => execFileSync(process.env.GRAZE!, args, { cwd: folder, encoding: 'utf8' });
+  graze('view', 'ref.txt', 'hills.obj', '--out', 'query.html');
+  await page.addInitScript(without_webgl);
+  await page.goto(pathToFileURL(join(folder, 'query.html')).href);
+  const hits = (lane: string) => (JSON.parse(graze('query', 'ref.txt', 'hills.obj', '--executor', 'one-core', '--lanes', lane, '--json')) as { hits: number }).hits, exact = hits('exact');
+  expect(exact).toBeGreaterThan(10);
+  await expect(page.locator('#field')).toContainText(`1,152 triangles against a, the reference: exact/f32/cpu hits ${exact}, wrong on 0 (outlined)`);
+  await expect(page.locator('#board svg polygon[style*="--hit"]')).toHaveCount(exact);
+  await verdict(page, 'projected_sat/f32/cpu').click();  // wrong by logic
+  await expect(page.locator('#field')).toContainText(`projected_sat/f32/cpu hits ${hits('projected_sat/f32/cpu').toLocaleString('en-US')}, wrong on `);
+  const wrong = Number(/wrong on ([\d,]+)/.exec((await page.locator('#field').textContent())!)![1].replace(',', ''));
+  expect(wrong).toBe(hits('projected_sat/f32/cpu') - exact);  // it only ever says too often that they meet
+  await expect(page.locator('#board svg polyline[style*="--bad"]')).toHaveCount(Math.min(wrong, 500));
+  await page.locator('button', { hasText: 'Take a wrong one' }).click();
+  await expect(page.locator('#why')).toContainText('logic');
 });
 
 test('every key does what the help says', async ({ viewer }) => {

@@ -54,6 +54,8 @@ export function board(model: Model, fields: () => Field | null) {
     contact_key.hidden = now.shape.contact.length === 0;
     witness_key.hidden = !now.shape.marks?.some(({ colour }) => colour === '--witness');
     witness_key.textContent = truth.verdict === 'disjoint' ? 'nearest points' : 'shortest push of b that parts them';
+    b_key.hidden = fields() !== null;
+    field_keys.forEach((key) => (key.hidden = fields() === null));
     shadow_key.hidden = fields() !== null || !model.lane.startsWith('projected_sat/');
     line_key.hidden = now.shape.line.length === 0;
     centre_choice.querySelector('select')!.value = model.centre;
@@ -139,11 +141,12 @@ export function board(model: Model, fields: () => Field | null) {
     return { what, box };
   });
   const contact_key = h('span', { class: 'key-contact' }, 'contact'), line_key = h('span', { class: 'key-line' }, 'the planes’ line, with both sections');
+  const b_key = h('span', { class: 'key-b' }, 'b'), field_keys = [['hit', 'hit'], ['other', 'not hit'], ['bad', 'outlined: wrong']].map(([colour, text]) => h('span', { class: `key-${colour}` }, text));
   const witness_key = h('span', { class: 'key-witness' }), shadow_key = h('span', { class: 'key-shadow' }, 'b on the plane of a, as projected_sat sees it');
   const element = h('figure', { class: 'stage' }, surround,
     h('div', { class: 'stage-tools' }, centre_choice, button('÷16', 'Magnify less', () => magnify(1 / 16)), button('×16', 'Magnify', () => magnify(16)), button('Reset', 'Reset the view', reset)),
     h('div', { class: 'chips', role: 'group', 'aria-label': 'Shown in the drawing' }, toggles.map(({ box }) => box)),
-    h('figcaption', {}, h('span', { class: 'key-a' }, 'a'), h('span', { class: 'key-b' }, 'b'), contact_key, line_key, witness_key, shadow_key, note));
+    h('figcaption', {}, h('span', { class: 'key-a' }, 'a'), b_key, field_keys, contact_key, line_key, witness_key, shadow_key, note));
   return {
     element, turn, magnify, reset,
     update: () => {

@@ -11,7 +11,8 @@ export interface Stored { evidence: string; replay: Replay }  // of the build; `
 export interface ViewData extends Stored {
   format: number; title: string;
   pairs: { name: string; bits: string }[];
-  triangles: string[];  // of a mesh, 9 words each; may be empty
+  triangles: string[];  // of a mesh or a query, 9 words each; may be empty
+  opens?: 'pair' | 'triangles';  // with all of these at once, against the first of the pair
 }
 
 export function from_bits(bits: string): Coordinates {

@@ -6,9 +6,9 @@ import { from_bits, type ViewData } from './data';
 import { fragment_of, from_fragment, special_cases, type Model } from './model';
 import { make_ready, no_verdicts, viewer, type First } from './viewer';
 
-function first_of({ pairs }: ViewData): First {
+function first_of({ pairs, opens }: ViewData): First {
   const linked = from_fragment();
-  return linked ? { name: 'the pair of a link', ...linked } : pairs.length ? { name: pairs[0].name, pair: from_bits(pairs[0].bits) } : special_cases[0];
+  return linked ? { name: 'the pair of a link', ...linked } : pairs.length ? { name: pairs[0].name, pair: from_bits(pairs[0].bits), lane: opens === 'triangles' ? 'exact/f32/cpu' : '' } : special_cases[0];
 }
 
 async function start() {

@@ -76,7 +76,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   if (shows.planes) {
     [a, b].forEach((corners, i) => marks.push({ colour: i ? '--triangle-b' : '--triangle-a', triangles: fan(cut(plane(corners))), opacity: 0.18 }));
   }
-  drawing.sections.forEach((ends, i) => ends.length === 2 && marks.push({ colour: i ? '--triangle-b-edge' : '--triangle-a-edge', lines: [cut(ends.map(place))], width: i ? 3 : 7 }));
+  if (!field) drawing.sections.forEach((ends, i) => ends.length === 2 && marks.push({ colour: i ? '--triangle-b-edge' : '--triangle-a-edge', lines: [cut(ends.map(place))], width: i ? 3 : 7 }));
   if (!field && witness.length) marks.push({ colour: '--witness', lines: [cut(witness.map(place))], width: 3 });
   if (!field && model.lane.startsWith('projected_sat/')) {
     const shadow = shadow_of(points).map(place);

@@ -150,6 +150,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     // Once its elements are in the page.
     begin() {
       choose(first);
+      if (data.opens === 'triangles') many.all();
       update_drawing();
       update_later();
       document.getElementById('board')!.focus({ preventScroll: true });

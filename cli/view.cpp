@@ -31,7 +31,8 @@ constexpr std::size_t kMostOfAMesh = 500;         // that are shown
 
 std::string name_of(const std::string& file, const corpus::Entry& entry) {
   if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
-  const std::string* label = corpus::field(entry, "name");
+  const std::string *label = corpus::field(entry, "name"), *kind = corpus::field(entry, "kind"), *from = corpus::field(entry, "from");
+  if (kind && from) return printable(fmt::format("{} from {}", *kind, *from));  // minimised from mesh:1:597
   return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", file, entry.line) : file);
 }
 

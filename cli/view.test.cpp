@@ -60,6 +60,9 @@ TEST_F(ViewCommand, FilesFoldersAndMeshes) {
   EXPECT_EQ(shell("graze view mesh.obj --out mesh.html").out, "Wrote mesh.html: 1 pair, 2 triangles\n");
   expect_done("graze fuzz --pairs 200 --strata thesis,near_edge_edge --lanes '*/f32/cpu' --out run && graze view run --out run.html");
   EXPECT_GT(data("run.html")["pairs"].size(), 3u);
+  std::ofstream(shell.folder / "small.pairs") << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1 | kind=minimised from=mesh:1:597\n";
+  expect_done("graze view small.pairs --out small.html");
+  EXPECT_EQ(data("small.html")["pairs"][0]["name"], "minimised from mesh:1:597");
 }
 
 // What `graze query` answers, all triangles at once: by its own two words, or of the hits that it wrote.

@@ -11,6 +11,7 @@ import { pixels, without_webgl } from './page';
 const file = () => process.env.GRAZE_VIEW!;
 const url = () => pathToFileURL(file()).href;
 const kCells = 256;
+const kOverflow = 'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95';  // extreme_scale:1:2
 
 // Without WebGL, which takes most of the time where there is no GPU, but in the tests that ask for it.
 const test = base.extend<{ webgl: boolean; viewer: Page }>({
@@ -82,7 +83,7 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
   await expect(viewer.locator('#why-title')).toHaveText('Why do CPU and GPU differ?');
   for (const said of ['guigue_devillers_2003 in float64 says intersects on the CPU (right) and disjoint on the GPU (wrong). The cause is contraction: for the GPU nvcc fuses',
     'into one operation that rounds once; the CPU rounds twice', 'Built with -fmad=false, the GPU says intersects.',
-    'CPU and GPU run the same source on the same numbers, and part at core/algorithms/guigue_devillers_2003.h:115', 'if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;',
+    'Both run the same source on the same numbers. The first comparison that goes otherwise is at core/algorithms/guigue_devillers_2003.h:115', 'if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;',
     'more than 0 where both lie on one side of it: on the CPU of 0 and -0.235, on the GPU of -1.11·10⁻¹⁸ and -0.235. With 113 bits the value is 0: anything else there is rounding, and its sign decides.',
     'Fused here alone, the verdict is already the GPU’s: core/vec3.h:48', 'called at core/algorithms/guigue_devillers_2003.h:114']) await expect(why).toContainText(said);
   expect(await viewer.locator('.parting tr').allInnerTexts()).toEqual([expect.stringMatching(/value\s+> 0\?\s+and so/),
@@ -155,6 +156,9 @@ test('ranges on a line are those by which the lane decides, and the axis is the 
     const [, margin] = /(?:disjoint|intersects), (?:contact: \w+, )?([\d.]+(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?) \(/.exec((await viewer.locator('#truth').textContent())!) ?? [];
     if (margin) await expect(viewer.locator('#ranges')).toContainText(new RegExp(`(ends|by) ${margin}( before b begins)?; that is the margin`));
   }
+  await viewer.goto(`${url()}#p=${kOverflow}&lane=interval_overlap/f32/cpu`);
+  await viewer.reload();
+  await expect(viewer.locator('#ranges')).toContainText('In interval_overlap/f32/cpu the two ranges are not numbers; with 113 bits they overlap by');
   expect(Object.keys(seen).sort()).toEqual(['interval_overlap', 'moller_1997', 'projected_sat', 'separating_axes']);
   expect(await viewer.locator('#ranges svg rect').count()).toBeGreaterThan(3);
 });

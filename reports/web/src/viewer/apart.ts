@@ -73,7 +73,7 @@ export function apart(model: Model, lane: string): Child[] {
     : ['Which operation makes the difference is ', bold('not settled'), '.'])];
   if (found) {
     const [mine, theirs] = [known.steps[found[0]], other.steps[found[1]]], last = (steps: Step[], at: number) => !steps.slice(at + 1).some((step) => step.relation);
-    parts.push(h('p', {}, 'CPU and GPU run the same source on the same numbers, and part at ', quoted(mine.line)),
+    parts.push(h('p', {}, 'Both run the same source on the same numbers. The first comparison that goes otherwise is at ', quoted(mine.line)),
       table(model, [mine, theirs], [last(known.steps, found[0]), last(other.steps, found[1])], [here, there]));
     const asked = meaning([[known.steps, found[0]], [other.steps, found[1]]], scalar);
     const noise = mine.right === 0 && mine.exactRight === 0 && mine.exactLeft === 0 && 'With 113 bits the value is 0: anything else there is rounding, and its sign decides.';

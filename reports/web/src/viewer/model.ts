@@ -92,6 +92,9 @@ export class Model {
     this.settle();
     return true;
   }
+  can(travel: 'past' | 'future') {
+    return (travel === 'past' ? this.past : this.future).length > 0;
+  }
   set_policy(policy: string) {
     this.graze.set_policy(policy);
     this.policy = policy;

@@ -10,6 +10,11 @@ export const outcome = (held: boolean) => (held ? 'yes' : 'no');
 
 const number = (x: number) => (Object.is(x, -0) ? '-0' : x === 0 || !Number.isFinite(x) || (Number.isInteger(x) && Math.abs(x) < 1e6) ? String(x) : figure(x));
 
+const in_full = (x: number) => (Object.is(x, -0) ? '-0' : String(Number(x.toPrecision(9))));
+
+// The distance of neighbouring numbers of that scalar near x.
+export const ulp_of = (scalar: string) => (x: number) => 2 ** (Math.floor(Math.log2(Math.abs(x) || 2 ** -100)) - (scalar === 'f32' ? 23 : 52));
+
 // Numbers that differ, with as many digits as it takes to see that.
 export function told_apart(numbers: number[]): string[] {
   const distinct = new Set(numbers.map((x) => (x === 0 ? 0 : x))).size;
@@ -20,12 +25,15 @@ export function told_apart(numbers: number[]): string[] {
 }
 
 export function compared(step: Step, exact = false) {
-  const [left, right] = told_apart(exact ? [step.exactLeft, step.exactRight] : [step.left, step.right]);
+  const sides = exact ? [step.exactLeft, step.exactRight] : [step.left, step.right];
+  const [left, right] = sides[0] === sides[1] ? sides.map(in_full) : told_apart(sides);
   return step.relation ? `${left} ${step.relation} ${right}` : left;
 }
 
 // "core/vec3.h:48", and what stands there.
 export function quoted(place: string) {
-  const [file, line] = place.split(':'), text = sources[file]?.[Number(line) - 1] ?? '';
+  const [file, line] = place.split(':'), lines = sources[file] ?? [];
+  let text = lines[Number(line) - 1] ?? '';
+  for (let next = Number(line); /(\|\||&&|,|\()$/.test(text) && next < lines.length; ++next) text += ` ${lines[next]}`;  // to the statement's end
   return h('span', { class: 'quoted' }, h('code', { class: 'place' }, place), text && h('code', { class: 'line' }, text));
 }

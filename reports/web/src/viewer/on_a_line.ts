@@ -3,9 +3,11 @@
 // and the axis that the margin gives.
 import { choice, h, on_width, type Child } from '../dom';
 import { figure } from '../format';
+import { differing } from './apart';
 import { chart, type Row } from './chart';
 import type { Drawing } from './graze.js';
 import type { Model } from './model';
+import { ulp_of } from './numbers';
 import { exact_gap, intervals, lane_gap, projections, telling, type Ends, type Ranges } from './ranges';
 
 const kIntervals: Record<string, string> = {
@@ -13,8 +15,6 @@ const kIntervals: Record<string, string> = {
   interval_overlap: 'Its ends are positions along that line, from the point of it that the lane computed.',
 };
 
-// The distance of numbers of that scalar near x.
-const ulp_of = (scalar: string) => (x: number) => 2 ** (Math.floor(Math.log2(Math.abs(x) || 2 ** -100)) - (scalar === 'f32' ? 23 : 52));
 const words = (gap: number, end: Ends[]) => (gap > 0 ? `are ${figure(gap)} apart` : gap < 0 ? `overlap by ${figure(-gap)}` : end.flat().every(Number.isFinite) ? 'meet in one point' : 'are not numbers');
 
 export function on_a_line(model: Model) {
@@ -27,24 +27,31 @@ export function on_a_line(model: Model) {
   };
   on_width(picture, redraw);
 
-  function show(ranges: Ranges, how: Child) {
+  // beside: the same in the lane of the other processor, where the two differ.
+  function show(ranges: Ranges, how: Child, beside: [string, Ranges | null | undefined] | null) {
     const { a, b, exact_a, exact_b } = ranges, name = h('code', {}, model.lane);
-    rows = [...a, ...b, ...exact_a, ...exact_b].every(Number.isFinite) ? [{ name: `in ${model.lane}`, a, b }, { name: 'with 113 bits', a: exact_a, b: exact_b }] : [];
+    rows = [...a, ...b, ...exact_a, ...exact_b].every(Number.isFinite) ? [...(beside?.[1] ? [{ name: `in ${beside[0]}`, a: beside[1].a, b: beside[1].b }] : []), { name: `in ${model.lane}`, a, b }, { name: 'with 113 bits', a: exact_a, b: exact_b }] : [];
     said.replaceChildren(h('p', {}, how, h('span', { class: 'compared' }, `In `, name, ` the two ranges ${words(lane_gap(ranges), [a, b])}; with 113 bits they ${words(exact_gap(ranges), [exact_a, exact_b])}.`)));
   }
+
+  const beside = (lane: string) => {
+    const gpu = differing(model, lane);
+    return gpu && (gpu === lane ? model.counterpart(lane, 'cpu') : gpu);
+  };
 
   // What the lane compared on a line, if it came to that.
   function of_the_lane() {
     const { lane, pair, graze } = model, run = graze.steps(pair, lane)?.steps ?? [], [name] = lane.split('/');
     const found = kIntervals[name] ? intervals(run) : null, axes = found ? [] : projections(run, name);
+    const other = beside(lane), other_run = other ? graze.steps(pair, other)?.steps ?? [] : [];
     choices.replaceChildren();
     rows = [];
-    if (found) return show(found, ['Intervals on ', h('b', {}, 'L, the line of both planes'), `. ${kIntervals[name]} `]);
+    if (found) return show(found, ['Intervals on ', h('b', {}, 'L, the line of both planes'), `. ${kIntervals[name]} `], other ? [other, intervals(other_run)] : null);
     if (!axes.length) return said.replaceChildren(h('p', {}, name === 'guigue_devillers_2003' ? 'This algorithm compares no ranges, it asks for signs alone.' : kIntervals[name] || name === 'projected_sat' || name === 'separating_axes' ? `The lane decided before it came to ${kIntervals[name] ? 'intervals' : 'projections'}.` : 'The exact decision compares no ranges.'));
     const at = axis >= 0 && axis < axes.length ? axis : telling(axes);
     choices.replaceChildren(choice('Axis', axes.map((one, i) => [String(i), `${i + 1} of ${axes.length}: ${one.name}${lane_gap(one) > 0 ? ', separates' : ''}`]), String(at), (value) => { axis = Number(value); update(); }));
     const parts = lane_gap(axes[at]) > 0 ? 'on which the lane finds them apart' : exact_gap(axes[at]) > 0 ? 'which separates with 113 bits, and not in the lane' : axis >= 0 ? '' : 'on which they overlap least';
-    show(axes[at], ['Projections on an axis', parts && ` ${parts}`, ': ', h('b', {}, axes[at].name), '. ']);
+    show(axes[at], ['Projections on an axis', parts && ` ${parts}`, ': ', h('b', {}, axes[at].name), '. '], other ? [other, projections(other_run, name)[at]] : null);
   }
 
   function of_the_margin() {

@@ -65,6 +65,6 @@ export function telling(all: Ranges[]): number {
     const parts = all.findIndex((ranges) => of(ranges) > 0);
     if (parts >= 0) return parts;
   }
-  const share = all.map((ranges) => lane_gap(ranges) / size(ranges));
+  const share = all.map((ranges) => lane_gap(ranges) / size(ranges)).map((x) => (Number.isNaN(x) ? -Infinity : x));
   return share.indexOf(Math.max(...share));
 }

@@ -17,7 +17,9 @@ import { kCentres, Model } from './model';
 import { on_a_line } from './on_a_line';
 import { policy } from './policy';
 import { sources } from './sources';
+import { show_why } from './apart';
 import { why } from './why';
+import { words } from './words';
 
 async function module_of(base64: string): Promise<WebAssembly.Module> {
   const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
@@ -63,6 +65,8 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
   });
   const verdicts = matrix(model), because = why(model), many = field(model, data, () => update_drawing()), drawing = board(model, many.current), typed = coordinates(model, say),
     ulps = map(model, module), line = on_a_line(model), from = sources(model, data, say), copied = copies(model, around.link);
+  const tool = (text: string, action: () => void) => h('button', { type: 'button', onclick: action }, text);
+  const undo = tool('Undo', () => model.travel('past')), redo = tool('Redo', () => model.travel('future'));
   const name = h('h1', {}), truth = h('p', { class: 'truth', id: 'truth' }), summary = h('p', { id: 'summary' });
 
   // At once: what is said. With the next frame: what is drawn. After a moment of rest: what takes longer.
@@ -71,8 +75,11 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     const { decided, policy: under } = model, wrong = graze.lanes.filter((lane) => model.wrong(lane)), apart = graze.lanes.filter((lane) => lane.endsWith('/cuda-fma') && model.differs(lane));
     name.textContent = model.name;
     truth.replaceChildren(h('strong', {}, `Truth: ${decided.truth.verdict}`), `, ${decided.truth.contact === 'none' || decided.truth.verdict === 'declined' ? '' : `contact: ${decided.truth.contact}, `}${margin_words(model)}${decided.truth.coplanar ? '; coplanar' : ''}`);
-    summary.replaceChildren(h('span', {}, wrong.length ? h('b', { class: 'bad' }, `${wrong.length} of ${graze.lanes.length} lanes ${wrong.length === 1 ? 'is' : 'are'} wrong`) : `All ${graze.lanes.length} lanes are right`, under && ` under ${under}`, '. ',
-      apart.length > 0 && ['CPU and GPU differ: ', apart.map((lane, i) => [i ? ', ' : '', h('button', { type: 'button', class: 'link', onclick: () => model.set({ lane }) }, lane.replace('/cuda-fma', ''))]), '.']));
+    undo.disabled = !model.can('past');
+    redo.disabled = !model.can('future');
+    summary.replaceChildren(h('span', {}, apart.length > 0 && ['CPU and GPU differ: ', apart.map((lane, i) => [i ? ', ' : '', h('button', { type: 'button', class: 'link', onclick: () => { model.set({ lane }); show_why(); } }, lane.replace('/cuda-fma', ''))]), '. '],
+      wrong.length ? h('b', { class: 'bad' }, `${wrong.length} of ${graze.lanes.length} lanes ${wrong.length === 1 ? 'is' : 'are'} wrong`) : `All ${graze.lanes.length} lanes are right`, under && ` under ${under}`, apart.length > 0 && wrong.length > 0 && `, ${apart.filter((lane) => model.wrong(lane)).length || 'none'} of them only on the GPU`, '.'));
+    because.brief.hidden = apart.length === 0;
     typed.update();
     from.update();
   }
@@ -123,10 +130,9 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     { keys: [']'], shown: ']', does: 'the same, up', press: (event) => model.step(by(event)) },
     { keys: ['f'], shown: 'f', does: 'what is in the middle: both triangles, the chosen vertex, the contact or gap', press: () => model.set({ centre: kCentres[(kCentres.indexOf(model.centre) + 1) % kCentres.length] }) },
     { keys: ['Home'], shown: 'Home', does: 'the view as it was', on_board: true, press: () => drawing.reset() },
-    { keys: ['u'], shown: 'u', does: 'undo', press: () => model.travel('past') || say('nothing to undo') },
-    { keys: ['r'], shown: 'r', does: 'redo', press: () => model.travel('future') || say('nothing to redo') },
+    { keys: ['u'], shown: 'u', does: 'undo; also Ctrl+Z', with_control: 'z', press: () => model.travel('past') || say('nothing to undo') },
+    { keys: ['r'], shown: 'r', does: 'redo; also Ctrl+Y', with_control: 'y', press: () => model.travel('future') || say('nothing to redo') },
   ], around.active);
-  const tool = (text: string, action: () => void) => h('button', { type: 'button', onclick: action }, text);
   function choose({ pair, lane, note }: First) {
     from.find(pair);
     if (lane && graze.lanes.includes(lane)) model.set({ lane });
@@ -134,14 +140,14 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     say(note ?? '');
   }
   return {
-    head: [name, h('p', { class: 'small', id: 'replayed' }, said)],
+    head: [name, h('p', { class: 'small' }, 'Two triangles: do they intersect?')],
     body: [
-      h('div', { class: 'column' }, h('div', { class: 'seen' }, drawing.element, many.element, verdicts.told, message),
-        h('div', { class: 'tools' }, h('div', { class: 'chips' }, tool('Undo', () => model.travel('past') || say('nothing to undo')), tool('Redo', () => model.travel('future') || say('nothing to redo')), tool('CPU or GPU', other_processor), tool('Random triangles', () => many.again()), tool('Keys (h)', () => pressed.toggle())), from.element),
+      h('div', { class: 'column' }, h('div', { class: 'seen' }, drawing.element, many.element, h('div', { class: 'notes' }, message, verdicts.told)),
+        h('div', { class: 'tools' }, h('div', { class: 'chips' }, undo, redo, tool('Switch CPU/GPU', other_processor), tool('Random triangles', () => many.again()), tool('Keys (h)', () => pressed.toggle())), from.element),
         typed.element, copied.element),
-      h('div', { class: 'column' }, h('div', { class: 'said' }, truth, summary), verdicts.element, because.element, line.element, ulps.element,
+      h('div', { class: 'column' }, h('div', { class: 'said' }, truth, summary, because.brief), verdicts.element, because.element, line.element, ulps.element,
         h('section', { id: 'policy', 'aria-labelledby': 'policy-title' }, h('h2', { id: 'policy-title' }, 'Tolerances'), policy(model)),
-        h('p', { class: 'small', id: 'evidence' }, `CUDA lanes: ${data.evidence}; here in WebAssembly.`))],
+        words(), h('p', { class: 'small', id: 'replayed' }, said), h('p', { class: 'small', id: 'evidence' }, `CUDA lanes: ${data.evidence}; here in WebAssembly.`))],
     help: pressed.help,
     show(next: First) {
       model.show(next.pair, next.name);

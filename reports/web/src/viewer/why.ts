@@ -12,7 +12,7 @@ function beside_exact(run: Step[], says: Verdict, with_113_bits: Verdict): Child
   const numbers = [wrong.left, wrong.right, wrong.exactLeft, wrong.exactRight];
   const lost = numbers.slice(0, 2).some((x) => !Number.isFinite(x)) ? 'the numbers left their range, by overflow or underflow'
     : numbers.slice(0, 2).every((x) => x === 0) && numbers.slice(2).some((x) => x !== 0) ? 'lost to zero, by underflow or in a difference' : 'rounding';
-  return ['With 113 bits the algorithm says ', h('strong', {}, with_113_bits), '. The first comparison that goes otherwise in the lane is at ', quoted(wrong.line), 'The lane computes ', code(compared(wrong)), ` (${outcome(wrong.held)}), with 113 bits it is `,
+  return ['In numbers of 113 bits, where float32 has 24 and float64 53, the algorithm says ', h('strong', {}, with_113_bits), '. The first comparison that goes otherwise in the lane is at ', quoted(wrong.line), 'The lane computes ', code(compared(wrong)), ` (${outcome(wrong.held)}), with 113 bits it is `,
     code(compared(wrong, true)), ` (${outcome(wrong.holds)}): `, h('strong', {}, lost), '. ', code('graze explain'), ' says which comparison decides.'];
 }
 
@@ -21,12 +21,12 @@ function steps_table(run: Step[]) {
     h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Steps' }, h('table', { class: 'plain steps' },
       h('thead', {}, h('tr', {}, ['source line', 'what', 'in the lane', 'with 113 bits'].map((title) => h('th', { scope: 'col' }, title)))),
       h('tbody', {}, run.map((step) => h('tr', { class: step.relation && step.held !== step.holds ? 'bad' : '' },
-        h('td', {}, code(step.line)), h('td', {}, step.site.replace('_', ' ') || 'comparison'),
+        h('td', {}, code(step.line.replace('core/algorithms/', ''))), h('td', {}, step.site.replace('_', ' ') || 'comparison'),
         [false, true].map((exact) => h('td', {}, code(compared(step, exact)), step.relation ? ` ${outcome(exact ? step.holds : step.held)}` : ''))))))));
 }
 
 export function why(model: Model) {
-  const text = h('div', { class: 'because' }), more = h('div', {}), title = h('h2', { id: 'why-title' });
+  const text = h('div', { class: 'because' }), more = h('div', {}), title = h('h2', { id: 'why-title' }), brief = h('p', { id: 'brief' });
 
   // Of a lane alone.
   function alone(known: ReturnType<Graze['steps']>): Child[] {
@@ -41,12 +41,14 @@ export function why(model: Model) {
 
   function update() {
     const { lane, graze, pair, decided, policy } = model, gpu = policy ? undefined : differing(model, lane), known = graze.steps(pair, lane);
+    const found = gpu ? apart(model, gpu) : null;
+    brief.replaceChildren(h('span', {}, found?.brief ?? null));
     title.replaceChildren(...(gpu ? ['Why do CPU and GPU differ?'] : ['Why does ', code(lane), ` say ${decided.verdicts[lane] ?? 'nothing'}?`]));
-    text.replaceChildren(h('div', {}, gpu ? apart(model, gpu) : h('p', {}, alone(known),
+    text.replaceChildren(h('div', {}, found ? found.parts : h('p', {}, alone(known),
       known && !known.own && ' (The numbers are those of a rule of contraction that gives the lane’s verdict; they may not be the lane’s own.)')));
     const open = more.querySelector('details')?.open ?? false;
     more.replaceChildren(...(known ? [steps_table(known.steps)] : []));
     if (open) more.querySelector('details')!.open = true;
   }
-  return { element: h('section', { id: 'why', 'aria-labelledby': 'why-title' }, title, text, more), update };
+  return { brief, element: h('section', { id: 'why', 'aria-labelledby': 'why-title' }, title, text, more), update };
 }

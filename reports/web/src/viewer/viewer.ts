@@ -9,7 +9,7 @@ import { coordinates, kMove } from './coordinates';
 import { copies } from './copies';
 import { replay, type Coordinates, type Replay, type ViewData } from './data';
 import { field } from './field';
-import { load, type Graze } from './graze.js';
+import { load, type Drawing, type Graze } from './graze.js';
 import { keys } from './keys';
 import { map } from './map';
 import { matrix } from './matrix';
@@ -51,6 +51,12 @@ export const no_verdicts = (error: unknown) => [h('h1', {}, 'No verdicts'), h('p
 // The page around the viewer: its address keeps the pair; keys act while it is active.
 export interface Around { keep: (model: Model) => void; link: (model: Model) => string; active: () => boolean }
 export interface First { name: string; pair: Coordinates; lane?: string; note?: string }
+
+// The vertex nearest to the contact, or to the gap: what is worth moving, and mapping.
+function nearest_vertex(pair: Coordinates, { contact, witness }: Drawing): number {
+  const seen = contact.length ? contact : witness, away = [3, 4, 5, 0, 1, 2].map((v) => ({ v, least: Math.min(...seen.map((p) => Math.hypot(...p.map((c, k) => c - pair[3 * v + k])))) }));
+  return away.reduce((best, one) => (one.least < best.least ? one : best)).v;
+}
 
 export function viewer(data: ViewData, { graze, module, said }: Ready, first: First, around: Around) {
   const message = h('p', { class: 'message small', role: 'status' });
@@ -135,6 +141,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
   ], around.active);
   function choose({ pair, lane, note }: First) {
     from.find(pair);
+    model.set({ chosen: 3 * nearest_vertex(pair, graze.drawing(pair)) });
     if (lane && graze.lanes.includes(lane)) model.set({ lane });
     else model.choose_telling();
     say(note ?? '');

@@ -10,6 +10,7 @@
 
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "cli/query_input.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "cuda/twin/twin.h"
@@ -30,7 +31,8 @@ constexpr std::size_t kMostOfAMesh = 500;         // that are shown
 
 std::string name_of(const std::string& file, const corpus::Entry& entry) {
   if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
-  const std::string* label = corpus::field(entry, "name");
+  const std::string *label = corpus::field(entry, "name"), *kind = corpus::field(entry, "kind"), *from = corpus::field(entry, "from");
+  if (kind && from) return printable(fmt::format("{} from {}", *kind, *from));  // minimised from mesh:1:597
   return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", file, entry.line) : file);
 }
 
@@ -86,17 +88,57 @@ void add_mesh(const fs::path& file, Viewed& viewed) {
   std::move(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())), std::back_inserter(viewed.pairs));
 }
 
-Viewed viewed_of(const std::string& what) {
+using Triangle = std::array<Vec3<float>, 3>;
+
+Triangle first_of(const Pair& pair) { return {pair.a[0], pair.a[1], pair.a[2]}; }
+
+// What `graze query` writes as hits: pairs of one reference. Seen all at once.
+void show_against_the_first(Viewed& viewed) {
+  const auto of_it = [&](const reports::ViewedPair& one) {
+    return one.name.starts_with("reference_") && first_of(one.pair) == first_of(viewed.pairs[0].pair);
+  };
+  if (viewed.pairs.empty() || !std::all_of(viewed.pairs.begin(), viewed.pairs.end(), of_it)) return;
+  for (const reports::ViewedPair& one : viewed.pairs) viewed.triangles.push_back({one.pair.b[0], one.pair.b[1], one.pair.b[2]});
+  viewed.opens_with_triangles = true;
+}
+
+// The question of `graze query REFERENCE MESH`: all triangles, the hits first, which are the pairs as well.
+void add_query(const std::string& reference, const std::string& file, Viewed& viewed) {
+  const std::vector<query::Triangle> references = read_references(reference);
+  if (references.size() != 1)
+    throw std::runtime_error(fmt::format("{}: expected one reference, found {}", printable(reference), references.size()));
+  const Lane* exact = find_lane("exact/f32/cpu");
+  const std::vector<query::Triangle> mesh = read_mesh(file);
+  std::vector<Triangle> others;
+  for (std::size_t i = 0; i < mesh.size(); ++i) {
+    const Pair pair = pair_of(references[0], mesh[i]);
+    const bool hit = decide_one(exact->decide, pair) == Verdict::intersects;
+    const bool shown = hit || (viewed.pairs.empty() && i + 1 == mesh.size());  // one, where nothing is hit
+    if (shown && viewed.pairs.size() < kMostOfAMesh)
+      viewed.pairs.push_back({fmt::format("{}, triangle {}", printable(fs::path(file).filename().string()), i), pair});
+    std::vector<Triangle>& of = hit ? viewed.triangles : others;
+    if (of.size() < reports::kMostViewedTriangles) of.push_back({pair.b[0], pair.b[1], pair.b[2]});
+  }
+  const std::size_t room = reports::kMostViewedTriangles - viewed.triangles.size();
+  viewed.triangles.insert(viewed.triangles.end(), others.begin(), others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())));
+  viewed.title = fmt::format("hits of {} in {}", printable(reference), printable(fs::path(file).filename().string()));
+  viewed.opens_with_triangles = true;
+}
+
+Viewed viewed_of(const std::string& what, const std::string& mesh) {
   Viewed viewed{printable(fs::path(what).filename().string()), {}, {}};
   std::error_code ignored;
   if (what.empty()) return viewed;
-  if (fs::is_directory(what, ignored)) {
+  if (!mesh.empty()) {
+    add_query(what, mesh, viewed);
+  } else if (fs::is_directory(what, ignored)) {
     viewed.title = printable(what);
     add_folder(what, viewed);
   } else if (is_mesh(what)) {
     add_mesh(what, viewed);
   } else {
     add_cases(what, viewed);
+    show_against_the_first(viewed);
   }
   return viewed;
 }
@@ -114,13 +156,13 @@ void open_page(const std::string& page) {
   posix_spawn_file_actions_destroy(&quiet);
 }
 
-void view(const std::string& what, const std::string& out) {
+void view(const std::string& what, const std::string& mesh, const std::string& out) {
   if (!reports::has_viewer()) {
     throw std::runtime_error(
         "view: expected a build with the viewer, found one without: it takes Node with npm, clang and wasi-libc "
         "(scripts/packages.txt)");
   }
-  const Viewed viewed = viewed_of(what);
+  const Viewed viewed = viewed_of(what, mesh);
   fuzz::write_whole(out, reports::viewer_page(viewed));
   const std::size_t count = viewed.pairs.size();
   fmt::print("Wrote {}: {}{}\n", shell_word(out),
@@ -136,12 +178,16 @@ void add_view(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
       "view", "Write one page that shows a pair in 3-D and decides every verdict anew while you drag, and open it");
   command->footer("Example: graze view thesis:1:0");
-  auto what = std::make_shared<std::string>(), out = std::make_shared<std::string>("view.html");
+  auto what = std::make_shared<std::string>(), mesh = std::make_shared<std::string>(), out = std::make_shared<std::string>("view.html");
   command->add_option("what", *what,
                       "A file of pairs, a campaign's or any folder of them, a mesh (OFF, OBJ, STL, PLY), or "
                       "STRATUM:SEED:INDEX; without it the special cases of 2012");
+  command->add_option("mesh", *mesh,
+                      "A mesh, all of whose triangles are shown against the first argument, a reference as graze query "
+                      "takes it: a file with nine numbers, or MESH#FACE")
+      ->check(not_empty());
   command->add_option("--out", *out, "The page")->check(not_empty())->capture_default_str()->option_text("FILE");
-  command->callback([what, out] { view(*what, *out); });
+  command->callback([what, mesh, out] { view(*what, *mesh, *out); });
 }
 
 }  // namespace graze::cli

@@ -5,6 +5,8 @@
 
 #include <stdexcept>
 
+#include "reports/viewer.h"
+
 namespace graze::reports {
 namespace {
 
@@ -37,7 +39,8 @@ std::string with_data(std::string_view text, const char* id, const Json& data) {
 bool has_interactive_page() { return !kPageTemplate.empty(); }
 
 std::string page(const Json& report, const Json& costs, const Json& choices) {
-  return has_interactive_page() ? filled(kPageTemplate, report, costs, choices) : plain_page(report, costs, choices);
+  if (!has_interactive_page()) return plain_page(report, costs, choices);
+  return filled(with_data(kPageTemplate, "view", viewer_checks()), report, costs, choices);
 }
 
 std::string filled(std::string_view page_template, const Json& report, const Json& costs, const Json& choices) {

@@ -87,18 +87,18 @@ std::string evidence() {
 
 bool has_viewer() { return !kTemplate.empty(); }
 
+Json viewer_checks() {
+  return has_viewer() ? Json({{"evidence", evidence()}, {"replay", replay()}}) : Json();
+}
+
 std::string viewer_page(const Viewed& viewed) {
   Json pairs = Json::array(), triangles = Json::array();
   for (const ViewedPair& one : viewed.pairs)
     pairs.push_back({{"name", one.name}, {"bits", bits_of(coordinates(one.pair), kCoordinates)}});
   for (const auto& triangle : viewed.triangles) triangles.push_back(bits_of(&triangle[0].x, 9));
-  return with_data(kTemplate, "view",
-                   {{"format", 1},
-                    {"title", viewed.title},
-                    {"evidence", evidence()},
-                    {"pairs", pairs},
-                    {"triangles", triangles},
-                    {"replay", replay()}});
+  Json data = {{"format", 1}, {"title", viewed.title}, {"pairs", pairs}, {"triangles", triangles}, {"opens", viewed.opens_with_triangles ? "triangles" : "pair"}};
+  data.update(viewer_checks());
+  return with_data(kTemplate, "view", data);
 }
 
 }  // namespace graze::reports

@@ -30,7 +30,7 @@ if(NOT installed STREQUAL lock)
 endif()
 
 function(build script html out)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env GRAZE_WASM=${WASM} ${NPM} run --silent ${script} WORKING_DIRECTORY ${BUILD}
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env GRAZE_WASM=${WASM} GRAZE_SOURCE=${SOURCE}/../.. ${NPM} run --silent ${script} WORKING_DIRECTORY ${BUILD}
     RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
   if(failed)
     message(FATAL_ERROR "expected reports/web to build, found:\n${said}")

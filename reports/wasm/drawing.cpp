@@ -115,6 +115,104 @@ Polygon line_of(const Point (&a)[3], const Point (&b)[3], const Point& na, const
   return high > low && std::isfinite(high - low) ? Polygon{at + along * low, at + along * high} : Polygon{};
 }
 
+struct Connection {
+  Real squared = INFINITY;
+  Point p, q;  // in a, in b
+  int feature_a = -1, feature_b = -1;
+};
+
+void shorten(Connection& best, const Connection& other) {
+  if (other.squared < best.squared) best = other;
+}
+
+Real clamped(Real x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
+Real square(const Point& v) { return dot(v, v); }
+int feature_at(Real along, int edge) { return along == 0 ? edge : along == 1 ? (edge + 1) % 3 : 3 + edge; }
+
+// Reference: Ericson, Real-Time Collision Detection, section 5.1.9.
+Connection of_edges(const Point (&a)[3], int i, const Point (&b)[3], int j) {
+  const Point d = a[(i + 1) % 3] - a[i], e = b[(j + 1) % 3] - b[j], r = a[i] - b[j];
+  const Real dd = square(d), ee = square(e), de = dot(d, e), dr = dot(d, r), er = dot(e, r), det = dd * ee - de * de;
+  Real s = 0, t = 0;
+  if (dd > 0 && ee > 0) {
+    s = det > 0 ? clamped((de * er - dr * ee) / det) : 0;
+    t = (de * s + er) / ee;
+    if (t < 0 || t > 1) {
+      t = clamped(t);
+      s = clamped((de * t - dr) / dd);
+    }
+  } else if (dd > 0) {
+    s = clamped(-dr / dd);
+  } else if (ee > 0) {
+    t = clamped(er / ee);
+  }
+  const Point p = a[i] + d * s, q = b[j] + e * t;
+  return {square(q - p), p, q, feature_at(s, i), feature_at(t, j)};
+}
+
+// From the vertex to its foot in the face, where that is.
+Connection to_face(const Point& vertex, const Point (&face)[3]) {
+  const Point normal = normal_of(face);
+  if (is_zero(normal)) return {};
+  const Point foot = vertex - normal * (dot(normal, vertex - face[0]) / square(normal));
+  for (int i = 0; i < 3; ++i) {
+    if (dot(cross(normal, face[(i + 1) % 3] - face[i]), foot - face[i]) < 0) return {};
+  }
+  return {square(vertex - foot), vertex, foot, 0, 6};
+}
+
+Connection nearest(const Point (&a)[3], const Point (&b)[3]) {
+  Connection best;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) shorten(best, of_edges(a, i, b, j));
+    Connection of_a = to_face(a[i], b), of_b = to_face(b[i], a);
+    of_a.feature_a = i;
+    shorten(best, of_a);
+    shorten(best, {of_b.squared, of_b.q, of_b.p, 6, i});
+  }
+  return best;
+}
+
+// The shortest of the pushes along the normals and the edges' cross products that part the two. p is the origin.
+Connection push(const Point (&a)[3], const Point (&b)[3]) {
+  Connection best;
+  const auto along = [&](const Point& axis, int feature_a, int feature_b) {
+    if (is_zero(axis)) return;
+    Real low_a = INFINITY, high_a = -INFINITY, low_b = INFINITY, high_b = -INFINITY;
+    for (int i = 0; i < 3; ++i) {
+      const Real of_a = dot(axis, a[i] - a[0]), of_b = dot(axis, b[i] - a[0]);
+      low_a = std::min(low_a, of_a), high_a = std::max(high_a, of_a);
+      low_b = std::min(low_b, of_b), high_b = std::max(high_b, of_b);
+    }
+    const Real up = high_a - low_b, down = high_b - low_a, size = square(axis);
+    const Point vector = axis * ((up < down ? up : -down) / size);
+    shorten(best, {square(vector), {}, vector, feature_a, feature_b});
+  };
+  along(normal_of(a), 6, -1);
+  along(normal_of(b), -1, 6);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) along(cross(a[(i + 1) % 3] - a[i], b[(j + 1) % 3] - b[j]), 3 + i, 3 + j);
+  }
+  return best;
+}
+
+void add_witness(Drawing& result, const Connection& found, const Point& from, const Point (&a)[3], const Point (&b)[3]) {
+  if (!(found.squared > 0) || !std::isfinite(found.squared)) return;
+  const Point axis = (found.q - found.p) * (1 / std::sqrt(found.squared));
+  Real low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (int i = 0; i < 3; ++i) {
+    const Real along[2] = {dot(axis, a[i] - a[0]), dot(axis, b[i] - a[0])};
+    for (int k = 0; k < 2; ++k) low[k] = std::min(low[k], along[k]), high[k] = std::max(high[k], along[k]);
+  }
+  result.low_a = static_cast<double>(low[0] - high[0]);
+  result.high_a = 0;
+  result.low_b = static_cast<double>(low[1] - high[0]);
+  result.high_b = static_cast<double>(high[1] - high[0]);
+  result.witness_count = write({found.p + from, found.q + from}, result.witness, 2);
+  result.feature_a = found.feature_a;
+  result.feature_b = found.feature_b;
+}
+
 }  // namespace
 
 Drawing drawing_of(const Pair& pair) {
@@ -124,13 +222,21 @@ Drawing drawing_of(const Pair& pair) {
     b[i] = widened(pair.b[i]);
   }
   Drawing result{};
-  const int contact = exact::relation(&pair.a[0].x, &pair.b[0].x).contact;
+  const exact::Relation relation = exact::relation(&pair.a[0].x, &pair.b[0].x);
+  const int contact = relation.contact;
+  if (!relation.intersects) add_witness(result, nearest(a, b), {}, a, b);
   if (contact >= 0) {
     Polygon common = hull_of(a);
     for (const HalfSpace& half : half_spaces(hull_of(b))) common = clipped(common, half);
     if (contact < 2 && common.size() > static_cast<std::size_t>(contact) + 1)
       common.resize(static_cast<std::size_t>(contact) + 1);
     result.contact_count = write(common, result.contact, Drawing::kMost);
+    if (relation.margin_sign < 0) {
+      if (common.empty()) common = hull_of(a);  // what rounding lost
+      Point middle{};
+      for (const Point& p : common) middle = middle + p * (Real(1) / static_cast<Real>(common.size()));
+      add_witness(result, push(a, b), middle, a, b);
+    }
   }
   const Point na = normal_of(a), nb = normal_of(b);
   if (is_zero(na) || is_zero(nb) || is_zero(cross(na, nb))) return result;

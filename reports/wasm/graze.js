@@ -9,8 +9,8 @@
 /** @typedef {{ verdict: Verdict, contact: Contact, coplanar: boolean, dimensions: [number, number] }} Truth dimensions: of the two hulls, 0 point, 1 segment, 2 triangle. */
 /** @typedef {{ sign: -1 | 0 | 1, least: number, most: number, ulp: number }} Margin 1: disjoint, and at least `least`, at most `most` apart. -1: so deep. 0: they touch. ulp: that of the largest coordinate. */
 /** @typedef {[number, number, number]} Point */
-/** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]] }} Drawing line: of both planes; sections: of it, by a and by b. */
-/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': a value (left). held: in the lane; holds: with 113 bits. */
+/** @typedef {{ contact: Point[], line: Point[], sections: [Point[], Point[]], witness: Point[], along: [number, number][], features: [string, string] }} Drawing line: of both planes; sections: of it, by a and by b. witness: what the margin is: the nearest points of a and b, or the shortest push of b that parts them; along: from where to where a and b reach along it, a's end being 0; features: of a and b, that it joins or that give the push its direction. */
+/** @typedef {{ line: string, site: string, relation: string, held: boolean, holds: boolean, result: number, left: number, right: number, exactLeft: number, exactRight: number }} Step relation '': a value (left). held: in the lane; holds: with 113 bits. result: which of the run's computed numbers left is, -1 for none. */
 /** @typedef {{ line: string, from: string }} Site An operation with one rounding where the source has two, and what it is inlined into. */
 /** @typedef {ReturnType<typeof graze_of>} Graze */
 
@@ -20,6 +20,9 @@ const kContacts = /** @type {const} */ (['none', 'point', 'segment', 'area']);
 const kSites = ['plane_distance', 'parallel', 'orientation', 'separation'];
 const kRelations = ['<', '<=', '==', '>', '>='];
 const kMostPoints = 9;
+
+/** @param {string} of @param {number} feature */
+const feature_at = (of, feature) => (feature < 0 ? '' : feature < 3 ? `${of}[${feature}]` : feature < 6 ? `edge ${of}[${feature - 3}] ${of}[${(feature - 2) % 3}]` : `face ${of}`);
 
 /**
  * The functions over an instance of the module.
@@ -186,13 +189,17 @@ function graze_of(exports) {
       return {
         contact: points_at(points, contact), line: points_at(after, line),
         sections: [points_at(after + 48, a), points_at(after + 96, b)],
+        witness: points_at(after + 144, data.getInt32(after + 224, true)),
+        along: [0, 1].map((k) => /** @type {[number, number]} */ ([0, 8].map((end) => data.getFloat64(after + 192 + 16 * k + end, true)))),
+        features: [feature_at('a', data.getInt32(after + 228, true)), feature_at('b', data.getInt32(after + 232, true))],
       };
     },
 
     /**
      * The comparisons of a lane without a policy, in order, and the values that its policy would see; null where they are not known.
      * own: whether the values are known to be the lane's; otherwise a rule of contraction gave them, and the lane's verdict.
-     * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[] } | null}
+     * with_113_bits: what the algorithm says in such numbers throughout.
+     * @param {Pair} pair @param {string} id @returns {{ own: boolean, steps: Step[], with_113_bits: Verdict } | null}
      */
     steps(pair, id) {
       set_pair(pair);
@@ -201,12 +208,12 @@ function graze_of(exports) {
       const at = exports.steps_at(), data = view();
       const steps = Array.from({ length: count }, (_, i) => {
         const step = at + 64 * i;
-        const [file, line, site, compared, relation, held, holds] = Array.from({ length: 7 }, (_, k) => data.getInt32(step + 4 * k, true));
+        const [file, line, site, compared, relation, held, holds, result] = Array.from({ length: 8 }, (_, k) => data.getInt32(step + 4 * k, true));
         const [left, right, exactLeft, exactRight] = [32, 40, 48, 56].map((k) => data.getFloat64(step + k, true));
         return { line: `${file_at(file)}:${line}`, site: site < 0 ? '' : kSites[site], relation: compared ? kRelations[relation] : '',
-          held: held !== 0, holds: holds !== 0, left, right, exactLeft, exactRight };
+          held: held !== 0, holds: holds !== 0, result, left, right, exactLeft, exactRight };
       });
-      return { own: exports.evidence() < 2, steps };
+      return { own: exports.evidence() < 2, steps, with_113_bits: kVerdicts[exports.with_113_bits()] };
     },
 
     /**

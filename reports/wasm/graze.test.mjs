@@ -146,6 +146,30 @@ function check_interface() {
   assert.match(output, /cuda-fma: disjoint\n$/);
 }
 
+// The witness is as long as the margin, within its bounds and the rounding of its ends; what is nearest separates.
+function check_witness() {
+  const found = { gap: 0, push: 0 };
+  for (const stratum of graze.strata) {
+    for (let index = 0; index < 60; ++index) {
+      const pair = graze.generate(stratum, 7n, BigInt(index)), { sign, least, most } = graze.margin(pair), { witness, along: reach, features } = graze.drawing(pair), where = `${stratum}:7:${index}`;
+      if (sign === 0) assert.equal(witness.length, 0, where);
+      if (witness.length === 0 && (sign === 0 || least < 2 ** -90 * Math.max(...pair.map(Math.abs)))) continue;  // too small a gap for 113 bits
+      assert.equal(witness.length, 2, where);
+      const [p, q] = witness, axis = q.map((x, k) => x - p[k]), length = Math.hypot(...axis), size = Math.max(...pair.map(Math.abs), ...p.map(Math.abs)), slack = 1e-9 * most + 8 * 2 ** -52 * size;
+      assert.ok(length >= least - slack && length <= most + slack, `${where}: ${length}, margin between ${least} and ${most}`);
+      assert.ok(reach[0][1] === 0 && Math.abs(Math.abs(reach[1][0]) - length) <= slack && reach[1][0] > 0 === sign > 0, `${where}: ${reach}`);
+      if (sign > 0) {
+        const along = Array.from({ length: 6 }, (_, v) => axis.reduce((sum, x, k) => sum + (x / length) * (pair[3 * v + k] - p[k]), 0));
+        const turned = (32 * 2 ** -52 * size * size) / most;  // by the ends' rounding
+        if (most > 1e-6 * size) assert.ok(Math.max(...along.slice(0, 3)) <= turned && Math.min(...along.slice(3)) >= least - turned, where);
+        assert.ok(features.every(Boolean), where);
+      }
+      ++found[sign > 0 ? 'gap' : 'push'];
+    }
+  }
+  assert.ok(found.gap > 200 && found.push > 100, JSON.stringify(found));
+}
+
 function compare() {
   const lines = execFileSync(reference, [pairs], { encoding: 'utf8', maxBuffer: 2 ** 30 }).trim().split('\n');
   const each = Math.ceil(Number(pairs) / graze.strata.length);
@@ -165,4 +189,5 @@ function compare() {
 
 check_fused();
 check_interface();
+check_witness();
 compare();

@@ -35,11 +35,12 @@ struct TruthOut {
 
 struct StepOut {
   const char* file;
-  std::int32_t line, site, compared, relation, held, holds;
+  std::int32_t line, site, compared, relation, held, holds, result;
   double left, right, exact_left, exact_right;
 };
 std::vector<StepOut> steps_out;
 int steps_evidence = 0;
+Verdict verdict_of_quads = Verdict::declined;
 Drawing drawing_out;
 
 struct SiteOut {
@@ -185,6 +186,7 @@ GRAZE_EXPORT(steps) int steps(int lane) {
   const analysis::Replay replay = analysis::replay(of, pairs_in[0]);
   if (replay.evidence == analysis::Evidence::none) return -1;
   steps_evidence = static_cast<int>(replay.evidence);
+  verdict_of_quads = run_traced<Quad>(of.algorithm, pairs_in[0]).verdict;
   const Trace<Quad> exact = run_traced<Quad>(of.algorithm, pairs_in[0], path_of(replay.run));
   for (std::size_t i = 0; i < replay.run.seen.size(); ++i) {
     const Seen<double>& seen = replay.run.seen[i];
@@ -192,13 +194,15 @@ GRAZE_EXPORT(steps) int steps(int lane) {
     const bool alike = compare_numbers(right.left, right.right) == 0;
     steps_out.push_back({seen.where.file_name(), static_cast<std::int32_t>(seen.where.line()),
                          seen.site ? static_cast<std::int32_t>(*seen.site) : -1, seen.compared,
-                         static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left, seen.right,
+                         static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left_result, seen.left, seen.right,
                          shown(right.left), alike ? shown(right.left) : shown(right.right)});
   }
   return static_cast<int>(steps_out.size());
 }
 // How well they are known, as analysis::Evidence has it.
 GRAZE_EXPORT(evidence) int evidence() { return steps_evidence; }
+// What the algorithm says with 113 bits throughout, on its own path.
+GRAZE_EXPORT(with_113_bits) int with_113_bits() { return static_cast<int>(verdict_of_quads); }
 GRAZE_EXPORT(steps_at) const StepOut* steps_at() { return steps_out.data(); }
 
 // The contractions that make the lane's verdict on the first pair another one than that of the same source without

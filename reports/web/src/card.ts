@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The card of a kind of failure: its simplest case, what every lane says of it, why, and how to have it again.
+import { viewer_button } from './card_viewer';
 import { breakable, code_block, copy_button, h, lazy_details } from './dom';
 import { counted, figure } from './format';
 import { kind_facts, kind_lanes, kind_title } from './kind';
@@ -74,10 +75,10 @@ function truth_words({ truth }: Card) {
 }
 
 // The inside of a card, made when it is opened.
-export function card_body(report: Report, card: Card) {
+export function card_body(report: Report, card: Card, id: string) {
   const truth = truth_words(card), [verdict] = truth.split(',');
   return h('div', { class: 'card-body' }, kind_lanes(report, card),
-    h('div', { class: 'card-top' }, stage(card, truth),
+    h('div', { class: 'card-top' }, h('div', {}, stage(card, truth), viewer_button(report, card, id)),
       h('div', { class: 'card-facts' },
         h('p', { class: 'truth' }, h('b', {}, `Truth: ${verdict}`), truth.slice(verdict.length)),
         h('ul', { class: 'sentences' }, card.sentences.map((sentence) => h('li', {}, sentence))),
@@ -99,6 +100,6 @@ export function card_element(report: Report, card: Card, place: number) {
     h('span', { class: 'card-number' }, String(place + 1)),
     h('span', { class: 'card-title' }, kind_title(card.kind)),
     h('span', { class: 'card-count' }, `${counted(card.kind.pairs, 'pair')}, ${counted(card.kind.signatures, 'signature')}`),
-  ], () => card_body(report, card), { class: 'card', id: kind_id(place) });
+  ], () => card_body(report, card, kind_id(place)), { class: 'card', id: kind_id(place) });
   return { details, open };
 }

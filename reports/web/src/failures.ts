@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Failures: a card for each kind, and a table of the signatures behind them. One set of filters is for both.
 import { card_element, kind_id } from './card';
+import { has_viewer } from './card_viewer';
 import { choice, code_block, h, section } from './dom';
 import { count, counted } from './format';
 import { kind_words } from './kind';
@@ -85,7 +86,8 @@ export function failure_sections(report: Report) {
   const all = (open: boolean) => () => cards.forEach((card) => (open ? card.open() : (card.details.open = false)));
   const sections = [
     section('kinds', 'Kinds of failure',
-      h('p', {}, 'Failures with one reason: an algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, coplanar or neither. A pair on which lanes are wrong for different reasons is of several kinds.'),
+      h('p', {}, 'Failures with one reason: an algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, coplanar or neither. A pair on which lanes are wrong for different reasons is of several kinds.',
+        !has_viewer() && ' No card opens in the viewer: graze was built without the compiler for WebAssembly that it takes.'),
       h('div', { class: 'controls' }, h('label', { class: 'field' }, h('span', {}, 'Find'), search), by_algorithm), cell_note,
       cards.length > 0 && [h('div', { class: 'between cards-head' }, card_count,
         h('span', {}, h('button', { type: 'button', onclick: all(true) }, 'Open all'), h('button', { type: 'button', onclick: all(false) }, 'Close all'))),

@@ -17,7 +17,7 @@ export const kind_title = ({ subject, cause, line, shape }: FailureKind): Child[
   [h('b', {}, subject), `: ${cause}`, line ? [' at ', h('code', {}, ...breakable(place_of(line)))] : '', `, ${shape} pairs`];
 
 // "f32/cpu, f64/cpu", without the algorithm.
-const within = (ids: string[]) => ids.map((id) => id.split('/').slice(1).join('/')).join(', ');
+export const within = (ids: string[]) => ids.map((id) => id.split('/').slice(1).join('/')).join(', ');
 
 // The lanes that fail so, which of them do on the pair shown, and whether the cause is settled.
 export function kind_lanes(report: Report, { kind, verdicts }: Card) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Puts the page together from the report that `graze report` wrote into it.
 import './style.css';
+import { kind_id } from './card';
+import { follow_viewer } from './card_viewer';
 import { trade_section, tuned_section } from './choices';
 import { compare_section } from './compare';
 import { h } from './dom';
@@ -34,6 +36,7 @@ function build(report: Report, costs: Costs | null, { tuned, trade }: Choices) {
     failures.open(id);
     document.getElementById(id)?.scrollIntoView({ block: 'start' });
   });
+  follow_viewer(report, kind_id);
 }
 
 const data = (id: string) => document.getElementById(id)?.textContent?.trim() ?? '';

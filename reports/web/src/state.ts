@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is chosen on the page, kept in the URL's fragment, so that a link, a reload and Back have it again:
-// "#kind-7&find=moller+f64" is a place and the filters. A link to a place alone keeps the filters.
+// "#kind-7&find=moller+f64" is a place and the filters. A link to a place alone keeps the filters. A pair in the viewer
+// (card_viewer.ts) is no filter: "#kind-7&p=…&by=…".
 
 let place = '';
+let entered = false;  // the entry before the last one is where the viewer was opened
 let values = new URLSearchParams();
+const kOfTheViewer = ['p', 'by'];
 const listeners: (() => void)[] = [];
 
 // History entries of our own carry a state, which tells Back from a press on a link.
@@ -15,6 +18,7 @@ function read() {
   place = has_place ? first : '';
   const filters = new URLSearchParams((has_place ? rest : [first, ...rest]).join('&'));
   if (is_own() || filters.size > 0) values = filters;
+  else kOfTheViewer.forEach((key) => values.delete(key));
 }
 
 function write(how: 'pushState' | 'replaceState') {
@@ -43,15 +47,35 @@ export function go_to(id: string, more: Record<string, string> = {}) {
   document.getElementById(id)?.scrollIntoView({ block: 'start' });
 }
 
+export const place_of_address = () => place;
+
+// Leads to a pair in the viewer, over the element of that id; Back leads out of it again.
+export function into_viewer(id: string, pair: string, lane: string) {
+  place = id;
+  [pair, lane].forEach((value, i) => values.set(kOfTheViewer[i], value));
+  write('pushState');
+  entered = true;
+  listeners.forEach((changed) => changed());
+}
+
+export function out_of_viewer() {
+  if (entered) return history.back();
+  kOfTheViewer.forEach((key) => values.delete(key));
+  write('replaceState');
+  listeners.forEach((changed) => changed());
+}
+
 // Calls arrived(id) with the place that the fragment names, now and after every link.
 export function follow_fragment(arrived: (id: string) => void) {
   write('replaceState');
   if (place) arrived(place);
   addEventListener('hashchange', () => {
+    const before = place, in_viewer = chosen('p') !== '';
     read();
+    entered = false;
     write('replaceState');
     listeners.forEach((changed) => changed());
-    if (place) arrived(place);
+    if (place && !(in_viewer && place === before)) arrived(place);  // what was read is where it was
   });
 }
 

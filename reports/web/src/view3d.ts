@@ -143,7 +143,13 @@ export function picture(shape: Shape): Picture {
     context.textAlign = 'center';
     context.textBaseline = 'middle';
     context.fillStyle = style_colour('--ink');
-    for (const { x, y, text } of labels(shape, view, width, height)) context.fillText(text, x, y);
+    context.strokeStyle = style_colour('--raised');  // lines do not strike names through
+    context.lineWidth = 3;
+    context.lineJoin = 'round';
+    for (const { x, y, text } of labels(shape, view, width, height)) {
+      context.strokeText(text, x, y);
+      context.fillText(text, x, y);
+    }
     context.restore();
   }
 

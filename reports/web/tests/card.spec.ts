@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { expect, open_card, pixels, test } from './page';
+import { expect, open_card, pixels, test, without_webgl } from './page';
 
 test('the drawing turns by dragging and by keys, and comes back', async ({ page }) => {
   const card = await open_card(page, 1);
@@ -77,12 +77,7 @@ test('commands, coordinates and snippets are copied', async ({ page, report }) =
 });
 
 test('without WebGL the drawing is an SVG, and turns', async ({ page }) => {
-  await page.addInitScript(() => {
-    const real = HTMLCanvasElement.prototype.getContext;
-    HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) {
-      return kind.startsWith('webgl') ? null : (real as Function).call(this, kind, ...rest);
-    } as typeof real;
-  });
+  await page.addInitScript(without_webgl);
   await page.reload();
   const card = await open_card(page, 1);
   const svg = card.locator('.paper svg');

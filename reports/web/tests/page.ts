@@ -7,12 +7,14 @@ import type { Costs, Report } from '../src/report';
 export const url = () => pathToFileURL(process.env.GRAZE_REPORT!).href;
 export const compare_url = () => pathToFileURL(process.env.GRAZE_COMPARE || process.env.GRAZE_REPORT!).href;
 
-export const test = base.extend<{ report: Report; costs: Costs | null; watched: void }>({
-  watched: [async ({ page }, use) => {
+export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs | null; watched: void }>({
+  webgl: [true, { option: true }],
+  watched: [async ({ page, webgl }, use) => {
+    if (!webgl) await page.addInitScript(without_webgl);
     const fetched: string[] = [], said: string[] = [];
     page.on('request', (request) => {
       const asked = request.url().split('#')[0];
-      if (asked !== url() && asked !== compare_url() && !asked.startsWith('data:')) fetched.push(asked);
+      if (asked !== url() && asked !== compare_url() && !/^(data|blob):/.test(asked)) fetched.push(asked);
     });
     page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
     page.on('pageerror', (error) => said.push(`error: ${error.message}`));
@@ -31,6 +33,14 @@ export const test = base.extend<{ report: Report; costs: Costs | null; watched: 
 });
 
 export { expect };
+
+// For addInitScript.
+export function without_webgl() {
+  const real = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) {
+    return kind.startsWith('webgl') ? null : (real as Function).call(this, kind, ...rest);
+  } as typeof real;
+}
 
 // What is painted there, to be compared.
 export async function pixels(element: Locator): Promise<string> {

@@ -12,7 +12,7 @@ for (const [path, width, height] of [[desktop, 1280, 800], [phone, 390, 844]]) {
   const page = await browser.newPage({ viewport: { width, height } });
   await page.goto(pathToFileURL(resolve(report)).href);
   await page.waitForSelector('#glance svg, #replayed');
-  await page.waitForTimeout(500);  // the viewer's answer comes a moment later
+  await page.waitForTimeout(1500);  // the viewer's answer comes a moment later
   await page.screenshot({ path });
 }
 await browser.close();

@@ -10,6 +10,8 @@ import { placed, type Field, type Placed } from './shape';
 
 const kReach = 16;  // pixels around a vertex in which it is taken hold of
 const kTurn = Math.PI / 18;
+const kFine = 1 / 64;  // of a drag with Shift
+const kGapSeen = 0.5;  // half-widths of the board that "Show the gap" makes of it
 const kFlat: Vec[] = [[0, 0, 0], [1, 0, 0], [0, 1, 0]];  // where no triangle is
 
 export function board(model: Model, fields: () => Field | null) {
@@ -51,6 +53,15 @@ export function board(model: Model, fields: () => Field | null) {
     old ??= drawn;
     drawn = null;
     note.textContent = now.shape.note;
+    contact_key.hidden = now.shape.contact.length === 0;
+    witness_key.hidden = !now.shape.marks?.some(({ colour }) => colour === '--witness');
+    gap_button.hidden = witness_key.hidden;
+    gap_button.textContent = truth.verdict === 'disjoint' ? 'Show the gap' : 'Show the depth';
+    witness_key.textContent = truth.verdict === 'disjoint' ? 'nearest points' : 'shortest push of b that parts them';
+    b_key.hidden = fields() !== null;
+    field_keys.forEach((key) => (key.hidden = fields() === null));
+    shadow_key.hidden = fields() !== null || !model.lane.startsWith('projected_sat/');
+    line_key.hidden = now.shape.line.length === 0;
     centre_choice.querySelector('select')!.value = model.centre;
     ground.setAttribute('aria-label', `Two triangles, ${truth.verdict}, contact ${truth.contact}. Arrow keys turn and magnify; h lists all keys.`);
     draw();
@@ -64,6 +75,12 @@ export function board(model: Model, fields: () => Field | null) {
     const view = view_of(camera);
     set({ azimuth: view.azimuth + azimuth * kTurn, elevation: view.elevation + elevation * kTurn });
   };
+  // The nearest points, or the shortest push, in the middle and so magnified that the distance is seen.
+  function show_gap() {
+    const [p, q] = model.graze.drawing(model.pair).witness;
+    magnified = Math.min(2 ** 60, Math.max(1, (magnified * kGapSeen) / Math.hypot(...p.map((c, k) => (q[k] - c) / now.unit[k]))));
+    model.set({ centre: 'the contact or gap' });
+  }
   function reset() {
     magnified = 1;
     place();
@@ -102,7 +119,8 @@ export function board(model: Model, fields: () => Field | null) {
     const move = (next: PointerEvent) => {
       const across = (next.clientX - start.x) * pixel, along = (start.y - next.clientY) * pixel;
       model.change((pair) => {
-        for (let k = 0; k < 3; ++k) pair[3 * v + k] = from[3 * v + k] + (right[k] * across + up[k] * along) * placed_then.unit[k];
+        const fine = next.shiftKey ? kFine : 1;
+        for (let k = 0; k < 3; ++k) pair[3 * v + k] = from[3 * v + k] + (right[k] * across + up[k] * along) * placed_then.unit[k] * fine;
       });
     };
     surround.addEventListener('pointermove', move);
@@ -133,10 +151,14 @@ export function board(model: Model, fields: () => Field | null) {
     const box = h('button', { type: 'button', 'data-shows': what, onclick: () => model.set({ shows: { ...model.shows, [what]: !model.shows[what] } }) }, what);
     return { what, box };
   });
+  const contact_key = h('span', { class: 'key-contact' }, 'contact'), line_key = h('span', { class: 'key-line' }, 'the planes’ line, with both sections');
+  const b_key = h('span', { class: 'key-b' }, 'b'), field_keys = [['hit', 'hit'], ['other', 'not hit'], ['bad', 'outlined: wrong']].map(([colour, text]) => h('span', { class: `key-${colour}` }, text));
+  const gap_button = button('Show the gap', 'Magnify what the margin measures', show_gap);
+  const witness_key = h('span', { class: 'key-witness' }), shadow_key = h('span', { class: 'key-shadow' }, 'b on the plane of a, as projected_sat sees it');
   const element = h('figure', { class: 'stage' }, surround,
-    h('div', { class: 'stage-tools' }, centre_choice, button('÷16', 'Magnify less', () => magnify(1 / 16)), button('×16', 'Magnify', () => magnify(16)), button('Reset', 'Reset the view', reset)),
+    h('div', { class: 'stage-tools' }, centre_choice, gap_button, button('÷16', 'Magnify less', () => magnify(1 / 16)), button('×16', 'Magnify', () => magnify(16)), button('Reset', 'Reset the view', reset)),
     h('div', { class: 'chips', role: 'group', 'aria-label': 'Shown in the drawing' }, toggles.map(({ box }) => box)),
-    h('figcaption', {}, h('span', { class: 'key-a' }, 'a'), h('span', { class: 'key-b' }, 'b'), h('span', { class: 'key-contact' }, 'contact'), h('span', { class: 'key-line' }, 'the planes’ line, with both sections'), note));
+    h('figcaption', {}, h('span', { class: 'key-a' }, 'a'), b_key, field_keys, contact_key, line_key, witness_key, shadow_key, note, h('span', {}, 'Drag a vertex to move it (with Shift finely), the ground to turn.')));
   return {
     element, turn, magnify, reset,
     update: () => {

@@ -2,7 +2,7 @@
 // The pair as text for other places.
 import { copy_button, h } from '../dom';
 import { decimal, hex_float } from './data';
-import { fragment_of, type Model } from './model';
+import type { Model } from './model';
 
 const vectors = (of: (x: number) => string, pair: ArrayLike<number>, open: string, close: string) =>
   Array.from({ length: 6 }, (_, v) => `${open}${[0, 1, 2].map((k) => of(pair[3 * v + k])).join(', ')}${close}`);
@@ -17,12 +17,12 @@ const kCopies: Record<string, (model: Model) => string> = {
     return `# ${name}\na = [${rows.slice(0, 3).join(', ')}]\nb = [${rows.slice(3).join(', ')}]\n`;
   },
   OBJ: ({ pair, name }) => `# ${name}\n${Array.from({ length: 6 }, (_, v) => `v ${[0, 1, 2].map((k) => decimal(pair[3 * v + k])).join(' ')}`).join('\n')}\nf 1 2 3\nf 4 5 6\n`,
-  link: (model) => `${location.href.split('#')[0]}${fragment_of(model)}`,
 };
 
-export function copies(model: Model) {
+// link: the address that leads back to the pair.
+export function copies(model: Model, link: (model: Model) => string) {
   const shown = h('div', { class: 'copied' });
-  const buttons = Object.entries(kCopies).map(([name, text_of]) => h('button', {
+  const buttons = Object.entries({ ...kCopies, link }).map(([name, text_of]) => h('button', {
     type: 'button', onclick: () => {
       const text = text_of(model);
       shown.replaceChildren(h('div', { class: 'code' }, h('pre', { tabindex: 0, 'aria-label': name }, h('code', {}, text)), copy_button(text, `the ${name}`)));

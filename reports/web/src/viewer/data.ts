@@ -7,11 +7,12 @@ export type Coordinates = Float32Array;  // 18: a[0].x to b[2].z
 
 // Bits: 18 words of 8 hex digits. Verdicts: a digit for each lane, 0 disjoint, 1 intersects, 2 declined.
 export interface Replay { lanes: string[]; pairs: { bits: string; truth: Verdict; contact: string; verdicts: string }[] }
-export interface ViewData {
-  format: number; title: string; build: string; evidence: string;
+export interface Stored { evidence: string; replay: Replay }  // of the build; `graze report` writes these alone
+export interface ViewData extends Stored {
+  format: number; title: string;
   pairs: { name: string; bits: string }[];
-  triangles: string[];  // of a mesh, 9 words each; may be empty
-  replay: Replay;
+  triangles: string[];  // of a mesh or a query, 9 words each; may be empty
+  opens?: 'pair' | 'triangles';  // with all of these at once, against the first of the pair
 }
 
 export function from_bits(bits: string): Coordinates {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many triangles against the reference, as in 2012: random ones by the thesis's generator, or those of a mesh.
+// Many triangles against the reference, as in 2012: random ones by the thesis's generator, or those of a
+// mesh or a query.
 import { h } from '../dom';
 import { count } from '../format';
 import { from_bits, type Coordinates, type ViewData } from './data';
@@ -42,8 +43,8 @@ export function field(model: Model, data: ViewData, changed: () => void) {
 
   function tell() {
     const sum = (all: boolean[]) => count(all.filter(Boolean).length);
-    told.replaceChildren(...(current ? [h('strong', {}, `${count(triangles.length)} ${mesh.length ? 'triangles of the mesh' : 'random triangles'} against a: `), h('code', {}, model.lane), ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). `,
-      h('button', { type: 'button', onclick: take }, 'Take a wrong one'), ' ', h('button', { type: 'button', onclick: () => set_shown(0) }, 'Back to the pair')] : []));
+    told.replaceChildren(...(current ? [h('strong', {}, `${count(triangles.length)} ${mesh.length ? '' : 'random '}triangles against a, the reference: `), h('code', {}, model.lane), ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). The table is of the pair named above; press a verdict to see its lane here. `,
+      h('button', { type: 'button', onclick: take }, current.wrong.some(Boolean) ? 'Take a wrong one' : 'Take a hit'), ' ', h('button', { type: 'button', onclick: () => set_shown(0) }, 'Back to the pair')] : []));
   }
 
   function take() {
@@ -55,13 +56,14 @@ export function field(model: Model, data: ViewData, changed: () => void) {
   }
   function set_shown(next: number) {
     shown = Math.min(mesh.length || kMost, next);
-    if (shown < kLeast) shown = 0;
+    if (shown < Math.min(kLeast, mesh.length || kLeast)) shown = 0;
     draw_triangles();
     changed();
   }
   return {
     element: told,
     current: () => current,
+    all: () => set_shown(mesh.length),
     more: () => set_shown(shown ? 2 * shown : mesh.length || 4 * kLeast),
     fewer: () => set_shown(Math.floor(shown / 2)),
     again() {

@@ -1,132 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer: makes the module ready, checks it against the native build, and puts the page together.
+// The page of `graze view`: the viewer, with the pair in the address.
 import '../style.css';
-import './viewer.css';
-import compressed from 'graze.wasm';
 import { h } from '../dom';
-import { figure } from '../format';
-import { board } from './board';
-import { coordinates, kMove } from './coordinates';
-import { copies } from './copies';
-import { from_bits, replay, type ViewData } from './data';
-import { field } from './field';
-import { load } from './graze.js';
-import { keys } from './keys';
-import { map } from './map';
-import { matrix } from './matrix';
-import { fragment_of, from_fragment, kCentres, Model, special_cases } from './model';
-import { policy } from './policy';
-import { sources } from './sources';
-import { why } from './why';
+import { from_bits, type ViewData } from './data';
+import { fragment_of, from_fragment, special_cases, type Model } from './model';
+import { make_ready, no_verdicts, viewer, type First } from './viewer';
 
-async function module_of(base64: string): Promise<WebAssembly.Module> {
-  const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
-  return WebAssembly.compile(await new Response(stream).arrayBuffer());
-}
-
-function margin_words({ decided: { truth, margin } }: Model): string {
-  if (truth.verdict === 'declined') return 'a coordinate is not finite';
-  if (margin.sign === 0) return 'margin exactly 0: any push parts them';
-  const say = (x: number) => figure(x), [least, most] = [say(margin.least), say(margin.most)];
-  const ulps = (x: number) => say(x / margin.ulp);
-  const range = least === most ? `${least} (${ulps(margin.least)} ulps)` : `between ${least} and ${most} (${ulps(margin.least)} to ${ulps(margin.most)} ulps)`;
-  return margin.sign > 0 ? `${range} apart` : `${range} deep`;
-}
-
-function build(data: ViewData, graze: Awaited<ReturnType<typeof load>>, module: WebAssembly.Module, status: HTMLElement) {
-  const linked = from_fragment(), first = linked ? { name: 'the pair of a link', pair: linked.pair } : data.pairs.length ? { name: data.pairs[0].name, pair: from_bits(data.pairs[0].bits) } : special_cases[0];
-  const message = h('p', { class: 'message small', role: 'status' });
-  const say = (text: string) => (message.textContent = text);
-  let later = 0, frame = 0;
-  const model = new Model(graze, first, (moved) => {
-    if (moved) say('');
-    update_text();
-    if (!frame) frame = requestAnimationFrame(update_drawing);
-    clearTimeout(later);
-    later = window.setTimeout(update_later, 60);
-  });
-  const verdicts = matrix(model), because = why(model), many = field(model, data, () => update_drawing()), drawing = board(model, many.current), typed = coordinates(model, say),
-    ulps = map(model, module), from = sources(model, data, say), copied = copies(model);
-  const name = h('h1', {}), truth = h('p', { class: 'truth', id: 'truth' }), summary = h('p', { id: 'summary' });
-
-  // At once: what is said. With the next frame: what is drawn. After a moment of rest: what takes longer.
-  function update_text() {
-    verdicts.update();
-    const { decided, policy: under } = model, wrong = graze.lanes.filter((lane) => model.wrong(lane)), apart = graze.lanes.filter((lane) => lane.endsWith('/cuda-fma') && model.differs(lane));
-    name.textContent = model.name;
-    truth.replaceChildren(h('strong', {}, `Truth: ${decided.truth.verdict}`), `, ${decided.truth.contact === 'none' || decided.truth.verdict === 'declined' ? '' : `contact: ${decided.truth.contact}, `}${margin_words(model)}${decided.truth.coplanar ? '; coplanar' : ''}`);
-    summary.replaceChildren(h('span', {}, wrong.length ? h('b', { class: 'bad' }, `${wrong.length} of ${graze.lanes.length} lanes ${wrong.length === 1 ? 'is' : 'are'} wrong`) : `All ${graze.lanes.length} lanes are right`, under && ` under ${under}`, '. ',
-      apart.length > 0 && ['CPU and GPU differ: ', apart.map((lane, i) => [i ? ', ' : '', h('button', { type: 'button', class: 'link', onclick: () => model.set({ lane }) }, lane.replace('/cuda-fma', ''))]), '.']));
-    typed.update();
-    from.update();
-  }
-  function update_drawing() {
-    cancelAnimationFrame(frame);
-    frame = 0;
-    many.update();
-    drawing.update();
-  }
-  function update_later() {
-    because.update();
-    copied.update();
-    ulps.update();
-    history.replaceState(null, '', fragment_of(model));
-  }
-
-  const other_processor = () => {
-    const [, , variant] = model.lane.split('/'), to = variant === 'cpu' ? ['cuda-fma', 'cuda'] : ['cpu'];
-    const lane = to.map((one) => model.counterpart(model.lane, one)).find(Boolean);
-    if (lane) model.set({ lane });
-    say(`Chosen: ${model.lane}, ${variant === 'cpu' ? 'GPU' : 'CPU'}`);
-  };
-  const moves: [string, number, number, string][] = [['a', 0, -kMove, '−x'], ['d', 0, kMove, '+x'], ['s', 1, -kMove, '−y'], ['w', 1, kMove, '+y'], ['q', 2, -kMove, '−z'], ['e', 2, kMove, '+z']];
-  const show = (what: keyof Model['shows']) => () => model.set({ shows: { ...model.shows, [what]: !model.shows[what] } });
-  const by = (event: KeyboardEvent) => (event.altKey ? 65536 : event.shiftKey ? 256 : 1);
-  const pressed = keys([
-    { keys: ['h', '?'], shown: 'h', does: 'this help', of_2012: true, press: () => pressed.toggle() },
-    { keys: ['ArrowLeft'], shown: '←', does: 'turn left', of_2012: true, on_board: true, press: () => drawing.turn(-1, 0) },
-    { keys: ['ArrowRight'], shown: '→', does: 'turn right', of_2012: true, on_board: true, press: () => drawing.turn(1, 0) },
-    { keys: ['ArrowUp'], shown: '↑', does: 'magnify; with Shift tilt up', of_2012: true, on_board: true, press: (event) => (event.shiftKey ? drawing.turn(0, 1) : drawing.magnify(1.5)) },
-    { keys: ['ArrowDown'], shown: '↓', does: 'magnify less; with Shift tilt down', of_2012: true, on_board: true, press: (event) => (event.shiftKey ? drawing.turn(0, -1) : drawing.magnify(1 / 1.5)) },
-    ...moves.map(([key, axis, step, where]) => ({ keys: [key], shown: key, does: `move the first triangle by ${kMove} along ${where}`, of_2012: true, press: () => model.move_reference(axis, step) })),
-    { keys: ['o'], shown: 'o', does: 'axes', of_2012: true, press: show('axes') },
-    { keys: ['c'], shown: 'c', does: 'coordinates', of_2012: true, press: show('coordinates') },
-    { keys: ['i'], shown: 'i', does: 'ids of the vertices', of_2012: true, press: show('ids') },
-    { keys: ['p'], shown: 'p', does: 'planes', of_2012: true, press: show('planes') },
-    { keys: ['t'], shown: 't', does: 'the next of the ten special cases', of_2012: true, press: () => from.next_special() },
-    { keys: ['g'], shown: 'g', does: 'the chosen lane on the CPU or on the GPU', of_2012: true, press: other_processor },
-    { keys: ['+', '='], shown: '+', does: 'more triangles against the first', of_2012: true, press: () => many.more() },
-    { keys: ['-'], shown: '-', does: 'fewer', of_2012: true, press: () => many.fewer() },
-    { keys: [' '], shown: 'space', does: 'new random triangles', of_2012: true, on_board: true, press: () => many.again() },
-    { keys: ['n'], shown: 'n', does: 'next pair; with Shift the next on which CPU and GPU differ', press: (event) => void from.go(1, event.shiftKey ? 'apart' : 'any') },
-    { keys: ['b'], shown: 'b', does: 'previous pair', press: () => void from.go(-1) },
-    ...['0', '1', '2', '3', '4', '5'].map((key, v) => ({ keys: [key], shown: key, does: `choose vertex ${v < 3 ? 'a' : 'b'}[${v % 3}]`, press: () => model.set({ chosen: 3 * v + (model.chosen % 3) }) })),
-    ...['x', 'y', 'z'].map((key, k) => ({ keys: [key], shown: key, does: `choose its ${key}`, press: () => model.set({ chosen: model.vertex + k }) })),
-    { keys: ['['], shown: '[', does: 'the chosen coordinate an ulp down; with Shift 256, with Alt 65,536', press: (event) => model.step(-by(event)) },
-    { keys: [']'], shown: ']', does: 'the same, up', press: (event) => model.step(by(event)) },
-    { keys: ['f'], shown: 'f', does: 'what is in the middle: both triangles, the chosen vertex, the contact', press: () => model.set({ centre: kCentres[(kCentres.indexOf(model.centre) + 1) % kCentres.length] }) },
-    { keys: ['Home'], shown: 'Home', does: 'the view as it was', on_board: true, press: () => drawing.reset() },
-    { keys: ['u'], shown: 'u', does: 'undo', press: () => model.travel('past') || say('nothing to undo') },
-    { keys: ['r'], shown: 'r', does: 'redo', press: () => model.travel('future') || say('nothing to redo') },
-  ]);
-  const tool = (text: string, action: () => void) => h('button', { type: 'button', onclick: action }, text);
-  document.getElementById('page')!.replaceChildren(
-    h('header', { class: 'viewer' }, name, h('div', { class: 'chips' }, tool('Undo', () => model.travel('past') || say('nothing to undo')), tool('Redo', () => model.travel('future') || say('nothing to redo')), tool('CPU or GPU', other_processor), tool('Random triangles', () => many.again()), tool('Keys (h)', () => pressed.toggle())), status),
-    h('main', { class: 'viewer' },
-      h('div', { class: 'column' }, h('div', { class: 'seen' }, drawing.element, many.element, message, from.element), typed.element, copied.element),
-      h('div', { class: 'column' }, h('div', { class: 'said' }, truth, summary, verdicts.element), because.element, ulps.element,
-        h('section', { id: 'policy', 'aria-labelledby': 'policy-title' }, h('h2', { id: 'policy-title' }, 'Tolerances'), policy(model)),
-        h('p', { class: 'small', id: 'evidence' }, `CUDA lanes: ${data.evidence}; here in WebAssembly.`))), pressed.help);
-  addEventListener('hashchange', ({ newURL }) => {
-    const next = from_fragment(newURL);
-    if (next) model.show(next.pair, 'the pair of a link');
-  });
-  if (linked && graze.lanes.includes(linked.lane)) model.set({ lane: linked.lane });
-  else model.choose_telling();
-  update_drawing();
-  update_later();
-  document.getElementById('board')!.focus({ preventScroll: true });
+function first_of({ pairs, opens }: ViewData): First {
+  const linked = from_fragment();
+  return linked ? { name: 'the pair of a link', ...linked } : pairs.length ? { name: pairs[0].name, pair: from_bits(pairs[0].bits), lane: opens === 'triangles' ? 'exact/f32/cpu' : '' } : special_cases[0];
 }
 
 async function start() {
@@ -134,12 +16,19 @@ async function start() {
   if (!text || text.startsWith('<!--')) return void (page.textContent = 'This is the empty page: graze view writes one with data.');
   const data = JSON.parse(text) as ViewData;
   try {
-    const module = await module_of(compressed), graze = await load(module), apart = replay(graze, data.replay);
-    if (apart.length) throw new Error(`This browser decides otherwise than the native build: ${apart.slice(0, 3).join('; ')}${apart.length > 3 ? `; and ${apart.length - 3} more` : ''}.`);
-    const { pairs, lanes } = data.replay;
-    build(data, graze, module, h('p', { class: 'small', id: 'replayed' }, `Same as the native build on ${pairs.length} pairs, ${lanes.length} lanes each.`));
+    const shown = viewer(data, await make_ready(data.replay), first_of(data), {
+      keep: (model: Model) => history.replaceState(null, '', fragment_of(model)),
+      link: (model: Model) => `${location.href.split('#')[0]}${fragment_of(model)}`,
+      active: () => true,
+    });
+    page.replaceChildren(h('header', { class: 'viewer-head' }, shown.head), h('main', { class: 'viewer-body' }, shown.body), shown.help);
+    addEventListener('hashchange', ({ newURL }) => {
+      const next = from_fragment(newURL);
+      if (next) shown.show({ name: 'the pair of a link', ...next });
+    });
+    shown.begin();
   } catch (error) {
-    page.replaceChildren(h('main', {}, h('h1', {}, 'No verdicts'), h('p', { class: 'notice', role: 'alert', id: 'warning' }, String(error instanceof Error ? error.message : error)), h('p', {}, 'The same pair in a terminal: ', h('code', {}, 'graze check FILE'), '.')));
+    page.replaceChildren(h('main', {}, no_verdicts(error)));
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The verdicts of all lanes, live: which changed is marked, and said aloud.
-import { h, breakable } from '../dom';
+import { h, breakable, type Child } from '../dom';
 import type { Model } from './model';
 
 const kMostSaid = 3;
@@ -15,11 +15,11 @@ export function matrix(model: Model) {
   const cells = new Map(model.graze.lanes.map((lane) => [lane, h('button', { type: 'button', 'data-lane': lane, onclick: () => model.set({ lane }) })]));
   const told = h('p', { class: 'announced', 'aria-live': 'polite', id: 'flips' });
   const cell = (lanes: string[], variant: string) => lanes.find((lane) => lane.endsWith(`/${variant}`) || (variant === 'cuda-fma' && lane.endsWith('/cuda')));
-  const titles: Record<string, string> = { cpu: 'CPU', 'cuda-nofma': 'GPU, -fmad=false', 'cuda-fma': 'GPU, nvcc’s default' };
+  const titles: Record<string, Child> = { cpu: 'CPU', 'cuda-nofma': ['GPU, ', h('span', { class: 'whole' }, '-fmad=false')], 'cuda-fma': 'GPU, nvcc’s default' };
   const table = h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' }, h('table', { class: 'plain lanes' },
     h('caption', {}, 'Verdicts of all lanes'),
     h('thead', {}, h('tr', {}, h('td', {}), variants.map((variant) => h('th', { scope: 'col' }, titles[variant] ?? variant, h('code', {}, variant))))),
-    h('tbody', {}, [...rows].map(([name, lanes]) => h('tr', {}, h('th', { scope: 'row' }, breakable(name)),
+    h('tbody', {}, [...rows].map(([name, lanes]) => h('tr', { 'data-row': name }, h('th', { scope: 'row' }, breakable(name)),
       variants.map((variant) => {
         const lane = cell(lanes, variant);
         return h('td', {}, lane ? cells.get(lane)! : h('span', { class: 'none' }, '–'));
@@ -42,9 +42,11 @@ export function matrix(model: Model) {
       button.setAttribute('aria-label', `${lane}: ${verdict ?? 'no such policy'}${wrong ? ', wrong' : ''}${differs ? ', not what the CPU says' : ''}`);
       button.setAttribute('aria-pressed', String(lane === model.lane));
     }
+    for (const row of table.querySelectorAll<HTMLElement>('[data-row]')) row.classList.toggle('apart', rows.get(row.dataset.row!)!.some((lane) => model.differs(lane)));
     before = verdicts;
     if (flipped.length) told.textContent = `${flipped.slice(0, kMostSaid).join('; ')}${flipped.length > kMostSaid ? `; and ${flipped.length - kMostSaid} more` : ''}.`;
   }
   const key = h('p', { class: 'small' }, h('b', { class: 'bad' }, '✗'), ' wrong, ', h('u', {}, '≠'), ' not what the CPU says. Press a verdict to learn why.');
-  return { element: h('div', {}, table, key, told), update };
+  const asked = h('p', { class: 'small' }, 'Each lane says: an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU.');
+  return { element: h('div', { class: 'verdicts-of-all' }, asked, table, key), told, update };
 }

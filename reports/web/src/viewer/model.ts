@@ -3,8 +3,8 @@
 import { coordinate_name, from_bits, to_bits, type Coordinates } from './data';
 import type { Graze, Margin, Truth, Verdict } from './graze.js';
 
-export type Centre = 'both triangles' | 'the chosen vertex' | 'the contact';
-export const kCentres: Centre[] = ['both triangles', 'the chosen vertex', 'the contact'];
+export type Centre = 'both triangles' | 'the chosen vertex' | 'the contact or gap';
+export const kCentres: Centre[] = ['both triangles', 'the chosen vertex', 'the contact or gap'];
 
 // The thesis's special cases: B against the reference triangle, one for each placement of the vertices along the line.
 const kReference = [0, -2, 6, 0, 5, 0, 0, -3, 0];
@@ -91,6 +91,9 @@ export class Model {
     [this.pair, this.name] = [next.pair, next.name];
     this.settle();
     return true;
+  }
+  can(travel: 'past' | 'future') {
+    return (travel === 'past' ? this.past : this.future).length > 0;
   }
   set_policy(policy: string) {
     this.graze.set_policy(policy);

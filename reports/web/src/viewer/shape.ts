@@ -43,6 +43,17 @@ function plane(corners: Vec[]): Vec[] {
   return [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([s, t]) => middle.map((c, k) => c + s * e[k] + t * f[k]) as Vec);
 }
 
+// b's vertices projected onto a's plane, which is all that projected_sat compares in the end; empty without a plane.
+function shadow_of(points: Vec[]): Vec[] {
+  const [p, q, r] = points, u = q.map((c, k) => c - p[k]), v = r.map((c, k) => c - p[k]);
+  const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], square = n.reduce((sum, c) => sum + c * c, 0);
+  if (!(square > 0) || !Number.isFinite(square)) return [];
+  return points.slice(3).map((b) => {
+    const height = n.reduce((sum, c, k) => sum + c * (b[k] - p[k]), 0) / square;
+    return b.map((c, k) => c - n[k] * height) as Vec;
+  });
+}
+
 export interface Field { triangles: Coordinates[]; hit: boolean[]; wrong: boolean[] }  // of 9 coordinates each
 
 // magnified: by how much, beyond what fits.
@@ -53,9 +64,9 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   const extent = low.map((l, k) => high[k] - l), longest = Math.max(...extent) || Math.max(...pair.map(Math.abs)) || 1;
   const stretch = extent.some((e) => e > 0 && longest / e > kLongestToScale);
   const unit = extent.map((e) => (stretch && e > 0 ? e : longest) / 2 / magnified) as Vec;
-  const contact = drawing.contact;
+  const { contact, witness } = drawing, common = contact.length ? contact : witness;
   const middle = (centre === 'the chosen vertex' ? vertex(pair, model.vertex / 3)
-    : centre === 'the contact' && contact.length ? [0, 1, 2].map((k) => contact.reduce((sum, p) => sum + p[k] / contact.length, 0))
+    : centre === 'the contact or gap' && common.length ? [0, 1, 2].map((k) => common.reduce((sum, p) => sum + p[k] / common.length, 0))
       : low.map((l, k) => l / 2 + high[k] / 2)) as Vec;
   const place = (p: readonly number[]) => [0, 1, 2].map((k) => (p[k] - middle[k]) / unit[k]) as Vec;
   const marks: Mark[] = [];
@@ -65,7 +76,12 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   if (shows.planes) {
     [a, b].forEach((corners, i) => marks.push({ colour: i ? '--triangle-b' : '--triangle-a', triangles: fan(cut(plane(corners))), opacity: 0.18 }));
   }
-  drawing.sections.forEach((ends, i) => ends.length === 2 && marks.push({ colour: i ? '--triangle-b-edge' : '--triangle-a-edge', lines: [cut(ends.map(place))], width: i ? 3 : 7 }));
+  if (!field) drawing.sections.forEach((ends, i) => ends.length === 2 && marks.push({ colour: i ? '--triangle-b-edge' : '--triangle-a-edge', lines: [cut(ends.map(place))], width: i ? 3 : 7 }));
+  if (!field && witness.length) marks.push({ colour: '--witness', lines: [cut(witness.map(place))], width: 3 });
+  if (!field && model.lane.startsWith('projected_sat/')) {
+    const shadow = shadow_of(points).map(place);
+    if (shadow.length) marks.push({ colour: '--triangle-b-edge', lines: [cut(shadow.concat([shadow[0]]))], width: 1.5, dashed: true });
+  }
   if (shows.axes) {
     for (let k = 0; k < 3; ++k) {
       const end = [0, 0, 0], origin = [0, 0, 0];

@@ -12,8 +12,17 @@ export type Wanted = 'any' | 'apart' | 'wrong';
 export function sources(model: Model, data: ViewData, say: (text: string) => void) {
   const { graze } = model, given = data.pairs.map(({ name, bits }) => ({ name, pair: from_bits(bits) }));
   const lists: Record<string, { name: string; pair: Coordinates }[]> = { given, special: special_cases };
-  const named = /^([a-z_]+):(\d+):(\d+)$/.exec(data.pairs[0]?.name ?? ''), of_stratum = named && graze.strata.includes(named[1]) ? named : null;
+  const named = /^([a-z_]+):(\d+):(\d+)$/.exec(data.pairs[0]?.name ?? ''), of_stratum = named && given.length === 1 && graze.strata.includes(named[1]) ? named : null;
   let source = of_stratum ? of_stratum[1] : given.length ? 'given' : 'special', seed = BigInt(of_stratum?.[2] ?? 1), at = Number(of_stratum?.[3] ?? 0), searching = 0;
+
+  // Next and Previous go on from there.
+  function find(pair: Coordinates) {
+    const found = given.findIndex((one) => one.pair.every((x, c) => Object.is(x, pair[c])));
+    if (found < 0 || of_stratum) return;
+    source = 'given';
+    at = found;
+    select.querySelector('select')!.value = source;
+  }
 
   const length = () => lists[source]?.length ?? Infinity;
   const pair_at = (i: number) => lists[source]?.[i] ?? { name: `${source}:${seed}:${i}`, pair: graze.generate(source, seed, BigInt(i)) };
@@ -71,7 +80,7 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
   }
   const button = (text: string, action: () => void) => h('button', { type: 'button', onclick: action }, text);
   return {
-    go, update, next_special,
+    go, update, next_special, find,
     element: h('div', { class: 'controls sources' }, select, h('div', { class: 'chips' }, button('Previous', () => go(-1)), button('Next', () => go(1)),
       button('Next where CPU and GPU differ', () => go(1, 'apart')), button('Next with a wrong verdict', () => go(1, 'wrong')), place)),
   };

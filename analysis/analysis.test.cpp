@@ -197,9 +197,20 @@ TEST(Convention, LeavesOpenWhatItNames) {
   const Lane* two[] = {&lane, find_lane("moller_1997/f64/cpu")};
   EXPECT_EQ(excused(two, {Verdict::disjoint, Verdict::disjoint}, touching, oracle::truth(touching)),
             (std::vector{Verdict::intersects, Verdict::disjoint}));
+  const Lane* others[] = {two[1], two[0], two[0]};
+  EXPECT_EQ(excused(others, {Verdict::disjoint, Verdict::disjoint, Verdict::disjoint}, touching, oracle::truth(touching)),
+            (std::vector{Verdict::disjoint, Verdict::intersects, Verdict::intersects}));
   EXPECT_EQ(outside_in_words(0), "");
   EXPECT_EQ(outside_in_words(kOutsideTouching | kOutsideShared), "touching pairs, pairs that share a vertex");
   EXPECT_EQ(outside_in_words(kOutsideCoplanar | kOutsideDegenerate), "coplanar pairs, degenerate triangles");
+}
+
+TEST(Bits, AreOfThePairsInTheirOrder) {
+  for (std::size_t set = 0; set < 200; ++set) {
+    Bits bits(4);
+    bits[set / 64] = std::uint64_t{1} << set % 64;
+    for (std::size_t i = 0; i < 256; ++i) ASSERT_EQ(test_bit(bits, i), i == set) << i << ' ' << set;
+  }
 }
 
 TEST(Disagreements, AreThePairsOnWhichSomeLaneIsNotRight) {
@@ -246,6 +257,12 @@ TEST(Signature, AKeyIsReadBack) {
     ASSERT_TRUE(read) << text;
     EXPECT_EQ(key(*read), text);
   }
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    const std::string text = "point/22/skew/" + name_of_bucket(static_cast<Bucket>(b)) + "/mine:";
+    const std::optional<Signature> read = parse_signature(text);
+    ASSERT_TRUE(read) << text;
+    EXPECT_EQ(key(*read), text);
+  }
   const std::optional<Signature> read = parse_signature("point/22/skew/0/mine:-f32/cpu/a=abs:1,b=rel:2;+f64/cpu");
   ASSERT_EQ(read->wrong_lanes.size(), 2u);
   EXPECT_EQ(read->mark_of("f32/cpu/a=abs:1,b=rel:2"), '-');
@@ -253,7 +270,7 @@ TEST(Signature, AKeyIsReadBack) {
   EXPECT_EQ(read->mark_of("f32/cpu"), '.');
   for (const char* text : {"", "point", "point/22", "point/22/skew", "point/22/skew/mine:", "point/22/skew/0/mine", "dot/22/skew/0/mine:", "point/23/skew/0/mine:",
                            "point/22/flat/0/mine:", "point/22/skew/2^3/mine:", "point/22/skew/0/mine:f32/cpu",
-                           "point/22/skew/0/:+f32/cpu", "point/22/skew/0/mine:+", "executors/moller_1997/f32/cuda-fma"})
+                           "point/22/skew/+2^32/mine:", "point/22/skew/0/:+f32/cpu", "point/22/skew/0/mine:+", "executors/moller_1997/f32/cuda-fma"})
     EXPECT_FALSE(parse_signature(text)) << text;
 }
 

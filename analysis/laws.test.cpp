@@ -267,8 +267,8 @@ TEST(Laws, WhatAConventionLeavesOpenIsNotAsked) {
   EXPECT_EQ(laws(spec).lanes[0].total(Law::part).changed, 1u);
   lane.outside = kOutsideTouching;
   EXPECT_EQ(laws(spec).lanes[0].total(Law::part).changed, 0u);
-  // A common area is no touch, though an ulp can part the two: it is asked about, as such a touch is not.
-  for (const auto& [x, asked_about] : {std::pair{1.0f, 1u}, {4.0f, 0u}}) {
+  // A common area is no touch, though an ulp can part the two: it is asked about, as such a touch is not; and so are those apart.
+  for (const auto& [x, asked_about] : {std::pair{1.0f, 1u}, {4.0f, 0u}, {9.0f, 1u}}) {
     spec.sources = {{"one", 1, [x](std::uint64_t) {
                        return Pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{x, 0, 0}, {x + 4, 0, 0}, {x, 4, 0}}};
                      }}};

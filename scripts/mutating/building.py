@@ -47,8 +47,8 @@ class Commands:
 
     def flags(self, source, level):
         words = shlex.split(self.compile[str(self.root / source)])
-        if words[0].endswith("ccache"):
-            words = words[1:]
+        cache = [k for k, word in enumerate(words) if pathlib.Path(word).name == "ccache"]
+        words = words[cache[0] + 1 if cache else 0:]
         for flag in ["-MF", "-MT", "-o", "-c"]:
             if flag in words:
                 del words[words.index(flag):words.index(flag) + 2]

@@ -29,12 +29,10 @@ struct Options {
   bool json = false;
 };
 
-double rate(const BenchRow& row) { return static_cast<double>(row.triangles) / row.seconds; }
-
 std::string words(const BenchMachine& machine) {
   std::string text = fmt::format("{}, {} threads, {}", fuzz::machine_name(), machine.cores, exact::decide_target());
-  if (machine.devices.empty()) return text + "; no CUDA device\n";
-  return text + fmt::format("; {} x {}: copies within it {:.0f} GB/s, from the host {:.1f} GB/s\n",
+  if (machine.devices.empty()) return text + "; no CUDA device";
+  return text + fmt::format("; {} x {}: copies within it {:.0f} GB/s, from the host {:.1f} GB/s",
                             machine.devices.size(), machine.devices[0], machine.copy_bytes_per_second / 1e9,
                             machine.to_device_bytes_per_second / 1e9);
 }
@@ -44,7 +42,7 @@ nlohmann::ordered_json json_of(const Bench& bench) {
   for (const BenchRow& row : bench.rows) {
     nlohmann::ordered_json line = {{"array", row.array},     {"triangles", row.triangles}, {"mode", row.mode},
                                    {"lane", row.lane},       {"executor", row.executor},   {"data", row.data},
-                                   {"seconds", row.seconds}, {"per_second", rate(row)},    {"hits", row.hits}};
+                                   {"seconds", row.seconds}, {"per_second", row.rate()},   {"hits", row.hits}};
     if (row.build_seconds > 0) line["build_seconds"] = row.build_seconds;
     if (row.mismatches) line["mismatches"] = *row.mismatches;
     rows.push_back(std::move(line));
@@ -71,9 +69,9 @@ std::string table_of(const Bench& bench, std::size_t group) {
     if (row.group != group) continue;
     if (head.empty()) head = row.array + ", " + reports::grouped(row.triangles);
     lines.push_back({row.lane + (row.mode == "any" ? ", any" : ""),
-                     row.executor + (row.data == "resident" ? ", resident" : ""),
+                     row.by(),
                      fmt::format("{:.3f}", row.seconds * 1e3),
-                     row.mode == "any" ? "" : fmt::format("{:.1f}", rate(row) / 1e6),
+                     row.mode == "any" ? "" : fmt::format("{:.1f}", row.rate() / 1e6),
                      reports::grouped(row.hits),
                      {row.mismatches ? reports::grouped(*row.mismatches) : "", row.mismatches.value_or(0) > 0}});
   }
@@ -90,14 +88,14 @@ std::string shares(const Bench& bench) {
     const BenchRow* best = nullptr;
     for (const BenchRow& row : bench.rows) {
       if (row.lane == "exact" && row.mode == "all" && row.executor == "one GPU" && row.data == data &&
-          (!best || rate(row) > rate(*best)))
+          (!best || row.rate() > best->rate()))
         best = &row;
     }
     if (!best) continue;
     const bool resident = best->data == "resident";
     const double limit = resident ? bench.machine.copy_bytes_per_second : bench.machine.to_device_bytes_per_second;
     text += fmt::format("exact, one GPU, {}: at most {:.1f} x 10^9 triangles/s, {:.1f} GB/s, {:.0f} % of {}\n", data,
-                        rate(*best) / 1e9, rate(*best) * 36 / 1e9, rate(*best) * 3600 / limit,
+                        best->rate() / 1e9, best->rate() * 36 / 1e9, best->rate() * 3600 / limit,
                         resident ? "a copy within it" : "a copy from pinned memory");
   }
   return text;
@@ -118,7 +116,7 @@ void bench(const Options& options, int& status) {
   const auto print_table = [&](const Bench& bench) {
     if (on_terminal) fmt::print(stderr, "\r\033[K");
     if (options.json) return;
-    fmt::print("{}{}\n", printed == 0 ? words(bench.machine) + "\n" : "", table_of(bench, printed));
+    fmt::print("{}{}\n", printed == 0 ? words(bench.machine) + "\n\n" : "", table_of(bench, printed));
     ++printed;
     std::fflush(stdout);
   };
@@ -140,11 +138,7 @@ void bench(const Options& options, int& status) {
     status = kInterrupted;
     return;
   }
-  if (!options.plot.empty()) {
-    std::string machine = words(result.machine);
-    machine.pop_back();  // the end of the line
-    fuzz::write_whole(options.plot, bench_plot(result, machine));
-  }
+  if (!options.plot.empty()) fuzz::write_whole(options.plot, bench_plot(result, words(result.machine)));
   if (options.json) {
     fmt::print("{}\n", json_of(result).dump(1));
     return;

@@ -2,12 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
 #include "cli/bench_rows.h"
-#include "reports/svg_text.h"
+#include "reports/svg.h"
 
 namespace graze::cli {
 namespace {
@@ -15,9 +14,6 @@ namespace {
 using reports::svg_text;
 
 constexpr double kWidth = 900, kHeight = 420, kLeft = 64, kRight = 230, kTop = 44, kBottom = 52;
-constexpr std::array<const char*, 8> kColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7",
-                                                 "#e69f00", "#56b4e9", "#8c6d31", "#777777"};  // Okabe and Ito 2008
-
 // Decades of an axis that holds what it is given.
 struct Decades {
   int low = 99, high = -99;
@@ -37,24 +33,18 @@ std::string bench_plot(const Bench& bench, const std::string& machine) {
   Decades sizes, rates;
   for (const BenchRow& row : bench.rows) {
     if (row.array != "thesis" || row.mode != "all" || row.lane != "exact") continue;
-    const double rate = static_cast<double>(row.triangles) / row.seconds, size = static_cast<double>(row.triangles);
-    series[row.executor + (row.data == "resident" ? ", resident" : "")][size] = rate;
+    const double size = static_cast<double>(row.triangles);
+    series[row.by()][size] = row.rate();
     sizes.hold(size);
-    rates.hold(rate);
+    rates.hold(row.rate());
   }
   const auto x_of = [&](double size) { return kLeft + (kWidth - kLeft - kRight) * sizes.share(size); };
   const auto y_of = [&](double rate) { return kHeight - kBottom - (kHeight - kTop - kBottom) * rates.share(rate); };
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-      "font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n<title>Triangles a second by the size of the "
-      "array</title>\n",
-      kWidth, kHeight);
+  std::string svg = reports::svg_begin("Triangles a second by the size of the array");
   svg += svg_text(kLeft, 20, "start", "Exact verdicts: triangles a second by the size of the array. " + machine);
   for (int k = rates.low; k <= rates.high; ++k) {
     const double y = y_of(std::pow(10.0, k));
-    svg +=
-        fmt::format("<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n",
-                    kLeft, kWidth - kRight, y, y);
+    svg += reports::svg_level(kLeft, kWidth - kRight, y);
     svg += svg_text(kLeft - 8, y + 4, "end", power(k));
   }
   for (int k = sizes.low; k <= sizes.high; ++k)
@@ -62,7 +52,7 @@ std::string bench_plot(const Bench& bench, const std::string& machine) {
   svg += svg_text((kLeft + kWidth - kRight) / 2, kHeight - 10, "middle", "triangles in the array");
   std::size_t row = 0;
   for (const auto& [name, points] : series) {
-    const char* colour = kColours[row % kColours.size()];
+    const char* colour = reports::kSvgColours[row % reports::kSvgColours.size()];
     std::string line, dots;
     for (const auto& [size, rate] : points) {
       line += fmt::format("{:.1f},{:.1f} ", x_of(size), y_of(rate));

@@ -31,6 +31,9 @@ struct BenchRow {
   double seconds, build_seconds = 0;  // of the tree
   std::uint64_t hits;
   std::optional<std::uint64_t> mismatches;  // with the exact lane, of another one
+
+  double rate() const { return static_cast<double>(triangles) / seconds; }  // a second
+  std::string by() const { return executor + (data == "resident" ? ", resident" : ""); }
 };
 
 struct BenchMachine {

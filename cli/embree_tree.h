@@ -10,7 +10,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "core/exact/exact.h"

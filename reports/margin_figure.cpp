@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/margin/bucket.h"
-#include "reports/svg_text.h"
+#include "reports/svg.h"
 
 namespace graze::reports {
 namespace {
@@ -43,9 +43,7 @@ double y_of(double share) { return kHeight - kBottom - (kHeight - kTop - kBottom
 std::string axes() {
   std::string svg;
   for (int percent = 0; percent <= 100; percent += 25) {
-    svg +=
-        fmt::format("<line x1=\"{}\" x2=\"{}\" y1=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n",
-                    kLeft, kWidth - kRight, y_of(percent / 100.0), y_of(percent / 100.0));
+    svg += svg_level(kLeft, kWidth - kRight, y_of(percent / 100.0));
     svg += svg_text(kLeft - 8, y_of(percent / 100.0) + 4, "end", fmt::format("{} %", percent));
   }
   for (const int k : {24, 12, 0, -12}) {
@@ -76,11 +74,7 @@ std::string margin_figure(const Json& summary) {
     }
   }
 
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
-      "font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n"
-      "<title>Share of wrong verdicts against the exact margin</title>\n",
-      kWidth, kHeight);
+  std::string svg = svg_begin("Share of wrong verdicts against the exact margin");
   svg += axes();
   std::size_t row = 0;
   for (const auto& lane : summary["spec"]["lanes"]) {

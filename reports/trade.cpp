@@ -9,7 +9,7 @@
 
 #include "corpus/pair_format.h"
 #include "reports/findings.h"
-#include "reports/svg_text.h"
+#include "reports/svg.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 
@@ -25,9 +25,6 @@ using analysis::Trade;
 using Json = nlohmann::ordered_json;
 
 constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7, kLegend = 240;
-constexpr std::array<const char*, 8> kColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7",
-                                                 "#e69f00", "#56b4e9", "#8c6bb1", "#a6761d"};  // Okabe and Ito 2008
-
 double share(const PolicyErrors& e) {
   return e.pairs == 0 ? 0 : static_cast<double>(e.wrong() + e.declined) / static_cast<double>(e.pairs);
 }
@@ -37,15 +34,10 @@ double y_of(double rate) {
 }
 
 std::string begin(const std::string& title, double right = kRight) {
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 420\" width=\"900\" height=\"420\" "
-      "font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n<title>{}</title>\n",
-      title);
+  std::string svg = svg_begin(title);
   for (int power = -7; power <= 0; ++power) {
     const double y = y_of(std::pow(10.0, power));
-    svg += fmt::format(
-        "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", kLeft,
-        right, y);
+    svg += svg_level(kLeft, right, y);
     svg += svg_text(kLeft - 8, y + 4, "end",
                     power == -7  ? "none seen"
                     : power == 0 ? "all"
@@ -57,8 +49,7 @@ std::string begin(const std::string& title, double right = kRight) {
 // As `graze check` takes it.
 std::string numbers(const Pair& pair) {
   std::string text;
-  for (int c = 0; c < kCoordinates; ++c)
-    text += (c > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[c]);
+  for (int c = 0; c < kCoordinates; ++c) text += (c > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[c]);
   return text;
 }
 
@@ -105,8 +96,8 @@ std::string trade_table(const Trade& trade, const Screen& screen) {
                                {words}};
     if (offer.needs) {
       const auto cell = [](int n) { return Cell{std::to_string(n)}; };
-      cells.insert(cells.begin() + 3, {cell(offer.needs->registers), cell(offer.needs->local_bytes),
-                                       cell(offer.needs->active_threads)});
+      cells.insert(cells.begin() + 3,
+                   {cell(offer.needs->registers), cell(offer.needs->local_bytes), cell(offer.needs->active_threads)});
     }
     table.add(std::move(cells));
   }
@@ -184,7 +175,8 @@ std::string trade_figure(const Trade& trade) {
         svg += svg_text(x_of(ns), 370, "middle", fmt::format("{:g}", ns));
     }
   }
-  svg += svg_text((kLeft + kRight) / 2, 396, "middle", fmt::format("nanoseconds a pair, pairs {}", trade.on_device ? "on the device" : "in cache"));
+  svg += svg_text((kLeft + kRight) / 2, 396, "middle",
+                  fmt::format("nanoseconds a pair, pairs {}", trade.on_device ? "on the device" : "in cache"));
   std::string front;
   for (const Offer& offer : cheapest_first(trade.offers)) {
     const double x = x_of(offer.near.middle), y = y_of(share(offer.errors));
@@ -216,10 +208,10 @@ std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extr
     if (curve.extreme != extreme) continue;
     std::string points;
     for (const auto& [k, errors] : curve.points) points += fmt::format("{:.1f},{:.1f} ", x_of(k), y_of(share(errors)));
-    const char* colour = kColours[row % kColours.size()];
-    const char* dashes = row < kColours.size()       ? ""
-                         : row < 2 * kColours.size() ? " stroke-dasharray=\"6 3\""
-                                                     : " stroke-dasharray=\"2 2\"";
+    const char* colour = kSvgColours[row % kSvgColours.size()];
+    const char* dashes = row < kSvgColours.size()       ? ""
+                         : row < 2 * kSvgColours.size() ? " stroke-dasharray=\"6 3\""
+                                                        : " stroke-dasharray=\"2 2\"";
     svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"{} points=\"{}\"/>\n", colour, dashes,
                        points);
     const double y = kTop + 6 + 15.0 * static_cast<double>(row);

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "reports/findings.h"
-#include "reports/svg_text.h"
+#include "reports/svg.h"
 #include "reports/terminal.h"
 
 namespace graze::reports {
@@ -150,14 +150,10 @@ Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
 
 std::string tuning_figure(const TuneQuestion& question, const Tuned& tuned) {
   constexpr const char *kMiss = "#0072b2", *kFalseHit = "#d55e00";
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 420\" width=\"900\" height=\"420\" "
-      "font-family=\"sans-serif\" font-size=\"12\" fill=\"#777\">\n<title>Errors of {} against its tolerance</title>\n",
-      question.lane);
+  std::string svg = svg_begin(fmt::format("Errors of {} against its tolerance", question.lane));
   for (int power = -7; power <= 0; ++power) {
     const double y = Frame::y(std::pow(10.0, power));
-    svg += fmt::format(
-        "<line x1=\"64\" x2=\"880\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", y);
+    svg += svg_level(64, 880, y);
     svg += svg_text(56, y + 4, "end", power == -7 ? "none" : power == 0 ? "all" : fmt::format("1e{}", power));
   }
   for (const analysis::Curve& curve : tuned.curves) {

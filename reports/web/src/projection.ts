@@ -5,7 +5,8 @@ import { labels, project, type Shape, type Vec, type View } from './drawing';
 const kMostTriangles = 500;  // of a mark: more would take a browser seconds
 const kSvg = 'http://www.w3.org/2000/svg';
 
-function node(name: string, attributes: Record<string, string | number>, text = '') {
+// An element of an SVG.
+export function node(name: string, attributes: Record<string, string | number>, text = '') {
   const element = document.createElementNS(kSvg, name);
   for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
   element.textContent = text;

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two ranges on a line, drawn: as a whole, and magnified where the end of one is nearest to the end of the other.
 import { figure } from '../format';
+import { node } from '../projection';
 import type { Ends } from './ranges';
 
 export interface Row { name: string; a: Ends; b: Ends }
 
-const kSvg = 'http://www.w3.org/2000/svg';
 const kMargin = 8, kRow = 34, kMostTicks = 60;
-
-function node(name: string, attributes: Record<string, string | number>, text = '') {
-  const element = document.createElementNS(kSvg, name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, String(value));
-  element.textContent = text;
-  return element;
-}
 
 // The two ends, one of each, that come closest to each other.
 const critical = ({ a, b }: Row): [number, number] => (b[0] - a[1] > a[0] - b[1] ? [a[1], b[0]] : [b[1], a[0]]);

@@ -49,7 +49,7 @@ struct Wide {
   }
 
   template <int K>
-  GRAZE_HD friend Wide operator*(const Wide& l, const Wide<K>& r) {
+  GRAZE_HD GRAZE_CALLED friend Wide operator*(const Wide& l, const Wide<K>& r) {
     const bool turn = l.negative() != r.negative();
     const Wide u = l.negative() ? -l : l;
     const Wide<K> v = r.negative() ? -r : r;

@@ -2,6 +2,7 @@
 // Margins: certified bounds and buckets against the exact margin, and that against an independent search.
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -29,10 +30,22 @@ SquaredMargin exact_margin(const Pair& pair, Verdict verdict) {
                                       : exact_depth(large, grid.exponent, kAllAxes);
 }
 
+// Whether the bounds leave one bucket; if so it is the expected one.
+template <class Real>
+bool expect_bounds(const Pair& pair, Verdict verdict, double exact, Bucket expected) {
+  const MarginBounds bounds = margin_bounds<Real>(pair, verdict);
+  EXPECT_LE(bounds.lo, exact) << hex(pair);
+  EXPECT_GE(bounds.hi, exact) << hex(pair);
+  Bucket bucket;
+  if (!bucket_from_bounds(bounds, verdict, log2_ulp(pair), bucket)) return false;
+  EXPECT_EQ(bucket, expected) << hex(pair);
+  return true;
+}
+
 TEST(MarginBucket, IsTheExactMarginsBucket) {
   for (const Kind kind : oracle_test::kKinds) {
     PairSource source(kind, kSeed);
-    int certain = 0;
+    int certain = 0, more = 0;
     constexpr int kPairs = 10000;
     for (int n = 0; n < kPairs; ++n) {
       const Pair pair = source.next();
@@ -42,17 +55,54 @@ TEST(MarginBucket, IsTheExactMarginsBucket) {
       const Bucket expected = exact.numerator == 0 ? Bucket{0} : make_bucket(sign, floor_log2(exact) - ulp);
       ASSERT_EQ(margin_bucket(pair, verdict), expected) << hex(pair);
 
-      const MarginBounds bounds = margin_bounds(pair, verdict);
-      const double size = rounded(exact);
-      ASSERT_LE(bounds.lo, size) << hex(pair);
-      ASSERT_GE(bounds.hi, size) << hex(pair);
-      Bucket bucket;
-      if (bucket_from_bounds(bounds, verdict, ulp, bucket)) {
-        ++certain;
-        ASSERT_EQ(bucket, expected) << hex(pair);
-      }
+      const bool by_double = expect_bounds<double>(pair, verdict, rounded(exact), expected);
+      const bool by_two = expect_bounds<DoubleDouble>(pair, verdict, rounded(exact), expected);
+      ASSERT_FALSE(HasFailure());
+      certain += by_double;
+      more += by_two && !by_double;
     }
+    RecordProperty("more_by_two_doubles_kind_" + std::to_string(static_cast<int>(kind)), more);
     RecordProperty("certain_percent_kind_" + std::to_string(static_cast<int>(kind)), 100 * certain / kPairs);
+  }
+}
+
+// Each operation against rationals, next to the bounds that its authors prove; half of the sums cancel.
+TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
+  std::mt19937_64 random(7);
+  const auto value = [&](int spread) {
+    const double hi = std::ldexp(1.0 + static_cast<double>(random() >> 12) * 0x1p-52, static_cast<int>(random() % 64) / spread);
+    const double lo = std::ldexp(static_cast<double>(random() >> 11) * 0x1p-53 - 0.5, std::ilogb(hi) - 53);
+    return random() % 2 ? DoubleDouble{hi, lo} : DoubleDouble{-hi, -lo};
+  };
+  const auto exact = [](const DoubleDouble& x) { return mpq_class(mpq_class(x.hi) + mpq_class(x.lo)); };
+  const mpq_class u(0x1p-53);
+  mpq_class largest[4];
+  for (int n = 0; n < 100'000; ++n) {
+    const DoubleDouble x = value(1);
+    DoubleDouble y = value(n % 3 == 0 ? 64 : 1);
+    if (n % 2) y = {-x.hi * (1 + static_cast<double>(random() % 5) * 0x1p-52), y.lo * 0x1p-40};
+    if (std::fabs(y.lo) > std::fabs(y.hi) * 0x1p-54) y.lo = 0;
+    ASSERT_TRUE(x.hi + x.lo == x.hi && y.hi + y.lo == y.hi);
+    const DoubleDouble found[] = {x + y, x - y, x * y, x / y};
+    const mpq_class a = exact(x), b = exact(y), expected[] = {a + b, a - b, a * b, a / b};
+    for (int k = 0; k < 4; ++k) {
+      ASSERT_EQ(found[k].hi + found[k].lo, found[k].hi) << k;
+      const mpq_class error = abs(exact(found[k]) - expected[k]);
+      if (error == 0) continue;
+      ASSERT_NE(expected[k], 0) << k;
+      largest[k] = std::max(largest[k], mpq_class(error / abs(expected[k]) / (u * u)));
+    }
+    ASSERT_EQ(x < y, a < b);
+    ASSERT_EQ(x <= y, a <= b);
+    ASSERT_EQ(x == y, a == b);
+    ASSERT_EQ(x > y, a > b);
+    ASSERT_EQ(x >= y, a >= b);
+  }
+  const double bounds[] = {3.001, 3.001, 5, 15.001};
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_LE(largest[k].get_d(), bounds[k]) << k;
+    EXPECT_GE(largest[k].get_d(), 0.5) << k;  // of numbers that round at all
+    EXPECT_LE(largest[k].get_d() * 0x1p-106, kRoundoff<DoubleDouble>) << k;
   }
 }
 
@@ -139,7 +189,7 @@ TEST(ExactDepth, IsTheShortestPartingPush) {
         ASSERT_EQ(cgal_verdict(moved(pair, d * (0.999 * depth / length))), Verdict::intersects) << hex(pair);
       }
       bool parted = false;
-      const MarginFrame frame = make_margin_frame(pair);
+      const MarginFrame<double> frame = make_margin_frame(pair);
       for (int axis = 0; axis < kSeparatingAxes; ++axis) {
         const Vec3<double> d = direction(frame, axis);
         const double length = std::sqrt(dot(d, d));
@@ -162,7 +212,7 @@ TEST(ExactSeparation, IsAlongTheDirectionsOfTheBounds) {
     const Pair pair = source.next();
     const Grid grid = grid_of(pair);
     const LargePair large = large_integers(pair, grid);
-    const MarginFrame frame = make_margin_frame(pair);
+    const MarginFrame<double> frame = make_margin_frame(pair);
     const bool disjoint = cgal_verdict(pair) == Verdict::disjoint;
     const double distance = disjoint ? rounded(exact_distance(large, grid.exponent)) : 0;
     bool is_distance = false;

@@ -15,85 +15,94 @@ inline namespace GRAZE_FP {
 
 // Lower bound of the distance: any direction separates by no more than it. Direction d is taken exactly as computed,
 // and all is seen from a vertex of the feature it belongs to: an error of (1 for the difference, 3 roundings)
-// kHalfUlp sum(|n| * |difference|) for each vertex, and slack.
-GRAZE_HD inline double separation(const MarginFrame& f, int d) {
-  const Vec3<double> n = direction(f, d), weight = magnitudes(n) * (6 * kHalfUlp);
+// kRoundoff sum(|n| * |difference|) for each vertex, and slack.
+template <class Real>
+GRAZE_HD double separation(const MarginFrame<Real>& f, int d) {
+  const Vec3<Real> n = direction(f, d), weight = magnitudes(n) * Real(6 * kRoundoff<Real>);
   const int i_of_d = d == kNormalA ? 0 : (d < kFromEdgeA ? d : (d - kFromEdgeA) % 9) / 3;
-  const Vec3<double> from = d == kNormalB ? f.b[0] : f.a[i_of_d];
-  Interval least_a = {INFINITY, INFINITY}, most_a = {-INFINITY, -INFINITY}, least_b = least_a, most_b = most_a;
+  const Vec3<Real> from = d == kNormalB ? f.b[0] : f.a[i_of_d];
+  Interval<Real> least_a = {INFINITY, INFINITY}, most_a = {-INFINITY, -INFINITY}, least_b = least_a, most_b = most_a;
   for (int i = 0; i < 3; ++i) {
-    const Vec3<double> a = f.a[i] - from, b = f.b[i] - from;
+    const Vec3<Real> a = f.a[i] - from, b = f.b[i] - from;
     include(least_a, most_a, dot(n, a), dot(weight, magnitudes(a)));
     include(least_b, most_b, dot(n, b), dot(weight, magnitudes(b)));
   }
-  const double gap = greater(least_b.lo - most_a.hi, least_a.lo - most_b.hi);
-  return gap > 0 ? gap / sqrt(dot(n, n)) * (1 - 8 * kHalfUlp) : 0;  // 7 roundings at most
+  const double gap = as_double(greater(least_b.lo - most_a.hi, least_a.lo - most_b.hi));
+  return gap > 0 ? gap / sqrt(as_double(dot(n, n))) * (1 - 8 * kHalfUlp) : 0;  // 7 roundings at most
 }
 
 // The shortest connection found so far: its squared length and the size of the terms it was summed from, as
 // computed, and the direction that should then separate.
+template <class Real>
 struct Connection {
-  double squared, terms;
+  Real squared, terms;
   int direction;
 };
 
-GRAZE_HD inline void shorten(Connection& best, const Vec3<double>& w, const Vec3<double>& u, const Vec3<double>& v,
-                             int towards) {
-  const Vec3<double> sum = w + u + v;
-  const double squared = dot(sum, sum);
+template <class Real>
+GRAZE_HD void shorten(Connection<Real>& best, const Vec3<Real>& w, const Vec3<Real>& u, const Vec3<Real>& v,
+                      int towards) {
+  const Vec3<Real> sum = w + u + v;
+  const Real squared = dot(sum, sum);
   if (!(squared < best.squared)) return;
-  const Vec3<double> terms = magnitudes(w) + magnitudes(u) + magnitudes(v);
+  const Vec3<Real> terms = magnitudes(w) + magnitudes(u) + magnitudes(v);
   best = {squared, terms.x + terms.y + terms.z, towards};
 }
 
 // Point `at` (seen from the edge's start) to the foot of its perpendicular, if that lies in the edge.
-GRAZE_HD inline void connect_to_edge(Connection& best, const Vec3<double>& at, const Vec3<double>& edge, int towards) {
-  const double along = dot(at, edge), length2 = dot(edge, edge);
+template <class Real>
+GRAZE_HD void connect_to_edge(Connection<Real>& best, const Vec3<Real>& at, const Vec3<Real>& edge, int towards) {
+  const Real along = dot(at, edge), length2 = dot(edge, edge);
   if (along > 0 && along < length2) shorten(best, at, edge * (-along / length2), {0, 0, 0}, towards);
 }
 
 // Point `at` (seen from the face's vertex 0) to its projection, if that lies in the face with edges u and v.
-GRAZE_HD inline void connect_to_face(Connection& best, const Vec3<double>& at, const Vec3<double>& u,
-                                     const Vec3<double>& v, const Vec3<double>& n, double n2, int towards) {
-  const double s = dot(cross(at, v), n), t = dot(cross(u, at), n);
+template <class Real>
+GRAZE_HD void connect_to_face(Connection<Real>& best, const Vec3<Real>& at, const Vec3<Real>& u, const Vec3<Real>& v,
+                              const Vec3<Real>& n, const Real& n2, int towards) {
+  const Real s = dot(cross(at, v), n), t = dot(cross(u, at), n);
   if (s >= 0 && t >= 0 && s + t <= n2 && n2 > 0) shorten(best, at, u * (-s / n2), v * (-t / n2), towards);
 }
 
 // Interior points of two edges nearest to each other; w is the start of v's edge seen from the start of u's.
-GRAZE_HD inline void connect_edges(Connection& best, const Vec3<double>& w, const Vec3<double>& u,
-                                   const Vec3<double>& v, int towards) {
-  const Vec3<double> n = cross(u, v);
-  const double n2 = dot(n, n), s = dot(cross(w, v), n), t = dot(cross(w, u), n);
+template <class Real>
+GRAZE_HD void connect_edges(Connection<Real>& best, const Vec3<Real>& w, const Vec3<Real>& u, const Vec3<Real>& v,
+                            int towards) {
+  const Vec3<Real> n = cross(u, v);
+  const Real n2 = dot(n, n), s = dot(cross(w, v), n), t = dot(cross(w, u), n);
   if (s > 0 && t > 0 && s < n2 && t < n2) shorten(best, w, u * (-s / n2), v * (t / n2), towards);
 }
 
-GRAZE_HD inline Connection shortest_connection(const MarginFrame& f) {
-  Connection best = {INFINITY, 0, 0};
+template <class Real>
+GRAZE_HD Connection<Real> shortest_connection(const MarginFrame<Real>& f) {
+  Connection<Real> best = {INFINITY, 0, 0};
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      const Vec3<double> between = f.b[j] - f.a[i];
+      const Vec3<Real> between = f.b[j] - f.a[i];
       const int feature = 3 * i + j;
       shorten(best, between, {0, 0, 0}, {0, 0, 0}, kFromVertex + feature);
       connect_to_edge(best, between, f.edge_a[i], kFromEdgeA + feature);
-      connect_to_edge(best, between * -1.0, f.edge_b[j], kFromEdgeB + feature);
+      connect_to_edge(best, between * Real(-1), f.edge_b[j], kFromEdgeB + feature);
       connect_edges(best, between, f.edge_a[i], f.edge_b[j], feature);
     }
   }
-  const Vec3<double> normal_a = cross(f.edge_a[0], f.edge_a[1]), normal_b = cross(f.edge_b[0], f.edge_b[1]);
-  const double a2 = dot(normal_a, normal_a), b2 = dot(normal_b, normal_b);
+  const Vec3<Real> normal_a = cross(f.edge_a[0], f.edge_a[1]), normal_b = cross(f.edge_b[0], f.edge_b[1]);
+  const Real a2 = dot(normal_a, normal_a), b2 = dot(normal_b, normal_b);
   for (int i = 0; i < 3; ++i) {
-    connect_to_face(best, f.b[i] - f.a[0], f.edge_a[0], f.edge_a[2] * -1.0, normal_a, a2, kNormalA);
-    connect_to_face(best, f.a[i] - f.b[0], f.edge_b[0], f.edge_b[2] * -1.0, normal_b, b2, kNormalB);
+    connect_to_face(best, f.b[i] - f.a[0], f.edge_a[0], f.edge_a[2] * Real(-1), normal_a, a2, kNormalA);
+    connect_to_face(best, f.a[i] - f.b[0], f.edge_b[0], f.edge_b[2] * Real(-1), normal_b, b2, kNormalB);
   }
   return best;
 }
 
-GRAZE_HD inline MarginBounds distance_bounds(const MarginFrame& f) {
-  const Connection best = shortest_connection(f);
+template <class Real>
+GRAZE_HD MarginBounds distance_bounds(const MarginFrame<Real>& f) {
+  const Connection<Real> best = shortest_connection(f);
   // A connection w + s u + t v joins two points of the triangles, whatever its parameters, if they are in [0, 1];
-  // for a face they may add up to 1 + 2 kHalfUlp, and shrink by that much. Each component is off by at most
-  // (2 for that, 1 for the differences, 1 for the products, 2 for the sums) kHalfUlp (|w| + |s u| + |t v|).
-  const double hi = sqrt(best.squared) * (1 + 8 * kHalfUlp) + 8 * kHalfUlp * best.terms;
+  // for a face they may add up to 1 + 2 kRoundoff, and shrink by that much. Each component is off by at most
+  // (2 for that, 1 for the differences, 1 for the products, 2 for the sums) kRoundoff (|w| + |s u| + |t v|).
+  const double terms = as_double(best.terms);
+  const double hi = sqrt(as_double(best.squared)) * (1 + 8 * kHalfUlp) + 8 * kRoundoff<Real> * terms;
   MarginBounds bounds = {separation(f, best.direction), hi, best.direction, 0};
   // Where two kinds of connection tie, rounding may have named the wrong one.
   for (int d = 0; d < kDirections && floor_log2(bounds.lo) != floor_log2(hi) && bounds.lo < 0.999 * hi; ++d) {

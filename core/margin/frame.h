@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair in double, and the arithmetic that certified bounds of its margin are computed with.
+// A pair in double, or in numbers of twice its precision, and the arithmetic that certified bounds of its margin are
+// computed with.
 #pragma once
 
 #include <cmath>
@@ -7,6 +8,7 @@
 #include <cstring>
 
 #include "core/margin/directions.h"
+#include "core/margin/double_double.h"
 #include "core/pair.h"
 #include "core/vec3.h"
 
@@ -16,18 +18,39 @@ inline namespace GRAZE_FP {
 // Unit roundoff of double. Bounds computed with it hold with and without contraction: it only removes roundings.
 inline constexpr double kHalfUlp = 0x1p-53;
 
-// The pair in double. Every difference of coordinates carries one relative error of at most
-// kHalfUlp, or none at all when `exact`. No product of up to six of them over- or underflows: 2^-894 to 2^780.
+// The same of a type of numbers: no operation has a larger relative error.
+template <class Real>
+inline constexpr double kRoundoff = kHalfUlp;
+template <>
+inline constexpr double kRoundoff<DoubleDouble> = 0x1p-102;
+
+// The pair. Every difference of coordinates carries one relative error of at most kRoundoff, or none at all when
+// `exact`. No product of up to six of them over- or underflows: 2^-894 to 2^780, nor does the error of one.
+template <class Real>
 struct MarginFrame {
-  Vec3<double> a[3], b[3], edge_a[3], edge_b[3];
-  bool exact;
+  Vec3<Real> a[3], b[3], edge_a[3], edge_b[3];
+  bool exact;  // each difference is a double
 };
 
-GRAZE_HD inline Vec3<double> magnitudes(const Vec3<double>& v) { return {fabs(v.x), fabs(v.y), fabs(v.z)}; }
+GRAZE_HD inline double absolute(double x) { return fabs(x); }
+GRAZE_HD inline DoubleDouble absolute(const DoubleDouble& x) { return x.hi < 0 ? -x : x; }
+GRAZE_HD inline double as_double(double x) { return x; }
+GRAZE_HD inline double as_double(const DoubleDouble& x) { return x.hi; }
+
+template <class Real>
+GRAZE_HD Vec3<Real> magnitudes(const Vec3<Real>& v) {
+  return {absolute(v.x), absolute(v.y), absolute(v.z)};
+}
 
 // One instruction each, which fmin and fmax with their care for NaN are not.
-GRAZE_HD inline double lesser(double x, double y) { return x < y ? x : y; }
-GRAZE_HD inline double greater(double x, double y) { return x > y ? x : y; }
+template <class Real>
+GRAZE_HD Real lesser(const Real& x, const Real& y) {
+  return x < y ? x : y;
+}
+template <class Real>
+GRAZE_HD Real greater(const Real& x, const Real& y) {
+  return x > y ? x : y;
+}
 
 GRAZE_HD inline Vec3<double> widen(const Vec3<float>& v) { return {double(v.x), double(v.y), double(v.z)}; }
 
@@ -48,12 +71,13 @@ GRAZE_HD inline bool differences_are_exact(const Pair& pair) {
   return high <= low + 28;
 }
 
-GRAZE_HD inline MarginFrame make_margin_frame(const Pair& pair) {
-  MarginFrame f;
+template <class Real = double>
+GRAZE_HD MarginFrame<Real> make_margin_frame(const Pair& pair) {
+  MarginFrame<Real> f;
   f.exact = differences_are_exact(pair);
   for (int i = 0; i < 3; ++i) {
-    f.a[i] = widen(pair.a[i]);
-    f.b[i] = widen(pair.b[i]);
+    f.a[i] = {Real(pair.a[i].x), Real(pair.a[i].y), Real(pair.a[i].z)};
+    f.b[i] = {Real(pair.b[i].x), Real(pair.b[i].y), Real(pair.b[i].z)};
   }
   for (int i = 0; i < 3; ++i) {
     f.edge_a[i] = f.a[(i + 1) % 3] - f.a[i];
@@ -70,30 +94,40 @@ GRAZE_HD inline double difference_of_products(double a, double b, double c, doub
   return fma(a, b, -cd) + error;
 }
 
-GRAZE_HD inline Vec3<double> accurate_cross(const Vec3<double>& u, const Vec3<double>& v) {
+// In error by kRoundoff of each product, but of none between doubles, and of the difference.
+GRAZE_HD inline DoubleDouble difference_of_products(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
+                                                    const DoubleDouble& d) {
+  return a * b - c * d;
+}
+
+template <class Real>
+GRAZE_HD Vec3<Real> accurate_cross(const Vec3<Real>& u, const Vec3<Real>& v) {
   return {difference_of_products(u.y, v.z, u.z, v.y), difference_of_products(u.z, v.x, u.x, v.z),
           difference_of_products(u.x, v.y, u.y, v.x)};
 }
 
 // Direction number d of core/margin/directions.h. Its length carries no meaning.
-GRAZE_HD inline Vec3<double> direction(const MarginFrame& f, int d) {
+template <class Real>
+GRAZE_HD Vec3<Real> direction(const MarginFrame<Real>& f, int d) {
   if (d == kNormalA) return accurate_cross(f.edge_a[0], f.edge_a[1]);
   if (d == kNormalB) return accurate_cross(f.edge_b[0], f.edge_b[1]);
   if (d < kSeparatingAxes) return accurate_cross(f.edge_a[d / 3], f.edge_b[d % 3]);
   const int first = d < kFromEdgeB ? kFromEdgeA : d < kFromVertex ? kFromEdgeB : kFromVertex;
   const int i = (d - first) / 3, j = (d - first) % 3;
-  const Vec3<double> between = f.b[j] - f.a[i];
+  const Vec3<Real> between = f.b[j] - f.a[i];
   if (first == kFromVertex) return between;
-  const Vec3<double>& edge = first == kFromEdgeA ? f.edge_a[i] : f.edge_b[j];
+  const Vec3<Real>& edge = first == kFromEdgeA ? f.edge_a[i] : f.edge_b[j];
   return accurate_cross(accurate_cross(edge, between), edge);
 }
 
+template <class Real>
 struct Interval {
-  double lo, hi;
+  Real lo, hi;
 };
 
 // Extends bounds of a least and a greatest value by the value `at`, known up to `error`.
-GRAZE_HD inline void include(Interval& least, Interval& most, double at, double error) {
+template <class Real>
+GRAZE_HD void include(Interval<Real>& least, Interval<Real>& most, const Real& at, const Real& error) {
   least = {lesser(least.lo, at - error), lesser(least.hi, at + error)};
   most = {greater(most.lo, at - error), greater(most.hi, at + error)};
 }

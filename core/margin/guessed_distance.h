@@ -18,7 +18,7 @@ namespace first_attempt {
 
 // Whether the first vertices are the nearest points of the triangles because a coordinate axis joins them and parts the
 // triangles between them, and their distance, which is then exact: a tie with a power of two is no doubt.
-GRAZE_HD inline bool joined_by_axis(const MarginFrame& f, const Vec& between, double& distance) {
+GRAZE_HD inline bool joined_by_axis(const MarginFrame<double>& f, const Vec& between, double& distance) {
   const bool x = between.x != 0, y = between.y != 0, z = between.z != 0;
   if (x + y + z != 1) return false;
   const int axis = x ? 0 : y ? 1 : 2;
@@ -33,8 +33,8 @@ GRAZE_HD inline bool joined_by_axis(const MarginFrame& f, const Vec& between, do
 // Bounds from direction d of core/margin/directions.h, where d is 0, kNormalA, kFromEdgeA or kFromVertex: the
 // separation along it, and the length of the connection if it ends inside the features, else infinity.
 template <int d>
-GRAZE_HD MarginBounds bounds_of_first(const MarginFrame& f) {
-  Connection best = {INFINITY, 0, 0};
+GRAZE_HD MarginBounds bounds_of_first(const MarginFrame<double>& f) {
+  Connection<double> best = {INFINITY, 0, 0};
   const Vec between = f.b[0] - f.a[0];
   if constexpr (d == 0) connect_edges(best, between, f.edge_a[0], f.edge_b[0], d);
   if constexpr (d == kFromEdgeA) connect_to_edge(best, between, f.edge_a[0], d);
@@ -57,7 +57,7 @@ GRAZE_HD MarginBounds distance_bounds(const Corners<Real>& a, const Corners<Real
   Corners<Real> first, second;
   choose(exchange, b, a, first);
   choose(exchange, a, b, second);
-  MarginFrame f;
+  MarginFrame<double> f;
   f.exact = false;
   turn(first, exchange ? nearest.j : nearest.i, f.a);
   turn(second, exchange ? nearest.i : nearest.j, f.b);

@@ -13,10 +13,11 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Certified bounds of |margin|.
+// Certified bounds of |margin|. Real: double, or DoubleDouble, whose bounds are closer where much cancels.
 // Requires: finite coordinates; verdict is the pair's true verdict, not declined.
-GRAZE_HD inline MarginBounds margin_bounds(const Pair& pair, Verdict verdict) {
-  const MarginFrame frame = make_margin_frame(pair);
+template <class Real = double>
+GRAZE_HD MarginBounds margin_bounds(const Pair& pair, Verdict verdict) {
+  const MarginFrame<Real> frame = make_margin_frame<Real>(pair);
   return verdict == Verdict::disjoint ? distance_bounds(frame) : depth_bounds(frame);
 }
 

@@ -75,15 +75,4 @@ GRAZE_HD inline std::uint32_t add_one(std::uint32_t* at) {
 #endif
 }
 
-// Adds one for each calling thread; on a device by one operation for the threads of a warp that meet at one address.
-GRAZE_HD inline void count_one(std::uint64_t* at) {
-#ifdef __CUDA_ARCH__
-  const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(at));
-  if (static_cast<unsigned>(__ffs(static_cast<int>(together)) - 1) == threadIdx.x % 32)
-    add(at, static_cast<std::uint64_t>(__popc(together)));
-#else
-  add(at, 1);
-#endif
-}
-
 }  // namespace graze::cuda

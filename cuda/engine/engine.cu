@@ -23,6 +23,7 @@ struct Buffers {
   DeviceArray<float> coordinates;
   DeviceArray<std::uint32_t> truth, wrong, lane_words, places, lengths;
   DeviceArray<std::int8_t> buckets;
+  DeviceArray<std::uint8_t> relations;
   DeviceArray<LaneWords> lanes;
   std::vector<LaneWords> lanes_on_host;  // the same
 
@@ -91,6 +92,7 @@ class CudaEngine final : public DeviceEngine {
     block.wrong = buffers.wrong.at_least(words);
     block.buckets = buffers.buckets.at_least(2 * pairs);
     block.extremes = block.buckets + pairs;
+    block.relations = buffers.relations.at_least(pairs);
     std::uint32_t* of_lanes = buffers.lane_words.at_least(words * (2 * lanes_.size() + 1));
     std::uint32_t* none = of_lanes + words * 2 * lanes_.size();
     check(cudaMemset(none, 0, words * sizeof *none));

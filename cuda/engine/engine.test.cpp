@@ -188,6 +188,7 @@ TEST_F(EngineTest, MoreUndecidedPairsThanTheListHoldsAreAnError) {
   EngineLimits limits;
   const std::size_t left = run(kLeavesSome, 0, 20'000, limits).undecided.size();
   ASSERT_GT(left, 2u);
+  EXPECT_LT(left, 60u);  // numbers of twice a double's precision decide the others
   limits.undecided = static_cast<std::uint32_t>(left);
   EXPECT_EQ(run(kLeavesSome, 0, 20'000, limits).undecided.size(), left);
   --limits.undecided;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "core/exact/results.h"
 #include "core/margin/axis.h"
 #include "cuda/engine/engine.h"
 #include "cuda/engine/signature_table.h"
@@ -33,19 +34,22 @@ struct IndexList {
 };
 
 // Pairs whose bucket single precision left open, disjoint ones and intersecting ones; disjoint ones that double left
-// open as well; those that need their relation; of these the ones that need all axes, by the numbers that hold them;
-// and intersecting ones that double left open although their margin is not zero.
+// open as well, and those of which bounds along all directions did; those that need their relation; of these the ones
+// that need all axes, by the numbers that hold them; and intersecting ones that double left open although their margin
+// is not zero, and those of which bounds along all axes did.
 enum EngineList {
   kOpenGaps,
   kOpenDepths,
   kTies,
+  kCloseTies,
   kRelated,
   kByDoubles,
-  kByNarrow,
+  kByResidues,
   kByInts,
   kByLong,
   kByWide,
   kDepths,
+  kCloseDepths,
   kEngineLists
 };
 
@@ -55,6 +59,7 @@ struct EngineBlock {
   const std::uint32_t* truth;
   std::uint32_t* wrong;  // pairs on which some lane is
   std::int8_t* buckets;
+  std::uint8_t* relations;  // as packed: of each pair that some lane decides wrongly, in the end
   LaneTable lanes;
   Places lists[kEngineLists];
   SignatureTable signatures;
@@ -94,20 +99,23 @@ constexpr Verdict verdict_of(Mark mark, Verdict truth) {
 // Words of marks that a group needs.
 constexpr std::uint32_t mark_words(std::uint32_t lanes) { return (lanes + kMarksOfWord - 1) / kMarksOfWord; }
 
-// What a signature says besides its marks, in the first word of its key.
+// A relation in seven bits.
+GRAZE_HD constexpr std::uint8_t packed(const exact::Relation& r) {
+  return static_cast<std::uint8_t>(r.dimension_a | r.dimension_b << 2 | int{r.coplanar} << 4 | (r.contact + 1) << 5);
+}
+
+// What a signature says besides its marks, in the first word of its key; group: place of its lanes among the groups.
+GRAZE_HD constexpr std::uint64_t packed(std::uint32_t group, std::uint8_t relation, Bucket bucket) {
+  return static_cast<std::uint64_t>(bucket + kBucketMost) | std::uint64_t{relation} << 8 | std::uint64_t{group} << 32;
+}
+
 struct SignatureShape {
-  std::uint32_t group;  // place of its lanes among the groups
-  int contact;          // as Relation has it: -1 for none
+  std::uint32_t group;
+  int contact;  // as Relation has it: -1 for none
   int dimension_a, dimension_b;
   bool coplanar;
   Bucket bucket;
 };
-
-GRAZE_HD constexpr std::uint64_t packed(const SignatureShape& s) {
-  return static_cast<std::uint64_t>(s.bucket + kBucketMost) | static_cast<std::uint64_t>(s.dimension_a) << 8 |
-         static_cast<std::uint64_t>(s.dimension_b) << 10 | std::uint64_t{s.coplanar} << 12 |
-         static_cast<std::uint64_t>(s.contact + 1) << 13 | std::uint64_t{s.group} << 32;
-}
 
 constexpr SignatureShape unpacked(std::uint64_t word) {
   const auto field = [word](int at, int bits) { return static_cast<int>(word >> at & ((1u << bits) - 1)); };
@@ -125,7 +133,7 @@ GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& g
   return result;
 }
 
-// The key of pair i's signature for one group. Marks beyond the first word are read whenever they are asked for: no
+// The key of pair i's signature for one group of lanes, some of them wrong. Marks beyond the first word are read whenever they are asked for: no
 // number of lanes needs more registers.
 struct SignatureKey {
   const EngineBlock& block;
@@ -134,6 +142,19 @@ struct SignatureKey {
   bool truth;
   std::uint64_t shape, first_marks;
 
+  GRAZE_HD SignatureKey(const EngineBlock& b, std::uint32_t g, std::uint32_t pair)
+      : block(b),
+        group(b.lanes.groups[g]),
+        i(pair),
+        truth(bit(b.truth, pair)),
+        shape(packed(g, b.relations[pair], b.buckets[pair])),
+        first_marks(marks(b, group, 0, pair, truth)) {}
+
+  GRAZE_HD bool any_wrong() const {
+    bool any = first_marks != 0;
+    for (std::uint32_t w = 1; !any && w * kMarksOfWord < group.count; ++w) any = marks(block, group, w, i, truth) != 0;
+    return any;
+  }
   GRAZE_HD std::uint64_t word(std::uint32_t k) const {
     return k == 0 ? shape : k == 1 ? first_marks : marks(block, group, k - 1, i, truth);
   }

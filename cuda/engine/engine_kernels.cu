@@ -55,6 +55,43 @@ __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_listed(Engi
   }
 }
 
+// Counts a pair for each thread of the mask, which all call: those of one key by one of them.
+__device__ void add_together(const SignatureTable& table, const SignatureKey& key, std::uint64_t index, unsigned mask) {
+  const unsigned like = __match_any_sync(mask, hash_of(key, table.key_words));
+  const int first = __ffs(static_cast<int>(like)) - 1;
+  bool same = true;
+  for (std::uint32_t k = 0; k < table.key_words; ++k) {
+    const std::uint64_t word = key.word(k);
+    same = __shfl_sync(like, word, first) == word && same;
+  }
+  const auto count = static_cast<std::uint64_t>(__popc(__ballot_sync(like, same)));
+  std::uint64_t* row = nullptr;
+  if (static_cast<int>(threadIdx.x % 32) == first) {
+    row = find_row(table, key);
+    if (row) add(table.count(row), count);
+    if (!row) *table.full = 1;
+  }
+  row = reinterpret_cast<std::uint64_t*>(__shfl_sync(like, reinterpret_cast<unsigned long long>(row), first));
+  if (!same) return add_pair(table, key, index);  // one hash of two keys
+  if (row) keep(table, row, index);
+}
+
+__global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, EngineList which) {
+  const Places& list = block.lists[which];
+  for (std::uint32_t begin = blockIdx.x * kThreads; begin < *list.count; begin += gridDim.x * kThreads) {
+    const std::uint32_t n = begin + threadIdx.x, i = n < *list.count ? list.at[n] : 0;
+    const bool has_some = n < *list.count && has_signatures(block, i);
+    if (!__any_sync(0xffffffffu, has_some)) continue;
+    for (std::uint32_t g = 0; g < block.lanes.group_count; ++g) {
+      const SignatureKey key(block, g, i);
+      const bool adds = has_some && key.any_wrong();
+      const unsigned mask = __ballot_sync(0xffffffffu, adds);
+      if (adds) add_together(block.signatures, key, block.first + i, mask);
+      __syncwarp();
+    }
+  }
+}
+
 constexpr unsigned kBlocks = 1024;
 constexpr std::size_t kSharedBytes = 48 << 10;  // of a thread block, on every device
 constexpr std::uint32_t kLanesAtOnce =
@@ -117,6 +154,9 @@ struct DeviceRun {
   template <class Step>
   void listed(Step, EngineList list) const {
     for_listed<Step><<<kBlocks, kThreads, 0, stream>>>(block, list);
+  }
+  void add_signatures(EngineList list) const {
+    cuda::add_signatures<<<kBlocks, kThreads, 0, stream>>>(block, list);
   }
   void tally(bool by_extreme) const {
     const std::uint32_t chunks = (block.lanes.count + kLanesAtOnce - 1) / kLanesAtOnce;

@@ -67,50 +67,44 @@ GRAZE_HD inline void leave_to_host(const EngineBlock& block, std::uint32_t i) {
   if (n < block.undecided.size) block.undecided.indices[n] = block.first + i;
 }
 
-// The bucket by all means that there are without arithmetic of any length, or kUndecided.
-GRAZE_HD inline Bucket bucket_by_all_means(const float* c, Verdict verdict) {
+// The bucket by all axes and features in numbers of this type, or kUndecided.   Requires: the margin is not zero.
+template <class Real>
+GRAZE_HD Bucket bucket_by_bounds(const float* c, Verdict verdict) {
   const Pair pair = pair_of(c);
-  const MarginBounds bounds = margin_bounds(pair, verdict);
-  const int ulp = log2_ulp(pair);
+  const MarginBounds bounds = margin_bounds<Real>(pair, verdict);
+  const int ulp = log2_ulp(pair), upper = floor_log2(bounds.hi);
   Bucket bucket;
   if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
-  const int upper = floor_log2(bounds.hi);
-  const bool proven = verdict == Verdict::disjoint && are_apart_by(c, c + 9, bounds.direction, upper);
-  return proven ? make_bucket(1, upper - ulp) : kUndecided;
+  if (verdict == Verdict::intersects)
+    return upper - ulp <= kBucketLowest ? make_bucket(-1, kBucketLowest) : kUndecided;
+  return are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
 }
 
 struct BreakTie {
   static constexpr int kThreadBlocks = 1;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
-    block.buckets[i] = bucket_by_all_means(c, Verdict::disjoint);
-    if (block.buckets[i] == kUndecided) leave_to_host(block, i);
+    block.buckets[i] = bucket_by_bounds<double>(c, Verdict::disjoint);
+    if (block.buckets[i] == kUndecided) block.lists[kCloseTies].add(i);
   }
 };
 
-GRAZE_HD inline void add_signatures(const EngineBlock& block, std::uint32_t i, const exact::Relation& r,
-                                    Bucket bucket) {
-  for (std::uint32_t g = 0; g < block.lanes.group_count; ++g) {
-    const LaneGroup group = block.lanes.groups[g];
-    const std::uint64_t first = marks(block, group, 0, i, r.intersects);
-    bool wrong = first != 0;
-    for (std::uint32_t word = 1; !wrong && word * kMarksOfWord < group.count; ++word)
-      wrong = marks(block, group, word, i, r.intersects) != 0;
-    if (!wrong) continue;
-    const std::uint64_t shape = packed({g, r.contact, r.dimension_a, r.dimension_b, r.coplanar, bucket});
-    add_pair(block.signatures, SignatureKey{block, group, i, r.intersects, shape, first}, block.first + i);
-  }
+// Whether the pair's signatures are counted here: the host has those whose bucket is not known.
+GRAZE_HD inline bool has_signatures(const EngineBlock& block, std::uint32_t i) {
+  return bit(block.wrong, i) && block.buckets[i] != kUndecided;
 }
 
-// The relation is known: completes the bucket, or leaves that to the next step, and adds the signatures.
+// The relation is known: completes the bucket of an intersecting pair, or leaves that to the next step.
 GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const exact::Relation& r) {
-  Bucket bucket = block.buckets[i];
-  if (bucket == kUndecided) {
-    if (!r.intersects) return;  // the host has it
-    if (r.margin_sign != 0) return block.lists[kDepths].add(i);
-    block.buckets[i] = bucket = 0;
-  }
-  if (bit(block.wrong, i)) add_signatures(block, i, r, bucket);
+  block.relations[i] = packed(r);
+  if (block.buckets[i] != kUndecided || !r.intersects) return;
+  if (r.margin_sign != 0) return block.lists[kDepths].add(i);
+  block.buckets[i] = 0;
 }
+
+// Of those that are exact, the quickest on a device.
+using RelatingNumbers =
+    exact::detail::NumberKinds<exact::detail::DoubleNumbers, exact::detail::ResidueNumbers, exact::detail::IntNumbers,
+                               exact::detail::LongNumbers, exact::detail::WideNumbers>;
 
 struct Relate {
   static constexpr int kThreadBlocks = 2;
@@ -118,7 +112,7 @@ struct Relate {
     namespace numbers = exact::detail;
     exact::Relation r;
     if (numbers::relate_quickly(c, c + 9, r)) return settle(block, i, r);
-    block.lists[kByDoubles + numbers::AllNumbers::place(numbers::grid_of(c, c + 9))].add(i);
+    block.lists[kByDoubles + RelatingNumbers::place(numbers::grid_of(c, c + 9))].add(i);
   }
 };
 
@@ -134,10 +128,18 @@ struct RelateByAxes {
 struct SettleDepth {
   static constexpr int kThreadBlocks = 1;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
-    const Bucket bucket = bucket_by_all_means(c, Verdict::intersects);
-    block.buckets[i] = bucket;
-    if (bucket == kUndecided) return leave_to_host(block, i);
-    if (bit(block.wrong, i)) add_signatures(block, i, exact::relation(c, c + 9), bucket);
+    block.buckets[i] = bucket_by_bounds<double>(c, Verdict::intersects);
+    if (block.buckets[i] == kUndecided) block.lists[kCloseDepths].add(i);
+  }
+};
+
+// The last attempt, in numbers of twice a double's precision; what they leave the host has.
+template <Verdict verdict>
+struct MeasureClosely {
+  static constexpr int kThreadBlocks = 1;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    block.buckets[i] = bucket_by_bounds<DoubleDouble>(c, verdict);
+    if (block.buckets[i] == kUndecided) leave_to_host(block, i);
   }
 };
 
@@ -167,8 +169,8 @@ GRAZE_HD void count_word(const EngineBlock& block, std::uint32_t word, std::uint
 }
 
 // All steps in their order. Run: words(step) takes the block's words; pairs(step) its pairs, pairs_by_verdict(step) the
-// same, best with like verdicts side by side; listed(step, list) the pairs that earlier steps listed; tally(by_extreme)
-// counts all pairs by bucket, or by extreme.
+// same, best with like verdicts side by side; listed(step, list) the pairs that earlier steps listed; add_signatures(list)
+// adds the signatures of listed pairs that have them; tally(by_extreme) counts all pairs by bucket, or by extreme.
 template <class Run>
 void run_steps(const EngineBlock& block, const Run& run) {
   using namespace exact::detail;
@@ -177,13 +179,16 @@ void run_steps(const EngineBlock& block, const Run& run) {
   run.listed(MeasureByDouble<Verdict::disjoint>{}, kOpenGaps);
   run.listed(MeasureByDouble<Verdict::intersects>{}, kOpenDepths);
   run.listed(BreakTie{}, kTies);
+  run.listed(MeasureClosely<Verdict::disjoint>{}, kCloseTies);
   run.listed(Relate{}, kRelated);
   run.listed(RelateByAxes<DoubleNumbers>{}, kByDoubles);
-  run.listed(RelateByAxes<NarrowNumbers>{}, kByNarrow);
+  run.listed(RelateByAxes<ResidueNumbers>{}, kByResidues);
   run.listed(RelateByAxes<IntNumbers>{}, kByInts);
   run.listed(RelateByAxes<LongNumbers>{}, kByLong);
   run.listed(RelateByAxes<WideNumbers>{}, kByWide);
   run.listed(SettleDepth{}, kDepths);
+  run.listed(MeasureClosely<Verdict::intersects>{}, kCloseDepths);
+  run.add_signatures(kRelated);
   run.tally(false);
   if (block.axis == Axis::none) return;
   run.pairs(PlaceExtreme{});

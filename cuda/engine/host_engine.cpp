@@ -38,6 +38,15 @@ struct HostRun {
   void listed(Step step, EngineList list) const {
     for (std::uint32_t n = 0; n < *block.lists[list].count; ++n) take(step, block.lists[list].at[n]);
   }
+  void add_signatures(EngineList list) const {
+    for (std::uint32_t n = 0; n < *block.lists[list].count; ++n) {
+      const std::uint32_t i = block.lists[list].at[n];
+      for (std::uint32_t g = 0; has_signatures(block, i) && g < block.lanes.group_count; ++g) {
+        const SignatureKey key(block, g, i);
+        if (key.any_wrong()) add_pair(block.signatures, key, block.first + i);
+      }
+    }
+  }
   void tally(bool by_extreme) const {
     const std::int8_t* buckets = by_extreme ? block.extremes : block.buckets;
     std::uint64_t* into = by_extreme ? block.extreme_counts : block.counts;
@@ -106,12 +115,14 @@ class HostEngine final : public DeviceEngine {
     coordinates_.resize(std::size_t{pairs} * kCoordinates);
     bits_.assign(words_ * (2 * on_host_.size() + 3), 0);
     buckets_.resize(2 * std::size_t{pairs});
+    relations_.resize(pairs);
     places_.resize(std::size_t{kEngineLists} * pairs);
     block.pairs = {coordinates_.data(), pairs, pairs};
     block.truth = words(0);
     block.wrong = words(1);
     block.buckets = buckets_.data();
     block.extremes = buckets_.data() + pairs;
+    block.relations = relations_.data();
     lanes_.clear();
     for (std::size_t l = 0; l < on_host_.size(); ++l) {
       if (is_truth_[l]) {
@@ -152,6 +163,7 @@ class HostEngine final : public DeviceEngine {
   std::vector<std::uint64_t> bits_;  // truth, wrong, none, then each lane's two columns
   std::vector<float> coordinates_;
   std::vector<std::int8_t> buckets_;
+  std::vector<std::uint8_t> relations_;
   std::vector<std::uint32_t> places_;
   std::uint32_t lengths_[kEngineLists] = {};
   std::vector<LaneWords> lanes_;

@@ -89,7 +89,7 @@ GRAZE_HD void add_pair(const SignatureTable& table, const Key& key, std::uint64_
     *table.full = 1;
     return;
   }
-  count_one(table.count(row));
+  add(table.count(row), 1);
   keep(table, row, index);
 }
 

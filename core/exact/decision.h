@@ -151,6 +151,14 @@ GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage)
   return found == Finding::unsure ? MultiwordNumbers::visit(grid, decide_in) : found != Finding::disjoint;
 }
 
+// The relation of a pair in general position of which a decision by planes found so much.
+// Returns: false when that does not tell it.
+GRAZE_HD inline bool relation_of(Finding found, const float* a, const float* b, Relation& r) {
+  r = found == Finding::crosses ? Relation{true, 1, -1, 2, 2, false} : Relation{};
+  // A determinant that is certainly not zero parts them: they are not coplanar.
+  return found == Finding::crosses || (found == Finding::disjoint && both_proper(a, b));
+}
+
 // The relation of pairs in general position: they cross, a plane or an edge of both parts them, or they share a vertex.
 // Returns: false when that is not beyond doubt.
 GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r) {
@@ -159,9 +167,12 @@ GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r)
     const int shared = shared_vertex(a, b);
     return shared >= 0 && relate_at_vertex(a, b, shared, r);
   }
-  r = found == Finding::crosses ? Relation{true, 1, -1, 2, 2, false} : Relation{};
-  // A determinant that is certainly not zero parts them: they are not coplanar.
-  return found == Finding::crosses || (found == Finding::disjoint && both_proper(a, b));
+  return relation_of(found, a, b, r);
+}
+
+// The same where each determinant has a bound of its own: less is in doubt.
+GRAZE_HD inline bool relate_by_bounds(const float* a, const float* b, Relation& r) {
+  return relation_of(by_planes(triangles<BoundedNumbers>(a, b)), a, b, r);
 }
 
 }  // namespace graze::exact::detail

@@ -43,6 +43,7 @@ GRAZE_HD inline Relation relation(const float* a, const float* b) {
   Relation r;
   if (relate_quickly(a, b, r)) return r;
   const Grid grid = grid_of(a, b);
+  if (!MachineNumbers::hold(grid) && relate_by_bounds(a, b, r)) return r;
   return AllNumbers::visit(grid,
                            [&](auto numbers) { return by_axes(triangles<decltype(numbers)>(a, b, grid.exponent)); });
 }

@@ -19,6 +19,8 @@ constexpr int kBlocksAtOnce = 3;
 // hold up the next.
 struct Buffers {
   cudaStream_t stream;
+  cudaEvent_t done;     // with the last block
+  std::uint32_t* left;  // to the host by then, by all blocks; in pinned memory
   DeviceExact exact;
   DeviceArray<float> coordinates;
   DeviceArray<std::uint32_t> truth, wrong, lane_words, places, lengths;
@@ -27,8 +29,16 @@ struct Buffers {
   DeviceArray<LaneWords> lanes;
   std::vector<LaneWords> lanes_on_host;  // the same
 
-  Buffers() { check(cudaStreamCreate(&stream)); }
-  ~Buffers() { cudaStreamDestroy(stream); }
+  Buffers() {
+    check(cudaStreamCreate(&stream));
+    check(cudaEventCreateWithFlags(&done, cudaEventDisableTiming));
+    check(cudaMallocHost(&left, sizeof *left));
+  }
+  ~Buffers() {
+    cudaStreamDestroy(stream);
+    cudaEventDestroy(done);
+    cudaFreeHost(left);
+  }
 };
 
 class CudaEngine final : public DeviceEngine {
@@ -48,7 +58,10 @@ class CudaEngine final : public DeviceEngine {
     const EngineBlock empty = begin(source.axis);
     const std::uint32_t block_pairs = static_cast<std::uint32_t>(std::min<std::uint64_t>(kLimits.block_pairs, count));
     EngineBlock blocks[kBlocksAtOnce];
-    for (int k = 0; k < kBlocksAtOnce; ++k) blocks[k] = with_memory(empty, *buffers_[k], block_pairs);
+    for (int k = 0; k < kBlocksAtOnce; ++k) {
+      blocks[k] = with_memory(empty, *buffers_[k], block_pairs);
+      *buffers_[k]->left = 0;
+    }
     const std::uint64_t done = run_blocks(
         kLimits, first, count,
         [&](int b, std::uint64_t at, std::uint32_t pairs) {
@@ -58,7 +71,7 @@ class CudaEngine final : public DeviceEngine {
           block.first = at;
           judge(block, *buffers_[b % kBlocksAtOnce], source);
         },
-        [&] { return left_to_host(empty); });
+        [&] { return may_be_left(block_pairs); });
     EngineResult result = fetch(empty);
     result.done = done;
     return result;
@@ -116,6 +129,7 @@ class CudaEngine final : public DeviceEngine {
 
   void judge(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
     const cudaStream_t stream = buffers.stream;
+    check(cudaEventSynchronize(buffers.done));  // no more blocks are under way than there are buffers
     drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), stream);
     std::uint32_t* truth = buffers.truth.at_least(0);
     // Pairs are finite: nothing is declined, and `wrong` is free until it is written.
@@ -128,12 +142,18 @@ class CudaEngine final : public DeviceEngine {
     }
     check(cudaMemsetAsync(block.lists[0].count, 0, kEngineLists * sizeof(std::uint32_t), stream));
     launch_engine(block, stream);
+    check(cudaMemcpyAsync(buffers.left, block.undecided.count, sizeof *buffers.left, cudaMemcpyDeviceToHost, stream));
+    check(cudaEventRecord(buffers.done, stream));
   }
 
-  std::uint32_t left_to_host(const EngineBlock& block) {
-    std::uint32_t count;
-    check(cudaMemcpy(&count, block.undecided.count, sizeof count, cudaMemcpyDeviceToHost));
-    return count;
+  // At most, without waiting for blocks under way.
+  std::uint32_t may_be_left(std::uint32_t block_pairs) const {
+    std::uint32_t most = 0;
+    for (const std::unique_ptr<Buffers>& buffers : buffers_) {
+      const std::uint32_t left = *const_cast<const volatile std::uint32_t*>(buffers->left);
+      most = std::max(most, left);
+    }
+    return most + kBlocksAtOnce * block_pairs;
   }
 
   EngineResult fetch(const EngineBlock& block) {

@@ -199,11 +199,10 @@ TEST_F(EngineTest, MoreUndecidedPairsThanTheListHoldsAreAnError) {
 TEST_F(EngineTest, StopsBeforeTheUndecidedPairsOverflow) {
   EngineLimits limits;
   limits.block_pairs = 512;
-  limits.blocks_between_looks = 2;
   const EngineResult whole = run(kLeavesSome, 0, 20'000, limits);
   ASSERT_GT(whole.undecided.size(), 2u);
   ASSERT_EQ(whole.done, 20'000u);
-  limits.undecided = 1024 + static_cast<std::uint32_t>(whole.undecided.size()) / 2;
+  limits.undecided = 512 + static_cast<std::uint32_t>(whole.undecided.size()) / 2;
   std::vector<std::uint64_t> counts(whole.counts.size()), undecided;
   int runs = 0;
   for (std::uint64_t done = 0; done < 20'000; ++runs) {

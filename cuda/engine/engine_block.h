@@ -35,7 +35,7 @@ struct IndexList {
 
 // Pairs whose bucket single precision left open, disjoint ones and intersecting ones; disjoint ones that double left
 // open as well, and those of which bounds along all directions did; those that need their relation; of these the ones
-// that need all axes, by the numbers that hold them; and intersecting ones that double left open although their margin
+// of large grids, and those that need all axes, by the numbers that hold them; and intersecting ones that double left open although their margin
 // is not zero, and those of which bounds along all axes did.
 enum EngineList {
   kOpenGaps,
@@ -43,6 +43,7 @@ enum EngineList {
   kTies,
   kCloseTies,
   kRelated,
+  kByBounds,
   kByDoubles,
   kByResidues,
   kByInts,

@@ -47,13 +47,12 @@ std::uint32_t key_words(std::span<const LaneGroup> groups) {
 std::uint64_t run_blocks(const EngineLimits& limits, std::uint64_t first, std::uint64_t count,
                          const std::function<void(int, std::uint64_t, std::uint32_t)>& judge,
                          const std::function<std::uint32_t()>& left) {
-  const std::uint64_t between_looks = std::uint64_t{limits.block_pairs} * limits.blocks_between_looks;
   std::uint64_t done = 0;
   for (int b = 0; done < count; ++b) {
     const std::uint64_t pairs = std::min<std::uint64_t>(limits.block_pairs, count - done);
     judge(b, first + done, static_cast<std::uint32_t>(pairs));
     done += pairs;
-    if ((b + 1) % limits.blocks_between_looks == 0 && left() + between_looks > limits.undecided) break;
+    if (left() + std::uint64_t{limits.block_pairs} > limits.undecided) break;
   }
   return done;
 }

@@ -16,14 +16,13 @@ struct EngineLimits {
   std::uint32_t block_pairs = 1u << 22;  // decided together
   std::uint32_t signatures = 1u << 18;   // a power of two; a million pairs of all strata make six thousand
   std::uint32_t undecided = 1u << 26;    // pairs left to the host
-  int blocks_between_looks = 12;         // at how many are left so far
 };
 
 // Words of a key that holds the marks of any of these groups.
 std::uint32_t key_words(std::span<const LaneGroup> groups);
 
-// Calls judge(b, first, count) for blocks b = 0, 1, … of pairs [first, first + count), and now and then left(), the
-// number of pairs left to the host so far.
+// Calls judge(b, first, count) for blocks b = 0, 1, … of pairs [first, first + count), and after each left(), how many
+// pairs may have been left to the host so far.
 // Returns: the pairs judged: all, or fewer when those left to the host might soon be more than the limit.
 std::uint64_t run_blocks(const EngineLimits& limits, std::uint64_t first, std::uint64_t count,
                          const std::function<void(int, std::uint64_t, std::uint32_t)>& judge,

@@ -106,13 +106,27 @@ using RelatingNumbers =
     exact::detail::NumberKinds<exact::detail::DoubleNumbers, exact::detail::ResidueNumbers, exact::detail::IntNumbers,
                                exact::detail::LongNumbers, exact::detail::WideNumbers>;
 
+// The list of pairs that the smallest of these numbers hold that hold this one.
+GRAZE_HD inline int list_by_numbers(const float* c) {
+  return kByDoubles + RelatingNumbers::place(exact::detail::grid_of(c, c + 9));
+}
+
 struct Relate {
   static constexpr int kThreadBlocks = 2;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
-    namespace numbers = exact::detail;
     exact::Relation r;
-    if (numbers::relate_quickly(c, c + 9, r)) return settle(block, i, r);
-    block.lists[kByDoubles + RelatingNumbers::place(numbers::grid_of(c, c + 9))].add(i);
+    if (exact::detail::relate_quickly(c, c + 9, r)) return settle(block, i, r);
+    const int list = list_by_numbers(c);
+    block.lists[list < kByLong ? list : kByBounds].add(i);
+  }
+};
+
+struct RelateByBounds {
+  static constexpr int kThreadBlocks = 2;
+  GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
+    exact::Relation r;
+    if (exact::detail::relate_by_bounds(c, c + 9, r)) return settle(block, i, r);
+    block.lists[list_by_numbers(c)].add(i);
   }
 };
 
@@ -181,6 +195,7 @@ void run_steps(const EngineBlock& block, const Run& run) {
   run.listed(BreakTie{}, kTies);
   run.listed(MeasureClosely<Verdict::disjoint>{}, kCloseTies);
   run.listed(Relate{}, kRelated);
+  run.listed(RelateByBounds{}, kByBounds);
   run.listed(RelateByAxes<DoubleNumbers>{}, kByDoubles);
   run.listed(RelateByAxes<ResidueNumbers>{}, kByResidues);
   run.listed(RelateByAxes<IntNumbers>{}, kByInts);

@@ -51,8 +51,7 @@ TEST_F(GpuEngineTest, TwoEnginesAndInterruptionsChangeNothing) {
   run(campaign(twins_, "cpu", 3'001, 0, 3, strata));
   cuda::EngineLimits limits;
   limits.block_pairs = 100;
-  limits.blocks_between_looks = 2;
-  limits.undecided = 201;  // so that runs end early
+  limits.undecided = 101;  // so that runs end early
   Campaign parts = campaign(twins_, "parts", 3'001, 2, 3, strata, limits);
   parts.engine_batch = 77;  // 154 of a stratum's 1000 or 1001 pairs
   EXPECT_EQ(run_in_parts(parts), 3 * 7);

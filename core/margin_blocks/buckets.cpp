@@ -2,21 +2,12 @@
 // By Google Highway, as core/exact_blocks/decide.cpp. What bounds settle does not depend on how they are rounded.
 #include "core/margin_blocks/buckets.h"
 
-#include <algorithm>
-
-#ifdef __wasm__
-namespace graze {
-void margin_buckets(const float*, std::size_t count, const std::uint64_t*, Bucket* buckets) {
-  std::fill_n(buckets, count, kOpenBucket);
-}
-}  // namespace graze
-#else
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/margin_blocks/buckets.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -133,5 +124,4 @@ void margin_buckets(const float* pairs, std::size_t count, const std::uint64_t* 
 }
 
 }  // namespace graze
-#endif
 #endif

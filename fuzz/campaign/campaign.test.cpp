@@ -69,7 +69,7 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
   EXPECT_GE(failures, disagreements);  // one for each failing algorithm
   std::uint64_t sampled = 0;           // right in every lane, and seen by GMP all the same
   for (const strata::PairSource& source : campaign("counts", 2).sources) {
-    for (std::uint64_t index = 0; index < source.pairs; index += 1000) {
+    for (std::uint64_t index = 0; index < source.pairs; index += 1024) {
       const Pair pair = source.pair(index);
       const Verdict right = oracle::cgal_verdict(pair);
       std::vector<const Lane*> apart;

@@ -20,7 +20,8 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::size_t kBlockPairs = 1024;   // a task, or less where there are few pairs; a multiple of 64
-constexpr std::uint64_t kSample = 1000;     // the oracle's decisions are compared on one pair in so many at least
+constexpr std::uint64_t kGmpSample = 1024;  // GMP confirms one pair in so many, besides every disagreement
+constexpr std::uint64_t kSample = 1000;     // where the exact lane judges, CGAL and GMP decide one pair in so many
 
 constexpr std::size_t kSidePatterns = 729;
 
@@ -117,8 +118,9 @@ class BlockJudge {
       result.extremes.add(analysis::JudgedBlock{pairs.size(), truth_, extremes_, views_});
     }
     const analysis::Bits wrong = analysis::disagreements(block);
+    const std::uint64_t sample = exact_ ? kSample : kGmpSample;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool disagreement = analysis::test_bit(wrong, i), sampled = indices[i] % kSample == 0;
+      const bool disagreement = analysis::test_bit(wrong, i), sampled = indices[i] % sample == 0;
       if (!disagreement && !sampled) continue;
       const PairRelation relation = exact_ ? relation_by_exact_lane(pairs[i], indices[i], i, sampled, result)
                                            : relation_by_oracle(pairs[i], indices[i], i, result);

@@ -2,7 +2,9 @@
 // The oracle and the lanes over the strata: two exact decisions that must always agree, and subjects whose
 // failures must show where they are known to be.
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 
 #include "analysis/tally.h"
@@ -10,6 +12,7 @@
 #include "core/exact_blocks/decide.h"
 #include "core/margin/single_precision.h"
 #include "core/margin/tie_proof.h"
+#include "core/margin_blocks/buckets.h"
 #include "oracle/truth.h"
 #include "strata/strata.h"
 
@@ -122,6 +125,37 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
   const bool mixed = GetParam().stratum == strata::Stratum::mixed_scale;
   EXPECT_TRUE(mixed ? undecided > 1'000 : undecided < 20) << undecided;
   EXPECT_LT(left, mixed ? 150 : 1) << left;
+}
+
+// By every instruction set of this processor; those without fused multiply-adds settle none.
+TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
+  constexpr std::size_t kPairs = 20'003;
+  std::vector<Pair> pairs(kPairs);
+  for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = strata::generate(kSeed + 3, GetParam().stratum, i);
+  std::vector<std::uint64_t> truth((kPairs + 63) / 64), declined(truth.size());
+  exact::decide(coordinates(pairs[0]), kPairs, truth.data(), declined.data());
+  std::vector<Bucket> expected(kPairs);
+  for (std::size_t i = 0; i < kPairs; ++i)
+    expected[i] = oracle::margin_bucket(pairs[i], test_bit(truth, i) ? Verdict::intersects : Verdict::disjoint);
+  const auto take = [](std::int64_t targets) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  };
+  std::size_t fewest = kPairs;
+  for (std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS; all != 0; all &= all - 1) {
+    take(all & -all);
+    std::vector<Bucket> buckets(kPairs + 1, 100);
+    margin_buckets(coordinates(pairs[0]), kPairs, truth.data(), buckets.data());
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < kPairs; ++i) {
+      open += buckets[i] == kOpenBucket;
+      if (buckets[i] != kOpenBucket) ASSERT_EQ(buckets[i], expected[i]) << i << " by " << hwy::TargetName(all & -all);
+    }
+    EXPECT_EQ(buckets[kPairs], 100) << "written behind the end";
+    fewest = std::min(fewest, open);
+  }
+  take(0);
+  EXPECT_LT(fewest, GetParam().stratum == strata::Stratum::mixed_scale ? kPairs / 2 : kPairs / 5);
 }
 
 // The margin's certified bucket, sign included, against the exact margin.

@@ -22,6 +22,7 @@
 #include "cli/screen.h"
 #include "cli/shard_option.h"
 #include "core/error.h"
+#include "core/lanes.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/scratch.h"
@@ -49,6 +50,7 @@ struct FuzzOptions {
   std::vector<std::string> strata, mesh;
   LaneOptions lanes;
   fuzz::EngineChoice engine = fuzz::EngineChoice::automatic;
+  bool by_exact_lane = false;
   bool json = false;
   bool require_device = false;
   bool discard_damaged = false;
@@ -176,6 +178,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);
   campaign.engines = fuzz::choose_engines(campaign, options.engine);
+  if (options.by_exact_lane) campaign.exact = find_lane("exact/f32/cpu")->decide;
   if (options.discard_damaged) {
     if (!campaign.scratch.empty()) fuzz::fetch_from_directory(campaign);
     if (const auto kept = fuzz::discard_damaged(fuzz::store_spec(campaign)))
@@ -299,10 +302,17 @@ void add_fuzz(CLI::App& app, int& status) {
   command
       ->add_option(
           "--engine", options->engine,
-          "What judges the pairs: cpu (CGAL and GMP), gpu (all on the device, where all lanes are CUDA lanes), "
+          "What judges the pairs: cpu (see --judge), gpu (all on the device, where all lanes are CUDA lanes), "
           "or auto; results do not depend on it")
       ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
       ->option_text("auto|cpu|gpu");
+  command
+      ->add_option("--judge", options->by_exact_lane,
+                   "What the cpu engine holds for true: oracle (CGAL for every pair, GMP for every disagreement) or exact "
+                   "(the exact lane; CGAL and GMP for one pair in 1,000 and every case that is kept); results do not "
+                   "depend on it")
+      ->transform(one_of({"oracle", "exact"}, Chosen::place))
+      ->option_text("oracle|exact");
   command->add_flag("--discard-damaged", options->discard_damaged,
                     "Go on with a damaged campaign from the batches that check");
   command

@@ -18,42 +18,50 @@ namespace {
 
 using namespace gmp;
 
+template <class Number>
 struct Workspace {
+  using Point = gmp::Point<Number>;
   Point p[3], q[3];         // the pair
   Point u, v, w, normal;    // vectors
   Point na, nb, moment[3];  // noncoplanar(): normals, and a[i] x a[i+1] seen from b[0]
   Point ra[3];              // noncoplanar(): a[i] - b[0]
-  Register along_u[3], along_v[3], heights[3], height, side, term;
+  Number along_u[3], along_v[3], heights[3], height, side, term;
 };
 
 // normal = (p[1] - p[0]) x (p[2] - p[0]); the triangle is flat when it is zero.
-Simplex simplex_of(Workspace& work, const Point (&p)[3], Point& normal) {
+template <class Number>
+Simplex<Number> simplex_of(Workspace<Number>& work, const Point<Number> (&p)[3], Point<Number>& normal) {
   subtract(work.u, p[1], p[0]);
   subtract(work.v, p[2], p[0]);
   cross(normal, work.u, work.v);
-  return is_zero(normal) ? flat_simplex(p) : Simplex{{&p[0], &p[1], &p[2]}, 3};
+  return is_zero(normal) ? flat_simplex(p) : Simplex<Number>{{&p[0], &p[1], &p[2]}, 3};
 }
 
 Contact contact_of(int extreme_points) { return static_cast<Contact>(extreme_points < 3 ? extreme_points : 3); }
 
 // Two triangles whose planes differ, by the signs of the 15 determinants of four of their six vertices, each
 // a sum of dot products with three moments.
-// Requires: neither is flat; ra[i] = a[i] - b[0], u = b[1] - b[0], v = b[2] - b[0], nb = u x v,
+// Requires: neither is flat; ra[i] = a[i] - b[0], u = b[1] - b[0], v = b[2] - b[0], nb = u x v, na is A's normal,
 // heights[i] = ra[i] . nb, sa[i] its sign, not all zero.
-Contact noncoplanar(Workspace& work, const int (&sa)[3]) {
+template <class Number>
+Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
+  // The moments add up to A's normal.
+  cross(work.moment[0], work.ra[0], work.ra[1]);
+  cross(work.moment[1], work.ra[1], work.ra[2]);
+  subtract(work.moment[2], work.na, work.moment[0]);
+  subtract(work.moment[2], work.moment[2], work.moment[1]);
   for (int i = 0; i < 3; ++i) {
-    cross(work.moment[i], work.ra[i], work.ra[(i + 1) % 3]);
     dot(work.along_u[i], work.moment[i], work.u);
     dot(work.along_v[i], work.moment[i], work.v);
   }
-  // The moments add up to A's normal; b[j] against A's plane, from b[0] on.
+  // b[j] against A's plane, from b[0] on.
   dot(work.height, work.moment[1], work.ra[0]);
   int tb[3] = {-work.height.sign(), 0, 0};
   for (int j = 1; j < 3; ++j) {
-    const Register* along = j == 1 ? work.along_u : work.along_v;
-    mpz_add(work.term, along[0], along[1]);
-    mpz_add(work.term, work.term, along[2]);
-    tb[j] = mpz_cmp(work.term, work.height);
+    const Number* along = j == 1 ? work.along_u : work.along_v;
+    add(work.term, along[0], along[1]);
+    add(work.term, work.term, along[2]);
+    tb[j] = compare(work.term, work.height);
   }
   if ((tb[0] > 0 && tb[1] > 0 && tb[2] > 0) || (tb[0] < 0 && tb[1] < 0 && tb[2] < 0)) return Contact::none;
 
@@ -63,9 +71,9 @@ Contact noncoplanar(Workspace& work, const int (&sa)[3]) {
   for (int i = 0; i < 3; ++i) {
     side[i][0] = work.along_u[i].sign();
     side[i][2] = -work.along_v[i].sign();
-    mpz_sub(work.side, work.heights[(i + 1) % 3], work.heights[i]);
-    mpz_sub(work.term, work.along_v[i], work.along_u[i]);
-    mpz_add(work.side, work.side, work.term);
+    sub(work.side, work.heights[(i + 1) % 3], work.heights[i]);
+    sub(work.term, work.along_v[i], work.along_u[i]);
+    add(work.side, work.side, work.term);
     side[i][1] = work.side.sign();
   }
 
@@ -108,7 +116,8 @@ Contact noncoplanar(Workspace& work, const int (&sa)[3]) {
 
 // A segment whose line meets the plane of triangle b in one point: inside b, or nowhere.
 // Requires: the segment's ends are not both in the plane, nor strictly on one side of it.
-Contact pierced(Workspace& work, const Simplex& segment, const Simplex& b) {
+template <class Number>
+Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const Simplex<Number>& b) {
   subtract(work.w, *segment.vertex[1], *segment.vertex[0]);
   int side[3];
   for (int j = 0; j < 3; ++j) {
@@ -122,18 +131,19 @@ Contact pierced(Workspace& work, const Simplex& segment, const Simplex& b) {
 }
 
 // Two simplices of one plane (or line), seen with coordinate `dropped` left out, which keeps the plane a plane.
+template <class Number>
 struct Planar {
-  Workspace& work;
+  Workspace<Number>& work;
   int x, y;
-  Planar(Workspace& w, int dropped) : work(w), x((dropped + 1) % 3), y((dropped + 2) % 3) {}
+  Planar(Workspace<Number>& w, int dropped) : work(w), x((dropped + 1) % 3), y((dropped + 2) % 3) {}
 
-  int orient(const Point& p, const Point& q, const Point& r) {
-    mpz_sub(work.u.c[0], q.c[x], p.c[x]);
-    mpz_sub(work.u.c[1], q.c[y], p.c[y]);
-    mpz_sub(work.v.c[0], r.c[x], p.c[x]);
-    mpz_sub(work.v.c[1], r.c[y], p.c[y]);
-    mpz_mul(work.side, work.u.c[0], work.v.c[1]);
-    mpz_submul(work.side, work.u.c[1], work.v.c[0]);
+  int orient(const Point<Number>& p, const Point<Number>& q, const Point<Number>& r) {
+    sub(work.u.c[0], q.c[x], p.c[x]);
+    sub(work.u.c[1], q.c[y], p.c[y]);
+    sub(work.v.c[0], r.c[x], p.c[x]);
+    sub(work.v.c[1], r.c[y], p.c[y]);
+    mul(work.side, work.u.c[0], work.v.c[1]);
+    sub_mul(work.side, work.u.c[1], work.v.c[0]);
     return work.side.sign();
   }
 
@@ -142,7 +152,7 @@ struct Planar {
     int of[3][3];
   };
 
-  Sides sides(const Simplex& edges, const Simplex& vertices) {
+  Sides sides(const Simplex<Number>& edges, const Simplex<Number>& vertices) {
     Sides result{};
     for (int i = 0; i < edges.edges(); ++i) {
       for (int j = 0; j < vertices.count; ++j) {
@@ -153,14 +163,14 @@ struct Planar {
   }
 
   // Whether p, the vertex with index j in `sides`, lies in s.
-  static bool inside(const Point& p, int j, const Simplex& s, const Sides& sides) {
+  static bool inside(const Point<Number>& p, int j, const Simplex<Number>& s, const Sides& sides) {
     if (s.count == 1) return compare(p, *s.vertex[0]) == 0;
     if (s.count == 3) return locate({sides.of[0][j], sides.of[1][j], sides.of[2][j]}).place != Place::outside;
     // On the line, and between the ends: in every coordinate, so in lexicographic order too.
     return sides.of[0][j] == 0 && compare(p, *s.vertex[0]) * compare(p, *s.vertex[1]) <= 0;
   }
 
-  Contact contact(const Simplex& a, const Simplex& b) {
+  Contact contact(const Simplex<Number>& a, const Simplex<Number>& b) {
     const Sides a_against_b = sides(b, a), b_against_a = sides(a, b);
     int count = 0;
     for (int i = 0; i < a.count; ++i) count += inside(*a.vertex[i], i, b, a_against_b);
@@ -180,29 +190,33 @@ struct Planar {
 };
 
 // A coordinate that can be left out of the plane with this normal.
-int droppable(const Point& normal) { return normal.c[0].sign() ? 0 : normal.c[1].sign() ? 1 : 2; }
+template <class Number>
+int droppable(const Point<Number>& normal) { return normal.c[0].sign() ? 0 : normal.c[1].sign() ? 1 : 2; }
 
 // A coordinate that can be left out of a line with this direction (any, if it is zero).
-int droppable_of_line(const Point& direction) { return direction.c[0].sign() ? 2 : 0; }
+template <class Number>
+int droppable_of_line(const Point<Number>& direction) { return direction.c[0].sign() ? 2 : 0; }
 
 // b is a triangle with normal nb, and a is flat.
-Contact flat_with_triangle(Workspace& work, const Simplex& a, const Simplex& b) {
+template <class Number>
+Contact flat_with_triangle(Workspace<Number>& work, const Simplex<Number>& a, const Simplex<Number>& b) {
   int sa[2] = {0, 0};
   for (int i = 0; i < a.count; ++i) {
     subtract(work.w, *a.vertex[i], *b.vertex[0]);
     dot(work.height, work.w, work.nb);
     sa[i] = work.height.sign();
   }
-  if (sa[0] == 0 && sa[1] == 0) return Planar(work, droppable(work.nb)).contact(a, b);
+  if (sa[0] == 0 && sa[1] == 0) return Planar<Number>(work, droppable(work.nb)).contact(a, b);
   if (a.count == 1 || sa[0] * sa[1] > 0) return Contact::none;
   return pierced(work, a, b);
 }
 
 // Points and segments only. Their union spans a line, a plane, or (two skew segments) space.
-Contact flat_with_flat(Workspace& work, const Simplex& a, const Simplex& b) {
+template <class Number>
+Contact flat_with_flat(Workspace<Number>& work, const Simplex<Number>& a, const Simplex<Number>& b) {
   if (a.count < b.count) return flat_with_flat(work, b, a);
   if (a.count == 1) return contact_of(compare(*a.vertex[0], *b.vertex[0]) == 0 ? 1 : 0);
-  Point& direction = work.na;
+  Point<Number>& direction = work.na;
   subtract(direction, *a.vertex[1], *a.vertex[0]);
   subtract(work.w, *b.vertex[0], *a.vertex[0]);
   if (b.count == 2) {
@@ -211,17 +225,18 @@ Contact flat_with_flat(Workspace& work, const Simplex& a, const Simplex& b) {
     if (!is_zero(work.normal)) {
       dot(work.side, work.normal, work.w);
       if (work.side.sign() != 0) return Contact::none;
-      return Planar(work, droppable(work.normal)).contact(a, b);
+      return Planar<Number>(work, droppable(work.normal)).contact(a, b);
     }
   }
   cross(work.normal, direction, work.w);
   if (!is_zero(work.normal)) return Contact::none;  // beside a's line, and not crossing it
-  return Planar(work, droppable_of_line(direction)).contact(a, b);
+  return Planar<Number>(work, droppable_of_line(direction)).contact(a, b);
 }
 
 // Requires: p and q are the pair.
-Contact contact_of_pair(Workspace& work) {
-  const Simplex b = simplex_of(work, work.q, work.nb);
+template <class Number>
+Contact contact_of_pair(Workspace<Number>& work) {
+  const Simplex<Number> b = simplex_of(work, work.q, work.nb);
   if (b.count == 3) {
     int sa[3];
     for (int i = 0; i < 3; ++i) {
@@ -235,35 +250,44 @@ Contact contact_of_pair(Workspace& work) {
     cross(work.na, work.v, work.w);
     if (is_zero(work.na)) return flat_with_triangle(work, flat_simplex(work.p), b);
     if (sa[0] == 0 && sa[1] == 0 && sa[2] == 0) {
-      const Simplex a{{&work.p[0], &work.p[1], &work.p[2]}, 3};
-      return Planar(work, droppable(work.nb)).contact(a, b);
+      const Simplex<Number> a{{&work.p[0], &work.p[1], &work.p[2]}, 3};
+      return Planar<Number>(work, droppable(work.nb)).contact(a, b);
     }
     subtract(work.v, work.q[2], work.q[0]);
     return noncoplanar(work, sa);
   }
-  const Simplex a = simplex_of(work, work.p, work.na);
+  const Simplex<Number> a = simplex_of(work, work.p, work.na);
   if (a.count < 3) return flat_with_flat(work, a, b);
-  for (int i = 0; i < 3; ++i) mpz_swap(work.nb.c[i], work.na.c[i]);
+  for (int i = 0; i < 3; ++i) exchange(work.nb.c[i], work.na.c[i]);
   return flat_with_triangle(work, b, a);
 }
 
 }  // namespace
 
 Contact gmp_contact(const Pair& pair) {
-  thread_local Workspace work;
   const Grid grid = grid_of(pair);
+  if (grid.is_small()) {
+    Workspace<TwoLimbs> work;
+    const SmallPair small = small_integers(pair, grid);
+    for (int i = 0; i < 9; ++i) {
+      set(work.p[i / 3].c[i % 3], (&small.a[0].x)[i]);
+      set(work.q[i / 3].c[i % 3], (&small.b[0].x)[i]);
+    }
+    return contact_of_pair(work);
+  }
+  thread_local Workspace<Register> work;
   for (int i = 0; i < 9; ++i) {
-    set_integer(work.p[i / 3].c[i % 3], coordinates(pair)[i], grid);
-    set_integer(work.q[i / 3].c[i % 3], coordinates(pair)[9 + i], grid);
+    set_integer(work.p[i / 3].c[i % 3].value, coordinates(pair)[i], grid);
+    set_integer(work.q[i / 3].c[i % 3].value, coordinates(pair)[9 + i], grid);
   }
   return contact_of_pair(work);
 }
 
 Contact gmp_contact(const LargePair& pair) {
-  Workspace work;
+  Workspace<Register> work;
   for (int i = 0; i < 9; ++i) {
-    mpz_set(work.p[i / 3].c[i % 3], component(pair.a[i / 3], i % 3).get_mpz_t());
-    mpz_set(work.q[i / 3].c[i % 3], component(pair.b[i / 3], i % 3).get_mpz_t());
+    mpz_set(work.p[i / 3].c[i % 3].value, component(pair.a[i / 3], i % 3).get_mpz_t());
+    mpz_set(work.q[i / 3].c[i % 3].value, component(pair.b[i / 3], i % 3).get_mpz_t());
   }
   return contact_of_pair(work);
 }

@@ -23,6 +23,12 @@ Parts split(float value) {
   return {fraction | hidden, static_cast<int>(std::max(biased, 1u)) - 150, (bits >> 31) != 0};
 }
 
+// mantissa * 2^shift, of which no bit is lost.   Requires: it fits.
+std::int64_t shifted(const Parts& parts, int shift) {
+  const std::int64_t size = shift >= 0 ? std::int64_t{parts.mantissa} << shift : std::int64_t{parts.mantissa} >> -shift;
+  return parts.negative ? -size : size;
+}
+
 }  // namespace
 
 Grid grid_of(const Pair& pair) {
@@ -41,22 +47,19 @@ SmallPair small_integers(const Pair& pair, const Grid& grid) {
   std::int64_t* out = &result.a[0].x;
   for (int i = 0; i < kCoordinates; ++i) {
     const Parts parts = split(coordinates(pair)[i]);
-    const int shift = parts.exponent - grid.exponent;
-    const std::int64_t size = parts.mantissa;
     // A zero may carry any exponent; the shifts of all others stay below kSmallBits.
-    const std::int64_t scaled = size == 0 ? 0 : shift >= 0 ? size << shift : size >> -shift;
-    out[i] = parts.negative ? -scaled : scaled;
+    out[i] = parts.mantissa == 0 ? 0 : shifted(parts, parts.exponent - grid.exponent);
   }
   return result;
 }
 
 void set_integer(mpz_t out, float coordinate, const Grid& grid) {
   const Parts parts = split(coordinate);
-  mpz_set_ui(out, parts.mantissa);
-  if (parts.mantissa == 0) return;
   const int shift = parts.exponent - grid.exponent;
-  if (shift > 0) mpz_mul_2exp(out, out, static_cast<mp_bitcnt_t>(shift));
-  if (shift < 0) mpz_tdiv_q_2exp(out, out, static_cast<mp_bitcnt_t>(-shift));
+  if (parts.mantissa == 0) return mpz_set_ui(out, 0);
+  if (shift < 64 - 24) return mpz_set_si(out, shifted(parts, shift));
+  mpz_set_ui(out, parts.mantissa);
+  mpz_mul_2exp(out, out, static_cast<mp_bitcnt_t>(shift));
   if (parts.negative) mpz_neg(out, out);
 }
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a pair's hulls are, by exact ranks of integer vectors.
+#include <cstdint>
+#include <type_traits>
+
 #include "oracle/integer_pair.h"
 #include "oracle/truth.h"
 
@@ -12,14 +15,21 @@ struct Vector {
   bool is_zero() const { return x == 0 && y == 0 && z == 0; }
 };
 
+// Products of differences are of a wider kind where there is one.
+template <class Difference>
+using Wide = std::conditional_t<std::is_same_v<Difference, std::int64_t>, __int128, Difference>;
+
 template <class Integer, class From>
 Vector<Integer> difference(const Vec3<From>& p, const Vec3<From>& q) {
   return {Integer(p.x) - Integer(q.x), Integer(p.y) - Integer(q.y), Integer(p.z) - Integer(q.z)};
 }
 
 template <class Integer>
-Vector<Integer> cross_product(const Vector<Integer>& u, const Vector<Integer>& v) {
-  return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+Vector<Wide<Integer>> cross_product(const Vector<Integer>& u, const Vector<Integer>& v) {
+  const auto minor = [](const Integer& p, const Integer& q, const Integer& r, const Integer& s) {
+    return Wide<Integer>(Wide<Integer>(p) * q - Wide<Integer>(r) * s);
+  };
+  return {minor(u.y, v.z, u.z, v.y), minor(u.z, v.x, u.x, v.z), minor(u.x, v.y, u.y, v.x)};
 }
 
 template <class Integer, class From>
@@ -36,14 +46,14 @@ Shape shape_of(const Integers& pair) {
                                 difference<Integer>(pair.b[2], pair.a[0])};
   // The first two independent vectors span the plane that all others must lie in.
   const Vector<Integer>* first = nullptr;
-  Vector<Integer> normal{0, 0, 0};
+  Vector<Wide<Integer>> normal{0, 0, 0};
   bool coplanar = true;
   for (const auto& v : from_a0) {
     if (!first) {
       if (!v.is_zero()) first = &v;
     } else if (normal.is_zero()) {
       normal = cross_product(*first, v);
-    } else if (Integer(normal.x * v.x + normal.y * v.y + normal.z * v.z) != 0) {
+    } else if (Wide<Integer>(normal.x * v.x + normal.y * v.y + normal.z * v.z) != 0) {
       coplanar = false;
     }
   }
@@ -54,7 +64,7 @@ Shape shape_of(const Integers& pair) {
 
 Shape shape(const Pair& pair) {
   const Grid grid = grid_of(pair);
-  return grid.is_small() ? shape_of<__int128>(small_integers(pair, grid))
+  return grid.is_small() ? shape_of<std::int64_t>(small_integers(pair, grid))
                          : shape_of<mpz_class>(large_integers(pair, grid));
 }
 

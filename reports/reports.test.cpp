@@ -21,26 +21,26 @@ nlohmann::ordered_json example() {
 
 TEST(Terminal, SummaryShowsSharesAndCounts) {
   std::ostringstream out;
-  print_summary(out, example(), {{"cgal", 1234567}, {"gmp", 2451}, {"device", 0}, {"apart", 0}});
+  print_summary(out, example(), {{"cgal", 1234567}, {"gmp", 2451}, {"exact", 0}, {"apart", 0}});
   EXPECT_NE(out.str().find("in % of its pairs"), std::string::npos);
   EXPECT_NE(out.str().find("uniform  1,234,567       50.0        0.101\n"), std::string::npos) << out.str();
   EXPECT_NE(out.str().find("moller_1997/f32/cpu            12     1,234"), std::string::npos) << out.str();
   EXPECT_NE(out.str().find("some lane is wrong on 1,246, in 1 signatures"), std::string::npos);
 }
 
-// GMP sees every disagreement and a sample of the other pairs; on a device, what comes back from there.
+// GMP sees every disagreement and a sample of the other pairs; where the exact lane judges, a sample and what is kept.
 TEST(Terminal, SummarySaysWhatEachExactDecisionSaw) {
-  std::ostringstream cpu, gpu;
-  print_summary(cpu, example(), {{"cgal", 1234567}, {"gmp", 2451}, {"device", 0}, {"apart", 0}}, {200, false});
+  std::ostringstream cpu, exact;
+  print_summary(cpu, example(), {{"cgal", 1234567}, {"gmp", 2451}, {"exact", 0}, {"apart", 0}}, {200, false});
   EXPECT_NE(cpu.str().find("\nCGAL decided all of them. GMP decided 2,451 once more, the 1,246 and a sample of 1,205 "
                            "others: they agree on all.\n"),
             std::string::npos)
       << cpu.str();
-  print_summary(gpu, example(), {{"cgal", 1500}, {"gmp", 1200}, {"device", 1233567}, {"apart", 0}}, {200, false});
-  EXPECT_NE(gpu.str().find("\nThe exact lane on the device decided 1,233,567 pairs; CGAL decided 1,500, those that it "
-                           "left open and the cases kept, and GMP 1,200 of these once more: they agree on all.\n"),
+  print_summary(exact, example(), {{"cgal", 1500}, {"gmp", 1200}, {"exact", 1233567}, {"apart", 0}}, {200, false});
+  EXPECT_NE(exact.str().find("\nThe exact lane decided 1,233,567 pairs; CGAL decided 1,500, all cases kept among them, "
+                           "and GMP 1,200 of these once more: they agree on all.\n"),
             std::string::npos)
-      << gpu.str();
+      << exact.str();
 }
 
 TEST(Terminal, SharesHaveOneForm) {

@@ -101,12 +101,12 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
 
 // Which exact decisions stand behind the counts. A campaign that finds two of them apart stops, so they agree here.
 std::string decided_by(std::uint64_t disagreements, const Json& oracle) {
-  const std::uint64_t device = oracle["device"], gmp = oracle["gmp"];
-  if (device > 0) {
+  const std::uint64_t exact = oracle["exact"], gmp = oracle["gmp"];
+  if (exact > 0) {
     return fmt::format(
-        "The exact lane on the device decided {} pairs; CGAL decided {}, those that it left open and the cases kept, "
-        "and GMP {} of these once more: they agree on all.",
-        grouped(device), grouped(oracle["cgal"]), grouped(gmp));
+        "The exact lane decided {} pairs; CGAL decided {}, all cases kept among them, and GMP {} of these once more: they "
+        "agree on all.",
+        grouped(exact), grouped(oracle["cgal"]), grouped(gmp));
   }
   return fmt::format(
       "CGAL decided all of them. GMP decided {} once more, the {} and a sample of {} others: they agree on all.",

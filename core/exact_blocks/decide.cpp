@@ -35,7 +35,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kChunk = 512;  // pairs whose rest is gathered: 36 KB
 constexpr unsigned kAll = (1u << kAtOnce) - 1;
-constexpr int kBitsOfDoubles = detail::kDoubleBits, kBitsOfBoth = 34;
+constexpr int kBitsOfDoubles = detail::kDoubleBits;
 
 // Numbers of pairs that wait for the next step.
 struct Waiting {

@@ -20,6 +20,7 @@ constexpr Tag d;
 constexpr FloatTag df;
 constexpr IntegerTag di;
 constexpr std::size_t kAtOnce = HWY_MAX_BYTES >= 64 ? 8 : 4;
+constexpr int kBitsOfBoth = 34;  // of DoubleAndInteger
 
 HWY_INLINE unsigned bits(M mask) {
   std::uint8_t bytes[8] = {};

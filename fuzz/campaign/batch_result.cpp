@@ -29,7 +29,7 @@ void BatchResult::add(const BatchResult& other) {
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;
-  device += other.device;
+  exact += other.exact;
 }
 
 }  // namespace graze::fuzz

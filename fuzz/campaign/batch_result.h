@@ -44,7 +44,7 @@ struct BatchResult {
   std::uint64_t disagreements = 0;                        // pairs on which some lane is wrong
   std::uint64_t cgal = 0;                                 // pairs decided by CGAL
   std::uint64_t gmp = 0;                                  // pairs confirmed by GMP
-  std::uint64_t device = 0;                               // pairs decided by the exact lane on a device
+  std::uint64_t exact = 0;                                // pairs decided by the exact lane, here or on a device
 
   void add(const BatchResult& other);
 };

@@ -121,6 +121,14 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
   Store store(store_spec(campaign));
   take_in_ranks(campaign, store);
   GpuEngine device(campaign);
+  Confirmation confirmation(campaign);
+  const auto judged = [&](const PairRange& batch) {
+    if (!campaign.engines.empty()) return device.judge(batch.source, batch.first, batch.pairs);
+    BatchResult result = judge(
+        campaign, batch.source, batch.pairs, [&](std::size_t i) { return batch.first + i; }, campaign.exact);
+    if (campaign.exact) confirmation.confirm(batch.source, result);
+    return result;
+  };
   Progress progress;
   progress.disagreements_of_source.resize(campaign.sources.size());
   std::vector<std::uint64_t> done, left;
@@ -144,9 +152,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
         campaign.take ? campaign.take() : next_batch(campaign, store, done, costs, progress.done_here, threads);
     if (!batch) break;
     const double before = seconds();
-    const BatchResult result = campaign.engines.empty() ? judge(campaign, batch->source, batch->pairs,
-                                                                [&](std::size_t i) { return batch->first + i; })
-                                                        : device.judge(batch->source, batch->first, batch->pairs);
+    const BatchResult result = judged(*batch);
     costs.add(static_cast<std::size_t>(batch->source), batch->pairs, seconds() - before);
     store.commit(*batch, result);
     done[static_cast<std::size_t>(batch->source)] += batch->pairs;

@@ -26,6 +26,7 @@ struct Campaign {
   int threads = 0;                             // 0: one on each core
   std::vector<std::unique_ptr<cuda::DeviceEngine>>
       engines;  // the devices' engines, which share it; none: the CPU engine
+  DecideBlock exact;  // decides what is true for the CPU engine, confirmed by the oracle; null: the oracle does
   std::uint64_t engine_batch = std::uint64_t{1}
                                << 32;  // pairs of an engine in a transaction: a second or so on a device
   std::filesystem::path directory;
@@ -69,7 +70,7 @@ StoreSpec store_spec(const Campaign& campaign);
 struct Outcome {
   bool complete;  // all that was to be done here is done
   Json summary;   // of a whole campaign; of a shard {"shard", "complete", "pairs", "disagreements", "signatures"}
-  Json oracle;  // {"cgal", "gmp", "device", "apart"}: pairs that each exact decision saw; depends on the engine
+  Json oracle;  // {"cgal", "gmp", "exact", "apart"}: pairs that each exact decision saw; depends on the engine
 };
 
 // Runs or goes on with the campaign until done or `stop`, then writes timings.json and, of a whole one, summary.json and

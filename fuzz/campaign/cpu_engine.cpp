@@ -6,9 +6,14 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "analysis/convention.h"
 #include "analysis/signature.h"
+#include "core/exact/exact.h"
+#include "core/margin_blocks/buckets.h"
+#include "fuzz/campaign/signature_counts.h"
 #include "oracle/truth.h"
 
 namespace graze::fuzz {
@@ -16,12 +21,64 @@ namespace {
 
 constexpr std::size_t kBlockPairs = 1024;   // a task, or less where there are few pairs; a multiple of 64
 constexpr std::uint64_t kGmpSample = 1024;  // GMP confirms one pair in so many, besides every disagreement
+constexpr std::uint64_t kSample = 1000;     // where the exact lane judges, CGAL and GMP decide one pair in so many
 
-// Judges one block of pairs: host lanes, twins and oracle here, device lanes from their bits.
+constexpr std::size_t kSidePatterns = 729;
+
+// On which side of each triangle's plane the other's vertices seem to lie: in [0, kSidePatterns).
+std::size_t side_pattern(const Pair& pair) {
+  const Vec3<float> normal_a = cross(pair.a[1] - pair.a[0], pair.a[2] - pair.a[0]);
+  const Vec3<float> normal_b = cross(pair.b[1] - pair.b[0], pair.b[2] - pair.b[0]);
+  std::size_t pattern = 0;
+  const auto add = [&](float distance) { pattern = 3 * pattern + (distance > 0 ? 2 : distance < 0 ? 1 : 0); };
+  for (const Vec3<float>& v : pair.b) add(dot(normal_a, v - pair.a[0]));
+  for (const Vec3<float>& v : pair.a) add(dot(normal_b, v - pair.b[0]));
+  return pattern;
+}
+
+// Pairs alike in their sides stand together, in their order: lanes take the same branches for them, which the processor
+// then foresees. Nothing that is counted or kept depends on the order.
+void bring_together(std::span<Pair> pairs, std::span<std::uint64_t> indices) {
+  std::array<std::uint32_t, kSidePatterns + 1> next{};
+  std::vector<std::uint16_t> patterns(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    patterns[i] = static_cast<std::uint16_t>(side_pattern(pairs[i]));
+    ++next[patterns[i] + 1u];
+  }
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  const std::vector<Pair> before(pairs.begin(), pairs.end());
+  const std::vector<std::uint64_t> indices_before(indices.begin(), indices.end());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const std::uint32_t at = next[patterns[i]]++;
+    pairs[at] = before[i];
+    indices[at] = indices_before[i];
+  }
+}
+
+// What relates a pair's triangles besides the verdict.
+struct PairRelation {
+  Contact contact;
+  oracle::Shape hulls;
+  friend bool operator==(const PairRelation&, const PairRelation&) = default;
+};
+
+PairRelation exact_relation(const Pair& pair) {
+  const exact::Relation r = exact::relation(coordinates(pair), coordinates(pair) + 9);
+  return {static_cast<Contact>(r.contact + 1), {r.dimension_a, r.dimension_b, r.coplanar}};
+}
+
+// Judges one block of pairs: host lanes, twins and truth here, device lanes from their bits.
 class BlockJudge {
  public:
-  BlockJudge(const Campaign& campaign, int source, const std::vector<cuda::LaneBits>& device_bits)
-      : campaign_(campaign), under_test_(*campaign.under_test), source_(source), device_bits_(device_bits) {
+  // exact: decides in CGAL's and GMP's place, unless null.
+  BlockJudge(const Campaign& campaign, int source, const DecideBlock& exact,
+             const std::vector<cuda::LaneBits>& device_bits)
+      : campaign_(campaign),
+        under_test_(*campaign.under_test),
+        source_(source),
+        exact_(exact),
+        device_bits_(device_bits),
+        signatures_(campaign.under_test->lanes) {
     host_bits_.resize(under_test_.lanes.size());
     views_.resize(under_test_.lanes.size());
     verdicts_.resize(under_test_.lanes.size());
@@ -30,16 +87,8 @@ class BlockJudge {
   // `begin` is the first pair's place among the device lanes' bits.
   void judge(std::span<const Pair> pairs, std::span<const std::uint64_t> indices, std::size_t begin,
              BatchResult& result, PairJudge::Found* found = nullptr) {
-    const std::size_t words = (pairs.size() + 63) / 64;
-    truth_.assign(words, 0);
-    buckets_.resize(pairs.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Verdict verdict = oracle::cgal_verdict(pairs[i]);
-      truth_[i / 64] |= std::uint64_t{verdict == Verdict::intersects} << (i % 64);
-      buckets_[i] = oracle::margin_bucket(pairs[i], verdict);
-    }
-    result.cgal += pairs.size();
-
+    find_truth(pairs, result);
+    const std::size_t words = truth_.size();
     std::size_t next_device = 0;
     for (std::size_t l = 0; l < under_test_.lanes.size(); ++l) {
       if (under_test_.on_host[l]) {
@@ -69,77 +118,126 @@ class BlockJudge {
       result.extremes.add(analysis::JudgedBlock{pairs.size(), truth_, extremes_, views_});
     }
     const analysis::Bits wrong = analysis::disagreements(block);
+    const std::uint64_t sample = exact_ ? kSample : kGmpSample;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const std::uint64_t index = indices[i];
-      const bool disagreement = analysis::test_bit(wrong, i);
-      if (!disagreement && index % kGmpSample != 0) continue;
-      const bool intersects = analysis::test_bit(truth_, i);
-      const Contact contact = oracle::gmp_contact(pairs[i]);
-      ++result.gmp;
-      if ((contact != Contact::none) != intersects) {
-        throw oracle::OracleApart(
-            fmt::format("the oracle's two decisions differ on {}:{}:{}: CGAL says {}, GMP says contact {}", source_id(),
-                        campaign_.seed, index, intersects ? "intersects" : "disjoint", name(contact)));
-      }
-      if (!disagreement) continue;
-      const Verdict truth = intersects ? Verdict::intersects : Verdict::disjoint;
-      const oracle::Shape hulls = oracle::shape(pairs[i]);
-      bool any_wrong = false;
-      for (std::size_t l = 0; l < views_.size(); ++l) {
-        verdicts_[l] = views_[l].at(i);
-        if (under_test_.lanes[l]->exact && (verdicts_[l] == Verdict::intersects) != intersects) {
-          throw oracle::OracleApart(fmt::format("{} and the oracle differ on {}:{}:{}: it says {}, the oracle {}",
-                                                under_test_.lanes[l]->id, source_id(), campaign_.seed, index,
-                                                name(verdicts_[l]), intersects ? "intersects" : "disjoint"));
-        }
-        if (verdicts_[l] == truth) continue;
-        if (analysis::by_convention(*under_test_.lanes[l], verdicts_[l], pairs[i], contact, hulls, buckets_[i] == 0)) {
-          result.tally.excuse(buckets_[i], static_cast<int>(l), verdicts_[l]);
-          if (campaign_.sources[static_cast<std::size_t>(source_)].axis != Axis::none)
-            result.extremes.excuse(extremes_[i], static_cast<int>(l), verdicts_[l]);
-          verdicts_[l] = truth;
-          continue;
-        }
-        any_wrong = true;
-      }
-      if (!any_wrong) continue;
-      ++result.disagreements;
-      analysis::for_each_subject(under_test_.lanes, [&](std::size_t first, std::size_t count) {
-        const analysis::Signature failure = analysis::signature(
-            contact, hulls, buckets_[i], truth,
-            std::span(under_test_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
-        if (!failure.wrong()) return;
-        result.signatures[failure].add(CaseKey{index, source_});
-        if (found) found->failures.push_back(failure);
-      });
+      const bool disagreement = analysis::test_bit(wrong, i), sampled = indices[i] % sample == 0;
+      if (!disagreement && !sampled) continue;
+      const PairRelation relation = exact_ ? relation_by_exact_lane(pairs[i], indices[i], i, sampled, result)
+                                           : relation_by_oracle(pairs[i], indices[i], i, result);
+      if (disagreement) add_failures(pairs[i], CaseKey{indices[i], source_}, i, relation, result, found);
     }
     if (!found) return;
-    found->truth = analysis::test_bit(truth_, 0) ? Verdict::intersects : Verdict::disjoint;
+    found->truth = truth(0);
     found->bucket = buckets_[0];
     if (!analysis::test_bit(wrong, 0)) verdicts_.assign(views_.size(), found->truth);
     found->verdicts = verdicts_;
   }
 
+  // Adds the signatures counted since the last time.
+  void add_signatures(BatchResult& result) { signatures_.move_to(result.signatures); }
+
  private:
   const std::string& source_id() const { return campaign_.sources[static_cast<std::size_t>(source_)].id; }
+
+  Verdict truth(std::size_t i) const {
+    return analysis::test_bit(truth_, i) ? Verdict::intersects : Verdict::disjoint;
+  }
+
+  [[noreturn]] void apart(std::uint64_t index, const std::string& what) const {
+    throw oracle::OracleApart(fmt::format("{} differ on {}:{}:{}", what, source_id(), campaign_.seed, index));
+  }
+
+  void find_truth(std::span<const Pair> pairs, BatchResult& result) {
+    const std::size_t words = (pairs.size() + 63) / 64;
+    truth_.assign(words, 0);
+    if (exact_) {
+      none_.resize(words);
+      exact_(pairs.data(), pairs.size(), truth_.data(), none_.data());
+      result.exact += pairs.size();
+    } else {
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        truth_[i / 64] |= std::uint64_t{oracle::cgal_verdict(pairs[i]) == Verdict::intersects} << (i % 64);
+      result.cgal += pairs.size();
+    }
+    buckets_.resize(pairs.size());
+    margin_buckets(coordinates(pairs.front()), pairs.size(), truth_.data(), buckets_.data());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (buckets_[i] == kOpenBucket) buckets_[i] = oracle::margin_bucket(pairs[i], truth(i));
+    }
+  }
+
+  PairRelation relation_by_oracle(const Pair& pair, std::uint64_t index, std::size_t i, BatchResult& result) const {
+    const Contact contact = oracle::gmp_contact(pair);
+    ++result.gmp;
+    if ((contact == Contact::none) != (truth(i) == Verdict::disjoint))
+      apart(index, fmt::format("CGAL ({}) and GMP (contact {})", name(truth(i)), name(contact)));
+    return {contact, oracle::shape(pair)};
+  }
+
+  PairRelation relation_by_exact_lane(const Pair& pair, std::uint64_t index, std::size_t i, bool sampled,
+                                      BatchResult& result) const {
+    const PairRelation relation = exact_relation(pair);
+    if ((relation.contact == Contact::none) != (truth(i) == Verdict::disjoint))
+      apart(index, fmt::format("the exact lane ({}) and the exact relation (contact {})", name(truth(i)),
+                               name(relation.contact)));
+    if (!sampled) return relation;
+    ++result.cgal;
+    if (oracle::cgal_verdict(pair) != truth(i) || relation_by_oracle(pair, index, i, result) != relation)
+      apart(index, fmt::format("the exact lane ({}, contact {}) and the oracle", name(truth(i)), name(relation.contact)));
+    return relation;
+  }
+
+  void add_failures(const Pair& pair, const CaseKey& key, std::size_t i, const PairRelation& relation,
+                    BatchResult& result, PairJudge::Found* found) {
+    bool any_wrong = false;
+    for (std::size_t l = 0; l < views_.size(); ++l) {
+      verdicts_[l] = views_[l].at(i);
+      if (verdicts_[l] == truth(i)) continue;
+      if (under_test_.lanes[l]->exact)
+        apart(key.index, fmt::format("{} ({}) and the truth ({})", under_test_.lanes[l]->id, name(verdicts_[l]),
+                                     name(truth(i))));
+      if (analysis::by_convention(*under_test_.lanes[l], verdicts_[l], pair, relation.contact, relation.hulls,
+                                  buckets_[i] == 0)) {
+        result.tally.excuse(buckets_[i], static_cast<int>(l), verdicts_[l]);
+        if (campaign_.sources[static_cast<std::size_t>(source_)].axis != Axis::none)
+          result.extremes.excuse(extremes_[i], static_cast<int>(l), verdicts_[l]);
+        verdicts_[l] = truth(i);
+        continue;
+      }
+      any_wrong = true;
+    }
+    if (!any_wrong) return;
+    ++result.disagreements;
+    signatures_.add(relation.contact, relation.hulls, buckets_[i], truth(i), verdicts_, key);
+    if (!found) return;
+    analysis::for_each_subject(under_test_.lanes, [&](std::size_t first, std::size_t count) {
+      analysis::Signature failure = analysis::signature(
+          relation.contact, relation.hulls, buckets_[i], truth(i),
+          std::span(under_test_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
+      if (failure.wrong()) found->failures.push_back(std::move(failure));
+    });
+  }
 
   const Campaign& campaign_;
   const LanesUnderTest& under_test_;
   int source_;
+  const DecideBlock& exact_;
   const std::vector<cuda::LaneBits>& device_bits_;
-  analysis::Bits truth_;
+  analysis::Bits truth_, none_;
   std::vector<Bucket> buckets_;
   std::vector<std::int8_t> extremes_;
   std::vector<cuda::LaneBits> host_bits_;
   std::vector<analysis::LaneVerdicts> views_;
   std::vector<Verdict> verdicts_;
+  SignatureCounts signatures_;
 };
 
 }  // namespace
 
 struct PairJudge::Parts {
-  explicit Parts(const Campaign& campaign) : judge(campaign, 0, device_bits) {}
+  explicit Parts(const Campaign& campaign) : judge(campaign, 0, exact, device_bits) {}
 
+  DecideBlock exact;
   std::vector<cuda::LaneBits> device_bits;
   BlockJudge judge;
   Found found{};
@@ -151,6 +249,7 @@ PairJudge::~PairJudge() = default;
 const PairJudge::Found& PairJudge::judge(const Pair& pair, std::uint64_t index, BatchResult& total) {
   parts_->found.failures.clear();
   parts_->judge.judge({&pair, 1}, {&index, 1}, 0, total, &parts_->found);
+  parts_->judge.add_signatures(total);
   return parts_->found;
 }
 
@@ -159,17 +258,19 @@ BatchResult no_counts(const Campaign& campaign) {
 }
 
 BatchResult judge(const Campaign& campaign, int source_number, std::size_t count,
-                  const std::function<std::uint64_t(std::size_t)>& index_of) {
+                  const std::function<std::uint64_t(std::size_t)>& index_of, const DecideBlock& exact) {
   const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(source_number)];
   std::vector<Pair> pairs(count);
   std::vector<std::uint64_t> indices(count);
   const std::size_t block_pairs = std::clamp(count / 16 / 64 * 64, std::size_t{64}, kBlockPairs);
   const std::size_t blocks = (count + block_pairs - 1) / block_pairs;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-    for (std::size_t i = block * block_pairs; i < std::min(count, (block + 1) * block_pairs); ++i) {
+    const std::size_t begin = block * block_pairs, size = std::min(count - begin, block_pairs);
+    for (std::size_t i = begin; i < begin + size; ++i) {
       indices[i] = index_of(i);
       pairs[i] = source.pair(indices[i]);
     }
+    bring_together(std::span(pairs).subspan(begin, size), std::span(indices).subspan(begin, size));
   });
 
   const std::vector<const Lane*> device_lanes = campaign.under_test->device_lanes();
@@ -178,7 +279,8 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
 
   const BatchResult empty = no_counts(campaign);
   tbb::enumerable_thread_specific<BatchResult> results(empty);
-  tbb::enumerable_thread_specific<BlockJudge> judges([&] { return BlockJudge(campaign, source_number, device_bits); });
+  tbb::enumerable_thread_specific<BlockJudge> judges(
+      [&] { return BlockJudge(campaign, source_number, exact, device_bits); });
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const std::size_t begin = block * block_pairs, size = std::min(count - begin, block_pairs);
     judges.local().judge(std::span(pairs).subspan(begin, size), std::span(indices).subspan(begin, size), begin,
@@ -186,6 +288,7 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
   });
   BatchResult total = empty;
   for (const BatchResult& part : results) total.add(part);
+  for (BlockJudge& part : judges) part.add_signatures(total);
   return total;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the CPU engine does with pairs: all lanes, CGAL for every pair, GMP for every disagreement and a sample.
+// What the CPU engine does with pairs: all lanes, CGAL for every pair, GMP for every disagreement and a sample. Or the
+// exact lane for every pair, and CGAL and GMP for the sample; Confirmation then sees to the cases that are kept.
 #pragma once
 
 #include <functional>
@@ -11,9 +12,10 @@
 namespace graze::fuzz {
 
 // Judges `count` pairs of the source, whose indices are index_of(0), index_of(1), …; on the threads at hand.
+// exact: decides in CGAL's and GMP's place, unless null.
 // Throws: OracleApart when two exact decisions differ.
 BatchResult judge(const Campaign& campaign, int source, std::size_t count,
-                  const std::function<std::uint64_t(std::size_t)>& index_of);
+                  const std::function<std::uint64_t(std::size_t)>& index_of, const DecideBlock& exact = nullptr);
 
 // The same of one pair at a time, by lanes of the host and twins, with what was found of each.
 class PairJudge {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/campaign/gpu_engine.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <future>
 
 #include "analysis/signature.h"
 #include "cuda/engine/engine.h"
 #include "fuzz/campaign/cpu_engine.h"
-#include "oracle/truth.h"
 
 namespace graze::fuzz {
 namespace {
@@ -38,7 +35,7 @@ void add(const cuda::EngineResult& found, int source, std::span<const Lane* cons
   const int count = static_cast<int>(lanes.size());
   add(found.counts, count, result.tally);
   if (!found.extreme_counts.empty()) add(found.extreme_counts, count, result.extremes);
-  for (int b = 0; b < kBucketCount; ++b) result.device += found.counts[static_cast<std::size_t>(b)];
+  for (int b = 0; b < kBucketCount; ++b) result.exact += found.counts[static_cast<std::size_t>(b)];
   for (const cuda::EngineSignature& row : found.signatures) {
     SignatureCount one;
     one.count = row.count;
@@ -73,43 +70,13 @@ BatchResult GpuEngine::judge(int source, std::uint64_t first, std::uint64_t coun
       undecided.insert(undecided.end(), found.undecided.begin(), found.undecided.end());
     }
   }
-  confirm(source, result);
+  confirmation_.confirm(source, result);
   constexpr std::size_t kAtOnce = 65536;
   for (std::size_t at = 0; at < undecided.size(); at += kAtOnce) {
     result.add(fuzz::judge(campaign_, source, std::min(kAtOnce, undecided.size() - at),
                            [&](std::size_t i) { return undecided[at + i]; }));
   }
   return result;
-}
-
-void GpuEngine::confirm(int source, BatchResult& result) {
-  std::map<std::uint64_t, std::vector<analysis::Signature>> fresh;
-  for (const auto& [signature, found] : result.signatures) {
-    SignatureCount& known = confirmed_[signature];
-    const std::vector<CaseKey> before = known.cases;
-    known.add(found);
-    for (const CaseKey& kept : known.cases) {
-      if (std::find(before.begin(), before.end(), kept) == before.end()) fresh[kept.index].push_back(signature);
-    }
-  }
-  std::vector<std::uint64_t> indices;
-  for (const auto& [index, signatures] : fresh) indices.push_back(index);
-  const BatchResult judged = fuzz::judge(campaign_, source, indices.size(), [&](std::size_t i) { return indices[i]; });
-  for (const auto& [index, signatures] : fresh) {
-    for (const analysis::Signature& signature : signatures) {
-      const auto found = judged.signatures.find(signature);
-      const bool same = found != judged.signatures.end() &&
-                        std::find(found->second.cases.begin(), found->second.cases.end(), CaseKey{index, source}) !=
-                            found->second.cases.end();
-      if (!same) {
-        throw oracle::OracleApart(fmt::format("the device and the oracle differ on {}:{}:{}: the device says {}",
-                                              campaign_.sources[static_cast<std::size_t>(source)].id, campaign_.seed,
-                                              index, analysis::key(signature)));
-      }
-    }
-  }
-  result.cgal += judged.cgal;
-  result.gmp += judged.gmp;
 }
 
 }  // namespace graze::fuzz

@@ -3,27 +3,22 @@
 // kept, by the CPU engine as well, and so by CGAL and GMP.
 #pragma once
 
-#include <map>
-
-#include "fuzz/campaign/campaign.h"
+#include "fuzz/campaign/confirmation.h"
 
 namespace graze::fuzz {
 
 class GpuEngine {
  public:
   // Requires: campaign outlives this.
-  explicit GpuEngine(const Campaign& campaign) : campaign_(campaign) {}
+  explicit GpuEngine(const Campaign& campaign) : campaign_(campaign), confirmation_(campaign) {}
 
   // Pairs [first, first + count) of the source, shared by the campaign's engines.
   // Throws: OracleApart when a kept case is not what the device says.
   BatchResult judge(int source, std::uint64_t first, std::uint64_t count);
 
  private:
-  // Has the oracle confirm the cases that would be kept and that it has not confirmed yet.
-  void confirm(int source, BatchResult& result);
-
   const Campaign& campaign_;
-  std::map<analysis::Signature, SignatureCount> confirmed_;  // what is kept so far
+  Confirmation confirmation_;
 };
 
 }  // namespace graze::fuzz

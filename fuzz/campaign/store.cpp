@@ -81,7 +81,7 @@ void Store::add(const PairRange& range, const StoredCounts& counts) {
   total.disagreements += counts.disagreements;
   total.cgal += counts.cgal;
   total.gmp += counts.gmp;
-  total.device += counts.device;
+  total.exact += counts.exact;
   for (const auto& [key, found] : counts.signatures) signatures_[key].add(found);
   for (const auto& [lane, found] : counts.executors_apart) executors_apart_[lane].add(found);
 }
@@ -183,10 +183,10 @@ Json Store::oracle() const {
   for (const StoredCounts& source : of_source_) {
     all.cgal += source.cgal;
     all.gmp += source.gmp;
-    all.device += source.device;
+    all.exact += source.exact;
   }
   // The last is always 0: a campaign that finds two exact decisions apart stops before it stores anything.
-  return {{"cgal", all.cgal}, {"gmp", all.gmp}, {"device", all.device}, {"apart", 0}};
+  return {{"cgal", all.cgal}, {"gmp", all.gmp}, {"exact", all.exact}, {"apart", 0}};
 }
 
 }  // namespace graze::fuzz

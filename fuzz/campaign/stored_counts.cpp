@@ -139,7 +139,7 @@ StoredCounts::StoredCounts(const BatchResult& result)
       disagreements(result.disagreements),
       cgal(result.cgal),
       gmp(result.gmp),
-      device(result.device) {
+      exact(result.exact) {
   for (const auto& [signature, found] : result.signatures) signatures[analysis::key(signature)].add(found);
 }
 
@@ -151,14 +151,14 @@ void StoredCounts::add(const StoredCounts& other) {
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;
-  device += other.device;
+  exact += other.exact;
 }
 
 std::string to_bytes(const StoredCounts& counts) {
   std::string bytes;
   Json::to_cbor(
       Json::array({to_json(counts.tally), to_json(counts.extremes), to_json(counts.signatures),
-                   to_json(counts.executors_apart), counts.disagreements, counts.cgal, counts.gmp, counts.device}),
+                   to_json(counts.executors_apart), counts.disagreements, counts.cgal, counts.gmp, counts.exact}),
       bytes);
   return bytes;
 }
@@ -179,7 +179,7 @@ StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::u
   counts.disagreements = whole(all[4], pairs, "the disagreements and the batch's pairs");
   counts.cgal = whole(all[5], kMost, "the pairs that CGAL decided");
   counts.gmp = whole(all[6], kMost, "the pairs that GMP confirmed");
-  counts.device = whole(all[7], pairs, "the device's pairs and the batch's pairs");
+  counts.exact = whole(all[7], pairs, "the exact lane's pairs and the batch's pairs");
   return counts;
 }
 

@@ -33,7 +33,7 @@ struct StoredCounts {
   analysis::Tally tally, extremes;
   std::map<std::string, SignatureCount> signatures;                // by key
   std::map<std::string, SignatureCount> executors_apart;           // by lane: device and twin differ
-  std::uint64_t disagreements = 0, cgal = 0, gmp = 0, device = 0;  // see BatchResult
+  std::uint64_t disagreements = 0, cgal = 0, gmp = 0, exact = 0;   // see BatchResult
 };
 
 std::string to_bytes(const StoredCounts& counts);

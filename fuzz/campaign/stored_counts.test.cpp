@@ -95,7 +95,7 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
            {"/4", 11, "the disagreements and the batch's pairs do not agree"},
            {"/5", -1, "the pairs that CGAL decided do not agree"},
            {"/6", "5", "the pairs that GMP confirmed do not agree"},
-           {"/7", 11, "the device's pairs and the batch's pairs do not agree"},
+           {"/7", 11, "the exact lane's pairs and the batch's pairs do not agree"},
            {"/8", 0, "a batch's parts do not agree"},
        }) {
     Json edited = good();

@@ -10,13 +10,13 @@
 namespace graze::cli {
 namespace {
 
-struct Options {
+struct MergeOptions {
   std::vector<std::string> parts;
   std::string out;
   bool partial = false, json = false;
 };
 
-int merge(const Options& options) {
+int merge(const MergeOptions& options) {
   fuzz::MergeOptions wanted{{}, options.out, options.partial};
   for (const std::string& part : options.parts) {
     wanted.parts.emplace_back(part);
@@ -36,7 +36,7 @@ int merge(const Options& options) {
 void add_merge(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("merge", "Make one campaign of shards, the same as one run of the whole");
   command->footer("Example: graze merge shard-* --out campaign");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MergeOptions>();
   command
       ->add_option("parts", options->parts,
                    "Directories of shards, or of campaigns that were merged before; in any order")

@@ -14,7 +14,7 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-struct Options {
+struct PlanOptions {
   std::uint64_t pairs = 1'000'000, gpus = 0, cores = 1;
   double rate = 0;
   std::vector<std::string> strata;
@@ -37,7 +37,7 @@ std::string size_of(double bytes) {
   return fmt::format("{:.3g} TiB", bytes);
 }
 
-int plan(const Options& options) {
+int plan(const PlanOptions& options) {
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
   fuzz::Campaign campaign;
   campaign.under_test = &under_test;
@@ -92,7 +92,7 @@ void add_plan(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("plan", "How long a campaign takes and how much disk, from what its pairs cost here");
   command->footer("Example: graze plan --pairs 1e10 --lanes '*/f32/cpu' --cores 64");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlanOptions>();
   command->add_option("--pairs", options->pairs, "Pairs in all")
       ->transform(whole_number(1, kMostWhole))
       ->capture_default_str();

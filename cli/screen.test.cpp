@@ -139,8 +139,8 @@ TEST_F(ScreenTest, LanesSayOnceWhatTheirTwinsAreTrustedFor) {
 
 // What is said without nvcc is so: a variant is called unavailable when its lanes have no twin, and none else.
 TEST_F(ScreenTest, TheBuildSaysWhatRunsWithoutNvcc) {
-  const std::string text = contents(std::filesystem::path(GRAZE_SOURCE_DIR) / "CMakeLists.txt");
-  const std::size_t at = text.find("CUDA lanes: run by their twins, on the CPU (no nvcc found); ");
+  const std::string text = contents(std::filesystem::path(GRAZE_SOURCE_DIR) / "cmake/cuda.cmake");
+  const std::size_t at = text.find("CUDA lanes: run by their twins, on the CPU (built without nvcc); ");
   ASSERT_NE(at, std::string::npos);
   const std::string message = text.substr(at, text.find('\n', at) - at);
   EXPECT_NE(message.find("is unavailable"), std::string::npos);

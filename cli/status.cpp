@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct StatusOptions {
   std::vector<std::string> directories;
   std::string prometheus;
   std::uint64_t stalled = 600;
@@ -78,7 +78,7 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
 }
 
 // In the order of the directories. {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements", "states": {state: shards}}
-Json status_of(const Options& options) {
+Json status_of(const StatusOptions& options) {
   Json all = {{"shards", Json::array()},
               {"pairs", 0},
               {"done", 0},
@@ -164,7 +164,7 @@ std::string prometheus(const Json& all) {
   return text;
 }
 
-int status_command(const Options& options) {
+int status_command(const StatusOptions& options) {
   const Json all = status_of(options);
   if (!options.prometheus.empty()) fuzz::write_whole(options.prometheus, prometheus(all));
   std::cout << (options.json ? all.dump(1) + '\n' : table(all));
@@ -180,7 +180,7 @@ void add_status(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("status", "How far shards are; exit status 1 where one failed, was killed or stalls");
   command->footer("Example: graze status shard-*");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<StatusOptions>();
   command->add_option("directories", options->directories, "Directories of shards or campaigns, of one by mpirun also")
       ->required();
   command->add_option("--stalled", options->stalled, "Seconds without a word after which a run counts as stalled")

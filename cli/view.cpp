@@ -159,8 +159,8 @@ void open_page(const std::string& page) {
 void view(const std::string& what, const std::string& mesh, const std::string& out) {
   if (!reports::has_viewer()) {
     throw std::runtime_error(
-        "view: expected a build with the viewer, found one without: it takes Node with npm, clang and wasi-libc "
-        "(scripts/packages.txt)");
+        "view: expected a build with the viewer, found one without: it takes Node with npm, clang and wasi-libc, "
+        "which scripts/setup installs");
   }
   const Viewed viewed = viewed_of(what, mesh);
   fuzz::write_whole(out, reports::viewer_page(viewed));

@@ -2,6 +2,9 @@
 # graze.wasm: the lanes, their twins and the exact decision for browsers and Node, by clang and wasi-libc. Sets
 # GRAZE_WASM to the module's path; empty without the toolchain, and then nothing needs it.
 set(GRAZE_WASM "")
+if(GRAZE_CAMPAIGN)
+  return()
+endif()
 find_program(GRAZE_WASM_CLANG NAMES clang++-14 clang++)
 if(GRAZE_WASM_CLANG AND NOT DEFINED GRAZE_WASM_LINKS)
   file(WRITE ${CMAKE_BINARY_DIR}/wasm/links.cpp "#include <string>\nextern \"C\" int f(int n) { return static_cast<int>(std::string(n, 'x').size()); }\n")

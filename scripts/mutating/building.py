@@ -49,10 +49,10 @@ class Commands:
         words = shlex.split(self.compile[str(self.root / source)])
         cache = [k for k, word in enumerate(words) if pathlib.Path(word).name == "ccache"]
         words = words[cache[0] + 1 if cache else 0:]
-        for flag in ["-MF", "-MT", "-o", "-c"]:
+        for flag in ["-MF", "-MT", "-o", "-c", "-include"]:  # the last: what the build precompiled, for other flags
             if flag in words:
                 del words[words.index(flag):words.index(flag) + 2]
-        return [level if word in ("-O2", "-O3") else word for word in words if word != "-MD" and not word.startswith("-W")] + CHECKED
+        return [level if word in ("-O1", "-O2", "-O3") else word for word in words if word != "-MD" and not word.startswith("-W")] + CHECKED
 
     def compiled(self, source, with_source, folder, out, level):
         words = self.flags(source, level)
@@ -81,7 +81,7 @@ class Commands:
     def linked(self, program, objects, out):
         """The program, of these objects in place of its own tests'."""
         words = shlex.split(self.link[program])
-        words = [word for word in words if not word.endswith(".test.cpp.o")]
+        words = [word for word in words if not word.endswith(".test.cpp.o") and "/Unity/" not in word]
         at = words.index("-o")
         words[at + 1] = str(out)
         return [*words[:at], *self.linker, *objects, *words[at:]]

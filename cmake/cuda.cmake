@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+# nvcc, where it is found; without it CMAKE_CUDA_COMPILER is false.
+include(CheckLanguage)
+# A campaign without a device is run by the twins, whose PTX is stored.
+file(GLOB devices /dev/nvidia[0-9]* /dev/dxg)
+if(devices OR NOT GRAZE_CAMPAIGN)
+  check_language(CUDA)
+endif()
+if(CMAKE_CUDA_COMPILER)
+  # sm_90 native; everything else from sm_75 on compiles the same PTX when it is loaded.
+  if(NOT CMAKE_CUDA_ARCHITECTURES)
+    set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real)
+  endif()
+  set(CMAKE_CUDA_STANDARD 20)
+  enable_language(CUDA)
+  if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)  # CMake 3.25.1 does not know that nvcc has it
+    set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION -std=c++20)
+    set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION -std=c++20)
+  endif()
+  message(STATUS "CUDA lanes: built with nvcc ${CMAKE_CUDA_COMPILER_VERSION} for ${CMAKE_CUDA_ARCHITECTURES}")
+else()
+  message(STATUS "CUDA lanes: run by their twins, on the CPU (built without nvcc); cuda-fast, which has none, is unavailable")
+endif()

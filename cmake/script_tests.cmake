@@ -5,9 +5,9 @@ add_test(NAME scripts.IncludeDirection COMMAND ${Python3_EXECUTABLE} ${PROJECT_S
 foreach(script check_includes league mutate same_results speed_table torture)
   add_test(NAME scripts.test.${script} COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/${script}.test.py)
 endforeach()
-# Two minutes of it on an idle machine; an hour by hand: scripts/torture --minutes 60. Each commit has another seed, so
-# that ten commits kill campaigns and minimisations a hundred times, each at other moments.
-add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 5 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
+# A minute of it on an idle machine; an hour by hand: scripts/torture --minutes 60. Each commit has another seed, so
+# that twenty commits kill campaigns and minimisations a hundred times, each at other moments.
+add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 5 --seed commits --graze $<TARGET_FILE:graze>)
 set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
 # Defects planted in our own sources; each is compiled anew from what this build knows, so Ninja has to have made it.
 if(CMAKE_GENERATOR STREQUAL Ninja)
@@ -21,11 +21,11 @@ set_tests_properties(scripts.Slurm PROPERTIES SKIP_RETURN_CODE 77)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_test(NAME scripts.test.odr COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/odr.test.py ${CMAKE_CXX_COMPILER})
 endif()
-# Five seconds for each fuzz target, and what they take to build; an hour by hand: scripts/fuzz --seconds 400.
-add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 5 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
+# Three seconds for each fuzz target, from another start each time, and what they take to build; an hour by hand: scripts/fuzz --seconds 400.
+add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 3 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
 set_tests_properties(scripts.Fuzz PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)
 # Of a minute and more: they begin first.
 set_tests_properties(scripts.Fuzz scripts.Torture scripts.test.torture PROPERTIES COST 100)
 if(GRAZE_LIBFUZZER)
-  add_test(NAME scripts.FuzzEngine COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 5 --build ${CMAKE_BINARY_DIR}/fuzz-engine --program $<TARGET_FILE:graze_engine_targets>)
+  add_test(NAME scripts.FuzzEngine COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 3 --build ${CMAKE_BINARY_DIR}/fuzz-engine --program $<TARGET_FILE:graze_engine_targets>)
 endif()

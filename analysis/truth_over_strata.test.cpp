@@ -129,7 +129,7 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
 
 // By every instruction set of this processor; those without fused multiply-adds settle none.
 TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
-  constexpr std::size_t kPairs = 20'003;
+  constexpr std::size_t kPairs = 100'003;
   std::vector<Pair> pairs(kPairs);
   for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = strata::generate(kSeed + 3, GetParam().stratum, i);
   std::vector<std::uint64_t> truth((kPairs + 63) / 64), declined(truth.size());

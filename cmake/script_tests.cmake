@@ -6,8 +6,8 @@ foreach(script check_includes league mutate same_results speed_table torture)
   add_test(NAME scripts.test.${script} COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/${script}.test.py)
 endforeach()
 # A minute of it on an idle machine; an hour by hand: scripts/torture --minutes 60. Each commit has another seed, so
-# that twenty commits kill campaigns and minimisations a hundred times, each at other moments.
-add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 5 --seed commits --graze $<TARGET_FILE:graze>)
+# that ten commits kill campaigns and minimisations a hundred times, each at other moments.
+add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
 set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
 # Defects planted in our own sources; each is compiled anew from what this build knows, so Ninja has to have made it.
 if(CMAKE_GENERATOR STREQUAL Ninja)

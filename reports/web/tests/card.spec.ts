@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-import { expect, open_card, pixels, test, without_webgl } from './page';
+import { expect, open_card, pixels, test } from './page';
 
+test.describe('by WebGL', () => {
+test.use({ webgl: true });
 test('the drawing turns by dragging and by keys, and comes back', async ({ page }) => {
   const card = await open_card(page, 1);
   const board = card.locator('.board');
@@ -39,8 +41,9 @@ test('every card draws, with one WebGL context for all', async ({ page, report }
         return copy.getImageData(0, 0, copy.canvas.width, copy.canvas.height).data.some((value) => value > 0);
       });
       expect(painted).toBe(true);
-    }).toPass({ timeout: 5000 });
+    }).toPass({ timeout: 30_000 });
   }
+});
 });
 
 test('a card says what the report says', async ({ page, report }) => {
@@ -77,8 +80,6 @@ test('commands, coordinates and snippets are copied', async ({ page, report }) =
 });
 
 test('without WebGL the drawing is an SVG, and turns', async ({ page }) => {
-  await page.addInitScript(without_webgl);
-  await page.reload();
   const card = await open_card(page, 1);
   const svg = card.locator('.paper svg');
   await expect(card.locator('.board')).toHaveClass(/flat/);

@@ -9,7 +9,6 @@ import type { Report } from '../src/report';
 import type { Stored } from '../src/viewer/data';
 import { expect, open_card, test, url, without_webgl } from './page';
 
-test.use({ webgl: false });
 test.skip(() => !process.env.GRAZE_VIEW, 'this build has no viewer');
 
 const viewer = (page: Page) => page.locator('#viewer');

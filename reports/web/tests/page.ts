@@ -7,8 +7,9 @@ import type { Costs, Report } from '../src/report';
 export const url = () => pathToFileURL(process.env.GRAZE_REPORT!).href;
 export const compare_url = () => pathToFileURL(process.env.GRAZE_COMPARE || process.env.GRAZE_REPORT!).href;
 
+// Without WebGL, which takes most of the time where there is no GPU, but in the tests that ask for it.
 export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs | null; watched: void }>({
-  webgl: [true, { option: true }],
+  webgl: [false, { option: true }],
   watched: [async ({ page, webgl }, use) => {
     if (!webgl) await page.addInitScript(without_webgl);
     const fetched: string[] = [], said: string[] = [];

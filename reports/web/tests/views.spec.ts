@@ -80,6 +80,8 @@ test('dark where the reader wants it', async ({ page }) => {
   expect(await brightness(page, 'color')).toBeGreaterThan(0.8);
 });
 
+test.describe('by WebGL', () => {
+test.use({ webgl: true });
 test('paper shows the drawing and hides what cannot be pressed, dark or not', async ({ page }) => {
   await open_card(page, 1);
   await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
@@ -89,6 +91,7 @@ test('paper shows the drawing and hides what cannot be pressed, dark or not', as
   await expect(page.locator('#kind-1 .paper svg')).toBeVisible();
   await expect(page.locator('#kind-1 canvas')).toBeHidden();
   expect((await page.pdf({ preferCSSPageSize: true, printBackground: true })).length).toBeGreaterThan(50_000);
+});
 });
 
 test('the keyboard reaches the answer first, and shows where it is', async ({ page }) => {

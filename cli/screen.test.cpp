@@ -105,7 +105,7 @@ TEST_F(ScreenTest, TheLiveLineNeverWraps) {
   for (const unsigned short columns : std::initializer_list<unsigned short>{30, 80, 140}) {
     const std::string out = "c" + std::to_string(columns);
     const std::string fuzz =
-        "graze fuzz --pairs 100000 --threads 1 --strata 'near_*' --lanes '*/cpu' --out " + out + " > /dev/null";
+        "graze fuzz --pairs 400000 --threads 1 --strata 'near_*' --lanes '*/cpu' --out " + out + " > /dev/null";
     const std::string text = on_terminal(shell, fuzz, columns);
     EXPECT_NE(text.find('%'), std::string::npos) << text;
     EXPECT_LT(widest(text), columns) << text;

@@ -27,7 +27,7 @@ class ExactJudge : public CampaignFiles {
 };
 
 TEST_F(ExactJudge, LeavesTheBytesOfTheOracleOverAllStrata) {
-  for (const std::uint64_t seed : {1, 2, 77}) {
+  for (const std::uint64_t seed : {1, 77}) {
     const std::string oracle = "oracle" + std::to_string(seed), exact = "exact" + std::to_string(seed);
     run(campaign(oracle, 40'007, seed));
     Campaign c = campaign(exact, 40'007, seed);

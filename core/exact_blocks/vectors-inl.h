@@ -219,6 +219,16 @@ struct OnGrid {
   }
 };
 
+// Between what the signs of these numbers lie.
+struct Ends {
+  V low = hn::Set(d, 0x1p1000), high = hn::Set(d, -0x1p1000);
+
+  template <class... T>
+  HWY_INLINE explicit Ends(const T&... number) {
+    ((low = hn::Min(low, number.sign()), high = hn::Max(high, number.sign())), ...);
+  }
+};
+
 // Whether an axis separates: the origin lies on one side of all these differences.
 struct Axes {
   M separated;
@@ -232,32 +242,54 @@ struct Axes {
   }
   template <class... T>
   HWY_INLINE void look_at(const T&... difference) {
-    V low = hn::Set(d, 0x1p1000), high = hn::Set(d, -0x1p1000);
-    ((low = hn::Min(low, difference.sign()), high = hn::Max(high, difference.sign())), ...);
-    look(low, high);
+    const Ends ends(difference...);
+    look(ends.low, ends.high);
   }
 };
 
-// The axes that decide, as look and look_flat of core/exact/axes.h have them; p are a's vertices and q are b's, seen from
-// a's first. Along each axis the differences of a vertex of b and one of a count, equal ones once.
+// p are a's vertices and q are b's, seen from a's first; of_a and of_b their edges.
 template <class T>
-HWY_INLINE unsigned separated(const OnGrid& pair) {
-  const auto at = [&](std::size_t c) HWY_ATTR { return T::of_integer(hn::Sub(pair.x[c], pair.x[c % 3])); };
-  const Three<T> zero = {at(0), at(1), at(2)};
-  const Three<T> p[3] = {zero, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}};
-  const Three<T> q[3] = {{at(9), at(10), at(11)}, {at(12), at(13), at(14)}, {at(15), at(16), at(17)}};
-  const Three<T> of_a[3] = {p[1], p[2] - p[1], zero - p[2]}, of_b[3] = {q[1] - q[0], q[2] - q[1], q[0] - q[2]};
-  Axes axes;
-  const Three<T> normal_a = cross(p[1], p[2]), normal_b = cross(of_b[0], of_b[1]);
-  axes.look_at(T::dot(normal_a, q[0]), T::dot(normal_a, q[1]), T::dot(normal_a, q[2]));
-  axes.look_at(T::dot(normal_b, q[0]), T::dot(normal_b, q[0] - p[1]), T::dot(normal_b, q[0] - p[2]));
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Three<T> n = cross(of_a[i], of_b[j]);
-      const T s = T::dot(n, p[i == 0 ? 2 : 1]), u = T::dot(n, q[j]), v = T::dot(n, q[(j + 2) % 3]);
-      axes.look_at(u, v, u - s, v - s);
+struct FromFirst {
+  Three<T> p[3], q[3], of_a[3], of_b[3];
+
+  HWY_INLINE explicit FromFirst(const OnGrid& pair) {
+    const auto at = [&](std::size_t c) HWY_ATTR { return T::of_integer(hn::Sub(pair.x[c], pair.x[c % 3])); };
+    for (std::size_t i = 0; i < 3; ++i) {
+      p[i] = {at(3 * i), at(3 * i + 1), at(3 * i + 2)};
+      q[i] = {at(3 * i + 9), at(3 * i + 10), at(3 * i + 11)};
+    }
+    of_a[0] = p[1];
+    of_a[1] = p[2] - p[1];
+    of_a[2] = p[0] - p[2];
+    of_b[0] = q[1] - q[0];
+    of_b[1] = q[2] - q[1];
+    of_b[2] = q[0] - q[2];
+  }
+
+  // Calls visit(axis, difference…) for the normals and the products of edges. Along each axis the differences of a
+  // vertex of b and one of a count, equal ones once.
+  template <class Visit>
+  HWY_INLINE void for_each_axis(const Visit& visit) const {
+    const Three<T> normal_a = cross(p[1], p[2]), normal_b = cross(of_b[0], of_b[1]);
+    visit(normal_a, T::dot(normal_a, q[0]), T::dot(normal_a, q[1]), T::dot(normal_a, q[2]));
+    visit(normal_b, T::dot(normal_b, q[0]), T::dot(normal_b, q[0] - p[1]), T::dot(normal_b, q[0] - p[2]));
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const Three<T> n = cross(of_a[i], of_b[j]);
+        const T s = T::dot(n, p[i == 0 ? 2 : 1]), u = T::dot(n, q[j]), v = T::dot(n, q[(j + 2) % 3]);
+        visit(n, u, v, u - s, v - s);
+      }
     }
   }
+};
+
+// The axes that decide, as look and look_flat of core/exact/axes.h have them.
+template <class T>
+HWY_INLINE unsigned separated(const OnGrid& pair) {
+  const FromFirst<T> seen(pair);
+  const auto& [p, q, of_a, of_b] = seen;
+  Axes axes;
+  seen.for_each_axis([&](const Three<T>&, const auto&... difference) HWY_ATTR { axes.look_at(difference...); });
   const auto all_zero = [&]() HWY_ATTR { return hn::And(hn::Eq(axes.least, hn::Zero(d)), hn::Eq(axes.most, hn::Zero(d))); };
   if (hn::AllFalse(d, all_zero())) return bits(axes.separated);
 

@@ -241,28 +241,12 @@ HWY_INLINE Bounds squared_depth_bounds(const Frame& f) {
 // Whether intersecting triangles only touch: along some axis nothing overlaps, or there is none.
 template <class T>
 HWY_INLINE unsigned touch(const OnGrid& pair) {
-  const auto at = [&](std::size_t c) HWY_ATTR { return T::of_integer(hn::Sub(pair.x[c], pair.x[c % 3])); };
-  const Three<T> zero = {at(0), at(1), at(2)};
-  const Three<T> p[3] = {zero, {at(3), at(4), at(5)}, {at(6), at(7), at(8)}};
-  const Three<T> q[3] = {{at(9), at(10), at(11)}, {at(12), at(13), at(14)}, {at(15), at(16), at(17)}};
-  const Three<T> of_a[3] = {p[1], p[2] - p[1], zero - p[2]}, of_b[3] = {q[1] - q[0], q[2] - q[1], q[0] - q[2]};
   M touching = hn::Gt(hn::Zero(d), hn::Zero(d)), any_axis = touching;
-  const auto look_at = [&](const Three<T>& n, const auto&... difference) HWY_ATTR {
-    V low = number(0x1p1000), high = number(-0x1p1000);
-    ((low = hn::Min(low, difference.sign()), high = hn::Max(high, difference.sign())), ...);
+  FromFirst<T>(pair).for_each_axis([&](const Three<T>& n, const auto&... difference) HWY_ATTR {
+    const Ends ends(difference...);
     const M axis = hn::Gt(hn::Max(hn::Max(hn::Abs(n.x.sign()), hn::Abs(n.y.sign())), hn::Abs(n.z.sign())), hn::Zero(d));
     any_axis = hn::Or(any_axis, axis);
-    touching = hn::Or(touching, hn::And(axis, hn::Or(hn::Eq(low, hn::Zero(d)), hn::Eq(high, hn::Zero(d)))));
-  };
-  const Three<T> normal_a = cross(p[1], p[2]), normal_b = cross(of_b[0], of_b[1]);
-  look_at(normal_a, T::dot(normal_a, q[0]), T::dot(normal_a, q[1]), T::dot(normal_a, q[2]));
-  look_at(normal_b, T::dot(normal_b, q[0]), T::dot(normal_b, q[0] - p[1]), T::dot(normal_b, q[0] - p[2]));
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Three<T> n = cross(of_a[i], of_b[j]);
-      const T s = T::dot(n, p[i == 0 ? 2 : 1]), u = T::dot(n, q[j]), v = T::dot(n, q[(j + 2) % 3]);
-      look_at(n, u, v, u - s, v - s);
-    }
-  }
+    touching = hn::Or(touching, hn::And(axis, hn::Or(hn::Eq(ends.low, hn::Zero(d)), hn::Eq(ends.high, hn::Zero(d)))));
+  });
   return bits(hn::Or(touching, hn::Not(any_axis)));
 }

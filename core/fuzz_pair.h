@@ -2,9 +2,10 @@
 // The pair that a fuzz target's bytes stand for.
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
-#include <optional>
 #include <string_view>
 
 #include "core/pair.h"
@@ -12,19 +13,24 @@
 namespace graze {
 
 // First byte even: the 72 bytes that follow, whatever they are. Odd: small whole numbers, 18 bytes, times the power of
-// two that the second byte says, so that contacts are common.   Returns: none of too few bytes.
-inline std::optional<Pair> pair_of(std::string_view bytes) {
+// two that the second byte says, so that contacts are common. Bytes that are missing are zeros, so any are a pair.
+inline Pair pair_of(std::string_view bytes) {
+  unsigned char all[1 + sizeof(Pair)] = {};
+  bytes.copy(reinterpret_cast<char*>(all), sizeof all);
   Pair pair;
-  if (bytes.empty()) return std::nullopt;
-  const bool raw = bytes[0] % 2 == 0;
-  bytes.remove_prefix(1);
-  if (bytes.size() < (raw ? sizeof pair : 19)) return std::nullopt;
-  if (raw) {
-    std::memcpy(&pair, bytes.data(), sizeof pair);
-  } else {
-    for (int i = 0; i < kCoordinates; ++i)
-      coordinates(pair)[i] = std::ldexp(static_cast<float>(static_cast<signed char>(bytes[static_cast<std::size_t>(i) + 1])),
-                                        static_cast<signed char>(bytes[0]));
+  std::memcpy(&pair, all + 1, sizeof pair);
+  if (all[0] % 2 == 0) return pair;
+  for (int i = 0; i < kCoordinates; ++i)
+    coordinates(pair)[i] = std::ldexp(static_cast<float>(static_cast<signed char>(all[i + 2])), static_cast<signed char>(all[1]));
+  return pair;
+}
+
+// The same, but of a coordinate that is not finite the exponent is one less.
+inline Pair finite_pair_of(std::string_view bytes) {
+  Pair pair = pair_of(bytes);
+  for (int i = 0; i < kCoordinates; ++i) {
+    float& x = coordinates(pair)[i];
+    if (!std::isfinite(x)) x = std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) ^ 0x800000u);
   }
   return pair;
 }

@@ -2,7 +2,6 @@
 // Pairs of any bits: the exact decision, GMP's and CGAL's are the same, and the certified bounds of the margin hold the
 // exact one, rounded once by MPFR.
 #include <cmath>
-#include <optional>
 
 #include "core/exact/exact.h"
 #include "core/fuzz_pair.h"
@@ -13,24 +12,20 @@
 namespace graze::oracle {
 namespace {
 
-std::optional<Pair> finite_pair_of(std::string_view bytes) {
-  const std::optional<Pair> pair = pair_of(bytes);
-  return pair && is_finite(*pair) ? pair : std::nullopt;
-}
-
 const RegisterFuzzTarget kExact("exact", [](std::string_view bytes) {
-  const std::optional<Pair> pair = finite_pair_of(bytes);
-  if (!pair) return;
-  const bool exact = exact::intersects(coordinates(*pair), coordinates(*pair) + 9);
-  must_hold(exact == (cgal_verdict(*pair) == Verdict::intersects), "the exact decision and CGAL's are the same");
-  must_hold(exact == (gmp_contact(*pair) != Contact::none), "the exact decision and GMP's are the same");
+  const Pair pair = finite_pair_of(bytes);
+  exact::Stage stage;
+  const bool intersects = exact::intersects(coordinates(pair), coordinates(pair) + 9, &stage);
+  const Contact contact = gmp_contact(pair);
+  must_hold(intersects == (cgal_verdict(pair) == Verdict::intersects), "the exact decision and CGAL's are the same");
+  must_hold(intersects == (contact != Contact::none), "the exact decision and GMP's are the same");
+  reached(static_cast<std::size_t>(stage) * 8 + static_cast<std::size_t>(contact));
 });
 
 const RegisterFuzzTarget kMargin("margin", [](std::string_view bytes) {
-  const std::optional<Pair> pair = finite_pair_of(bytes);
-  if (!pair) return;
-  const Truth truth = oracle::truth(*pair);
-  const MarginBounds bounds = margin_bounds(*pair, truth.verdict);
+  const Pair pair = finite_pair_of(bytes);
+  const Truth truth = oracle::truth(pair);
+  const MarginBounds bounds = margin_bounds(pair, truth.verdict);
   const double margin = std::fabs(truth.margin);
   must_hold(bounds.lo <= margin && margin <= bounds.hi, "the bounds hold the margin");
   must_hold((truth.verdict == Verdict::disjoint) == (truth.margin > 0), "the margin's sign says the verdict");

@@ -48,18 +48,17 @@ const RegisterFuzzTarget kSnippet("snippet", [](std::string_view bytes) {
   if (bytes.empty()) return;
   const auto kind = static_cast<SnippetKind>(static_cast<unsigned char>(bytes[0]) % std::size(kSnippetKinds));
   bytes.remove_prefix(1);
-  const std::optional<Pair> pair = pair_of(bytes);
-  if (!pair || !is_finite(*pair)) return;
+  const Pair pair = finite_pair_of(bytes);
   const Lane* shown = nullptr;
   for (const Lane& lane : lanes()) {
     if (!shown && shows(kind, lane)) shown = &lane;
   }
   const std::string name(bytes.substr(std::min<std::size_t>(bytes.size(), 73)));
-  const std::string text = snippet(kind, {name, *pair, Verdict::disjoint, shown, Verdict::intersects});
+  const std::string text = snippet(kind, {name, pair, Verdict::disjoint, shown, Verdict::intersects});
   const std::vector<float> numbers = numbers_in(kind, text);
   must_hold(numbers.size() == kCoordinates, "a snippet has the coordinates of one pair");
-  must_hold(std::memcmp(numbers.data(), coordinates(*pair), sizeof *pair) == 0, "a snippet's bits are the pair's");
-  for (int i = 0; i < kCoordinates; ++i) reached(static_cast<std::size_t>(std::ilogb(coordinates(*pair)[i]) & 511));
+  must_hold(std::memcmp(numbers.data(), coordinates(pair), sizeof pair) == 0, "a snippet's bits are the pair's");
+  for (int i = 0; i < kCoordinates; ++i) reached(static_cast<std::size_t>(std::ilogb(coordinates(pair)[i]) & 511));
   reached(512 + static_cast<std::size_t>(kind));
 });
 

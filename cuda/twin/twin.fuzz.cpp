@@ -16,13 +16,12 @@ int code(const DecideBlock& decide, const Pair& pair) {
 }
 
 const RegisterFuzzTarget kTwin("twin", [](std::string_view bytes) {
-  const std::optional<Pair> pair = pair_of(bytes);
-  if (!pair) return;
+  const Pair pair = pair_of(bytes);
   std::size_t compared = 0;
   for (const Lane& lane : lanes()) {
     if (lane.variant != Variant::cuda_nofma || !twin_block(lane)) continue;
-    const int twin = code(twin_block(lane), *pair);
-    must_hold(twin == code(counterpart(lane, Variant::cpu)->decide, *pair), "a twin without contraction decides as the host does");
+    const int twin = code(twin_block(lane), pair);
+    must_hold(twin == code(counterpart(lane, Variant::cpu)->decide, pair), "a twin without contraction decides as the host does");
     reached(4 * compared++ + static_cast<std::size_t>(twin));
   }
   must_hold(compared >= 10, "five algorithms in two precisions have a twin");

@@ -56,11 +56,11 @@ GRAZE_HD Finding by_planes(const Triangles<Numbers>& t, const Numbers& numbers =
   const NormalOf<Numbers> normal_a = normal<Numbers>(t.a);
   const Sides of_b = sides(t.a, normal_a, t.b, numbers);
   if (of_b.one_side()) return Finding::disjoint;
+  if (of_b.in == 7 && numbers.is_proper(normal_a)) return Finding::coplanar;
   const NormalOf<Numbers> normal_b = normal<Numbers>(t.b);
   const Sides of_a = sides(t.b, normal_b, t.a, numbers);
   if (of_a.one_side()) return Finding::disjoint;
   if (!of_a.known() || !of_b.known()) return Finding::unsure;
-  if (of_b.in == 7 && numbers.is_proper(normal_a)) return Finding::coplanar;
   if (of_a.in == 7 && numbers.is_proper(normal_b)) return Finding::coplanar;
   if (of_b.in == 7 && numbers.is_proper(normal_b)) return by_line(t.a, of_a, t.b, numbers);  // a is a segment
   if (of_a.in == 7 && numbers.is_proper(normal_a)) return by_line(t.b, of_b, t.a, numbers);

@@ -2,7 +2,6 @@
 // The steps of the exact decision: the screen, a shared vertex, and the smallest kind of numbers that holds the pair.
 #pragma once
 
-#include "core/exact/axes.h"
 #include "core/exact/by_planes.h"
 #include "core/exact/numbers.h"
 #include "core/exact/results.h"
@@ -12,68 +11,86 @@
 
 namespace graze::exact::detail {
 
-// A vertex in the projection that keeps a plane's triangles in shape: along an axis that is not square to its normal.
+// Along which axis a plane's triangles are projected and stay in shape: one that is not square to its normal.
+template <class M>
+GRAZE_HD unsigned axis_to_drop(const Vec<M>& n) {
+  return !(n.z == M(0)) ? 2 : !(n.x == M(0)) ? 0 : 1;
+}
+
+template <class T>
+GRAZE_HD T component(const Vec<T>& v, unsigned axis) {
+  return pick(v.x, v.y, v.z, axis);
+}
+
+// A vertex without its component along an axis. A triangle turns left where that component of its normal is positive.
 template <class D>
 struct Flat {
   D x, y;
 };
 
-template <class D, class M>
-GRAZE_HD Flat<D> flatten(const Vec<D>& v, const Vec<M>& n) {
-  const bool along_z = !(n.z == M(0)), along_x = !(n.x == M(0));
-  return {along_z ? v.x : along_x ? v.y : v.z, along_z ? v.y : along_x ? v.z : v.x};
+template <class D>
+GRAZE_HD Flat<D> flatten(const Vec<D>& v, unsigned axis) {
+  return {component(v, axis == 2 ? 0 : axis + 1), component(v, axis == 0 ? 2 : axis - 1)};
 }
 
-// Whether an edge of p, which turns left or right, has all of q strictly on its other side.
-template <class M, class D>
-GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]) {
-  const M zero(0);
+// Whether the line of an edge of p parts it from q: all of q lies strictly on one side of it, and p on the other or in it.
+// turn: 1 where p turns left, -1 right, 0 where it is a segment or a point.
+template <class Numbers, class D>
+GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], int turn, const Flat<D> (&q)[3]) {
   bool parts = false;
   for (int i = 0; i < 3; ++i) {
     const Flat<D>&from = p[i], &to = p[i == 2 ? 0 : i + 1];
     const D x = to.x - from.x, y = to.y - from.y;
-    bool all = true;
+    bool all_left = turn <= 0, all_right = turn >= 0;
     for (const Flat<D>& v : q) {
-      const M side = M(x) * (v.y - from.y) - M(y) * (v.x - from.x);
-      all = all && (left ? side < zero : side > zero);
+      const int side = sign_of_minor<Numbers>(x, v.y - from.y, y, v.x - from.x);
+      all_left = all_left && side > 0;
+      all_right = all_right && side < 0;
     }
-    parts = parts || all;
+    parts = parts || all_left || all_right;
   }
   return parts;
 }
 
-// Requires: coplanar triangles with area; n and m are their normals.
+// Requires: all vertices lie in a plane with normal n; of_a and of_b are the normals of a and b, of segments zero, and
+// these are not parallel.
 template <class Numbers>
-GRAZE_HD bool coplanar_meet(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, const NormalOf<Numbers>& m) {
-  using M = typename Numbers::M;
+GRAZE_HD bool meet_in_plane(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, const NormalOf<Numbers>& of_a,
+                            const NormalOf<Numbers>& of_b) {
+  const unsigned axis = axis_to_drop(n);
   Flat<typename Numbers::D> a[3], b[3];
   for (int i = 0; i < 3; ++i) {
-    a[i] = flatten(t.a[i], n);
-    b[i] = flatten(t.b[i], n);
+    a[i] = flatten(t.a[i], axis);
+    b[i] = flatten(t.b[i], axis);
   }
-  const M zero(0);
-  const M of_a = !(n.z == zero)   ? n.z
-                 : !(n.x == zero) ? n.x
-                                  : n.y,
-          of_b = !(n.z == zero)   ? m.z
-                 : !(n.x == zero) ? m.x
-                                  : m.y;
-  return !edge_parts<M>(a, of_a > zero, b) && !edge_parts<M>(b, of_b > zero, a);
+  const auto turn = [axis](const NormalOf<Numbers>& normal) {
+    const auto area = component(normal, axis), zero = typename Numbers::M(0);
+    return int{area > zero} - int{area < zero};
+  };
+  return !edge_parts<Numbers>(a, turn(of_a), b) && !edge_parts<Numbers>(b, turn(of_b), a);
 }
 
 // Requires: two segments or points.
 template <class Numbers>
 GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
-  using T = typename Numbers::T;
-  const auto along = [](const VecOf<Numbers>(&v)[3]) {  // zero of a point
-    const VecOf<Numbers> edge = v[1] - v[0], zero = v[0] - v[0];
-    return edge.x == zero.x && edge.y == zero.y && edge.z == zero.z ? v[2] - v[0] : edge;
-  };
-  const NormalOf<Numbers> n = cross<typename Numbers::M>(along(t.a), along(t.b));
-  if (!(dot<T>(n, t.b[0] - t.a[0]) == T(0))) return false;
-  AxisEvidence seen;
-  look_flat<Numbers>(t, n, seen);
-  return !seen.separated;
+  using M = typename Numbers::M;
+  const auto same = [](const VecOf<Numbers>& u, const VecOf<Numbers>& v) { return u.x == v.x && u.y == v.y && u.z == v.z; };
+  const auto along = [&](const VecOf<Numbers>(&v)[3]) { return same(v[1], v[0]) ? v[2] - v[0] : v[1] - v[0]; };  // zero of a point
+  const VecOf<Numbers> of_a = along(t.a), of_b = along(t.b), between = t.b[0] - t.a[0];
+  const NormalOf<Numbers> n = cross<M>(of_a, of_b);
+  if (!is_zero(n)) {
+    const NormalOf<Numbers> none = {M(0), M(0), M(0)};
+    return dot<typename Numbers::T>(n, between) == typename Numbers::T(0) && meet_in_plane(t, n, none, none);
+  }
+  // Parallel, or one is a point: on one line they meet where they do in each coordinate.
+  const bool a_is_point = same(t.a[1], t.a[0]) && same(t.a[2], t.a[0]);
+  if (!is_zero(cross<M>(a_is_point ? of_b : of_a, between))) return false;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const typename Numbers::D a[3] = {component(t.a[0], axis), component(t.a[1], axis), component(t.a[2], axis)},
+                              b[3] = {component(t.b[0], axis), component(t.b[1], axis), component(t.b[2], axis)};
+    if (most(a) < least(b) || most(b) < least(a)) return false;
+  }
+  return true;
 }
 
 // Requires: the numbers hold the pair's grid, which has this exponent.
@@ -84,53 +101,47 @@ GRAZE_HD bool decide(const float* a, const float* b, int exponent) {
   if (found == Finding::unsure) return segments_meet(t);
   if (found != Finding::coplanar) return found != Finding::disjoint;
   const NormalOf<Numbers> n = normal<Numbers>(t.a), m = normal<Numbers>(t.b);
-  if (!is_zero(n) && !is_zero(m)) return coplanar_meet(t, n, m);
-  AxisEvidence seen;  // a segment or a point in the plane of a triangle
-  look_flat<Numbers>(t, is_zero(n) ? m : n, seen);
-  return !seen.separated;
+  return meet_in_plane(t, is_zero(n) ? m : n, n, m);
 }
 
-// The decision by planes for pairs that no machine number holds: each determinant in doubles with a bound of its own,
-// and those that this leaves open, most of them zeros, in the wide numbers.
+// The decision by planes for pairs that no machine number holds: each determinant in near numbers with a bound of its
+// own, and those that this leaves open, most of them zeros, one by one in the exact numbers.
 // Returns: unsure where all vertices of one lie in the plane of the other.
-template <class Numbers>
+template <class Near, class Numbers>
 GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int exponent, Stage& stage) {
-  const BoundedNumbers bounded;
+  const Near bounded;
   const Numbers exact;
-  const Triangles<BoundedNumbers> near = triangles<BoundedNumbers>(a, b);
-  Triangles<Numbers> wide;
-  const auto widen = [&] {
-    if (stage != Numbers::kStage) wide = triangles<Numbers>(a, b, exponent);
+  const Triangles<Near> near = triangles<Near>(a, b);
+  const double scale = power_of_two(-exponent);
+  const auto exactly = [&](const Vec<float>& o, const Vec<float>& q, const Vec<float>& r, const Vec<float>& s) {
     stage = Numbers::kStage;
+    return determinant<Numbers>(on_grid<Numbers>(o, scale), on_grid<Numbers>(q, scale), on_grid<Numbers>(r, scale),
+                                on_grid<Numbers>(s, scale));
   };
-  const auto settle = [&](Sides& sides, const VecOf<Numbers>(&p)[3], const VecOf<Numbers>(&q)[3]) {
-    for (unsigned i = 0; i < 3; ++i) {
-      if (((sides.above | sides.below | sides.in) >> i & 1) != 0) continue;
-      widen();
-      const auto height = determinant<Numbers>(p[0], p[1], p[2], q[i]);
-      (exact.positive(height) ? sides.above : exact.negative(height) ? sides.below : sides.in) |= 1u << i;
+  const auto settle = [&](Sides& sides, const float* p, const float* q) {
+    for (unsigned open = 7 & ~(sides.above | sides.below | sides.in); open != 0; open &= open - 1) {
+      const unsigned bit = open & (0 - open);
+      const auto height = exactly(vertex(p, 0), vertex(p, 1), vertex(p, 2), vertex(q, bit >> 1));
+      (exact.positive(height) ? sides.above : exact.negative(height) ? sides.below : sides.in) |= bit;
     }
   };
-  Sides of_b = sides(near.a, normal<BoundedNumbers>(near.a), near.b, bounded);
+  Sides of_b = sides(near.a, normal<Near>(near.a), near.b, bounded);
   if (of_b.one_side()) return Finding::disjoint;
-  Sides of_a = sides(near.b, normal<BoundedNumbers>(near.b), near.a, bounded);
+  Sides of_a = sides(near.b, normal<Near>(near.b), near.a, bounded);
   if (of_a.one_side()) return Finding::disjoint;
-  settle(of_b, wide.a, wide.b);
-  settle(of_a, wide.b, wide.a);
-  if (of_b.one_side() || of_a.one_side()) return Finding::disjoint;
+  settle(of_b, a, b);
+  if (of_b.one_side()) return Finding::disjoint;
+  settle(of_a, b, a);
+  if (of_a.one_side()) return Finding::disjoint;
   if (of_a.in == 7 || of_b.in == 7) return Finding::unsure;
 
   const Turn turn = lone_vertices(of_a, of_b);
   for (unsigned k = 1; k < 3; ++k) {  // whether an edge of each parts them
-    const auto between = [&]<class N>(const Triangles<N>& t, const N&) {
-      return k == 1 ? determinant<N>(t.a[turn.a[1]], t.b[turn.b[0]], t.a[turn.a[0]], t.b[turn.b[1]])
-                    : determinant<N>(t.a[turn.a[0]], t.b[turn.b[0]], t.a[turn.a[2]], t.b[turn.b[2]]);
-    };
-    const auto nearly = between(near, bounded);
+    const unsigned o = k == 1 ? turn.a[1] : turn.a[0], r = k == 1 ? turn.a[0] : turn.a[2], s = k == 1 ? turn.b[1] : turn.b[2];
+    const auto nearly = determinant<Near>(pick(near.a, o), pick(near.b, turn.b[0]), pick(near.a, r), pick(near.b, s));
     if (bounded.positive(nearly)) return Finding::disjoint;
     if (bounded.negative(nearly) || bounded.zero(nearly)) continue;
-    widen();
-    if (exact.positive(between(wide, exact))) return Finding::disjoint;
+    if (exact.positive(exactly(vertex(a, o), vertex(b, turn.b[0]), vertex(a, r), vertex(b, s)))) return Finding::disjoint;
   }
   return Finding::intersects;
 }
@@ -147,7 +158,7 @@ GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage)
   };
   if (MachineNumbers::hold(grid)) return MachineNumbers::visit(grid, decide_in);
   const Finding found = MultiwordNumbers::visit(
-      grid, [&](auto numbers) { return by_planes_one_by_one<decltype(numbers)>(a, b, grid.exponent, stage); });
+      grid, [&](auto numbers) { return by_planes_one_by_one<BoundedNumbers, decltype(numbers)>(a, b, grid.exponent, stage); });
   return found == Finding::unsure ? MultiwordNumbers::visit(grid, decide_in) : found != Finding::disjoint;
 }
 

@@ -56,4 +56,14 @@ struct Residue {
   GRAZE_HD friend bool operator==(Residue l, Residue r) { return (l - r).sign() == 0; }
 };
 
+// The sign of p q - r s, all differences: a minor, whose rest matters only where its double is small.
+GRAZE_HD inline int sign_of_difference(Whole p, Whole q, Whole r, Whole s) {
+  constexpr double kSmall = 0x1p21;
+  const double near = p.value * q.value - r.value * s.value;
+  if (near > kSmall) return 1;
+  if (near < -kSmall) return -1;
+  const auto all = static_cast<std::int64_t>(p.modulo() * q.modulo() - r.modulo() * s.modulo());
+  return int{all > 0} - int{all < 0};
+}
+
 }  // namespace graze::exact::detail

@@ -2,6 +2,8 @@
 // A pair in the numbers of one kind.
 #pragma once
 
+#include <type_traits>
+
 #include "core/exact/grid.h"
 #include "core/exact/numbers.h"
 #include "core/exact/vector.h"
@@ -45,16 +47,21 @@ GRAZE_HD inline void convert(float x, double, Wide<5>& out) {
 }
 
 template <class Numbers>
+GRAZE_HD VecOf<Numbers> on_grid(const Vec<float>& v, double scale) {
+  VecOf<Numbers> out;
+  convert(v.x, scale, out.x);
+  convert(v.y, scale, out.y);
+  convert(v.z, scale, out.z);
+  return out;
+}
+
+template <class Numbers>
 GRAZE_HD Triangles<Numbers> triangles(const float* a, const float* b, int exponent = 0) {
   const double scale = power_of_two(-exponent);
   Triangles<Numbers> t;
   for (int i = 0; i < 3; ++i) {
-    convert(a[3 * i], scale, t.a[i].x);
-    convert(a[3 * i + 1], scale, t.a[i].y);
-    convert(a[3 * i + 2], scale, t.a[i].z);
-    convert(b[3 * i], scale, t.b[i].x);
-    convert(b[3 * i + 1], scale, t.b[i].y);
-    convert(b[3 * i + 2], scale, t.b[i].z);
+    t.a[i] = on_grid<Numbers>({a[3 * i], a[3 * i + 1], a[3 * i + 2]}, scale);
+    t.b[i] = on_grid<Numbers>({b[3 * i], b[3 * i + 1], b[3 * i + 2]}, scale);
   }
   return t;
 }
@@ -62,6 +69,19 @@ GRAZE_HD Triangles<Numbers> triangles(const float* a, const float* b, int expone
 template <class Numbers>
 GRAZE_HD NormalOf<Numbers> normal(const VecOf<Numbers> (&v)[3]) {
   return cross<typename Numbers::M>(v[1] - v[0], v[2] - v[0]);
+}
+
+// The sign of p q - r s, all differences.
+template <class Numbers>
+GRAZE_HD int sign_of_minor(const typename Numbers::D& p, const typename Numbers::D& q, const typename Numbers::D& r,
+                           const typename Numbers::D& s) {
+  using M = typename Numbers::M;
+  if constexpr (std::is_same_v<M, Residue>) {
+    return sign_of_difference(p, q, r, s);
+  } else {
+    const M minor = M(p) * q - M(r) * s;
+    return int{minor > M(0)} - int{minor < M(0)};
+  }
 }
 
 }  // namespace graze::exact::detail

@@ -79,9 +79,13 @@ __device__ void add_together(const SignatureTable& table, const SignatureKey& ke
 __global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, EngineList which) {
   const Places& list = block.lists[which];
   for (std::uint32_t begin = blockIdx.x * kThreads; begin < *list.count; begin += gridDim.x * kThreads) {
-    const std::uint32_t n = begin + threadIdx.x, i = n < *list.count ? list.at[n] : 0;
+    const std::uint32_t n = begin + threadIdx.x;
+    std::uint32_t i = n < *list.count ? list.at[n] : 0;
     const bool has_some = n < *list.count && has_signatures(block, i);
-    if (!__any_sync(0xffffffffu, has_some)) continue;
+    const unsigned threads = __ballot_sync(0xffffffffu, has_some);
+    if (threads == 0) continue;
+    const std::uint32_t some = __shfl_sync(0xffffffffu, i, __ffs(static_cast<int>(threads)) - 1);
+    if (!has_some) i = some;  // whose key is read and not added
     for (std::uint32_t g = 0; g < block.lanes.group_count; ++g) {
       const SignatureKey key(block, g, i);
       const bool adds = has_some && key.any_wrong();

@@ -12,10 +12,12 @@ namespace {
 using exact::Stage;
 using exact::detail::Finding;
 
-__global__ void __launch_bounds__(kThreads, 3) decide_most(DevicePairs pairs, Places left, std::uint32_t* intersects,
-                                                           std::uint32_t* declined, unsigned long long* stages) {
+__global__ void __launch_bounds__(kThreads, 3) decide_most(DevicePairs pairs, Places in_floats, Places left,
+                                                           std::uint32_t* intersects, std::uint32_t* declined,
+                                                           unsigned long long* stages) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
   bool finite = true;
+  int list = -1;
   Finding found = Finding::disjoint;
   if (i < pairs.count) {
     float c[kCoordinates];
@@ -23,22 +25,25 @@ __global__ void __launch_bounds__(kThreads, 3) decide_most(DevicePairs pairs, Pl
     for (float x : c) finite = finite && is_finite(x);
     if (finite) found = exact::detail::screen(c, c + 9);
     if (found == Finding::unsure && exact::detail::shared_vertex(c, c + 9) >= 0) found = Finding::intersects;
-    if (found == Finding::unsure) left.add(i);
+    if (found == Finding::unsure) list = list_of(c);
   }
   const std::uint32_t yes_word = __ballot_sync(0xffffffffu, found == Finding::crosses || found == Finding::intersects);
   const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
   const std::uint32_t decided = __ballot_sync(0xffffffffu, i < pairs.count && found != Finding::unsure);
-  if (threadIdx.x % 32 != 0) return;
-  intersects[i / 32] = yes_word;
-  declined[i / 32] = declined_word;
-  count(stages, Stage::bounded, static_cast<std::uint32_t>(__popc(decided)));
+  if (threadIdx.x % 32 == 0) {
+    intersects[i / 32] = yes_word;
+    declined[i / 32] = declined_word;
+    count(stages, Stage::bounded, static_cast<std::uint32_t>(__popc(decided)));
+  }
+  add_of_block(in_floats, left, list, i);
 }
 
 // Lists the finite pairs that a filter declined, and takes their bits back.
 __global__ void __launch_bounds__(kThreads)
-    list_declined(DevicePairs pairs, Places left, std::uint32_t* intersects, std::uint32_t* declined) {
+    list_declined(DevicePairs pairs, Places in_floats, Places left, std::uint32_t* intersects, std::uint32_t* declined) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
   bool finite = true;
+  int list = -1;
   if (i < pairs.count && (declined[i / 32] >> i % 32 & 1)) {
     float c[kCoordinates];
     load(pairs, i, c);
@@ -46,11 +51,12 @@ __global__ void __launch_bounds__(kThreads)
     if (finite && exact::detail::shared_vertex(c, c + 9) >= 0) {
       set_bit(intersects, i);
     } else if (finite) {
-      left.add(i);
+      list = list_of(c);
     }
   }
   const std::uint32_t declined_word = __ballot_sync(0xffffffffu, !finite);
   if (threadIdx.x % 32 == 0) declined[i / 32] = declined_word;
+  add_of_block(in_floats, left, list, i);
 }
 
 }  // namespace
@@ -70,7 +76,7 @@ void DeviceExact::decide(DevicePairs pairs, std::uint32_t* intersects, std::uint
                          unsigned long long* stages, cudaStream_t stream) {
   if (pairs.count == 0) return;
   empty_lists(pairs.count, stream);
-  decide_most<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], intersects, declined, stages);
+  decide_most<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], left_[1], intersects, declined, stages);
   decide_listed(pairs, intersects, stages, stream);
 }
 
@@ -78,7 +84,7 @@ void DeviceExact::decide_declined(DevicePairs pairs, std::uint32_t* intersects, 
                                   cudaStream_t stream) {
   if (pairs.count == 0) return;
   empty_lists(pairs.count, stream);
-  list_declined<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], intersects, declined);
+  list_declined<<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, left_[0], left_[1], intersects, declined);
   decide_listed(pairs, intersects, nullptr, stream);
 }
 

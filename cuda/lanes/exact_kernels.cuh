@@ -16,6 +16,9 @@ struct Lane;
 
 namespace graze::cuda {
 
+// Lists of pairs: two that the screen leaves, and what steps of the exact decision leave to others.
+inline constexpr int kExactLists = 6;
+
 // The exact decision of blocks of pairs, and the memory for what its stages leave to each other.
 class DeviceExact {
  public:
@@ -30,8 +33,8 @@ class DeviceExact {
   void empty_lists(std::uint32_t pairs, cudaStream_t stream);
   void decide_listed(DevicePairs pairs, std::uint32_t* intersects, unsigned long long* stages, cudaStream_t stream);
 
-  DeviceArray<std::uint32_t> places_[4], counts_;
-  Places left_[4];
+  DeviceArray<std::uint32_t> places_[kExactLists], counts_;
+  Places left_[kExactLists];
 };
 
 // Starts the kernels of a CUDA lane, which write as DeviceExact::decide does.

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps of the exact decision after the screen: the pairs that it left, where floats or doubles hold all
-// determinants; then those that this left, on residues; then on 128-bit integers; then on wide integers. Hard pairs are
+// determinants; then those that this left, on residues; then on 128-bit integers, or by closer bounds; then on wide integers. Hard pairs are
 // listed, so that a warp does not wait for one of them in 32. Pairs: anything with a load(pairs, i, coordinates).
 // Device code only.
 #pragma once
 
 #include "core/exact/exact.h"
+#include "cuda/lanes/close_numbers.cuh"
 #include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/places.h"
 
@@ -24,93 +26,150 @@ __device__ void count(unsigned long long* stages, Stage stage, std::uint32_t pai
   if (stages && pairs) atomicAdd(&stages[static_cast<int>(stage)], static_cast<unsigned long long>(pairs));
 }
 
+// What the threads of a warp have counted, all of which call this.
+__device__ void count_of_warp(unsigned long long* stages, Stage stage, std::uint32_t pairs) {
+  for (int far = 16; far > 0; far /= 2) pairs += __shfl_xor_sync(0xffffffffu, pairs, far);
+  if (threadIdx.x % 32 == 0) count(stages, stage, pairs);
+}
+
 __device__ void set_bit(std::uint32_t* words, std::uint32_t i) { atomicOr(&words[i / 32], 1u << i % 32); }
 
-// The decision in the smallest of the kinds that holds the grid.
-template <class Kinds>
-__device__ bool decide_in(const float* c, const Grid& grid) {
-  return Kinds::visit(grid,
-                      [&](auto numbers) { return exact::detail::decide<decltype(numbers)>(c, c + 9, grid.exponent); });
-}
-
-// By the smallest of the kinds that holds a pair's grid.
-template <class Kinds, Stage stage, class Pairs>
-__global__ void __launch_bounds__(kThreads, 2)
-    decide_by(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
-  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
-    const std::uint32_t i = from.at[n];
-    float c[kCoordinates];
-    load(pairs, i, c);
-    const Grid grid = exact::detail::grid_of(c, c + 9);
-    if (!Kinds::hold(grid)) {
-      left.add(i);
-      continue;
-    }
-    if (decide_in<Kinds>(c, grid)) set_bit(intersects, i);
-    count(stages, stage, 1);
+// Whether floats hold the pair, as SingleNumbers::holds says of its grid, in fewer instructions.
+__device__ bool floats_hold(const float* c) {
+  float most = 0;
+  for (int i = 0; i < kCoordinates; ++i) most = fmaxf(most, fabsf(c[i]));
+  // The coordinates times 2^-exponent are less than 2^kSingleBits.
+  const int exponent = static_cast<int>(exact::detail::bits_of(most) >> 23) - 126 - exact::detail::kSingleBits;
+  if (exponent < -30 || exponent > 30) return false;
+  const float scale = __uint_as_float(static_cast<unsigned>(127 - exponent) << 23);
+  bool whole = true;
+  for (int i = 0; i < kCoordinates; ++i) {
+    const float x = c[i] * scale;
+    whole = whole && __fadd_rn(__fadd_rn(x, 0x1.8p23f), -0x1.8p23f) == x;  // rounded to a whole number
   }
+  return whole;
 }
 
+// To which list of launch_exact_steps a pair goes.
+__device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
+
+// Calls decide(coordinates, yes) for each pair of a list: it returns the stage that decided, and in `yes` whether the pair
+// intersects; or kLeft, and the pair goes to another list.
+constexpr int kLeft = exact::kStages;
+
+template <class Pairs, class Decide>
+__device__ void decide_listed(const Pairs& pairs, const Places& from, const Places& left, std::uint32_t* intersects,
+                              unsigned long long* stages, const Decide& decide) {
+  const std::uint32_t count = *from.count;
+  std::uint32_t decided[exact::kStages] = {};
+  for (std::uint32_t first = blockIdx.x * kThreads; first < count; first += gridDim.x * kThreads) {
+    const std::uint32_t n = first + threadIdx.x;
+    const std::uint32_t i = n < count ? from.at[n] : 0;
+    bool is_left = false;
+    if (n < count) {
+      float c[kCoordinates];
+      load(pairs, i, c);
+      bool yes = false;
+      const int stage = decide(c, yes);
+      is_left = stage == kLeft;
+      for (int s = 0; s < exact::kStages; ++s) decided[s] += stage == s;
+      if (yes) set_bit(intersects, i);
+    }
+    add_of_block(left, left, is_left ? 0 : -1, i);
+  }
+  for (int s = 0; s < exact::kStages; ++s) count_of_warp(stages, static_cast<Stage>(s), decided[s]);
+}
+
+// Of pairs that floats hold.
+template <class Pairs>
+__global__ void __launch_bounds__(kThreads, 3)
+    decide_by_floats(Pairs pairs, Places from, std::uint32_t* intersects, unsigned long long* stages) {
+  decide_listed(pairs, from, Places{}, intersects, stages, [](const float* c, bool& yes) {
+    yes = exact::detail::decide<exact::detail::SingleNumbers>(c, c + 9, 0);
+    return static_cast<int>(Stage::doubles);
+  });
+}
+
+// By the smallest of the kinds that holds a pair's grid. kThreadBlocks: how many blocks of threads a multiprocessor should
+// hold at once, which limits the registers.
+template <class Kinds, int kThreadBlocks, class Pairs>
+__global__ void __launch_bounds__(kThreads, kThreadBlocks)
+    decide_by(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
+  decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
+    const Grid grid = exact::detail::grid_of(c, c + 9);
+    if (!Kinds::hold(grid)) return kLeft;
+    return Kinds::visit(grid, [&](auto numbers) {
+      yes = exact::detail::decide<decltype(numbers)>(c, c + 9, grid.exponent);
+      return static_cast<int>(numbers.kStage);
+    });
+  });
+}
+
+// Exactly, or by one bound for each determinant.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_int128(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
   using Numbers = exact::detail::IntNumbers;
-  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
-    const std::uint32_t i = from.at[n];
-    float c[kCoordinates];
-    load(pairs, i, c);
+  decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
     const Grid grid = exact::detail::grid_of(c, c + 9);
-    bool yes;
     if (Numbers::holds(grid)) {
       yes = exact::detail::decide<Numbers>(c, c + 9, grid.exponent);
-      count(stages, Stage::int128, 1);
-    } else {
-      const Finding found = by_planes(exact::detail::triangles<exact::detail::BoundedNumbers>(c, c + 9));
-      yes = found == Finding::crosses || found == Finding::intersects;
-      if (found == Finding::unsure) {
-        left.add(i);
-      } else {
-        count(stages, Stage::bounded, 1);
-      }
+      return static_cast<int>(Stage::int128);
     }
-    if (yes) set_bit(intersects, i);
-  }
+    const Finding found = by_planes(exact::detail::triangles<exact::detail::BoundedNumbers>(c, c + 9));
+    yes = found == Finding::crosses || found == Finding::intersects;
+    return found == Finding::unsure ? kLeft : static_cast<int>(Stage::bounded);
+  });
 }
 
+// By closer bounds, of twice a double's precision.
+template <class Pairs>
+__global__ void __launch_bounds__(kThreads, 2)
+    decide_closely(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
+  decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
+    const Finding found = by_planes(exact::detail::triangles<CloseNumbers>(c, c + 9));
+    yes = found == Finding::crosses || found == Finding::intersects;
+    return found == Finding::unsure ? kLeft : static_cast<int>(Stage::bounded);
+  });
+}
+
+// By these bounds, and the determinants that they leave open in wide integers.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads)
-    decide_on_wide(Pairs pairs, Places from, std::uint32_t* intersects, unsigned long long* stages) {
-  for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
-    const std::uint32_t i = from.at[n];
-    float c[kCoordinates];
-    load(pairs, i, c);
-    const Grid grid = exact::detail::grid_of(c, c + 9);
-    if (decide_in<exact::detail::MultiwordNumbers>(c, grid)) set_bit(intersects, i);
-    count(stages, Stage::wide, 1);
-  }
+    decide_one_by_one(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
+  using exact::detail::WideNumbers;
+  decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
+    Stage stage = Stage::bounded;
+    const Finding found = exact::detail::by_planes_one_by_one<CloseNumbers, WideNumbers>(c, c + 9, 0, stage);
+    yes = found == Finding::intersects;
+    return found == Finding::unsure ? kLeft : static_cast<int>(stage);
+  });
 }
 
 constexpr int kBlocksForLeft = 1024;
 
-// Of pairs that no small grid holds; the second list is for what one step leaves to the next, and empty.
+// Of pairs that no small grid holds; the other lists are for what one step leaves to the next, and empty.
 template <class Pairs>
-void launch_large_steps(const Pairs& pairs, Places first, Places second, std::uint32_t* intersects,
+void launch_large_steps(const Pairs& pairs, const Places (&left)[4], std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {
-  decide_on_int128<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, first, second, intersects, stages);
-  decide_on_wide<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, second, intersects, stages);
+  decide_on_int128<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);
+  decide_closely<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);
+  decide_one_by_one<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[2], left[3], intersects, stages);
+  decide_by<exact::detail::MultiwordNumbers, 1>
+      <<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[3], Places{}, intersects, stages);
   check(cudaGetLastError());
 }
 
-// Decides the pairs of the first list; the other ones are for what the steps leave to each other, and empty.
+// Decides the pairs of the first two lists, the first those that floats hold; the other ones are for what the steps leave
+// to each other, and empty.
 template <class Pairs>
-void launch_exact_steps(const Pairs& pairs, const Places (&left)[4], std::uint32_t* intersects,
+void launch_exact_steps(const Pairs& pairs, const Places (&left)[kExactLists], std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {
   using namespace exact::detail;
-  decide_by<NumberKinds<SingleNumbers, DoubleNumbers>, Stage::doubles>
-      <<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);
-  decide_by<NumberKinds<ResidueNumbers>, Stage::int128>
+  decide_by_floats<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], intersects, stages);
+  decide_by<NumberKinds<DoubleNumbers, ResidueNumbers>, 2>
       <<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);
-  launch_large_steps(pairs, left[2], left[3], intersects, stages, stream);
+  launch_large_steps(pairs, {left[2], left[3], left[4], left[5]}, intersects, stages, stream);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ struct QueryChunk {
 // The words of 32 bits that a row of verdicts takes: whole thread blocks of every kernel.
 constexpr std::uint32_t row_words(std::uint32_t count) { return (count + 255) / 256 * 8; }
 
-inline constexpr int kQueryLists = 4;
+inline constexpr int kQueryLists = 6;
 
 // What the slabs of the reference and the screen in floats show of a chunk: all words of `hits` are written, and what
 // is left open is listed.

@@ -17,7 +17,7 @@ from mutating import tokens
 
 NOT_SWITCHED = 98  # exit status, as in switches.h
 # Subscripts out of range end the test, rather than find what lies there.
-CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds", "-fsanitize-undefined-trap-on-error"]
+CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds-strict,object-size", "-fsanitize-undefined-trap-on-error"]
 MEMORY = 8 << 30  # bytes of addresses, of each compiler and test
 
 

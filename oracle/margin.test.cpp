@@ -9,6 +9,7 @@
 
 #include "core/margin/margin.h"
 #include "core/margin/single_precision.h"
+#include "core/margin/tie_proof.h"
 #include "oracle/exact_margin.h"
 #include "oracle/test_pairs.h"
 #include "oracle/truth.h"
@@ -290,6 +291,48 @@ TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
   EXPECT_LE(errors.overlap, 1.01 * overlap);
   EXPECT_GE(errors.length, length);
   EXPECT_LE(errors.length, 1.01 * length);
+}
+
+// All is seen from a vertex that the axis belongs to: what touches there overlaps by zero, without a rounding.
+TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<float> any(-1, 1);
+  const auto point = [&] { return Vec3<float>{any(random), any(random), any(random)}; };
+  int touching = 0;
+  for (int n = 0; n < 3000; ++n) {
+    const Vec3<float> a[3] = {point(), point(), point()};
+    Vec3<float> b[3] = {point(), point(), point()};
+    const bool edges = n % 2 == 0;
+    const int shared = edges ? n % 4 : n % 3;  // b's edge begins at b[0], and b[2] is beside it
+    b[shared] = a[0];
+    const Vec3<float> axis = cross(a[1] - a[0], edges ? b[1] - b[0] : a[2] - a[0]);
+    const auto side = [&](const Vec3<float>& v) { return dot(axis, v - a[0]) > 0; };
+    const bool on_one_side = edges ? side(a[2]) != side(b[2 - shared]) : side(b[(shared + 1) % 3]) == side(b[(shared + 2) % 3]);
+    if (!on_one_side) continue;
+    ++touching;
+    ASSERT_EQ(first_attempt::overlap_along(a, b, edges).along, 0) << n;
+  }
+  EXPECT_GT(touching, 1000);
+}
+
+TEST(TieProof, ShiftsByAnyNumberOfBits) {
+  const tie_proof::Big x = tie_proof::big(0x123456789abcdef);
+  tie_proof::Big expected = x;
+  for (int bits = 0; bits < 448; ++bits, expected = expected + expected)
+    ASSERT_TRUE(tie_proof::shifted_up(x, bits) == expected) << bits;
+}
+
+// Two parallel triangles at a distance of 1: of 1 and 40 bits, and units so much smaller.
+TEST(TieProof, RefusesWhatIsTooLarge) {
+  const auto is_proven = [](float largest, int exponent) {
+    const float a[9] = {0, 0, 0, largest, 0, 0, 0, 1, 0}, b[9] = {0, 0, 1, 1, 0, 1, 0, 1, 1};
+    return are_apart_by(a, b, kNormalA, exponent);
+  };
+  EXPECT_FALSE(is_proven(1, 1));
+  for (int exponent = 0; exponent >= -80; --exponent) EXPECT_TRUE(is_proven(1, exponent)) << exponent;
+  EXPECT_FALSE(is_proven(1, -81));
+  EXPECT_TRUE(is_proven(0x1p39f, 0));
+  EXPECT_FALSE(is_proven(0x1p40f, 0));
 }
 
 // Square roots that lie exactly, or all but exactly, half-way between two doubles.

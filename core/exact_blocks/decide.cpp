@@ -19,6 +19,7 @@ const char* decide_target() { return "scalar"; }
 
 #include <algorithm>
 #include <bit>
+#include <span>
 
 #include "core/exact/exact.h"
 #include "core/exact_blocks/decide.h"
@@ -114,10 +115,10 @@ HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
   middle.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
     chunk.set(chunk.intersects, which & ~separated<DoubleAndInteger>(OnGrid(chunk.at(numbers), kBitsOfBoth)), numbers);
   });
-  for (std::size_t i = 0; i < rest.count; ++i) {
-    const float* const pair = chunk.pairs + rest.pair[i] * kFloats;
+  for (const std::uint16_t& number : std::span(rest.pair).first(rest.count)) {
+    const float* const pair = chunk.pairs + number * kFloats;
     Stage stage;
-    if (detail::decide_unsure(pair, pair + 9, stage)) chunk.set(chunk.intersects, 1, rest.pair + i);
+    if (detail::decide_unsure(pair, pair + 9, stage)) chunk.set(chunk.intersects, 1, &number);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -64,6 +65,29 @@ std::vector<float> drawn(std::size_t pairs, auto coordinate) {
   return all;
 }
 
+// A vertex over a face, an edge over an edge and triangles in one plane, by less and less, by nothing, and below: on grids
+// of all sizes, the next contact at less than what a coarser one shows.
+std::vector<float> near_contacts() {
+  std::vector<float> all;
+  for (int exponent = 0; exponent >= -90; --exponent) {
+    for (const float sign : {1.0f, 0.0f, -1.0f}) {
+      const float h = std::ldexp(sign, exponent);
+      for (const auto& pair : {std::array<float, 18>{-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, h, 1, 0, 1, 0, 1, 1},
+                               std::array<float, 18>{-1, 0, 0, 1, 0, 0, 0, 0, -1, 0, -1, h, 0, 1, h, 0, 0, 1},
+                               std::array<float, 18>{-1, -1, 0, 0, -1, 0, 0, 1, 0, h, 0, 0, 1, 1, 0, 1, -1, 0}})
+        all.insert(all.end(), pair.begin(), pair.end());
+    }
+  }
+  return all;
+}
+
+// A thousand times a vertex on a face, with a coordinate of that size: all of a chunk wait for the same step.
+std::vector<float> contacts(int exponent) {
+  const float pair[18] = {-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, 0, 1, 0, std::ldexp(1.0f, exponent), 0, 1, 1};
+  std::size_t next = 0;
+  return drawn(1024, [&] { return pair[next++ % 18]; });
+}
+
 TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   std::mt19937_64 random(7);
   const auto whole = [&](int bits) { return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits)); };
@@ -88,6 +112,10 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
       {"wider", vertices_again(drawn(2000, [&] { return std::ldexp(whole(23), static_cast<int>(random() % 60)); }))},
       {"near the smallest", vertices_again(drawn(2000, [&] { return std::ldexp(whole(5), -149); }))},
       {"near the largest", vertices_again(drawn(2000, [&] { return std::ldexp(whole(20), 106); }))},
+      {"near contacts", near_contacts()},
+      {"contacts alone, in few bits", contacts(0)},
+      {"contacts alone, in 31 bits", contacts(-30)},
+      {"contacts alone, in 61 bits", contacts(-60)},
       {"any bits", drawn(5000, [&] {
          const auto bits = static_cast<std::uint32_t>(random());
          float x;

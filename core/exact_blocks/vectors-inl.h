@@ -55,6 +55,7 @@ struct Double {
 // Of integers of up to 34 bits: a difference has 35, a determinant is less than 6 * 2^105, and its double is off by at
 // most 2^-50 of that (error_bound.h), less than 2^58: beyond 2^60 its sign is right, and so is that of a difference of
 // two. Up to 2^60, and what it may be off, the number is within 64 bits.
+static_assert(2 * 6 * (std::int64_t{1} << (3 * (kBitsOfBoth + 1) - 50)) < std::int64_t{1} << 60);
 struct DoubleAndInteger {
   V v;
   VI i;

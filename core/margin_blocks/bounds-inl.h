@@ -173,11 +173,8 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const V terms = hn::Add(hn::Add(sum(from), sum(su)), sum(tv));
   const V hi = hn::MulAdd(hn::Sqrt(dot(connection, connection)), number(1 + 8 * kHalf), hn::Mul(terms, number(8 * kHalf)));
 
-  // A perpendicular's length is of degree three; divided by a power of two near u2, so that no square of a product with
-  // it leaves the range.
-  const VI exponent = hn::And(hn::BitCast(di, u2), hn::Set(di, std::int64_t{0x7ff} << 52));
-  const V per_u2 = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023} << 52), exponent));
-  const Vector n = chosen(vertices, w, chosen(edge, scaled(perpendicular, per_u2), normal));
+  // A perpendicular is of degree three, and nothing here of more than six: see MarginFrame in core/margin/frame.h.
+  const Vector n = chosen(vertices, w, chosen(edge, perpendicular, normal));
   V least = number(INFINITY), most = number(-INFINITY);
   for (const Vector(&row)[3] : f.between) {
     for (const Vector& x : row) {

@@ -33,6 +33,8 @@ HWY_INLINE VI size_of_bucket(VI log2_margin, VI log2_ulp) {
   return hn::Add(hn::Min(hn::Max(k, hn::Set(di, kBucketLowest)), hn::Set(di, kBucketHighest)), hn::Set(di, 1 - kBucketLowest));
 }
 
+constexpr unsigned kAll = (1u << kAtOnce) - 1;
+
 struct Numbers {
   std::uint32_t pair[kAtOnce];
 };
@@ -61,24 +63,25 @@ HWY_INLINE unsigned settle(const Bounds& bounds, bool squares, V largest, std::i
   return settled;
 }
 
-HWY_ATTR void measure_gaps(const float* pairs, const Numbers& numbers, unsigned which, Bucket* buckets) {
+HWY_ATTR void measure_gaps(const float* pairs, const Numbers& numbers, Bucket* buckets) {
   const Frame frame(coordinates_at(pairs, numbers));
-  settle(distance_bounds(frame), false, frame.largest, 1, numbers, which, buckets);
+  settle(distance_bounds(frame), false, frame.largest, 1, numbers, kAll, buckets);
 }
 
-HWY_ATTR void measure_depths(const float* pairs, const Numbers& numbers, unsigned which, Bucket* buckets) {
+HWY_ATTR void measure_depths(const float* pairs, const Numbers& numbers, Bucket* buckets) {
   const Coordinates coordinates = coordinates_at(pairs, numbers);
   const Frame frame(coordinates);
-  const unsigned exact = which & bits(frame.exact);
-  if (exact != 0) which &= ~settle(squared_depth_bounds(frame), true, frame.largest, -1, numbers, exact, buckets);
-  if (which == 0) return;
+  const unsigned exact = bits(frame.exact);
+  unsigned open = kAll;
+  if (exact != 0) open &= ~settle(squared_depth_bounds(frame), true, frame.largest, -1, numbers, exact, buckets);
+  if (open == 0) return;
   const OnGrid fine(coordinates, kBitsOfBoth);
-  unsigned zero = 0;
-  if ((which & fine.within) != 0) zero = which & fine.within & touch<DoubleAndInteger>(fine);
-  for (; zero != 0; zero &= zero - 1) buckets[numbers.pair[std::countr_zero(zero)]] = 0;
+  open &= fine.within;
+  if (open != 0) open &= touch<DoubleAndInteger>(fine);
+  for (; open != 0; open &= open - 1) buckets[numbers.pair[std::countr_zero(open)]] = 0;
 }
 
-// Of each verdict kAtOnce at a time, the last one repeated.
+// Of each verdict kAtOnce at a time, of the last ones the first one again and again.
 HWY_ATTR void measure_all(const float* pairs, std::size_t count, const std::uint64_t* intersects, Bucket* buckets) {
   std::fill_n(buckets, count, kOpenBucket);
   Numbers waiting[2] = {};
@@ -88,7 +91,7 @@ HWY_ATTR void measure_all(const float* pairs, std::size_t count, const std::uint
     const std::size_t some = filled[verdict];
     if (some == 0) return;
     std::fill(numbers.pair + some, numbers.pair + kAtOnce, numbers.pair[0]);
-    (verdict ? measure_depths : measure_gaps)(pairs, numbers, (1u << some) - 1, buckets);
+    (verdict ? measure_depths : measure_gaps)(pairs, numbers, buckets);
     filled[verdict] = 0;
   };
   for (std::size_t i = 0; i < count; ++i) {

@@ -17,7 +17,7 @@ from mutating import tokens
 
 NOT_SWITCHED = 98  # exit status, as in switches.h
 # Subscripts out of range end the test, rather than find what lies there.
-CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds", "-fsanitize-undefined-trap-on-error"]
+CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds-strict,object-size", "-fsanitize-undefined-trap-on-error"]
 MEMORY = 8 << 30  # bytes of addresses, of each compiler and test
 
 
@@ -213,7 +213,7 @@ class Runner:
         return "survived", ""
 
     def compile_switched(self, group, file, source, text, numbered, folder):
-        """Mutants of whose lines the compiler complains are taken out of `numbered`.   Throws: NotCompiled."""
+        """Mutants of which the compiler complains, or of whose lines, are taken out of `numbered`.   Throws: NotCompiled."""
         while True:
             (folder / file).write_text(tokens.switched(text, numbered), encoding="utf-8")
             try:
@@ -221,8 +221,10 @@ class Runner:
             except NotCompiled as error:
                 if not numbered:
                     raise
+                named = {int(number) for number in re.findall(r"\bint id = (\d+)", str(error))}  # in switches.h
                 lines = re.findall(re.escape(file) + r":(\d+):\d+: error", str(error)) or re.findall(re.escape(file) + r":(\d+):", str(error))
-                refused = [number for number, mutant in numbered.items() if any(abs(mutant["line"] - int(line)) <= 1 for line in lines)]
+                refused = [number for number in numbered if number in named] or [
+                    number for number, mutant in numbered.items() if any(abs(mutant["line"] - int(line)) <= 1 for line in lines)]
                 for number in refused or list(numbered):
                     del numbered[number]
 

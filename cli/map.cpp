@@ -106,7 +106,7 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
   fmt::print("Wrote {}\n", out.string());
 }
 
-void map_case(const MapOptions& options) {
+void draw_map(const MapOptions& options) {
   const std::optional<analysis::MovedCoordinates> asked = asked_for(options);
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
   const corpus::Entry entry = read_cases(options.name).front();
@@ -147,7 +147,7 @@ void add_map(CLI::App& app, int&) {
       ->add_option("--x", options->x, "The coordinate that moves to the right; by default chosen by how much changes")
       ->option_text("b[0].x");
   command->add_option("--y", options->y, "The coordinate that moves upwards")->option_text("b[0].y");
-  command->callback([options] { map_case(*options); });
+  command->callback([options] { draw_map(*options); });
 }
 
 }  // namespace graze::cli

@@ -6,12 +6,28 @@ if(CMAKE_BUILD_TYPE STREQUAL Release)
   set(is_release TRUE)
 endif()
 
+# Of a campaign's build most time is the compiler's: it does not look for what it could warn of, which other builds do.
+if(GRAZE_CAMPAIGN)
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-w>)
+endif()
+
+# graze_cold(file…): of this folder; what no pair of a campaign passes through.
+function(graze_cold)
+  if(GRAZE_CAMPAIGN)
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O1)
+  endif()
+endfunction()
+
 # Headers of libraries, read once for many targets. Two sets, as GCC wants the same flags where one is used.
 set(has_precompiled FALSE)
 if(is_release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   set(has_precompiled TRUE)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/precompiled.cpp CONTENT "")
-  foreach(level O1 O3)
+  set(levels O1 O3)
+  if(GRAZE_CAMPAIGN)
+    set(levels O1)
+  endif()
+  foreach(level IN LISTS levels)
     add_library(graze_precompiled_${level} OBJECT ${CMAKE_BINARY_DIR}/generated/precompiled.cpp)
     target_link_libraries(graze_precompiled_${level} PRIVATE graze_strict fmt::fmt nlohmann_json::nlohmann_json)
     target_compile_options(graze_precompiled_${level} PRIVATE -${level})
@@ -23,6 +39,9 @@ endif()
 
 # graze_precompiled(LEVEL TARGET…): LEVEL is O3, or O1 where the compiler takes more time than the code ever will. It uses fmt.
 function(graze_precompiled level)
+  if(GRAZE_CAMPAIGN)
+    set(level O1)
+  endif()
   foreach(target IN LISTS ARGN)
     if(has_precompiled)
       # -fPIC: programs have -fPIE else, with which GCC refuses what was precompiled for libraries.
@@ -32,9 +51,16 @@ function(graze_precompiled level)
   endforeach()
 endfunction()
 
-# graze_together(TARGET [file…]): its sources are compiled nine at once, but for these files: those that scripts/mutate
-# compiles anew, and those with names that others have too. Of CLI11 and our own headers each file alone costs seconds.
+# graze_together(TARGET [ALONE file…] [MUTATED file…]): its sources are compiled nine at once, for a campaign eighteen, but
+# for these files: ALONE has names that others have too; scripts/mutate compiles MUTATED anew, which a campaign's build does
+# not know. Of CLI11 and our own headers each file alone costs seconds, and each copy of what it takes of the JSON library.
 function(graze_together target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${is_release} UNITY_BUILD_BATCH_SIZE 9)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  cmake_parse_arguments(arg "" "" "ALONE;MUTATED" ${ARGN})
+  set(batch 9)
+  if(GRAZE_CAMPAIGN)
+    set(arg_MUTATED "")
+    set(batch 18)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${is_release} UNITY_BUILD_BATCH_SIZE ${batch})
+  set_source_files_properties(${arg_ALONE} ${arg_MUTATED} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()

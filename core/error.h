@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace graze {
 
@@ -9,5 +10,10 @@ namespace graze {
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+// What is said of what scripts/campaign leaves out.
+inline std::string not_in_a_campaigns_build(const std::string& what) {
+  return what + ": not in this build, which scripts/campaign made; scripts/setup builds everything";
+}
 
 }  // namespace graze

@@ -58,6 +58,8 @@ std::string status(const Lane& lane, const cuda::Device* device, const std::stri
     return runs_on_this_cpu(lane) ? "available" : "unavailable (no " + needs + " instructions)";
   }
   if (device) return "available (device)";
+  if (lane.under && !cuda::has_policy_twins())
+    return "unavailable (" + not_in_a_campaigns_build("twins of lanes under tolerances") + ")";
   return cuda::block_on_host(lane) ? "available (" + twin_evidence_of(lane) + ")"
                                    : "unavailable (" + why_no_device + (lane.exact ? ")" : ", and no twin)");
 }

@@ -74,5 +74,5 @@ add_custom_target(graze_wasm ALL DEPENDS ${GRAZE_WASM})
 
 # The module against the native build, in Node.
 add_executable(graze_wasm_reference wasm/reference.cpp)
-target_link_libraries(graze_wasm_reference PRIVATE graze_analysis)
+target_link_libraries(graze_wasm_reference PRIVATE graze_analysis_more)
 set(GRAZE_WASM_PAIRS 10000 CACHE STRING "Pairs on which the tests compare graze.wasm with the native build")

@@ -34,14 +34,24 @@ struct TwinTables {
   {}
 #define GRAZE_TABLES_no_twin_exact(name) \
   {}
+#ifdef GRAZE_WITHOUT_POLICY_TWINS  // cuda/CMakeLists.txt says when
+#define GRAZE_POLICIES(name) nullptr
+constexpr bool kHasPolicyTwins = false;
+#else
+constexpr bool kHasPolicyTwins = true;
+#define GRAZE_POLICIES(name) &policy_twin_##name::kTwinTable
+#endif
 #define GRAZE_TABLES_twin_rounded(name) \
-  { &twin_##name::kTwinTable, &twin_##name::kTwinTable, &policy_twin_##name::kTwinTable }
+  { &twin_##name::kTwinTable, &twin_##name::kTwinTable, GRAZE_POLICIES(name) }
 #ifdef __wasm__  // which has no FMA instructions: one table
 #define GRAZE_TABLES_twin_contracted(name) \
-  { nullptr, &twin_##name##_portable::kTwinTable, &policy_twin_##name::kTwinTable }
+  { nullptr, &twin_##name##_portable::kTwinTable, GRAZE_POLICIES(name) }
+#elif defined(GRAZE_WITHOUT_PORTABLE_TWINS)
+#define GRAZE_TABLES_twin_contracted(name) \
+  { &twin_##name::kTwinTable, nullptr, GRAZE_POLICIES(name) }
 #else
 #define GRAZE_TABLES_twin_contracted(name) \
-  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, &policy_twin_##name::kTwinTable }
+  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, GRAZE_POLICIES(name) }
 #endif
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_TABLES_##twin##_##arithmetic(name),
 constexpr TwinTables kTables[] = {
@@ -96,6 +106,8 @@ DecideBlock block_on_host(const Lane& lane) {
   const Lane* on_cpu = counterpart(lane, Variant::cpu);
   return on_cpu ? on_cpu->decide : nullptr;
 }
+
+bool has_policy_twins() { return kHasPolicyTwins; }
 
 TraceBlock twin_trace(const Lane& lane) { return twin_row(lane).trace; }
 const char* twin_hash(const Lane& lane) { return twin_row(lane).hash; }

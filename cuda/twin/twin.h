@@ -22,6 +22,9 @@ DecideBlock block_on_host(const Lane& lane);
 using TraceBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* hashes);
 TraceBlock twin_trace(const Lane& lane);
 
+// Whether lanes under tolerances have twins; what scripts/campaign builds is without.
+bool has_policy_twins();
+
 // Toolkit whose PTX the twins replay: "13.0.88".
 const char* twin_toolkit();
 

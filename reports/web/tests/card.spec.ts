@@ -30,6 +30,7 @@ test('the drawing turns by dragging and by keys, and comes back', async ({ page 
 });
 
 test('every card draws, with one WebGL context for all', async ({ page, report }) => {
+  await page.setViewportSize({ width: 400, height: 400 });  // small drawings
   await page.locator('button', { hasText: 'Open all' }).click();
   for (let number = 1; number <= report.cards.length; ++number) {
     const board = page.locator(`#kind-${number} .board`);

@@ -253,6 +253,7 @@ test('steps are of one ulp, of 256 with Shift, of 65,536 with Alt', async ({ vie
 test.describe('by WebGL', () => {
 test.use({ webgl: true });
 test('dragging a vertex decides anew, says what changed, and is one step to undo', async ({ viewer }) => {
+  await viewer.setViewportSize({ width: 700, height: 450 });  // fewer places to try below
   await viewer.keyboard.press('t');
   await expect(coordinate(viewer, 9)).toHaveValue('-2');
   const board = viewer.locator('#board'), box = (await board.boundingBox())!;

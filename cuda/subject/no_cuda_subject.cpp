@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Stands in for cuda_subject.cpp, and all that it takes, in what scripts/campaign builds.
+#include "core/error.h"
+#include "cuda/subject/cuda_subject.h"
+
+namespace graze::cuda {
+
+std::string evidence(const CudaBuild&) { return "no twin: not in this build"; }
+
+std::vector<CudaBuild> build_cuda_subject(const std::filesystem::path&, const std::string&, const std::vector<std::string>&,
+                                          const std::filesystem::path&) {
+  throw std::runtime_error(not_in_a_campaigns_build("a subject in CUDA"));
+}
+
+}  // namespace graze::cuda

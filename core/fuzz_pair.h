@@ -2,6 +2,7 @@
 // The pair that a fuzz target's bytes stand for.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace graze {
 // two that the second byte says, so that contacts are common. Bytes that are missing are zeros, so any are a pair.
 inline Pair pair_of(std::string_view bytes) {
   unsigned char all[1 + sizeof(Pair)] = {};
-  bytes.copy(reinterpret_cast<char*>(all), sizeof all);
+  std::copy_n(bytes.begin(), std::min(bytes.size(), sizeof all), all);
   Pair pair;
   std::memcpy(&pair, all + 1, sizeof pair);
   if (all[0] % 2 == 0) return pair;

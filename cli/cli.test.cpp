@@ -275,6 +275,28 @@ TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
   }
 }
 
+// `graze_campaign` is what scripts/campaign builds, linked by this build.
+TEST_F(Cli, WhatACampaignsBuildLeavesOutSaysSo) {
+  const auto verbs = [&](const std::string& program) {
+    return shell(program + " --help | sed '1,/Subcommands/d' | awk '{print $1}'").out;
+  };
+  EXPECT_EQ(verbs("graze_campaign"), verbs("graze"));
+  const Ran left_out = shell("graze_campaign --help | awk '/Not in this build/ {print $1}'");
+  EXPECT_NE(left_out.out.find("tune\n"), std::string::npos);
+  std::istringstream names(left_out.out);
+  for (std::string verb; names >> verb;) {
+    const Ran ran = shell("graze_campaign " + verb + " some thing --or other");
+    EXPECT_EQ(ran.status, 1);
+    EXPECT_EQ(ran.err, "graze: graze " + verb + ": not in this build, which scripts/campaign made; scripts/setup builds everything\n");
+  }
+  for (const std::string program : {"graze", "graze_campaign"}) {
+    const std::string out = " by_" + program;
+    EXPECT_EQ(shell(program + " fuzz --pairs 300 --strata near_edge_edge --lanes 'moller_1997/f32/*' --executor twin --out" + out + " && " + program + " minimize" + out + " && " +
+                    program + " report" + out).status, 0);
+  }
+  EXPECT_EQ(shell("cmp by_graze/summary.json by_graze_campaign/summary.json && diff -r by_graze/cases by_graze_campaign/cases").out, "");
+}
+
 TEST_F(Cli, TheLastOutAndFlagsInAnyOrderCount) {
   EXPECT_EQ(shell("graze fuzz --pairs 1000 --out a --out b && test -f b/summary.json && test ! -e a").status, 0);
   EXPECT_EQ(shell(std::string("echo '") + kTouching + "' > p; graze check --lanes '*/f32/cpu' p --json").status, 0);

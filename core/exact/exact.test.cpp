@@ -156,6 +156,60 @@ TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   for (const long count : by_contact) EXPECT_GT(count, 100);
 }
 
+// Segments and points in space, in one plane and on one line, and beside triangles in whose plane they lie.
+TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
+  std::mt19937_64 random(11);
+  const auto small = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most; };
+  long by_contact[4] = {}, both_flat = 0, points = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    using namespace detail;
+    int d[3], e[3], up[3] = {};
+    for (int k = 0; k < 3; ++k) d[k] = small(2), e[k] = small(2);
+    if (i % 4 == 0) up[i / 4 % 3] = small(1);  // mostly in the plane of d and e
+    const auto factor = static_cast<float>(random() % 0x20000 | 1);
+    float c[18];
+    for (int v = 0; v < 6; ++v) {
+      const bool in_b = v > 2;
+      const int along_d = in_b && i % 3 == 1 ? 0 : small(3), along_e = in_b && i % 3 != 0 ? small(3) : i % 5 == 0 && in_b ? 1 : 0;
+      for (int k = 0; k < 3; ++k) c[3 * v + k] = factor * static_cast<float>(along_d * d[k] + along_e * e[k] + (in_b ? up[k] : 0));
+    }
+    if (random() & 1) std::swap_ranges(c, c + 9, c + 9);
+    const Grid grid = grid_of(c, c + 9);
+    ASSERT_TRUE(NarrowNumbers::holds(grid));
+    const Relation r = by_axes(triangles<IntNumbers>(c, c + 9, grid.exponent));
+    ASSERT_EQ(decide<NarrowNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
+    ASSERT_EQ(decide<ResidueNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
+    ASSERT_EQ(decide<WideNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
+    if (DoubleNumbers::holds(grid)) {
+      ASSERT_EQ(decide<DoubleNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
+    }
+    ++by_contact[r.contact + 1];
+    both_flat += r.dimension_a < 2 && r.dimension_b < 2;
+    points += r.dimension_a == 0 || r.dimension_b == 0;
+  }
+  EXPECT_GT(both_flat, 10'000);
+  EXPECT_GT(points, 500);
+  for (int contact = 0; contact < 3; ++contact) EXPECT_GT(by_contact[contact], 1'000) << contact;
+}
+
+// Products of differences of 35 bits that are equal, or differ by as little as they can, or by what doubles see.
+TEST(Exact, ResiduesKnowTheSignsOfMinors) {
+  using detail::Whole;
+  std::mt19937_64 random(12);
+  const auto difference = [&] { return static_cast<double>(static_cast<std::int64_t>(random() >> 29) - (std::int64_t{1} << 34)); };
+  long small = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    double p = difference(), q = difference(), r = q, s = p;
+    if (i % 4 == 1) r += static_cast<double>(i % 3 - 1), s -= static_cast<double>(i % 5 - 2);
+    if (i % 4 == 2) p = 0x1p34 - i % 7, q = 0x1p34 + i % 5, r = s = 0x1p34 - i % 3;
+    if (i % 4 == 3) r = difference(), s = difference();
+    const __int128 exact = static_cast<__int128>(p) * static_cast<__int128>(q) - static_cast<__int128>(r) * static_cast<__int128>(s);
+    small += exact != 0 && -0x200000 < exact && exact < 0x200000;
+    ASSERT_EQ(sign_of_difference(Whole{p}, Whole{q}, Whole{r}, Whole{s}), (exact > 0) - (exact < 0)) << i;
+  }
+  EXPECT_GT(small, 100);
+}
+
 // At the ends of what they hold: the largest determinant, one of 2^62 and its neighbours, zero.
 TEST(Exact, ResiduesKnowTheirSigns) {
   using detail::Residue, detail::Whole;

@@ -192,6 +192,34 @@ TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
   for (int contact = 0; contact < 3; ++contact) EXPECT_GT(by_contact[contact], 1'000) << contact;
 }
 
+// Of coordinates whose sizes differ by up to 2^200, so that nothing but wide integers holds a pair.
+TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
+  std::mt19937_64 random(13);
+  const auto coordinate = [&] {
+    return std::ldexp(static_cast<float>(static_cast<int>(random() % 4001) - 2000), static_cast<int>(random() % 200) - 120);
+  };
+  long by_contact[4] = {}, wide = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    float c[18];
+    for (float& x : c) x = coordinate();
+    if (i % 3 == 0) {  // on one plane's coordinate, so that they meet more often
+      for (int k = i % 2; k < 18; k += 3) c[k] = 0;
+    }
+    if (i % 2 == 0) std::copy_n(c + 3 * (i / 2 % 2), 3, c + 6);           // a is a segment
+    if (i % 5 == 0) std::copy_n(c + 9, 3, c + 15);                        // b is one
+    for (int k = 0; i % 7 == 0 && k < 3; ++k) c[9 + k] = 2 * c[k];      // and begins on the line through a's first and the origin
+    if (random() & 1) std::swap_ranges(c, c + 9, c + 9);
+    Stage stage;
+    const Relation r = detail::by_axes(detail::triangles<detail::WideNumbers>(c, c + 9));
+    ASSERT_EQ(intersects(c, c + 9, &stage), r.intersects) << i;
+    ++by_contact[r.contact + 1];
+    wide += stage == Stage::wide;
+  }
+  EXPECT_GT(wide, 2'000);
+  EXPECT_GT(by_contact[0], 100);
+  EXPECT_GT(by_contact[1], 100);
+}
+
 // Products of differences of 35 bits that are equal, or differ by as little as they can, or by what doubles see.
 TEST(Exact, ResiduesKnowTheSignsOfMinors) {
   using detail::Whole;

@@ -51,13 +51,24 @@ TEST_P(EveryStratum, TheOraclesTwoDecisionsAgree) {
   EXPECT_EQ(intersecting == 100'000u, shared);
 }
 
+struct Decided {
+  std::vector<Pair> pairs;
+  std::vector<std::uint64_t> intersects, declined;  // a bit for each
+};
+
+// Side by side, by the exact decision.
+Decided drawn_and_decided(std::uint64_t seed, strata::Stratum stratum, std::size_t count) {
+  const std::vector<std::uint64_t> none((count + 63) / 64);
+  Decided all{std::vector<Pair>(count), none, none};
+  for (std::size_t i = 0; i < count; ++i) all.pairs[i] = strata::generate(seed, stratum, i);
+  exact::decide(coordinates(all.pairs[0]), count, all.intersects.data(), all.declined.data());
+  return all;
+}
+
 // The exact decision on machine numbers: verdict, contact, shape and the margin's sign are the oracle's.
 TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   constexpr std::size_t kPairs = 100'000;
-  std::vector<Pair> pairs(kPairs);
-  for (std::size_t index = 0; index < kPairs; ++index) pairs[index] = strata::generate(kSeed + 1, GetParam().stratum, index);
-  std::vector<std::uint64_t> side_by_side((kPairs + 63) / 64), declined(side_by_side.size());
-  exact::decide(coordinates(pairs[0]), kPairs, side_by_side.data(), declined.data());
+  const auto [pairs, side_by_side, declined] = drawn_and_decided(kSeed + 1, GetParam().stratum, kPairs);
   for (std::size_t index = 0; index < kPairs; ++index) {
     const Pair& pair = pairs[index];
     const float *a = &pair.a[0].x, *b = &pair.b[0].x;
@@ -135,10 +146,7 @@ constexpr std::size_t kOpen[strata::kStrataCount] = {
 // By every instruction set of this processor; those without fused multiply-adds settle none, and all others the same.
 TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   constexpr std::size_t kPairs = 100'003;
-  std::vector<Pair> pairs(kPairs);
-  for (std::size_t i = 0; i < kPairs; ++i) pairs[i] = strata::generate(kSeed + 3, GetParam().stratum, i);
-  std::vector<std::uint64_t> truth((kPairs + 63) / 64), declined(truth.size());
-  exact::decide(coordinates(pairs[0]), kPairs, truth.data(), declined.data());
+  const auto [pairs, truth, declined] = drawn_and_decided(kSeed + 3, GetParam().stratum, kPairs);
   std::vector<Bucket> expected(kPairs);
   for (std::size_t i = 0; i < kPairs; ++i)
     expected[i] = oracle::margin_bucket(pairs[i], test_bit(truth, i) ? Verdict::intersects : Verdict::disjoint);

@@ -33,27 +33,26 @@ GRAZE_HD Flat<D> flatten(const Vec<D>& v, unsigned axis) {
   return {component(v, axis == 2 ? 0 : axis + 1), component(v, axis == 0 ? 2 : axis - 1)};
 }
 
-// Whether the line of an edge of p parts it from q: all of q lies strictly on one side of it, and p on the other or in it.
-// turn: 1 where p turns left, -1 right, 0 where it is a segment or a point.
+// Whether an edge of p, which turns left or right, has all of q strictly on its other side. The edges of a segment run both
+// ways, so of them either will do.
 template <class Numbers, class D>
-GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], int turn, const Flat<D> (&q)[3]) {
+GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]) {
   bool parts = false;
   for (int i = 0; i < 3; ++i) {
     const Flat<D>&from = p[i], &to = p[i == 2 ? 0 : i + 1];
     const D x = to.x - from.x, y = to.y - from.y;
-    bool all_left = turn <= 0, all_right = turn >= 0;
+    bool all = true;
     for (const Flat<D>& v : q) {
       const int side = sign_of_minor<Numbers>(x, v.y - from.y, y, v.x - from.x);
-      all_left = all_left && side > 0;
-      all_right = all_right && side < 0;
+      all = all && (left ? side < 0 : side > 0);
     }
-    parts = parts || all_left || all_right;
+    parts = parts || all;
   }
   return parts;
 }
 
-// Requires: all vertices lie in a plane with normal n; of_a and of_b are the normals of a and b, of segments zero, and
-// these are not parallel.
+// Requires: all vertices lie in a plane with normal n; two segments are not parallel. of_a and of_b are the normals of a and
+// b, of a segment any.
 template <class Numbers>
 GRAZE_HD bool meet_in_plane(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, const NormalOf<Numbers>& of_a,
                             const NormalOf<Numbers>& of_b) {
@@ -63,11 +62,8 @@ GRAZE_HD bool meet_in_plane(const Triangles<Numbers>& t, const NormalOf<Numbers>
     a[i] = flatten(t.a[i], axis);
     b[i] = flatten(t.b[i], axis);
   }
-  const auto turn = [axis](const NormalOf<Numbers>& normal) {
-    const auto area = component(normal, axis), zero = typename Numbers::M(0);
-    return int{area > zero} - int{area < zero};
-  };
-  return !edge_parts<Numbers>(a, turn(of_a), b) && !edge_parts<Numbers>(b, turn(of_b), a);
+  const typename Numbers::M zero(0);
+  return !edge_parts<Numbers>(a, component(of_a, axis) > zero, b) && !edge_parts<Numbers>(b, component(of_b, axis) > zero, a);
 }
 
 // Requires: two segments or points.
@@ -78,10 +74,7 @@ GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   const auto along = [&](const VecOf<Numbers>(&v)[3]) { return same(v[1], v[0]) ? v[2] - v[0] : v[1] - v[0]; };  // zero of a point
   const VecOf<Numbers> of_a = along(t.a), of_b = along(t.b), between = t.b[0] - t.a[0];
   const NormalOf<Numbers> n = cross<M>(of_a, of_b);
-  if (!is_zero(n)) {
-    const NormalOf<Numbers> none = {M(0), M(0), M(0)};
-    return dot<typename Numbers::T>(n, between) == typename Numbers::T(0) && meet_in_plane(t, n, none, none);
-  }
+  if (!is_zero(n)) return dot<typename Numbers::T>(n, between) == typename Numbers::T(0) && meet_in_plane(t, n, n, n);
   // Parallel, or one is a point: on one line they meet where they do in each coordinate.
   const bool a_is_point = same(t.a[1], t.a[0]) && same(t.a[2], t.a[0]);
   if (!is_zero(cross<M>(a_is_point ? of_b : of_a, between))) return false;

@@ -148,9 +148,10 @@ __global__ void __launch_bounds__(kThreads)
 
 constexpr int kBlocksForLeft = 1024;
 
-// Of pairs that no small grid holds; the other lists are for what one step leaves to the next, and empty.
+// Of pairs that no small grid holds: the first of four lists; the others are for what one step leaves to the next, and
+// empty.
 template <class Pairs>
-void launch_large_steps(const Pairs& pairs, const Places (&left)[4], std::uint32_t* intersects,
+void launch_large_steps(const Pairs& pairs, const Places* left, std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {
   decide_on_int128<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);
   decide_closely<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);
@@ -169,7 +170,7 @@ void launch_exact_steps(const Pairs& pairs, const Places (&left)[kExactLists], s
   decide_by_floats<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], intersects, stages);
   decide_by<NumberKinds<DoubleNumbers, ResidueNumbers>, 2>
       <<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);
-  launch_large_steps(pairs, {left[2], left[3], left[4], left[5]}, intersects, stages, stream);
+  launch_large_steps(pairs, left + 2, intersects, stages, stream);
 }
 
 }  // namespace

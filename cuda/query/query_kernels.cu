@@ -135,7 +135,7 @@ void launch_exact_query(const exact::Reference& reference, const QueryChunk& chu
   launch_slabs(reference, chunk, left[0], hits, stream);
   decide_on_grid<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits, declined);
   screen_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], hits);
-  launch_large_steps(pairs, {left[2], left[3], left[4], left[5]}, hits, nullptr, stream);
+  launch_large_steps(pairs, left + 2, hits, nullptr, stream);
 }
 
 void launch_pair_up(const exact::Reference& reference, const QueryChunk& chunk, float* columns,

@@ -89,6 +89,8 @@ inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
 // Accepts whole numbers in [least, most], also as 1e6, 10M or 1_000_000, and nothing else. To be used by transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
+// A number within these bounds, which no NaN is.
+CLI::Validator number(double least, double most);
 
 // Throws: UsageError for a file's name that results, which are UTF-8, could not record.
 void expect_utf8(const std::string& what, const std::string& file);

@@ -6,15 +6,14 @@
 namespace graze::cli {
 namespace {
 
-std::atomic<bool> requested{false};
-extern "C" void request_stop(int) { requested = true; }
+extern "C" void request_stop(int) { stop_requested = true; }
 
 }  // namespace
 
 const std::atomic<bool>& catch_interrupts() {
   std::signal(SIGINT, request_stop);
   std::signal(SIGTERM, request_stop);
-  return requested;
+  return stop_requested;
 }
 
 }  // namespace graze::cli

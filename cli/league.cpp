@@ -150,7 +150,7 @@ void add_league(CLI::App& app, int& status) {
   command
       ->add_option("--subject-timeout", options->timeout,
                    "Seconds that a subject may take for a pair; one that takes longer is asked once more")
-      ->check(CLI::Range(0.001, 86400.0))
+      ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");
   add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -76,6 +77,8 @@ int main(int argc, char** argv) {
     return std::cout.flush() ? 0 : 1;
   } catch (const CLI::ParseError& error) {
     return fail(fmt::format("{} (see `graze --help`)", error.what()), 2);
+  } catch (const graze::Stopped&) {
+    return fail("interrupted", graze::cli::kInterrupted);
   } catch (const graze::UsageError& error) {
     return fail(error.what(), 2);
   } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <set>
 #include <sstream>
 
@@ -95,6 +96,16 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   return CLI::Validator(check, "");
 }
 
+CLI::Validator number(double least, double most) {
+  const auto check = [least, most](std::string& text) -> std::string {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc() && end == text.data() + text.size() && value >= least && value <= most) return {};
+    return fmt::format("expected a number from {} to {}, found '{}'", least, most, printable(text));
+  };
+  return CLI::Validator(check, "");
+}
+
 CLI::Validator one_of(std::vector<std::string> words, Chosen chosen) {
   const auto check = [words = std::move(words), chosen](std::string& text) -> std::string {
     const auto found = std::find(words.begin(), words.end(), text);
@@ -132,7 +143,7 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
       ->allow_extra_args(false)
       ->option_text("TEXT");
   command.add_option("--subject-timeout", options.timeout, "Seconds that a subject may take for a pair")
-      ->check(CLI::Range(0.001, 86400.0))
+      ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");
   if (executors == Executors::twins) {

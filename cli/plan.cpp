@@ -105,7 +105,7 @@ void add_plan(CLI::App& app, int& status) {
       ->transform(whole_number(1, 10'000'000))
       ->excludes(cores);
   command->add_option("--rate", options->rate, "Pairs a second of one core or GPU, instead of measuring it")
-      ->check(CLI::Range(1e-3, 1e15))
+      ->check(number(1e-3, 1e15))
       ->option_text("PAIRS");
   command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, &status] { status = plan(*options); });

@@ -150,7 +150,7 @@ void add_tune(CLI::App& app, int& status) {
       ->transform(one_of({"miss", "false", "any"}, Chosen::place))
       ->option_text("miss|false|any");
   command->add_option("--max-rate", options->max_rate, "How often it may be at most")
-      ->check(CLI::Range(1e-15, 1.0))
+      ->check(number(1e-15, 1.0))
       ->capture_default_str()
       ->option_text("RATE");
   command->add_option("--threads", options->threads, "Threads; 0: one on each core")

@@ -1,26 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze-subject-host: loads foreign code and asks it, in a process of its own. Started by graze, not by a person:
-//   graze-subject-host library FILE NAME f32|f64|any LIMIT    (a shared object, and what it exports; see graze/subject.h)
-//   graze-subject-host command TEXT "" f32 LIMIT              (a program; see subjects/README.md)
-//   graze-subject-device device FILE "" f32|f64 LIMIT         (PTX of cuda/subject; the same program, with CUDA)
-// LIMIT: MiB of memory that the code may take; a device's driver takes what it wants.
+// graze-subject-host: what foreign code runs in. Started by graze, not by a person, as the supervisor of
+//   graze-subject-host KIND WHAT NAME SCALAR MEMORY SECONDS DESCRIBE NAMESPACES
+// which starts itself again as the process that loads the code and forks workers from it:
+//   graze-subject-host --worker KIND WHAT NAME SCALAR MEMORY DESCRIBE
+// KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object, and what it exports; see graze/subject.h
+//                         command TEXT "" f32             a program; see subjects/README.md
+//                         device FILE "" f32|f64          PTX of cuda/subject; by graze-subject-device, with CUDA
+// MEMORY: MiB that the code may take; a device's driver takes what it wants. SECONDS: for a pair or a block. DESCRIBE: 1
+// asks a program to describe itself. NAMESPACES: 0 does without a process namespace.
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <graze/subject.h>
 #include <link.h>
-#include <poll.h>
 #include <sys/mman.h>
 #include <sys/personality.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -31,11 +34,11 @@
 #include <memory>
 #include <sstream>
 #include <string>
-#include <typeinfo>
 #include <vector>
 
-#include "subjects/channel.h"
+#include "subjects/containment.h"
 #include "subjects/line_protocol.h"
+#include "subjects/supervisor.h"
 #ifdef GRAZE_SUBJECT_DEVICE
 #include "cuda/subject/subject_device.h"
 #endif
@@ -43,11 +46,12 @@
 namespace graze::subjects {
 namespace {
 
-Channel* channel;
+std::uint64_t* words;
 const void* pairs;
 
-void send_letter(char letter) {
-  if (send(kSocketFd, &letter, 1, MSG_NOSIGNAL) != 1) _exit(0);  // nobody is there any more
+// Whoever is there no more needs no answer.
+void send_message(const void* message, std::size_t size) {
+  if (send(kTalkFd, message, size, MSG_NOSIGNAL) != static_cast<ssize_t>(size)) _exit(0);
 }
 
 template <std::size_t size>
@@ -56,8 +60,10 @@ void put(char (&to)[size], const char* text) {
 }
 
 [[noreturn]] void refuse(const std::string& why) {
-  put(channel->message, why.c_str());
-  send_letter(kRefused);
+  Loaded refused{};
+  refused.says = Says::refused;
+  put(refused.text, why.c_str());
+  send_message(&refused, sizeof refused);
   std::exit(1);
 }
 
@@ -86,19 +92,20 @@ std::string exported(void* library) {
   return names.empty() ? "none that it exports" : "only " + names + (count > 8 ? ", …" : "");
 }
 
-graze_subject subject_of_library(const std::string& file, const std::string& name, const std::string& scalar) {
+graze_subject subject_of_library(const std::string& file, const std::string& name, const std::string& scalar,
+                                 Loaded& loaded) {
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!library) refuse(dlerror());
   void* found = nullptr;
   for (const std::string& candidate :
        name.empty() ? std::vector<std::string>{"graze_subject", "intersects"} : std::vector<std::string>{name}) {
-    if (!found && (found = dlsym(library, candidate.c_str()))) put(channel->symbol, candidate.c_str());
+    if (!found && (found = dlsym(library, candidate.c_str()))) put(loaded.symbol, candidate.c_str());
     for (const char* type : {"f", "d"}) {  // a C++ function of two pointers
       const std::string mangled = fmt::format("_Z{}{}PK{}{}", candidate.size(), candidate, type, "S0_");
       if (!found && (found = dlsym(library, mangled.c_str()))) {
         graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
         if (*type == 'f') subject.f32 = reinterpret_cast<int (*)(const float*, const float*)>(found);
-        put(channel->symbol, mangled.c_str());
+        put(loaded.symbol, mangled.c_str());
         if (*type == 'd') subject.f64 = reinterpret_cast<int (*)(const double*, const double*)>(found);
         return subject;
       }
@@ -112,7 +119,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   const ElfW(Sym)* symbol = nullptr;
   const bool known = dladdr1(found, &info, reinterpret_cast<void**>(const_cast<ElfW(Sym)**>(&symbol)), RTLD_DL_SYMENT);
   if (known && symbol && ELF64_ST_TYPE(symbol->st_info) == STT_OBJECT) {
-    channel->describes_itself = 1;
+    loaded.describes_itself = 1;
     graze_subject subject;
     std::memcpy(&subject, found, sizeof subject);
     if (subject.abi != GRAZE_SUBJECT_ABI)
@@ -140,7 +147,7 @@ std::uint64_t processor_nanoseconds() {
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
-// Asks about the pairs, each twice: forward, then backward, so that what one call leaves behind shows in another.
+// Asks about the pairs of a question: forward, then backward.
 template <class Number>
 class Asking {
  public:
@@ -149,79 +156,69 @@ class Asking {
 
   Asking(Single single, Block block) : single_(single), block_(std::move(block)) {}
 
-  void ask() {
-    if (!channel->second) {
-      const bool whole = channel->next == 0;
-      const std::uint64_t start = processor_nanoseconds();
-      first();
-      channel->nanoseconds = whole ? processor_nanoseconds() - start : 0;
-      channel->next = channel->count - 1;
-      channel->second = 1;
+  // Returns: processor time of the forward pass.
+  std::uint64_t ask(const Question& question) const {
+    const std::uint64_t start = processor_nanoseconds();
+    for (std::size_t i = 0; i < question.count; ++i) {
+      if (!is_chosen(question.first, i)) continue;
+      if (block_ && !question.singly) {  // then all pairs are
+        ask_block(question, false, 0, question.count);
+        break;
+      }
+      answer(question, false, i, one(i));
     }
-    again();
+    const std::uint64_t taken = processor_nanoseconds() - start;
+    if (block_ && !question.singly) {
+      ask_block(question, true, question.count / 2, question.count);
+      ask_block(question, true, 0, question.count / 2);
+    } else {
+      for (std::size_t i = question.count; i-- > 0;) {
+        if (is_chosen(question.second, i)) answer(question, true, i, one(i));
+      }
+    }
+    return taken;
   }
 
  private:
-  const Number* pair(std::uint64_t i) const { return static_cast<const Number*>(pairs) + 18 * i; }
+  const Number* pair(std::size_t i) const { return static_cast<const Number*>(pairs) + 18 * i; }
 
-  signed char one(std::uint64_t i) const {
+  static void answer(const Question& question, bool second, std::size_t i, signed char said) {
+    __atomic_store_n(&words[(second ? kMostAsked : 0) + i], word_of(question.nonce, second, i, said), __ATOMIC_RELEASE);
+  }
+
+  signed char one(std::size_t i) const {
     if (!block_) return answer_of(single_(pair(i), pair(i) + 9));
-    signed char answer = kDeclined;
-    block_(pair(i), 1, &answer);
-    return answer_of(answer);
+    signed char said = kDeclined;
+    block_(pair(i), 1, &said);
+    return answer_of(said);
   }
 
-  void first() {
-    if (block_ && !channel->singly) {
-      const std::uint64_t begin = channel->next;
-      block_(pair(begin), channel->count - begin, channel->answers + begin);
-      for (std::uint64_t i = begin; i < channel->count; ++i) channel->answers[i] = answer_of(channel->answers[i]);
-      return;
-    }
-    for (std::uint64_t i = channel->next; i < channel->count; ++i) {
-      channel->next = i;
-      channel->answers[i] = one(i);
-    }
-  }
-
-  void again() {
-    if (block_ && !channel->singly) {
-      const std::uint64_t middle = channel->count / 2;
-      signed char answers[kMostAsked];
-      std::fill_n(answers, kMostAsked, static_cast<signed char>(kDeclined));
-      if (middle < channel->count) block_(pair(middle), channel->count - middle, answers + middle);
-      if (middle > 0) block_(pair(0), middle, answers);
-      for (std::uint64_t i = 0; i < channel->count; ++i) compare(i, answer_of(answers[i]));
-      return;
-    }
-    for (std::uint64_t i = channel->next + 1; i-- > 0;) {
-      channel->next = i;
-      if (channel->answers[i] <= kIntersects) compare(i, one(i));
-    }
-  }
-
-  void compare(std::uint64_t i, signed char answer) {
-    if (channel->answers[i] <= kIntersects && channel->answers[i] != answer) channel->answers[i] = kUnstable;
+  void ask_block(const Question& question, bool second, std::size_t begin, std::size_t end) const {
+    if (begin == end) return;
+    signed char said[kMostAsked];
+    std::fill_n(said, kMostAsked, static_cast<signed char>(kDeclined));
+    block_(pair(begin), end - begin, said);
+    for (std::size_t i = begin; i < end; ++i) answer(question, second, i, answer_of(said[i - begin]));
   }
 
   Single single_;
   Block block_;
 };
 
-// In the worker: asks whenever there is something to ask, for ever.
+// In the worker: answers questions for ever.   ask: of a question; returns its processor time.
 template <class Ask>
 [[noreturn]] void serve(Ask ask) {
-  for (char letter; read(kSocketFd, &letter, 1) == 1;) {
+  const Says ready = Says::ready;
+  send_message(&ready, sizeof ready);
+  for (Question question; recv(kTalkFd, &question, sizeof question, 0) == sizeof question;) {
+    if (question.worker != getpid()) continue;  // of one that died before it read it
+    Answered answered{Says::answered, 0, question.nonce, 0};
     try {
-      ask();
-    } catch (const std::exception& error) {
-      put(channel->message, fmt::format("threw {}: {}", typeid(error).name(), error.what()).c_str());
-      _exit(1);
+      answered.nanoseconds = ask(question);
     } catch (...) {
-      put(channel->message, "threw");
       _exit(1);
     }
-    send_letter(kAnswered);
+    send_message(&answered, sizeof answered);
   }
   _exit(0);
 }
@@ -249,32 +246,17 @@ class OnDevice {
 };
 #endif
 
-void limit_memory(const char* mib) {
-  const rlim_t bytes = std::strtoull(mib, nullptr, 10) << 20;
-  const rlimit data{bytes, bytes}, none{0, 0};
-  setrlimit(RLIMIT_DATA, &data);
-  setrlimit(RLIMIT_CORE, &none);
+void set_limit(int resource, rlim_t most) {
+  const rlimit limit{most, most};
+  setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
-// Waits for the worker's end, or for that of the process that asks.
-int wait_for(pid_t worker) {
-  const int handle = static_cast<int>(syscall(SYS_pidfd_open, worker, 0));
-  for (;;) {
-    pollfd waiting[] = {{handle, POLLIN, 0}, {kSocketFd, POLLRDHUP, 0}};
-    poll(waiting, 2, -1);
-    if (waiting[1].revents & (POLLRDHUP | POLLHUP | POLLERR)) {
-      kill(worker, SIGKILL);
-      std::_Exit(0);
-    }
-    int status = 0;
-    if (waitpid(worker, &status, WNOHANG) == worker) {
-      close(handle);
-      return status;
-    }
-  }
+// Those that the system keeps for each process; the supervisor looks at all of them together.
+void set_limits(const char* mib) {
+  set_limit(RLIMIT_DATA, std::strtoull(mib, nullptr, 10) << 20);
+  set_limit(RLIMIT_CORE, 0);
+  set_limit(RLIMIT_FSIZE, rlim_t{1} << 30);
 }
-
-}  // namespace
 
 // Addresses are the same in every process, where that may be had: code whose answers depend on them says the same again.
 void fix_addresses(char** argv) {
@@ -283,65 +265,101 @@ void fix_addresses(char** argv) {
   if (personality(0xffffffff) & ADDR_NO_RANDOMIZE) execv("/proc/self/exe", argv);
 }
 
-int host(int argc, char** argv) {
-  if (argc != 6) {
-    fmt::print(stderr, "graze-subject-host: is started by graze\n");
-    return 2;
+constexpr int kNotReady = 99;  // exit status of a worker without its program or device
+
+// Becomes a worker.   subject: of a library.   Throws: std::exception where it cannot.
+[[noreturn]] void work(const std::string& kind, const std::string& what, const std::string& scalar,
+                       const graze_subject& subject) {
+  if (kind == "command") {
+    LineProtocol program(what);
+    serve([&](const Question& question) {
+      program.ask(question, static_cast<const float*>(pairs), words);
+      return 0;
+    });
   }
-  fix_addresses(argv);
-  channel = static_cast<Channel*>(mmap(nullptr, sizeof(Channel), PROT_READ | PROT_WRITE, MAP_SHARED, kChannelFd, 0));
+#ifdef GRAZE_SUBJECT_DEVICE
+  if (kind == "device") {
+    const OnDevice device(what, scalar);
+    const Asking<float> asking(nullptr, [&](auto... asked) { device(asked...); });
+    serve([&](const Question& question) { return asking.ask(question); });
+  }
+#endif
+  if (scalar == "f64") {
+    const Asking<double> asking(subject.f64, subject.block_f64);
+    serve([&](const Question& question) { return asking.ask(question); });
+  }
+  const Asking<float> asking(subject.f32, subject.block_f32);
+  serve([&](const Question& question) { return asking.ask(question); });
+}
+
+// Loads the code, then forks a worker, and another whenever one ends.
+int load_and_fork(const std::string& kind, const std::string& what, const std::string& name, const std::string& scalar,
+                  const char* memory, bool describe) {
+  words = static_cast<std::uint64_t*>(mmap(nullptr, kWords * sizeof *words, PROT_READ | PROT_WRITE, MAP_SHARED, kWordsFd, 0));
   pairs = mmap(nullptr, kPairsBytes, PROT_READ, MAP_SHARED, kPairsFd, 0);
-  if (channel == MAP_FAILED || pairs == MAP_FAILED) return 2;
-  const std::string kind = argv[1], what = argv[2];
+  if (words == MAP_FAILED || pairs == MAP_FAILED) return 2;
+  close(kPairsFd);
+  close(kWordsFd);
+  fcntl(kTalkFd, F_SETFD, FD_CLOEXEC);
+  if (kind != "device") set_limits(memory);
+  Loaded loaded{};
   graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
   if (kind == "library") {
-    limit_memory(argv[5]);
-    subject = subject_of_library(what, argv[3], argv[4]);
-    put(channel->version, subject.version);
-    put(channel->source, subject.source);
-    put(channel->convention, subject.convention);
-    channel->outside = subject.outside;
-    channel->has_f32 = subject.f32 || subject.block_f32;
-    channel->has_f64 = subject.f64 || subject.block_f64;
-    channel->of_blocks = std::strcmp(argv[4], "f64") == 0 ? !!subject.block_f64 : !!subject.block_f32;
+    subject = subject_of_library(what, name, scalar, loaded);
+    put(loaded.version, subject.version);
+    put(loaded.source, subject.source);
+    put(loaded.convention, subject.convention);
+    loaded.outside = subject.outside;
+    loaded.has_f32 = subject.f32 || subject.block_f32;
+    loaded.has_f64 = subject.f64 || subject.block_f64;
+    loaded.of_blocks = scalar == "f64" ? !!subject.block_f64 : !!subject.block_f32;
   } else {
-    channel->has_f32 = channel->of_blocks = 1;
+    loaded.has_f32 = loaded.of_blocks = 1;
+    if (kind == "command" && describe) put(loaded.text, described_by(what).c_str());
   }
-  send_letter(kReady);
+  loaded.says = Says::loaded;
+  send_message(&loaded, sizeof loaded);
   const pid_t self = getpid();
   for (;;) {
     const pid_t worker = fork();
     if (worker == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       if (getppid() != self) _exit(0);
-      if (kind == "command") {
-        limit_memory(argv[5]);
-        LineProtocol program(what);
-        serve([&] {
-          program.ask(channel->singly != 0, static_cast<const float*>(pairs), channel->count, channel->next,
-                      channel->second, channel->answers);
-        });
+      try {
+        work(kind, what, scalar, subject);
+      } catch (const std::exception&) {
+        _exit(kNotReady);
       }
-#ifdef GRAZE_SUBJECT_DEVICE
-      if (kind == "device") {
-        const auto device = std::make_shared<OnDevice>(what, argv[4]);
-        serve([&] { Asking<float>(nullptr, [device](auto... asked) { (*device)(asked...); }).ask(); });
-      }
-#endif
-      if (std::strcmp(argv[4], "f64") == 0) serve([&] { Asking<double>(subject.f64, subject.block_f64).ask(); });
-      serve([&] { Asking<float>(subject.f32, subject.block_f32).ask(); });
     }
-    channel->worker = worker;
-    channel->status = worker < 0 ? 0 : wait_for(worker);
-    channel->worker = 0;
-    // A question that the worker did not come to read must not be left to the next one, which would answer twice.
-    for (char letter; recv(kSocketFd, &letter, 1, MSG_DONTWAIT) == 1;) {
+    if (worker < 0) return 1;
+    int status = 0;
+    while (waitpid(worker, &status, 0) < 0 && errno == EINTR) {
     }
-    if (worker < 0) refuse("expected another process, found that none can be had");
-    send_letter(kDied);
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kNotReady) return 1;
   }
 }
 
+int host(int argc, char** argv) {
+  if (argc == 8 && std::strcmp(argv[1], "--worker") == 0)
+    return load_and_fork(argv[2], argv[3], argv[4], argv[5], argv[6], *argv[7] == '1');
+  if (argc != 9) {
+    fmt::print(stderr, "graze-subject-host: is started by graze\n");
+    return 2;
+  }
+  fix_addresses(argv);
+  const bool on_device = std::strcmp(argv[1], "device") == 0;
+  fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
+  close_range(kSupervisorPairsFd + 1, ~0u, 0);
+  enter_containment(!on_device && *argv[8] == '1');
+  Limits limits;
+  limits.seconds = std::strtod(argv[6], nullptr);
+  limits.bytes = on_device ? 0 : std::strtoull(argv[5], nullptr, 10) << 20;
+  char worker[] = "--worker";
+  char* const arguments[] = {argv[0], worker, argv[1], argv[2], argv[3], argv[4], argv[5], argv[7], nullptr};
+  return supervise(limits, arguments);
+}
+
+}  // namespace
 }  // namespace graze::subjects
 
 int main(int argc, char** argv) { return graze::subjects::host(argc, argv); }

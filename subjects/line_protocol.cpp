@@ -7,15 +7,18 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
 #include <csignal>
-#include <cstdlib>
+#include <cstring>
 #include <stdexcept>
 
 #include "core/text.h"
-#include "subjects/channel.h"
 
 namespace graze::subjects {
 namespace {
+
+constexpr double kDescribeSeconds = 10;  // to start, and to answer
 
 std::string line_of(const float* pair) {
   std::string line;
@@ -28,19 +31,48 @@ std::string line_of(const float* pair) {
   return line;
 }
 
+void answer(const Question& question, bool second, std::size_t i, signed char said, std::uint64_t* words) {
+  __atomic_store_n(&words[(second ? kMostAsked : 0) + i], word_of(question.nonce, second, i, said), __ATOMIC_RELEASE);
+}
+
 }  // namespace
+
+void Lines::add(const char* bytes, std::size_t count) {
+  bytes_.erase(0, taken_);
+  taken_ = 0;
+  bytes_.append(bytes, count);
+  if (bytes_.size() > kMostBytes) throw std::runtime_error("the program writes more than it was asked for");
+}
+
+bool Lines::take(std::string& line) {
+  const std::size_t end = bytes_.find('\n', taken_);
+  if (end == bytes_.npos) return false;
+  line = bytes_.substr(taken_, end - taken_);
+  if (line.ends_with('\r')) line.pop_back();
+  taken_ = end + 1;
+  return true;
+}
+
+signed char answer_of_line(const std::string& line) {
+  if (line == "0") return kDisjoint;
+  if (line == "1") return kIntersects;
+  if (line == "?") return kDeclined;
+  throw std::runtime_error(fmt::format("expected an answer 0, 1 or ?, found {}", shown(line)));
+}
 
 LineProtocol::LineProtocol(const std::string& command) {
   int to[2], from[2];
-  if (pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0) throw std::runtime_error("expected a pipe, found none");
+  if (pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0)
+    throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
   std::signal(SIGPIPE, SIG_IGN);
-  const pid_t worker = getpid();
-  if (fork() == 0) {
+  const pid_t worker = getpid(), program = fork();
+  if (program < 0) throw std::runtime_error(fmt::format("cannot start a process: {}", std::strerror(errno)));
+  if (program == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != worker) _exit(0);
+    std::signal(SIGPIPE, SIG_DFL);
     dup2(to[0], STDIN_FILENO);
     dup2(from[1], STDOUT_FILENO);
-    for (const int inherited : {kChannelFd, kPairsFd, kSocketFd}) close(inherited);
     execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
     _exit(127);
   }
@@ -51,17 +83,20 @@ LineProtocol::LineProtocol(const std::string& command) {
   fcntl(to_, F_SETFL, O_NONBLOCK);
 }
 
+void LineProtocol::read_some() {
+  char bytes[4096];
+  const ssize_t count = read(from_, bytes, sizeof bytes);
+  if (count == 0 || (count < 0 && errno != EINTR)) throw std::runtime_error("the program ended");
+  if (count > 0) lines_.add(bytes, static_cast<std::size_t>(count));
+}
+
 // Writes while it reads, so that neither side waits for the other with a full pipe.
 void LineProtocol::send(const std::string& lines) {
   std::size_t sent = 0;
   while (sent < lines.size()) {
     pollfd ready[] = {{to_, POLLOUT, 0}, {from_, POLLIN, 0}};
     poll(ready, 2, -1);
-    if (ready[1].revents & POLLIN) {
-      char bytes[4096];
-      const ssize_t count = read(from_, bytes, sizeof bytes);
-      if (count > 0) read_.append(bytes, static_cast<std::size_t>(count));
-    }
+    if (ready[1].revents & POLLIN) read_some();
     if (ready[0].revents & POLLOUT) {
       const ssize_t count = write(to_, lines.data() + sent, lines.size() - sent);
       if (count > 0) sent += static_cast<std::size_t>(count);
@@ -71,52 +106,55 @@ void LineProtocol::send(const std::string& lines) {
   }
 }
 
-signed char LineProtocol::answer() {
-  std::size_t end;
-  while ((end = read_.find('\n')) == read_.npos) {
-    char bytes[4096];
-    const ssize_t count = read(from_, bytes, sizeof bytes);
-    if (count <= 0) throw std::runtime_error("the program ended");
-    read_.append(bytes, static_cast<std::size_t>(count));
-  }
-  std::string line = read_.substr(0, end);
-  read_.erase(0, end + 1);
-  if (line.ends_with('\r')) line.pop_back();
-  if (line == "0") return kDisjoint;
-  if (line == "1") return kIntersects;
-  if (line == "?") return kDeclined;
-  throw std::runtime_error(fmt::format("expected an answer 0, 1 or ?, found {}", shown(line)));
+std::string LineProtocol::line() {
+  std::string line;
+  while (!lines_.take(line)) read_some();
+  return line;
 }
 
-void LineProtocol::ask(bool singly, const float* pairs, std::uint64_t count, volatile std::uint64_t& next,
-                       volatile std::uint32_t& second, signed char* answers) {
-  if (!second) {
-    for (std::uint64_t begin = next; begin < count;) {
-      const std::uint64_t end = singly ? begin + 1 : count;
-      std::string lines;
-      for (std::uint64_t i = begin; i < end; ++i) lines += line_of(pairs + 18 * i);
-      send(lines);
-      for (; begin < end; ++begin) {
-        next = begin;
-        answers[begin] = answer();
-      }
+void LineProtocol::ask(const Question& question, const float* pairs, std::uint64_t* words) {
+  for (const bool second : {false, true}) {
+    const Chosen& chosen = second ? question.second : question.first;
+    std::string asked;
+    for (std::size_t k = 0; k < question.count; ++k) {
+      const std::size_t i = second ? question.count - 1 - k : k;
+      if (!is_chosen(chosen, i)) continue;
+      asked += line_of(pairs + 18 * i);
+      if (!question.singly) continue;
+      send(asked);
+      asked.clear();
+      answer(question, second, i, answer_of_line(line()), words);
     }
-    next = count - 1;
-    second = 1;
-  }
-  for (std::uint64_t end = next + 1; end > 0;) {
-    const std::uint64_t begin = singly ? end - 1 : 0;
-    std::string lines;
-    for (std::uint64_t i = end; i-- > begin;) {
-      if (answers[i] <= kIntersects) lines += line_of(pairs + 18 * i);
-    }
-    send(lines);
-    for (; end > begin; --end) {
-      next = end - 1;
-      if (answers[end - 1] > kIntersects) continue;
-      if (answer() != answers[end - 1]) answers[end - 1] = kUnstable;
+    if (question.singly) continue;
+    send(asked);
+    for (std::size_t k = 0; k < question.count; ++k) {
+      const std::size_t i = second ? question.count - 1 - k : k;
+      if (is_chosen(chosen, i)) answer(question, second, i, answer_of_line(line()), words);
     }
   }
+}
+
+std::string LineProtocol::first_line(const std::string& in_answer_to, double seconds) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  if (write(to_, in_answer_to.data(), in_answer_to.size()) < 0) return "";
+  close(to_);
+  to_ = -1;
+  std::string line;
+  std::size_t bytes = 0;
+  while (!lines_.take(line)) {
+    const std::chrono::duration<double> left = until - std::chrono::steady_clock::now();
+    pollfd ready{from_, POLLIN, 0};
+    if (left.count() <= 0 || poll(&ready, 1, static_cast<int>(1000 * left.count()) + 1) <= 0) return "";
+    char some[4096];
+    const ssize_t count = read(from_, some, sizeof some);
+    if (count <= 0 || (bytes += static_cast<std::size_t>(count)) >= sizeof(Loaded::text)) return "";
+    lines_.add(some, static_cast<std::size_t>(count));
+  }
+  return line;
+}
+
+std::string described_by(const std::string& command) {
+  return LineProtocol(command).first_line("describe\n", kDescribeSeconds);
 }
 
 }  // namespace graze::subjects

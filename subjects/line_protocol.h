@@ -8,25 +8,51 @@
 #include <cstdint>
 #include <string>
 
+#include "subjects/channel.h"
+
 namespace graze::subjects {
+
+// The lines of what a program writes, which may be anything and without end.
+class Lines {
+ public:
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // not yet taken
+
+  // Throws: std::runtime_error beyond kMostBytes.
+  void add(const char* bytes, std::size_t count);
+  // Returns: whether a whole line was there; without its end.
+  bool take(std::string& line);
+
+ private:
+  std::string bytes_;
+  std::size_t taken_ = 0;
+};
+
+// Throws: std::runtime_error for a line that is no answer.
+signed char answer_of_line(const std::string& line);
 
 class LineProtocol {
  public:
   // Starts the program, by a shell.
   explicit LineProtocol(const std::string& command);
 
-  // Asks about the pairs from `next` on, forward and then backward; `next` and `second` say where it is.
-  // singly: the next line only after the answer to the last one, so that `next` is known where the program ends.
+  // Asks about the question's pairs, forward and then backward, and writes each answer into memory when it comes.
   // Throws: std::runtime_error where the program ends, or answers something else.
-  void ask(bool singly, const float* pairs, std::uint64_t count, volatile std::uint64_t& next,
-           volatile std::uint32_t& second, signed char* answers);
+  void ask(const Question& question, const float* pairs, std::uint64_t* words);
+
+  // Returns: the first line that it writes in answer to this line, after which its input ends; empty where it ends
+  // without one, writes more than fits in Loaded, or takes longer.
+  std::string first_line(const std::string& in_answer_to, double seconds);
 
  private:
-  signed char answer();  // waits for a line
   void send(const std::string& lines);
+  void read_some();
+  std::string line();  // waits for it
 
   int to_ = -1, from_ = -1;
-  std::string read_;  // not yet taken
+  Lines lines_;
 };
+
+// What a program says in answer to `describe`.
+std::string described_by(const std::string& command);
 
 }  // namespace graze::subjects

@@ -11,23 +11,25 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
-#include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
 
-#include "subjects/channel.h"
+#include "core/stop.h"
+#include "subjects/process_state.h"
+#include "subjects/questions.h"
 
 extern char** environ;
 
 namespace graze::subjects {
 namespace {
 
-constexpr int kLoadSeconds = 60;
+constexpr int kLookEvery = 50;  // ms, whether a stop is requested
 constexpr std::size_t kMostFailuresKept = std::size_t{1} << 20;
 
 // Beside the running program.
@@ -36,17 +38,16 @@ std::filesystem::path host_program(const Code& code) {
   return self.parent_path() / (code.kind == "device" ? "graze-subject-device" : "graze-subject-host");
 }
 
-int shared_memory(std::size_t bytes) {
-  const int fd = memfd_create("graze-subject", MFD_CLOEXEC);
-  if (fd < 0 || ftruncate(fd, static_cast<off_t>(bytes)) != 0)
-    throw std::system_error(errno, std::generic_category(), "expected shared memory, found none");
+// Memory that this process alone can write.
+int pairs_memory(void*& at) {
+  const int fd = memfd_create("graze-pairs", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  at = MAP_FAILED;
+  if (fd >= 0 && ftruncate(fd, kPairsBytes) == 0)
+    at = mmap(nullptr, kPairsBytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+  if (at == MAP_FAILED ||
+      fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) != 0)
+    throw std::system_error(errno, std::generic_category(), "cannot share memory with a subject");
   return fd;
-}
-
-void* mapped(int fd, std::size_t bytes) {
-  void* at = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-  if (at == MAP_FAILED) throw std::system_error(errno, std::generic_category(), "expected shared memory, found none");
-  return at;
 }
 
 Verdict verdict_of(signed char answer) {
@@ -66,195 +67,147 @@ Verdict verdict_of(signed char answer) {
   }
 }
 
+// What a subject says of itself, as valid UTF-8, which results are.
+std::string fit(const char* text) {
+  using Json = nlohmann::json;
+  return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
 }  // namespace
 
+// A supervisor and its end of the socket.
 class HostProcess {
  public:
-  explicit HostProcess(const Code& code) : code_(code) {
-    const int channel = shared_memory(sizeof(Channel)), pairs = shared_memory(kPairsBytes);
-    channel_ = static_cast<Channel*>(mapped(channel, sizeof(Channel)));
-    pairs_ = mapped(pairs, kPairsBytes);
+  HostProcess(const Code& code, bool describe) {
+    const int pairs = pairs_memory(pairs_);
     int sockets[2];
-    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets) != 0)
-      throw std::system_error(errno, std::generic_category(), "expected a socket, found none");
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) != 0)
+      throw std::system_error(errno, std::generic_category(), "cannot make a socket for a subject");
     socket_ = sockets[0];
-    spawn(channel, pairs, sockets[1]);
-    for (const int fd : {channel, pairs, sockets[1]}) close(fd);
-    const char letter = wait(kLoadSeconds);
-    if (letter == kReady) return;
-    const std::string why = letter == kRefused ? channel_->message
-                            : letter == 0      ? fmt::format("expected it loaded within {} s", kLoadSeconds)
-                                               : "crashed while it was loaded";
-    end();
-    throw std::runtime_error(code_.kind == "library" && letter != kRefused ? code_.what + ": " + why : why);
-  }
-  ~HostProcess() { end(); }
-
-  const Channel& channel() const { return *channel_; }
-
-  // Returns: whether all went well; otherwise the process is of no use any more.
-  void ask(const Pair* pairs, std::size_t count, Scalar scalar) {
-    if (scalar == Scalar::f32 || code_.kind == "device") {
-      std::memcpy(pairs_, pairs, count * sizeof(Pair));
-    } else {
-      std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_));
-    }
-    channel_->count = count;
-    channel_->next = 0;
-    channel_->second = 0;
-    channel_->singly = 0;
-    channel_->nanoseconds = 0;
-    channel_->message[0] = '\0';
-    std::fill_n(channel_->answers, count, static_cast<signed char>(kDeclined));
-    send_letter();
-    for (;;) {
-      const char letter = wait_while_it_goes_on();
-      if (letter == kAnswered) return;
-      const bool late = letter == 0;
-      if (late) {
-        kill(channel_->worker, SIGKILL);
-        char next;
-        bool answered = false;  // in the last moment
-        while ((next = wait(kLoadSeconds)) == kAnswered) answered = true;
-        if (next != kDied) throw std::runtime_error("expected a new process, found none");
-        if (answered) return;
-      } else if (letter != kDied) {
-        throw std::runtime_error(fmt::format("{}: expected its process to go on, found that it ended", code_.what));
-      }
-      if (channel_->of_blocks && !channel_->singly) {
-        channel_->singly = 1;  // which pair it was shows when they are asked one at a time
-      } else if (!pass_over(late ? kTimedOut : kCrashed)) {
+    try {
+      spawn(code, describe, sockets[1], pairs);
+      for (const int fd : {sockets[1], pairs}) close(fd);
+      char bytes[sizeof(Loaded)] = {};
+      std::string why;
+      if (receive(bytes, sizeof bytes) != sizeof bytes || !read_loaded(bytes, loaded_)) {
+        why = "ended its supervisor while it was loaded";
+      } else if (loaded_.says == Says::refused) {
+        why = loaded_.text;
+      } else {
         return;
       }
-      send_letter();
+      // Of a library, what the system says names the file.
+      throw CannotLoad(code.kind == "library" && why.find(code.what) == why.npos ? code.what + ": " + why : why);
+    } catch (...) {
+      end();
+      throw;
     }
+  }
+  ~HostProcess() { end(); }
+  HostProcess(const HostProcess&) = delete;
+  HostProcess& operator=(const HostProcess&) = delete;
+
+  struct CannotLoad : std::runtime_error {
+    using std::runtime_error::runtime_error;
+  };
+
+  const Loaded& loaded() const { return loaded_; }
+
+  // Returns: the answers; nothing where the supervisor ended, and this object is of no use any more.
+  std::optional<Answers> ask(const Pair* pairs, std::size_t count, bool in_double) {
+    if (in_double) {
+      std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_));
+    } else {
+      std::memcpy(pairs_, pairs, count * sizeof(Pair));
+    }
+    const Block block{static_cast<std::uint32_t>(count)};
+    Answers answers;
+    if (send(socket_, &block, sizeof block, MSG_NOSIGNAL) != sizeof block ||
+        receive(reinterpret_cast<char*>(&answers), sizeof answers) != sizeof answers || answers.count != count)
+      return std::nullopt;
+    return answers;
   }
 
  private:
-  // The pair that the worker was at has this answer.   Returns: whether there is another.
-  bool pass_over(signed char answer) {
-    const std::uint64_t at = channel_->next;
-    channel_->answers[at] = answer;
-    if (!channel_->second && at + 1 < channel_->count) {
-      channel_->next = at + 1;
-    } else if (!channel_->second) {
-      channel_->second = 1;
-      channel_->next = channel_->count - 1;
-    } else if (at > 0) {
-      channel_->next = at - 1;
-    } else {
-      return false;
+  // Waits for a message.   Returns: its bytes; at most 0 where the supervisor ended.   Throws: Stopped.
+  ssize_t receive(char* to, std::size_t size) {
+    for (;;) {
+      pollfd ready{socket_, POLLIN, 0};
+      if (poll(&ready, 1, kLookEvery) > 0) return recv(socket_, to, size, MSG_DONTWAIT);
+      if (stop_requested) throw Stopped();
+      if (is_stopped(process_)) return -1;  // as a subject without a namespace of its own can do
     }
-    return true;
   }
 
-  void spawn(int channel, int pairs, int socket) {
-    // Above the descriptors of the host, so that none is closed by the next.
-    int from[] = {channel, pairs, socket};
+  void spawn(const Code& code, bool describe, int socket, int pairs) {
+    // Above the descriptors of the supervisor, so that none is closed by the next.
+    int from[] = {socket, pairs};
     for (int& fd : from) fd = fcntl(fd, F_DUPFD_CLOEXEC, 16);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    const int to[] = {kChannelFd, kPairsFd, kSocketFd};
-    for (int i = 0; i < 3; ++i) posix_spawn_file_actions_adddup2(&actions, from[i], to[i]);
-    // Ctrl-C is the asking process's business.
+    posix_spawn_file_actions_adddup2(&actions, from[0], kControlFd);
+    posix_spawn_file_actions_adddup2(&actions, from[1], kSupervisorPairsFd);
+    // A session of its own: Ctrl-C and the terminal are the asking process's business.
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    const std::string program = host_program(code_), memory = std::to_string(code_.memory);
-    const char* words[] = {program.c_str(),      code_.kind.c_str(), code_.what.c_str(), code_.name.c_str(),
-                           code_.scalar.c_str(), memory.c_str(),     nullptr};
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+    sigset_t signals;
+    sigfillset(&signals);
+    posix_spawnattr_setsigdefault(&attributes, &signals);
+    sigemptyset(&signals);
+    posix_spawnattr_setsigmask(&attributes, &signals);
+    const std::string program = host_program(code), memory = std::to_string(code.memory),
+                      seconds = fmt::format("{}", code.timeout);
+    const char* words[] = {program.c_str(),     code.kind.c_str(), code.what.c_str(), code.name.c_str(),
+                           code.scalar.c_str(), memory.c_str(),    seconds.c_str(),   describe ? "1" : "0",
+                           code.namespaces ? "1" : "0", nullptr};
     const int error =
         posix_spawn(&process_, program.c_str(), &actions, &attributes, const_cast<char**>(words), environ);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
     for (const int fd : from) close(fd);
-    if (error != 0)
-      throw std::system_error(error, std::generic_category(), program + ": expected the program, found none");
-  }
-
-  void send_letter() {
-    const char letter = kAsk;
-    if (send(socket_, &letter, 1, MSG_NOSIGNAL) != 1)
-      throw std::runtime_error(fmt::format("{}: expected its process to go on, found that it ended", code_.what));
-  }
-
-  // Returns: a letter; 0 after so many seconds; -1 where the process ended.
-  char wait(double seconds) {
-    pollfd ready{socket_, POLLIN, 0};
-    int found;
-    while ((found = poll(&ready, 1, static_cast<int>(seconds * 1000))) < 0 && errno == EINTR) {
-    }
-    if (found == 0) return 0;
-    char letter;
-    return read(socket_, &letter, 1) == 1 ? letter : static_cast<char>(-1);
-  }
-
-  // Processor seconds that the worker took so far.
-  double worker_seconds() const {
-    clockid_t clock;
-    timespec taken{};
-    if (clock_getcpuclockid(channel_->worker, &clock) != 0 || clock_gettime(clock, &taken) != 0) return 0;
-    return static_cast<double>(taken.tv_sec) + 1e-9 * static_cast<double>(taken.tv_nsec);
-  }
-
-  // Whether it would go on if the machine let it: it waits for nothing but a processor.
-  bool worker_is_held_up() const {
-    std::ifstream in(fmt::format("/proc/{}/stat", int{channel_->worker}));
-    std::string line;
-    std::getline(in, line);
-    const std::size_t name_end = line.rfind(") ");
-    return name_end != line.npos && name_end + 2 < line.size() && (line[name_end + 2] == 'R' || line[name_end + 2] == 'D');
-  }
-
-  // The same, but 0 only where the worker stayed at one pair for all of its time: time that it had, so that a busy
-  // machine makes no verdicts.
-  char wait_while_it_goes_on() {
-    constexpr int kMostTimes = 100;
-    double before = worker_seconds();
-    for (int times = 1;; ++times) {
-      const std::uint64_t at = channel_->next, second = channel_->second;
-      const char letter = wait(code_.timeout);
-      if (letter != 0) return letter;
-      if (channel_->worker <= 0 || channel_->next != at || channel_->second != second) {  // it went on, or another begins
-        before = worker_seconds();
-        times = 0;
-      } else if (times == kMostTimes || !worker_is_held_up() || worker_seconds() - before >= 0.9 * code_.timeout) {
-        return 0;
-      }
+    if (error != 0) {
+      process_ = -1;
+      throw std::system_error(error, std::generic_category(), "cannot start " + program);
     }
   }
 
+  // The supervisor ends all processes when the socket closes; one that does not is ended itself.
   void end() {
     if (socket_ >= 0) close(socket_);
     if (process_ > 0) {
-      kill(process_, SIGKILL);
-      int status;
-      while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+      using Clock = std::chrono::steady_clock;
+      const auto until = Clock::now() + std::chrono::seconds(is_stopped(process_) ? 0 : 6);
+      int status = 0;
+      pid_t ended = 0;
+      for (int wait = 0; (ended = waitpid(process_, &status, WNOHANG)) == 0 && Clock::now() < until; wait = 1)
+        poll(nullptr, 0, wait);
+      if (ended == 0) {
+        kill(process_, SIGKILL);
+        while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+        }
       }
     }
-    if (channel_) munmap(channel_, sizeof(Channel));
-    if (pairs_) munmap(pairs_, kPairsBytes);
+    if (pairs_ != MAP_FAILED) munmap(pairs_, kPairsBytes);
     socket_ = -1;
     process_ = -1;
-    channel_ = nullptr;
-    pairs_ = nullptr;
+    pairs_ = MAP_FAILED;
   }
 
-  const Code& code_;
-  Channel* channel_ = nullptr;
-  void* pairs_ = nullptr;
+  void* pairs_ = MAP_FAILED;
   int socket_ = -1;
   pid_t process_ = -1;
+  Loaded loaded_{};
 };
 
 Description describe(const Code& code) {
-  const HostProcess process(code);
-  const Channel& c = process.channel();
-  return {c.has_f32 != 0, c.has_f64 != 0, c.outside, c.version, c.source, c.convention,
-          c.describes_itself != 0, c.symbol};
+  const HostProcess process(code, true);
+  const Loaded& c = process.loaded();
+  return {c.has_f32 != 0,  c.has_f64 != 0,          c.outside,     fit(c.version), fit(c.source),
+          fit(c.convention), c.describes_itself != 0, fit(c.symbol), c.text};
 }
 
 ForeignProcesses::ForeignProcesses(Code code, Scalar scalar) : code_(std::move(code)), scalar_(scalar) {
@@ -263,30 +216,55 @@ ForeignProcesses::ForeignProcesses(Code code, Scalar scalar) : code_(std::move(c
 
 ForeignProcesses::~ForeignProcesses() = default;
 
+std::unique_ptr<HostProcess> ForeignProcesses::idle_or_new() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      std::unique_ptr<HostProcess> process = std::move(idle_.back());
+      idle_.pop_back();
+      return process;
+    }
+  }
+  try {
+    return std::make_unique<HostProcess>(code_, false);
+  } catch (const HostProcess::CannotLoad&) {
+    return nullptr;  // it could be loaded once: that it cannot now is what the code does
+  }
+}
+
 void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
                               std::uint64_t* declined) {
   // Processes that share a device wait for each other: one is as fast.
   std::unique_lock alone(alone_, std::defer_lock);
   if (code_.kind == "device") alone.lock();
-  std::unique_ptr<HostProcess> process;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!idle_.empty()) {
-      process = std::move(idle_.back());
-      idle_.pop_back();
-    }
-  }
-  if (!process) process = std::make_unique<HostProcess>(code_);
+  const bool in_double = scalar_ == Scalar::f64 && code_.kind != "device";
+  std::unique_ptr<HostProcess> process = idle_or_new();
+  bool loads = process != nullptr;
+  // Answers about pairs; nothing where the supervisor ended, or the code can be loaded no more.
+  const auto ask = [&](const Pair* of, std::size_t size) {
+    std::optional<Answers> answers;
+    if (!process && loads) loads = (process = idle_or_new()) != nullptr;
+    if (process) answers = process->ask(of, size, in_double);
+    if (!answers) process.reset();
+    return answers;
+  };
   std::fill_n(intersects, (count + 63) / 64, std::uint64_t{0});
   std::fill_n(declined, (count + 63) / 64, std::uint64_t{0});
   std::optional<std::uint64_t> nanoseconds = 0;
   for (std::size_t begin = 0; begin < count; begin += kMostAsked) {
     const std::size_t size = std::min(count - begin, kMostAsked);
-    process->ask(pairs + begin, size, scalar_);
-    const std::uint64_t taken = process->channel().nanoseconds;
-    nanoseconds = nanoseconds && taken > 0 ? std::optional(*nanoseconds + taken) : std::nullopt;
+    std::optional<Answers> answers = ask(pairs + begin, size);
+    if (!answers) {  // which pair it was shows when they are asked one at a time
+      answers.emplace();
+      for (std::size_t i = 0; i < size; ++i) {
+        const std::optional<Answers> of_pair = ask(pairs + begin + i, 1);
+        answers->answers[i] = of_pair ? of_pair->answers[0] : static_cast<signed char>(kCrashed);
+      }
+    }
+    nanoseconds = nanoseconds && answers->nanoseconds > 0 ? std::optional(*nanoseconds + answers->nanoseconds)
+                                                          : std::nullopt;
     for (std::size_t i = 0; i < size; ++i) {
-      const Verdict verdict = verdict_of(process->channel().answers[i]);
+      const Verdict verdict = verdict_of(answers->answers[i]);
       const std::size_t at = begin + i;
       const std::uint64_t bit = std::uint64_t{1} << at % 64;
       if (verdict == Verdict::intersects || is_failure(verdict)) intersects[at / 64] |= bit;
@@ -299,7 +277,7 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
   }
   const std::lock_guard lock(mutex_);
   nanoseconds_ = nanoseconds;
-  idle_.push_back(std::move(process));
+  if (process) idle_.push_back(std::move(process));
 }
 
 std::optional<std::uint64_t> ForeignProcesses::nanoseconds() const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foreign code in processes of its own, as a lane's block function. It may crash, hang, scribble or lie: each is a
-// verdict on the pair on which it happens, and the next pair is asked in a new process.
+// Foreign code in processes of its own, as a lane's block function. It may crash, hang, scribble, lie or attack: each is
+// a verdict on the pair on which it happens, and the next pair is asked in a new process. What this process believes comes
+// from a supervisor (supervisor.h) over a socket that foreign code does not have.
 #pragma once
 
 #include <map>
@@ -20,7 +21,8 @@ struct Code {
   std::string what, name;        // file and export, or the command, or a file of PTX
   std::string scalar = "any";    // of a function without description
   double timeout = 1;            // seconds for a pair, or for a block of a subject that takes blocks
-  std::uint64_t memory = 1024;   // MiB
+  std::uint64_t memory = 1024;   // MiB, of all its processes together
+  bool namespaces = true;        // in a process namespace of its own, where the system allows one
 };
 
 // What a subject says of itself.
@@ -30,9 +32,10 @@ struct Description {
   std::string version, source, convention;
   bool describes_itself = false;  // by a struct graze_subject
   std::string symbol;             // of a library, that was taken
+  std::string said;               // by a program, in answer to `describe`: its first line
 };
 
-// Throws: std::runtime_error, in one line, where the code cannot be loaded.
+// Throws: std::runtime_error, in one line, where the code cannot be loaded; Stopped.
 Description describe(const Code& code);
 
 class HostProcess;
@@ -42,6 +45,7 @@ class ForeignProcesses : public ForeignCode {
  public:
   ForeignProcesses(Code code, Scalar scalar);
   ~ForeignProcesses() override;
+  // Throws: Stopped, within a tenth of a second of the request, whatever the code does.
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override;
   Verdict failure(const Pair& pair) override;
 
@@ -52,6 +56,8 @@ class ForeignProcesses : public ForeignCode {
   std::unique_ptr<ForeignProcesses> anew() const;
 
  private:
+  std::unique_ptr<HostProcess> idle_or_new();
+
   Code code_;
   Scalar scalar_;
   mutable std::mutex mutex_;

@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <deque>
 #include <fstream>
-#include <regex>
 #include <sstream>
 
 #include "core/error.h"
@@ -45,11 +46,25 @@ std::deque<Entry>& entries() {
 constexpr std::string_view kCommand = "cmd:";
 
 std::uint64_t hash_of_file(const fs::path& file) {
+  std::error_code why;
+  const bool is_file = fs::is_regular_file(file, why);
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
-  if (!fs::is_regular_file(file) || !(text << in.rdbuf()))
-    throw std::runtime_error(file.string() + ": expected a file with code, found none");
+  if (!is_file || !(text << in.rdbuf())) {
+    throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown(file.string()),
+                                         why ? why.message() : is_file ? std::strerror(errno) : "not a file"));
+  }
   return fnv1a(text.str());
+}
+
+// "library", "cuda" or "source" by the file's ending; empty for any other.
+std::string kind_of(std::string_view file) {
+  const std::size_t version = file.find_last_not_of("0123456789.") + 1;  // libx.so.1.2
+  if (file.substr(0, version).ends_with(".so") || file.ends_with(".dylib")) return "library";
+  if (file.ends_with(".cu")) return "cuda";
+  for (const std::string_view ending : {".cpp", ".cc", ".cxx", ".c"})
+    if (file.ends_with(ending)) return "source";
+  return "";
 }
 
 Opened parsed(const Wanted& wanted) {
@@ -60,15 +75,16 @@ Opened parsed(const Wanted& wanted) {
     result.hash = fnv1a(wanted.what);
     return result;
   }
-  static const std::regex form(R"((.*\.(?:(so|so\.[0-9.]+|dylib)|(cu)|cpp|cc|cxx|c))(?::([^/:].*))?)");
-  std::smatch parts;
-  if (!std::regex_match(wanted.what, parts, form)) {
-    throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found '{}'",
-                                 wanted.name, printable(wanted.what)));
+  const std::string_view what = wanted.what;
+  std::size_t end = what.size();  // of the file; a colon and a function may follow
+  while (end != what.npos && kind_of(what.substr(0, end)).empty()) end = end == 0 ? what.npos : what.rfind(':', end - 1);
+  if (end == what.npos || end + 1 == what.size()) {
+    throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found {}",
+                                 wanted.name, shown(what)));
   }
-  result.file = parts[1].str();
-  result.function = parts[4];
-  result.kind = parts[2].matched ? "library" : parts[3].matched ? "cuda" : "source";
+  result.file = what.substr(0, end);
+  if (end < what.size()) result.function = what.substr(end + 1);
+  result.kind = kind_of(what.substr(0, end));
   result.hash = hash_of_file(result.file);
   return result;
 }
@@ -92,16 +108,8 @@ void describe_info(Entry& entry, const Description& description) {
 // What a program says of itself when its first line is `describe`: a JSON object, {"version": "1.2", "source": "…",
 // "convention": "…", "outside": ["touching", …]}, all of it optional. Of anything else, and of nothing, nothing is taken:
 // a program need not know the question.
-void add_description(Description& description, const std::string& subject, const std::string& command) {
-  constexpr int kSeconds = 10;  // to start, and to end where it waits for more
-  FILE* program = popen(fmt::format("echo describe | timeout -s KILL {} sh -c {} 2>/dev/null", kSeconds,
-                                    shell_word(command)).c_str(), "r");
-  if (!program) throw std::runtime_error("expected a shell, found none");
-  std::string said;
-  for (int c; (c = std::fgetc(program)) != EOF && c != '\n';) said += static_cast<char>(c);
-  while (std::fgetc(program) != EOF) {  // to its end
-  }
-  pclose(program);
+void add_description(Description& description, const std::string& subject) {
+  const std::string& said = description.said;
   const Json json = Json::parse(said, nullptr, false);
   if (!json.is_object()) return;
   static const std::pair<std::string_view, unsigned> kOutside[] = {{"touching", kOutsideTouching},
@@ -242,7 +250,7 @@ void open(const Wanted& wanted, bool on_device) {
       probe.variant = variant;
       if (!runs_on_this_cpu(probe)) continue;
       description = describe(of_variant);
-      if (wish.kind == "command") add_description(description, wanted.name, of_variant.what);
+      if (wish.kind == "command") add_description(description, wanted.name);
       if (description.f32) add_lane(entry, made, of_variant, Scalar::f32, variant, description.outside);
     }
     for (const auto& [variant, of_variant] : builds) {
@@ -250,6 +258,9 @@ void open(const Wanted& wanted, bool on_device) {
       if (description.f64 && runs_on_this_cpu(probe))
         add_lane(entry, made, of_variant, Scalar::f64, variant, description.outside);
     }
+    if (made.empty())
+      throw std::runtime_error(fmt::format("--subject {}: {} says that it has no function, of floats or of doubles",
+                                           wanted.name, shown(wanted.what)));
     entry.opened.description = description;
     describe_info(entry, description);
     add_lanes(std::move(made));

@@ -396,8 +396,10 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x", "expected NAME=WHAT .* found 'x'");
   expect_error("a/b=" + so, "expected NAME=WHAT");
   expect_error("x=", "expected NAME=WHAT");
-  expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found '.*mine.txt'");
-  expect_error("x=nothere.so", "nothere.so: expected a file with code, found none");
+  expect_error("x=mine.txt", "expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found .*mine.txt");
+  expect_error("x=nothere.so", "cannot read the code in .*nothere.so.: No such file");
+  expect_error("x=" + std::string(100'000, 'y') + ".so", "cannot read the code in .*: File name too long");
+  expect_error("x=" + std::string(100'000, ':'), "expected FILE.so");
   expect_error("exact=" + so + ":good", "expected a name of its own");
   expect_error("x=" + so, "libbad.so: expected a function named intersects, or a description .* found only .*good");
   expect_error("x=" + so + ":nothing", "function or description named nothing, .* found only");

@@ -13,6 +13,7 @@
 
 #include "build_info.h"
 #include "core/error.h"
+#include "core/stop.h"
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/gpu_engine.h"
 #include "fuzz/campaign/lane_costs.h"
@@ -152,7 +153,13 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
         campaign.take ? campaign.take() : next_batch(campaign, store, done, costs, progress.done_here, threads);
     if (!batch) break;
     const double before = seconds();
-    const BatchResult result = judged(*batch);
+    std::optional<BatchResult> judged_batch;
+    try {
+      judged_batch = judged(*batch);
+    } catch (const Stopped&) {  // in the middle of foreign code; the batch is run again
+      break;
+    }
+    const BatchResult& result = *judged_batch;
     costs.add(static_cast<std::size_t>(batch->source), batch->pairs, seconds() - before);
     store.commit(*batch, result);
     done[static_cast<std::size_t>(batch->source)] += batch->pairs;
@@ -178,7 +185,10 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
               {"threads", threads},
               {"machine", machine_name()},
               {"engine", campaign.engines.empty() ? "cpu" : "gpu"}};
-  if (complete && campaign.shard.number == 1) run["costs"] = measure_costs(campaign);  // once is enough
+  try {
+    if (complete && campaign.shard.number == 1) run["costs"] = measure_costs(campaign);  // once is enough
+  } catch (const Stopped&) {  // then they are not known
+  }
   append_timing(campaign.directory, run, outcome.oracle);
   return outcome;
 }

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subjects/containment.h"
+
+#include <fcntl.h>
+#include <linux/capability.h>
+#include <poll.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace graze::subjects {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A user without rights becomes one with rights in a namespace of users, under the same name.
+bool map_user(uid_t user, gid_t group) {
+  const auto write_to = [](const char* file, const std::string& text) {
+    const int fd = open(file, O_WRONLY | O_CLOEXEC);
+    const bool written = fd >= 0 && write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    close(fd);
+    return written;
+  };
+  const std::string u = std::to_string(user), g = std::to_string(group);
+  return write_to("/proc/self/setgroups", "deny") && write_to("/proc/self/uid_map", u + ' ' + u + " 1") &&
+         write_to("/proc/self/gid_map", g + ' ' + g + " 1");
+}
+
+// In the new namespace: its own /proc, without which nobody there could be found.
+bool mount_proc() {
+  return mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+         mount("proc", "/proc", "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr) == 0 &&
+         fs::exists("/proc/thread-self/children");
+}
+
+[[noreturn]] void guard(pid_t supervisor) {
+  close_range(0, ~0u, 0);  // the socket's end shows to graze when the supervisor ends, and the other way round
+  while (waitpid(supervisor, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  _exit(0);
+}
+
+std::vector<pid_t> read_children(const std::string& file) {
+  std::ifstream in(file);
+  std::vector<pid_t> found;
+  for (pid_t child; in >> child;) found.push_back(child);
+  return found;
+}
+
+std::vector<pid_t> own_children() { return read_children("/proc/thread-self/children"); }
+
+// Whichever of its threads started them.
+std::vector<pid_t> children_of(pid_t process) {
+  std::vector<pid_t> found;
+  std::error_code error;
+  for (fs::directory_iterator task("/proc/" + std::to_string(process) + "/task", error), end; !error && task != end;
+       task.increment(error)) {
+    for (const pid_t child : read_children(task->path() / "children")) found.push_back(child);
+  }
+  return found;
+}
+
+std::uint64_t field_kib(const fs::path& file, const std::string& name) {
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with(name)) return std::strtoull(line.c_str() + name.size(), nullptr, 10);
+  }
+  return 0;
+}
+
+// Whole pages of the process first, which is quick to read; those that it shares in parts where that may matter.
+std::uint64_t bytes_of(pid_t process, std::uint64_t most) {
+  const fs::path folder = "/proc/" + std::to_string(process);
+  const std::uint64_t resident = field_kib(folder / "status", "VmRSS:") << 10;
+  return resident <= most ? resident : field_kib(folder / "smaps_rollup", "Pss:") << 10;
+}
+
+}  // namespace
+
+void enter_containment(bool namespaces) {
+  const uid_t user = geteuid();
+  const gid_t group = getegid();
+  int answer[2];
+  if (namespaces && pipe2(answer, O_CLOEXEC) == 0) {
+    const unsigned long flags = CLONE_NEWPID | CLONE_NEWNS | (user == 0 ? 0 : CLONE_NEWUSER) | SIGCHLD;
+    const auto supervisor = static_cast<pid_t>(syscall(SYS_clone, flags, nullptr, nullptr, nullptr, nullptr));
+    if (supervisor == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      close(answer[0]);
+      const bool ready = (user == 0 || map_user(user, group)) && mount_proc();
+      if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
+      close(answer[1]);
+      return;
+    }
+    close(answer[1]);
+    char ready = 0;
+    const bool contained = supervisor > 0 && read(answer[0], &ready, 1) == 1;
+    close(answer[0]);
+    if (contained) guard(supervisor);
+    if (supervisor > 0) waitpid(supervisor, nullptr, 0);
+  }
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
+}
+
+int open_process(pid_t process) { return static_cast<int>(syscall(SYS_pidfd_open, process, 0)); }
+
+bool is_descendant(pid_t process) {
+  for (int steps = 0; steps < 1000 && process > 1; ++steps) {
+    std::ifstream in("/proc/" + std::to_string(process) + "/stat");
+    std::string line;
+    std::getline(in, line);
+    const std::size_t name_end = line.rfind(") ");
+    if (name_end == line.npos || line.size() < name_end + 5) return false;
+    process = static_cast<pid_t>(std::strtol(line.c_str() + name_end + 4, nullptr, 10));  // behind ") S "
+    if (process == getpid()) return true;
+  }
+  return false;
+}
+
+Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes) {
+  Usage usage{};
+  for (std::vector<pid_t> left = own_children(); !left.empty();) {
+    const pid_t process = left.back();
+    left.pop_back();
+    ++usage.processes;
+    // Shared pages in parts from the moment when whole ones would be too much.
+    usage.bytes += bytes_of(process, most_bytes > usage.bytes ? (most_bytes - usage.bytes) / 2 : 0);
+    if (usage.processes > most_processes || usage.bytes > most_bytes) break;
+    for (const pid_t child : children_of(process)) left.push_back(child);
+  }
+  return usage;
+}
+
+bool end_children(pid_t except) {
+  using Clock = std::chrono::steady_clock;
+  const auto deadline = Clock::now() + std::chrono::seconds(5);
+  for (;;) {
+    if (except < 0 && getpid() == 1) kill(-1, SIGKILL);  // all of the namespace at once, whatever they start meanwhile
+    bool left = false;
+    for (const pid_t child : own_children()) {
+      if (child == except) continue;
+      left = true;
+      kill(child, SIGKILL);  // it stays this process until it is waited for, which only we can do
+    }
+    if (!left) return true;
+    if (Clock::now() > deadline) return false;
+    poll(nullptr, 0, 1);
+    for (const pid_t child : own_children()) {
+      if (child != except) waitpid(child, nullptr, WNOHANG);
+    }
+  }
+}
+
+void drop_rights() {
+  for (const int right : {CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_RESOURCE, CAP_SYS_BOOT, CAP_SYS_MODULE, CAP_SYS_RAWIO})
+    prctl(PR_CAPBSET_DROP, right, 0, 0, 0);
+}
+
+}  // namespace graze::subjects

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// What holds the processes of foreign code together, so that none outlives its supervisor: a process namespace of their
+// own where the system allows one, else the supervisor as the subreaper of its descendants.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+
+namespace graze::subjects {
+
+// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Returns in
+// the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own processes,
+// and which the system ends with it. Where no namespace can be had, returns in the calling process, as a subreaper.
+// namespaces: whether to try.   Requires: one thread.
+void enter_containment(bool namespaces);
+
+// The descriptor that becomes readable when the process ends; -1 where there is no such process.
+int open_process(pid_t process);
+
+// Whether the process descends from the calling one. Not certain of a process that may end; see open_process.
+bool is_descendant(pid_t process);
+
+struct Usage {
+  std::uint64_t processes, bytes;  // bytes of memory, shared pages counted in parts
+};
+// What all descendants take at this moment; counts up to `most_bytes` and `most_processes`, and a little beyond.
+Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
+
+// Kills all children but one, and what they leave behind.   Returns: whether none is left.
+bool end_children(pid_t except);
+
+// Gives up the rights of root that would reach beyond the limits: tracing, mounting, lifting limits, rebooting.
+void drop_rights();
+
+}  // namespace graze::subjects

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// Subjects that attack what runs them, on the pairs that `bad` picks; on the others they say whether a is left of b.
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/ptrace.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int bad(const float a[9]) { return a[0] > 0.9f; }
+static int good(const float a[9], const float b[9]) { return a[0] < b[0]; }
+#define ATTACK(name, ...) int name(const float a[9], const float b[9]) { if (bad(a)) { __VA_ARGS__; } return good(a, b); }
+
+// Of the memory that is shared with the supervisor.
+static void mappings(const char* name, void (*act)(char* from, size_t bytes)) {
+  FILE* maps = fopen("/proc/self/maps", "r");
+  char line[1024];
+  while (maps && fgets(line, sizeof line, maps)) {
+    char *from, *to;
+    if (strstr(line, name) && sscanf(line, "%p-%p", (void**)&from, (void**)&to) == 2) act(from, (size_t)(to - from));
+  }
+  if (maps) fclose(maps);
+}
+static void zeros(char* from, size_t bytes) { memset(from, 0, bytes); }
+static void ones(char* from, size_t bytes) { memset(from, 255, bytes); }
+static void noise(char* from, size_t bytes) { for (size_t i = 0; i < bytes; ++i) from[i] = (char)rand(); }
+static void writable(char* from, size_t bytes) {
+  if (mprotect(from, bytes, PROT_READ | PROT_WRITE) == 0) memset(from, 0, bytes); else abort();
+}
+static void unmapped(char* from, size_t bytes) { munmap(from, bytes); }
+static void shorter(char* from, size_t bytes) {
+  char name[100];
+  snprintf(name, sizeof name, "/proc/self/map_files/%lx-%lx", (unsigned long)from, (unsigned long)from + bytes);
+  const int fd = open(name, O_RDWR);
+  if (fd >= 0) ftruncate(fd, 0);
+  abort();
+}
+static void all_memory(void (*act)(char*, size_t)) { mappings("graze-answers", act); }
+
+ATTACK(writes_zeros, all_memory(zeros); abort())
+ATTACK(writes_ones, all_memory(ones); abort())
+ATTACK(unmaps, all_memory(unmapped))
+ATTACK(truncates, all_memory(shorter))
+ATTACK(writes_pairs, mappings("graze-pairs", writable))
+
+static void* scribble(void* unused) { for (;;) { all_memory(noise); usleep(100); } return unused; }
+static void start(void* (*what)(void*)) {
+  static int started;
+  pthread_t thread;
+  if (!started++) pthread_create(&thread, 0, what, 0);
+}
+ATTACK(scribbles_always, start(scribble); usleep(2000); abort())
+
+static void* babble(void* unused) {
+  char bytes[10008] = {0};
+  for (unsigned i = 0;; ++i) send(5, bytes, i % 3 ? 24 : i % 2 ? 4 : sizeof bytes, MSG_NOSIGNAL | MSG_DONTWAIT);
+  return unused;
+}
+ATTACK(babbles, start(babble); usleep(2000); abort())
+static void* steal(void* unused) { char bytes[4096]; for (;;) recv(5, bytes, sizeof bytes, 0); return unused; }
+ATTACK(steals_questions, start(steal); usleep(2000); abort())
+ATTACK(says_it_is_ready, for (int i = 0; i < 100; ++i) { uint32_t ready = 2; send(5, &ready, 4, MSG_NOSIGNAL); } abort())
+ATTACK(says_it_has_answered, uint64_t said[3] = {3, 1, 1}; for (int i = 0; i < 100; ++i, ++said[1]) send(5, said, 24, MSG_NOSIGNAL); pause())
+
+ATTACK(kills_parent, kill(getppid(), SIGKILL); abort())
+ATTACK(stops_parent, kill(getppid(), SIGSTOP); usleep(2000); abort())
+ATTACK(kills_grandparent, for (int i = 1; i < getpid(); ++i) if (getpid() < 1000) kill(i, SIGKILL); abort())
+ATTACK(kills_group, kill(0, SIGKILL))
+ATTACK(stops_itself, raise(SIGSTOP))
+ATTACK(ends_itself_quietly, _exit(0))
+ATTACK(pretends_not_ready, _exit(99))
+ATTACK(traces_parent, if (ptrace(PTRACE_ATTACH, getppid(), 0, 0) == 0) { waitpid(getppid(), 0, 0); } abort())
+ATTACK(becomes_another_program, execl("/bin/sleep", "sleep", "1000", (char*)0))
+ATTACK(closes_everything, for (int i = 0; i < 1024; ++i) close(i); abort())
+
+static void leave_a_child(void) {
+  if (fork() == 0) {
+    setsid();
+    prctl(PR_SET_PDEATHSIG, 0);
+    for (int s = 1; s < 65; ++s) signal(s, SIG_IGN);
+    if (fork() == 0) for (;;) pause();
+    _exit(0);
+  }
+}
+ATTACK(leaves_children, leave_a_child(); abort())
+int leaves_children_silently(const float a[9], const float b[9]) { if (bad(a)) leave_a_child(); return good(a, b); }
+ATTACK(forks_without_end, for (int i = 0; i < 300; ++i) if (fork() == 0) for (;;) pause(); for (;;) pause())
+static void child_eats(void) {
+  if (fork() == 0) {
+    char* p = malloc(100 << 20);
+    if (p) memset(p, 1, 100 << 20);
+    for (;;) pause();
+  }
+}
+ATTACK(children_eat, for (int i = 0; i < 4; ++i) child_eats(); for (;;) pause())
+ATTACK(eats_shared, char* p = mmap(0, 300 << 20, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0); if (p != MAP_FAILED) memset(p, 1, 300 << 20); for (;;) pause())
+ATTACK(lifts_limits, struct rlimit no = {RLIM_INFINITY, RLIM_INFINITY}; if (setrlimit(RLIMIT_DATA, &no) == 0) for (;;) pause(); abort())
+ATTACK(writes_a_large_file, char name[] = "/tmp/graze-hostile-XXXXXX"; int fd = mkstemp(name); unlink(name); if (ftruncate(fd, (off_t)8 << 30) == 0) for (;;) pause(); abort())
+ATTACK(kills_all, char name[100] = {0}; if (readlink("/proc/1/exe", name, 99) > 0 && strstr(name, "graze-subject")) kill(-1, SIGKILL); abort())

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// What foreign code may do to the processes around it, and that each of it is a verdict of its own pair.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "core/stop.h"
+#include "strata/strata.h"
+#include "subjects/process.h"
+
+namespace graze::subjects {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::size_t count_in(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+}
+
+struct Hostile : testing::Test {
+  static inline fs::path folder;
+  static inline std::string mark;  // in the environment of all processes that this one starts
+  static inline pid_t bystander = -1;
+  static inline std::vector<Pair> pairs;
+
+  static void SetUpTestSuite() {
+    folder = fs::path(testing::TempDir()) / ("hostile-" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    mark = "GRAZE_HOSTILE_TEST=" + std::to_string(getpid());
+    setenv("GRAZE_HOSTILE_TEST", std::to_string(getpid()).c_str(), 1);
+    for (std::uint64_t i = 0; i < 40; ++i) pairs.push_back(strata::generate(1, strata::Stratum::uniform, i));
+    build("libhostile.so", GRAZE_SOURCE_DIR "/subjects/hostile.c -lpthread");
+    bystander = fork();
+    if (bystander == 0) execlp("sleep", "sleep", "1000", nullptr);
+  }
+  static void TearDownTestSuite() {
+    kill(bystander, SIGKILL);
+    waitpid(bystander, nullptr, 0);
+    fs::remove_all(folder);
+  }
+
+  static fs::path build(const std::string& library, const std::string& what) {
+    const fs::path file = folder / library;
+    EXPECT_EQ(std::system(("cc -O1 -w -shared -fPIC " + what + " -o " + file.string()).c_str()), 0);
+    return file;
+  }
+  static fs::path built_from(const std::string& name, const std::string& text) {
+    std::ofstream(folder / (name + ".c")) << text;
+    return build(name + ".so", (folder / (name + ".c")).string());
+  }
+
+  static bool is_bad(const Pair& pair) { return pair.a[0].x > 0.9f; }
+  static Verdict left_of(const Pair& pair) {
+    return pair.a[0].x < pair.b[0].x ? Verdict::intersects : Verdict::disjoint;
+  }
+  static std::vector<Verdict> verdicts(ForeignProcesses& subject) {
+    std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
+    subject.decide(pairs.data(), pairs.size(), yes.data(), none.data());
+    std::vector<Verdict> result;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const bool y = yes[i / 64] >> i % 64 & 1, n = none[i / 64] >> i % 64 & 1;
+      result.push_back(y && n ? Verdict::crashed : n ? Verdict::declined : y ? Verdict::intersects : Verdict::disjoint);
+    }
+    return result;  // crashed stands for every failure
+  }
+
+  // Processes that were started here and are there still, but the bystander.
+  static std::set<pid_t> left_over() {
+    std::set<pid_t> found;
+    for (const auto& entry : fs::directory_iterator("/proc")) {
+      const auto process = static_cast<pid_t>(std::atoi(entry.path().filename().c_str()));
+      if (process > 0 && process != bystander && text_of(entry.path() / "environ").find(mark) != std::string::npos)
+        found.insert(process);
+    }
+    return found;
+  }
+  static void expect_nothing_left() {
+    for (int times = 0; times < 500 && !left_over().empty(); ++times) usleep(10'000);
+    EXPECT_TRUE(left_over().empty()) << "of " << left_over().size() << " processes the first is " << *left_over().begin();
+    EXPECT_EQ(waitpid(bystander, nullptr, WNOHANG), 0) << "an unrelated process was ended";
+  }
+};
+
+struct Attack {
+  const char* name;
+  bool without_namespaces = true;  // also tried without a process namespace
+  bool on_others = false;          // other pairs may fail as well
+};
+
+std::ostream& operator<<(std::ostream& out, const Attack& attack) { return out << attack.name; }
+
+class EveryAttack : public Hostile, public testing::WithParamInterface<std::tuple<Attack, bool>> {};
+
+TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
+  const auto& [attack, namespaces] = GetParam();
+  if (!namespaces && !attack.without_namespaces) GTEST_SKIP() << "contained by a process namespace alone";
+  const std::size_t maps = count_in("/proc/self/map_files"), files = count_in("/proc/self/fd");
+  {
+    Code code{"library", (folder / "libhostile.so").string(), attack.name, "f32", 0.1, 256};
+    code.namespaces = namespaces;
+    ForeignProcesses subject(code, Scalar::f32);
+    for (int times = 0; times < 2; ++times) {
+      const std::vector<Verdict> found = verdicts(subject);
+      std::size_t bad = 0, failed = 0;
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        bad += is_bad(pairs[i]);
+        failed += found[i] == Verdict::crashed;
+        if (is_bad(pairs[i])) {
+          EXPECT_EQ(found[i], Verdict::crashed) << i;
+        } else if (!attack.on_others || found[i] != Verdict::crashed) {
+          EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+        }
+      }
+      EXPECT_GT(bad, 1u);
+    }
+  }
+  expect_nothing_left();
+  EXPECT_LE(count_in("/proc/self/map_files"), maps + 2);  // what the allocator keeps
+  EXPECT_EQ(count_in("/proc/self/fd"), files);
+}
+
+constexpr Attack kAttacks[] = {
+    {"writes_zeros"}, {"writes_ones"}, {"unmaps"}, {"truncates"}, {"writes_pairs"},
+    {"scribbles_always", true, true}, {"babbles", true, true}, {"steals_questions", true, true},
+    {"says_it_is_ready"}, {"says_it_has_answered"}, {"kills_parent"}, {"stops_parent"},
+    {"kills_grandparent", false}, {"kills_group"}, {"stops_itself"}, {"ends_itself_quietly"}, {"pretends_not_ready"},
+    {"traces_parent"}, {"becomes_another_program"}, {"closes_everything"}, {"leaves_children"},
+    {"forks_without_end"}, {"children_eat"}, {"eats_shared"}, {"lifts_limits"}, {"writes_a_large_file"},
+    {"kills_all", false}};
+INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
+                         [](const auto& of) {
+                           return std::string(std::get<0>(of.param).name) +
+                                  (std::get<1>(of.param) ? "" : "_without_namespaces");
+                         });
+
+TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
+  for (const bool namespaces : {true, false}) {
+    Code code{"library", (folder / "libhostile.so").string(), "leaves_children_silently", "f32", 1, 256};
+    code.namespaces = namespaces;
+    auto subject = std::make_unique<ForeignProcesses>(code, Scalar::f32);
+    const std::vector<Verdict> found = verdicts(*subject);
+    for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+    EXPECT_GT(left_over().size(), 3u);
+    subject.reset();
+    expect_nothing_left();
+  }
+}
+
+TEST_F(Hostile, ConstructorsThatAttackAreOneLine) {
+  const struct {
+    const char* name;
+    const char* does;
+  } kCases[] = {{"sends", "char b[10008]; memset(b, 7, sizeof b); for (int i = 0; i < 50; ++i) send(5, b, sizeof b, MSG_DONTWAIT); abort();"},
+                {"lies", "char b[10008] = {0}; send(5, b, sizeof b, 0); abort();"},
+                {"refuses", "char b[10008]; memset(b, 255, sizeof b); b[0] = 1; b[1] = b[2] = b[3] = 0; send(5, b, sizeof b, 0); pause();"},
+                {"kills", "kill(getppid(), SIGKILL); abort();"},
+                {"stops", "kill(getppid(), SIGSTOP); abort();"},
+                {"forks", "if (fork() == 0) for (;;) pause(); abort();"},
+                {"exits", "_exit(0);"}};
+  for (const auto& c : kCases) {
+    const fs::path file = built_from(c.name, std::string("#include <signal.h>\n#include <stdlib.h>\n#include <string.h>\n"
+                                                         "#include <sys/socket.h>\n#include <unistd.h>\n"
+                                                         "__attribute__((constructor)) static void f(void) { ") + c.does + " }\n"
+                                                         "int intersects(const float a[9], const float b[9]) { return 0; }");
+    for (const bool namespaces : {true, false}) {
+      SCOPED_TRACE(c.name);
+      Code code{"library", file.string(), ""};
+      code.namespaces = namespaces;
+      try {
+        const Description description = describe(code);
+        EXPECT_FALSE(description.f32 || description.f64);  // it said so itself
+      } catch (const std::runtime_error& error) {
+        EXPECT_NE(std::string(error.what()).find(c.name), std::string::npos) << error.what();
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      }
+    }
+    expect_nothing_left();
+  }
+}
+
+TEST_F(Hostile, CodeThatIsGoneAfterItWasLoadedIsAVerdict) {
+  const fs::path file = built_from("removes", "#include <signal.h>\n#include <unistd.h>\n"
+                                              "int intersects(const float a[9], const float b[9]) {\n"
+                                              "  if (a[0] > 0.9f) { unlink(\"" + (folder / "removes.so").string() +
+                                                  "\"); kill(getppid(), SIGKILL); _exit(1); }\n  return a[0] < b[0]; }");
+  ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
+  const std::vector<Verdict> found = verdicts(subject);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {  // asked the second time, the others have no code any more
+    if (is_bad(pairs[i]) || found[i] != left_of(pairs[i])) {
+      EXPECT_EQ(found[i], Verdict::crashed) << i;
+    }
+  }
+  EXPECT_EQ(verdicts(subject), std::vector<Verdict>(pairs.size(), Verdict::crashed));
+}
+
+TEST_F(Hostile, ProgramsThatFloodOrHangOrLeaveChildrenAreVerdicts) {
+  for (const std::string program : {"yes", "cat /dev/zero", "sleep 1000 & read l; trap '' TERM; sleep 1000", "exec sleep 1000",
+                                    "while read l; do echo 7; done", "exit 3", "setsid sleep 1000 & setsid sleep 1001; wait"}) {
+    SCOPED_TRACE(program);
+    for (const bool namespaces : {true, false}) {
+      const std::vector<Pair> all = pairs;
+      pairs.resize(2);
+      Code code{"command", program, "", "f32", 0.05, 256};
+      code.namespaces = namespaces;
+      {
+        ForeignProcesses subject(code, Scalar::f32);
+        const std::vector<Verdict> found = verdicts(subject);
+        EXPECT_EQ(found, std::vector<Verdict>(2, Verdict::crashed));
+      }
+      pairs = all;
+      expect_nothing_left();
+    }
+  }
+}
+
+TEST_F(Hostile, DescriptionsOfProgramsAreBounded) {
+  const auto said = [](const std::string& program) {
+    Code code{"command", program, "", "f32", 1, 256};
+    return describe(code).said;
+  };
+  EXPECT_EQ(said("read l; echo \"$l, you say\""), "describe, you say");
+  EXPECT_EQ(said("cat /dev/zero"), "");
+  EXPECT_EQ(said("head -c 9000 /dev/zero | tr '\\0' x; echo"), "");
+  EXPECT_EQ(said("sleep 1000 & exec echo"), "");
+  EXPECT_EQ(said("python3 -c 'x = bytearray(10**9)'"), "");
+  expect_nothing_left();
+}
+
+// The request comes while the subject hangs; without it the wait would be an hour for each pair.
+TEST_F(Hostile, ARequestToStopEndsEveryWait) {
+  const fs::path file = built_from("hangs", "int intersects(const float a[9], const float b[9]) { for (;;) ; }");
+  for (const bool namespaces : {true, false}) {
+    Code code{"library", file.string(), "intersects", "f32", 3600};
+    code.namespaces = namespaces;
+    ForeignProcesses subject(code, Scalar::f32);
+    std::jthread request([] {
+      usleep(200'000);
+      stop_requested = true;
+    });
+    EXPECT_THROW(verdicts(subject), Stopped);
+    stop_requested = false;
+    expect_nothing_left();
+  }
+  const fs::path slow = built_from("slow", "#include <unistd.h>\n__attribute__((constructor)) static void f(void) { for (;;) pause(); }");
+  std::jthread request([] {
+    usleep(200'000);
+    stop_requested = true;
+  });
+  EXPECT_THROW(describe({"library", slow.string(), ""}), Stopped);
+  stop_requested = false;
+  expect_nothing_left();
+}
+
+// Whoever asks may be ended at any time: all others end with it.
+TEST_F(Hostile, NothingOutlivesTheProcessThatAsks) {
+  for (const char* name : {"leaves_children_silently", "forks_without_end", "stops_itself"}) {
+    for (const bool namespaces : {true, false}) {
+      const pid_t asking = fork();
+      if (asking == 0) {
+        Code code{"library", (folder / "libhostile.so").string(), name, "f32", 3600, 256};
+        code.namespaces = namespaces;
+        ForeignProcesses subject(code, Scalar::f32);
+        verdicts(subject);
+        pause();
+      }
+      usleep(300'000);
+      kill(asking, SIGKILL);
+      waitpid(asking, nullptr, 0);
+      expect_nothing_left();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace graze::subjects

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "subjects/supervisor.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <optional>
+#include <string>
+
+#include "subjects/containment.h"
+#include "subjects/process_state.h"
+#include "subjects/questions.h"
+
+namespace graze::subjects {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Time = Clock::time_point;
+
+constexpr auto kLookEvery = std::chrono::milliseconds(100);  // at what the processes take
+constexpr int kMostLoads = 3;                                // in vain, for one block
+
+Time after(double seconds) {
+  return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+}
+
+class Supervisor {
+ public:
+  Supervisor(const Limits& limits, char* const* arguments) : limits_(limits), arguments_(arguments) {
+    const int fd = memfd_create("graze-answers", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+    if (fd < 0 || ftruncate(fd, kWords * sizeof(std::uint64_t)) != 0 ||
+        fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
+      leave();
+    words_fd_ = fd;
+    void* at = mmap(nullptr, kWords * sizeof(std::uint64_t), PROT_READ, MAP_SHARED, fd, 0);
+    if (at == MAP_FAILED) leave();
+    words_ = static_cast<const std::uint64_t*>(at);
+  }
+
+  int run() {
+    Loaded loaded{};
+    if (!load(loaded)) {
+      loaded.says = Says::refused;
+      std::snprintf(loaded.text, sizeof loaded.text, "%s", why_.c_str());
+    }
+    send(kControlFd, &loaded, sizeof loaded, MSG_NOSIGNAL);
+    if (loaded.says == Says::refused) leave();
+    of_blocks_ = loaded.of_blocks;
+    for (Block block; next_block(block);) answer(block.count);
+    leave();
+  }
+
+ private:
+  [[noreturn]] void leave() {
+    end_children(-1);
+    _exit(0);
+  }
+
+  // Waits for what graze asks next, and meanwhile for what the processes take.   Returns: whether there is more to come.
+  bool next_block(Block& block) {
+    for (;;) {
+      pollfd control{kControlFd, POLLIN, 0};
+      if (poll(&control, 1, 1000) > 0)
+        return recv(kControlFd, &block, sizeof block, 0) == sizeof block && block.count > 0 && block.count <= kMostAsked;
+      reap();
+      if (!within_limits()) end_all();
+    }
+  }
+
+  void answer(std::size_t count) {
+    Questions questions(count, of_blocks_);
+    Answers answers{0, static_cast<std::uint32_t>(count), {}};
+    int loads = 0;  // since a worker was ready
+    for (bool first = true; !questions.done(); first = false) {
+      if (worker_ < 0 && !(loader_ >= 0 && await_worker())) {
+        end_all();
+        Loaded again{};
+        if (++loads > kMostLoads || !load(again)) questions.give_up(kCrashed);
+        continue;
+      }
+      loads = 0;
+      Question question = questions.next(++nonce_);
+      question.worker = worker_;
+      nanoseconds_ = 0;
+      const Time start = Clock::now();
+      const bool sent = send(talk_, &question, sizeof question, MSG_NOSIGNAL | MSG_DONTWAIT) == sizeof question;
+      const signed char how = sent ? watch(questions) : static_cast<signed char>(kCrashed);
+      if (how == kDeclined) {
+        const auto wall = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
+        if (first && questions.done() && nanoseconds_ <= static_cast<std::uint64_t>(wall)) answers.nanoseconds = nanoseconds_;
+        continue;
+      }
+      end_worker();
+      questions.take(words_);  // what it answered in the last moment
+      if (!questions.answered()) questions.failed(how);
+    }
+    std::copy(questions.answers().begin(), questions.answers().end(), answers.answers);
+    if (send(kControlFd, &answers, sizeof answers, MSG_NOSIGNAL) != sizeof answers) leave();
+  }
+
+  // Until the worker has answered all (kDeclined), or has to be ended (kCrashed, kTimedOut).
+  signed char watch(Questions& questions) {
+    double before = worker_seconds();
+    int times = 0;
+    Time until = after(limits_.seconds);
+    for (;;) {
+      const bool told = wait(until);
+      if (questions.take(words_) > 0) {
+        before = worker_seconds();
+        times = 0;
+        until = after(limits_.seconds);
+      }
+      if (told) return questions.answered() ? kDeclined : kCrashed;  // it says that it has answered all
+      if (over_limits_) return kCrashed;
+      if (has_ended(worker_fd_)) {
+        questions.take(words_);
+        return kCrashed;
+      }
+      if (Clock::now() < until) continue;
+      // Late is who had the time: a busy machine makes no verdicts.
+      constexpr int kMostTimes = 100;
+      if (++times == kMostTimes || !worker_is_held_up() || worker_seconds() - before >= 0.9 * limits_.seconds)
+        return kTimedOut;
+      until = after(limits_.seconds);
+    }
+  }
+
+  // Waits for any news, at most until then.   Returns: whether the worker says that it has answered the last question.
+  bool wait(Time until) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
+    pollfd news[] = {{talk_, POLLIN, 0}, {worker_fd_, POLLIN, 0}, {kControlFd, POLLIN, 0}};
+    poll(news, 3, static_cast<int>(std::max<long>(0, left)));
+    if (news[2].revents) leave();  // nobody waits for the answers
+    if (Clock::now() >= next_look_) {
+      reap();
+      over_limits_ = !within_limits();
+    }
+    // Behind a worker's end, the next message may be that the next one is ready.
+    if (news[1].revents || !(news[0].revents & POLLIN)) return false;
+    Answered said{};
+    pid_t sender = 0;
+    const ssize_t received = receive(&said, sizeof said, sender);
+    if (received == 0) return true;  // nobody has the socket any more
+    if (received != sizeof said || said.says != Says::answered || said.nonce != nonce_) return false;
+    nanoseconds_ = said.nanoseconds;
+    return true;
+  }
+
+  // One message, and the process that sent it as the system says.   Returns: its bytes; -1 for none.
+  ssize_t receive(void* to, std::size_t size, pid_t& sender) {
+    iovec part{to, size};
+    alignas(cmsghdr) char more[CMSG_SPACE(sizeof(ucred))];
+    msghdr message{nullptr, 0, &part, 1, more, sizeof more, 0};
+    const ssize_t received = recvmsg(talk_, &message, MSG_DONTWAIT | MSG_CMSG_CLOEXEC | MSG_TRUNC);
+    for (cmsghdr* c = received > 0 ? CMSG_FIRSTHDR(&message) : nullptr; c; c = CMSG_NXTHDR(&message, c)) {
+      if (c->cmsg_level != SOL_SOCKET || c->cmsg_type != SCM_CREDENTIALS) continue;
+      ucred who;
+      std::memcpy(&who, CMSG_DATA(c), sizeof who);
+      sender = who.pid;
+    }
+    return received;
+  }
+
+  // Starts the process that loads the code, and waits until it has.   Returns: whether it could; why_ says why not.
+  bool load(Loaded& loaded) {
+    int talk[2];
+    const int yes = 1;
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, talk) != 0 ||
+        setsockopt(talk[0], SOL_SOCKET, SO_PASSCRED, &yes, sizeof yes) != 0) {
+      why_ = fmt::format("cannot make a socket: {}", std::strerror(errno));
+      return false;
+    }
+    why_ = "crashed while it was loaded";
+    loader_ = fork();
+    if (loader_ == 0) become_loader(talk[1]);
+    if (loader_ < 0) why_ = fmt::format("cannot start a process: {}", std::strerror(errno));
+    close(talk[1]);
+    talk_ = talk[0];
+    loader_fd_ = loader_ > 0 ? open_process(loader_) : -1;
+    const Time until = after(limits_.load_seconds);
+    while (loader_fd_ >= 0) {
+      if (!wait_for_message(until, loader_fd_)) break;
+      pid_t sender = 0;
+      char bytes[sizeof(Loaded)];
+      const ssize_t received = receive(bytes, sizeof bytes, sender);
+      if (received == 0) break;  // nobody has the socket any more
+      if (received != sizeof bytes || !read_loaded(bytes, loaded)) continue;
+      if (loaded.says == Says::refused) why_ = loaded.text;
+      return loaded.says == Says::loaded;
+    }
+    return false;
+  }
+
+  [[noreturn]] void become_loader(int talk) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const int from[] = {fcntl(kSupervisorPairsFd, F_DUPFD, 16), fcntl(words_fd_, F_DUPFD, 16), fcntl(talk, F_DUPFD, 16)};
+    const int to[] = {kPairsFd, kWordsFd, kTalkFd};
+    for (int i = 0; i < 3; ++i) dup2(from[i], to[i]);
+    close_range(kTalkFd + 1, ~0u, 0);
+    drop_rights();
+    execv("/proc/self/exe", arguments_);
+    _exit(127);
+  }
+
+  // Returns: whether there is a message; otherwise the process ended, time is up, or it takes too much: why_ says so.
+  bool wait_for_message(Time until, int process_fd) {
+    while (Clock::now() < until) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
+      pollfd news[] = {{talk_, POLLIN, 0}, {process_fd, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
+      poll(news, 3, static_cast<int>(std::max<long>(0, left)));
+      if (news[2].revents & (POLLHUP | POLLERR | POLLRDHUP)) leave();
+      if (news[0].revents & POLLIN) return true;
+      if (news[0].revents || news[1].revents) return false;
+      if (Clock::now() < next_look_) continue;
+      reap();
+      if (is_stopped(loader_)) break;
+      if (within_limits()) continue;
+      why_ = fmt::format("takes more than {} MiB or {} processes while it is loaded", limits_.bytes >> 20,
+                         limits_.processes);
+      return false;
+    }
+    why_ = is_stopped(loader_) ? "stopped while it was loaded" : fmt::format("is not loaded after {} s", limits_.load_seconds);
+    return false;
+  }
+
+  // Waits until the loader's next worker is ready.   Returns: whether it is.
+  bool await_worker() {
+    const Time until = after(limits_.load_seconds);
+    while (wait_for_message(until, loader_fd_)) {
+      Says said{};
+      pid_t sender = 0;
+      const ssize_t received = receive(&said, sizeof said, sender);
+      if (received == 0) return false;  // nobody has the socket any more
+      if (received != sizeof said || said != Says::ready || sender <= 1) continue;
+      const int fd = open_process(sender);  // first, so that the number stays this process's while it is looked at
+      if (fd >= 0 && is_descendant(sender) && !has_ended(fd)) {
+        worker_ = sender;
+        worker_fd_ = fd;
+        return true;
+      }
+      close(fd);
+    }
+    return false;
+  }
+
+  // Of the worker, and of what it started; the process that loaded the code stays, and forks the next.
+  void end_worker() {
+    if (over_limits_) return end_all();
+    syscall(SYS_pidfd_send_signal, worker_fd_, SIGKILL, nullptr, 0);
+    const Time until = after(5);
+    while (!has_ended(worker_fd_) && Clock::now() < until) poll(nullptr, 0, 1);
+    close(worker_fd_);
+    worker_ = worker_fd_ = -1;
+    if (!end_children(loader_) || has_ended(loader_fd_)) end_all();
+  }
+
+  void end_all() {
+    if (!end_children(-1)) _exit(1);  // it starts processes faster than they end: the namespace ends with this one
+    for (int* fd : {&talk_, &loader_fd_, &worker_fd_}) {
+      if (*fd >= 0) close(*fd);
+      *fd = -1;
+    }
+    loader_ = worker_ = -1;
+    over_limits_ = false;
+  }
+
+  // Orphans that ended.
+  void reap() {
+    while (waitpid(-1, nullptr, WNOHANG) > 0) {
+    }
+  }
+
+  bool within_limits() {
+    next_look_ = Clock::now() + kLookEvery;
+    if (limits_.bytes == 0) return true;
+    const Usage usage = usage_of_descendants(limits_.bytes, limits_.processes);
+    return usage.bytes <= limits_.bytes && usage.processes <= limits_.processes;
+  }
+
+  static bool has_ended(int process_fd) {
+    pollfd ended{process_fd, POLLIN, 0};
+    return process_fd < 0 || poll(&ended, 1, 0) > 0;
+  }
+
+  // Processor seconds that the worker took so far.
+  double worker_seconds() const {
+    clockid_t clock;
+    timespec taken{};
+    if (clock_getcpuclockid(worker_, &clock) != 0 || clock_gettime(clock, &taken) != 0) return 0;
+    return static_cast<double>(taken.tv_sec) + 1e-9 * static_cast<double>(taken.tv_nsec);
+  }
+
+  // Whether it would go on if the machine let it: it waits for nothing but a processor.
+  bool worker_is_held_up() const {
+    const char state = process_state(worker_);
+    return state == 'R' || state == 'D';
+  }
+
+  const Limits& limits_;
+  char* const* arguments_;
+  const std::uint64_t* words_ = nullptr;
+  int words_fd_ = -1, talk_ = -1;
+  pid_t loader_ = -1, worker_ = -1;
+  int loader_fd_ = -1, worker_fd_ = -1;  // process descriptors
+  bool of_blocks_ = false, over_limits_ = false;
+  std::uint64_t nonce_ = 0, nanoseconds_ = 0;
+  Time next_look_ = Clock::now() + kLookEvery;
+  std::string why_;
+};
+
+}  // namespace
+
+int supervise(const Limits& limits, char* const* arguments) { return Supervisor(limits, arguments).run(); }
+
+}  // namespace graze::subjects

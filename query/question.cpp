@@ -213,6 +213,8 @@ Question question_of(const graze_query& query) {
   expect(question.triangles <= kMostPairs / query.reference_count,
          "parts: expected at most 2^62 pairs of a triangle and a reference, found more");
   question.lane = lane_of(query.lane);
+  expect(question.lane.is_cuda() || runs_on_this_cpu(question.lane),
+         "lane: expected a lane that this processor can run, found '" + question.lane.id + "'");
   check_outputs(query, question);
   choose_executor(query, question.lane.exact && !question.lane.is_cuda(), question);
   return question;

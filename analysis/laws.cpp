@@ -45,10 +45,19 @@ const Claims kClaims[] = {
 
 std::vector<Pair> scaled_images(const Pair& pair) {
   std::vector<Pair> result;
-  for (const int k : {1, -1, 4, -4, 16, -16, 64, -64}) {
+  for (const int k : kScales) {
     if (const std::optional<Pair> image = exactly_scaled(pair, k)) result.push_back(*image);
   }
   return result;
+}
+
+// Which of kScales scaled_images has used, in its order.
+std::vector<std::size_t> used_scales(const Pair& pair) {
+  std::vector<std::size_t> places;
+  for (std::size_t s = 0; s < kScales.size(); ++s) {
+    if (exactly_scaled(pair, kScales[s])) places.push_back(s);
+  }
+  return places;
 }
 
 // The images of one pair by one law, as a range of the block's pairs.
@@ -157,11 +166,17 @@ struct Run {
       ++counts.pairs;
       bool changed = false, in_range = false;
       const PairPlace place{first.source, first.index + group.pair};
+      const bool scale = group.law == Law::scale;
+      const std::vector<std::size_t> scales = scale ? used_scales(asked.all[group.pair]) : std::vector<std::size_t>();
+      for (const std::size_t s : scales) ++result.by_scale[s].pairs;
       for (std::size_t i = group.first; i < group.last; ++i) {
         if (!breaks(group.law, said[group.pair], said[i])) continue;
         if (group.law == Law::part && is_outside(lane, asked.all[i])) continue;
         const LawCase found{place, asked.all[group.pair], asked.all[i], said[group.pair], said[i]};
-        in_range = in_range || (knows_range(lane) && !leaves(lane, found.pair, found.image));
+        const bool stays =
+            (scale || !in_range) && knows_range(lane) && !leaves(lane, found.pair, found.image);
+        in_range = in_range || stays;
+        if (scale) result.by_scale[scales[i - group.first]] += {0, 1, stays};
         if (lane.exact || (claims(lane, group.law) && in_range))
           throw broken(lane.id + (lane.exact ? "" : ", which claims it,"), group.law, source, place.index, found.of_pair,
                        found.of_image);
@@ -293,6 +308,7 @@ Laws laws(const LawSpec& spec) {
           all.lanes[l].counts[law][s] += some.lanes[l].counts[law][s];
         if (some.lanes[l].simplest[law]) run.keep(all.lanes[l].simplest[law], *some.lanes[l].simplest[law]);
       }
+      for (std::size_t s = 0; s < kScales.size(); ++s) all.lanes[l].by_scale[s] += some.lanes[l].by_scale[s];
     }
   }
   return all;

@@ -30,11 +30,14 @@ inline constexpr LawInfo kLaws[] = {
     {Law::order, "order", "the other 35 orders of the vertices within both triangles"},
     {Law::mirror, "mirror", "the 7 mirror images in planes through the origin and across the axes"},
     {Law::axes, "axes", "the 5 other orders of the axes"},
-    {Law::scale, "scale", "times 2^k for k of 1, 4, 16 and 64, up and down, where no bit is lost"},
+    {Law::scale, "scale", "times 2^k for k of 1, 4, 16 and 64, up and down, where no bit is lost"},  // kScales
     {Law::translate, "translate", "each vertex moved to the origin, and all by a power of two, where no bit is lost"},
     {Law::part, "part", "one triangle replaced by one of its four parts, the edges halved, where no bit is lost"},
 };
 inline constexpr std::size_t kLawCount = std::size(kLaws);
+
+// The powers of two of the images of `scale`.
+inline constexpr std::array kScales = {1, -1, 4, -4, 16, -16, 64, -64};
 
 // The pair's images, without the pair itself; none where all of them would lose bits.
 std::vector<Pair> images(Law law, const Pair& pair);
@@ -76,6 +79,8 @@ struct LawCase {
 struct LawsOfLane {
   std::array<std::vector<LawCount>, kLawCount> counts;  // by law, then by source
   std::array<std::optional<LawCase>, kLawCount> simplest;
+  // Over all sources, by each of kScales alone: the pairs that have this image, and on which it breaks the law.
+  std::array<LawCount, kScales.size()> by_scale;
 
   LawCount total(Law law) const;
 };

@@ -9,6 +9,7 @@
 
 #include "analysis/explain.h"
 #include "analysis/neighbours.h"
+#include "analysis/scales.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
@@ -234,6 +235,37 @@ TEST(Laws, CountsAreThoseOfAPlainLoop) {
   EXPECT_EQ(found.images, all);
   EXPECT_GT(found.its_images, found.by_oracle);
   EXPECT_LT(found.its_images, all);
+}
+
+// And so is what each power of two changes alone: all of them together change more than the most that one does.
+TEST(Laws, EachScaleIsCountedAlone) {
+  const LawSpec spec =
+      spec_of({"projected_sat/f32/cpu", "moller_1997/f32/cpu"}, 1000, {"near_edge_edge", "extreme_scale"});
+  const Laws found = laws(spec);
+  std::uint64_t most = 0, least = ~std::uint64_t{0};
+  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+    const LawsOfLane& of = found.lanes[l];
+    for (std::size_t s = 0; s < kScales.size(); ++s) {
+      LawCount counted;
+      for (const strata::PairSource& source : spec.sources) {
+        for (std::uint64_t i = 0; i < source.pairs; ++i) {
+          const Pair pair = source.pair(i);
+          const std::optional<Pair> image = exactly_scaled(pair, kScales[s]);
+          if (!image) continue;
+          const bool changed = decide_one(spec.on_host[l], pair) != decide_one(spec.on_host[l], *image);
+          const bool leaves = leaves_exponents(*spec.lanes[l], pair) || leaves_exponents(*spec.lanes[l], *image);
+          counted += {1, changed, changed && !leaves};
+        }
+      }
+      EXPECT_EQ(of.by_scale[s].pairs, counted.pairs) << kScales[s];
+      EXPECT_EQ(of.by_scale[s].changed, counted.changed) << kScales[s];
+      EXPECT_EQ(of.by_scale[s].in_range, counted.in_range) << kScales[s];
+      EXPECT_LE(of.by_scale[s].changed, of.total(Law::scale).changed);
+      if (l == 0) most = std::max(most, counted.in_range), least = std::min(least, counted.in_range);
+    }
+  }
+  EXPECT_GT(most, least);
+  EXPECT_GT(found.lanes[0].total(Law::scale).in_range, most);
 }
 
 // A lane whose convention leaves touching pairs open is not asked about them, nor about such parts of others.

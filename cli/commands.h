@@ -61,8 +61,9 @@ std::filesystem::path made_folder(const std::filesystem::path& out);
 // subjects::open_recorded. Of anything else: nothing happens.
 void open_subjects_of(const std::filesystem::path& name);
 
-// Opens the subjects, those of what the command is about as well, then selects the lanes.
-// Throws: as subjects::open and fuzz::select_lanes.
+// Opens the subjects, those of what the command is about as well, then selects the lanes. Says on standard error which
+// ones that were asked for do not run here, and why.
+// Throws: as subjects::open, fuzz::select_lanes and fuzz::expect_each_runs.
 fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::filesystem::path& about = {},
                                       bool require_device = false);
 

@@ -64,6 +64,9 @@ TEST_F(Inputs, WrongWordsAreNamedWithWhatIsNearest) {
   expect_error("graze minimise x", 2, "found 'minimise'; did you mean 'minimize'?");
   expect_error("graze fuzz --lanes 'moler_*'", 2, "found 'moler_*'; did you mean 'moller_1997/f32/cpu'?");
   expect_error("graze fuzz --strata near_edge_egde", 2, "found 'near_edge_egde'; did you mean 'near_edge_edge'?");
+  expect_error("graze fuzz --executor twin --lanes 'moller_1997/f32/cpu,*/f32/cuda-fast' --pairs 10", 2,
+               "'*/f32/cuda-fast': expected a lane that runs here, found only some left out (no twin): "
+               "projected_sat/f32/cuda-fast, interval_overlap/f32/cuda-fast, moller_1997/f32/cuda-fast, ");
   expect_error("graze fuzz --lanes ,", 2, "--lanes: expected patterns with commas between, found ','");
   expect_error("graze fuzz --strata 'uniform,,thesis'", 2, "expected patterns with commas between");
   expect_error("graze fuzz --executor nope", 2, "expected auto, device, twin or both, found 'nope'");

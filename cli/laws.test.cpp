@@ -41,6 +41,28 @@ TEST_F(LawsCommand, LeavesTheSameBytesWhateverTheThreads) {
   EXPECT_GT(json["lanes"][0]["laws"]["order"]["changed"], 0);
 }
 
+// What doubling changes alone stands beside what some scaling changes, in the file and in the table.
+TEST_F(LawsCommand, TellsWhatEachScalingChangesAlone) {
+  const std::string laws = "graze laws --lanes 'projected_sat/f32/cpu' --strata near_edge_edge --pairs 500 --out l";
+  const Ran ran = shell(laws);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto of = json_of(shell.folder / "l/laws.json")["lanes"][0]["laws"];
+  EXPECT_FALSE(of["order"].contains("by_factor"));
+  const auto& factors = of["scale"]["by_factor"];
+  ASSERT_EQ(factors.size(), 8u);
+  std::string line = "projected_sat/f32/cpu";
+  for (const auto& factor : factors) {
+    EXPECT_EQ(factor["pairs"], 500);
+    EXPECT_LE(factor["in_range"], of["scale"]["in_range"]);
+    char cell[32];
+    std::snprintf(cell, sizeof cell, " +%.3g0*", factor["in_range"].get<double>() / 5);
+    line += cell;
+  }
+  EXPECT_EQ(factors[0]["log2"], 1);
+  EXPECT_LT(factors[0]["in_range"].get<int>() * 2, of["scale"]["in_range"].get<int>());
+  EXPECT_EQ(shell(laws + " | grep -cE '" + line + "$'").out, "1\n") << line << '\n' << ran.out;
+}
+
 // Each lane's case of each law: what stands first is wrong, as explain and minimize see it.
 TEST_F(LawsCommand, ItsCasesAreWrongVerdicts) {
   expect_done("graze laws --lanes 'guigue*/f32/cpu' --strata 'near_*' --pairs 400 --out l");

@@ -196,7 +196,10 @@ fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::fil
                                       bool require_device) {
   open_subjects(options);
   if (!about.empty()) open_subjects_of(about);
-  return fuzz::select_lanes(options.globs, options.executor, require_device);
+  fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, options.executor, require_device);
+  fuzz::expect_each_runs(under_test);
+  for (const std::string& line : fuzz::left_out_in_words(under_test.left_out)) fmt::print(stderr, "graze: {}\n", line);
+  return under_test;
 }
 
 std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair) {

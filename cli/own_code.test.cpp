@@ -190,6 +190,36 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
       << late.out << late.err;
 }
 
+// Lanes that were asked for and do not run are named, recorded and reported; none of a pattern is an error.
+TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
+  const std::string lanes = " --lanes 'moller_1997/f32/c*' ";
+  const Ran ran = shell("graze fuzz --executor twin --pairs 200 --strata uniform --out c" + lanes);
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_EQ(ran.err, "graze: left out (no twin): moller_1997/f32/cuda-fast\n");
+  EXPECT_NE(contents(shell.folder / "c/summary.json").find(R"("moller_1997/f32/cuda-fast": "no twin")"), std::string::npos);
+  expect_done("graze report c");
+  for (const char* file : {"c/report.json", "c/report.html"})
+    EXPECT_NE(contents(shell.folder / file).find("did not run: left out (no twin): moller_1997/f32/cuda-fast."),
+              std::string::npos) << file;
+  shell("echo '" + std::string(kPair) + "' > p");
+  for (const char* verb : {"check p --executor twin", "explain p", "laws --pairs 19 --out l", "plan --executor twin",
+                           "corpus verify --executor twin"})
+    EXPECT_TRUE(shell(std::string("graze ") + verb + lanes).err.starts_with(ran.err)) << verb;
+  // Of those that run nothing is said, and nothing is recorded.
+  const Ran all = shell("graze fuzz --pairs 200 --strata uniform --out d --executor twin --lanes 'moller_1997/f32/c*fma'");
+  EXPECT_EQ(all.err, "");
+  EXPECT_EQ(contents(shell.folder / "d/summary.json").find("left_out"), std::string::npos);
+  // A user's own code is asked for without a pattern as well.
+  std::ofstream(shell.folder / "own.cu") << "__device__ bool meet(const float a[9], const float b[9]) "
+                                            "{ return expf(a[0]) > b[0]; }\n";
+  const Ran own = shell("export XDG_CACHE_HOME=$PWD/cache; graze fuzz --pairs 20 --subject own=./own.cu:meet --executor twin --out e");
+  if (own.err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
+  EXPECT_EQ(own.status, 2);
+  EXPECT_TRUE(own.err.starts_with("graze: 'own/*': expected a lane that runs here, found only some left out (no twin: "))
+      << own.err;
+  EXPECT_EQ(std::count(own.err.begin(), own.err.end(), '\n'), 1) << own.err;
+}
+
 TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   shell("echo 'int intersects(const float a[9], const float b[9]) { return a[0] > b[0]; }' > own.c");
   const std::string fuzz =

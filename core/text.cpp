@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <system_error>
 
@@ -14,6 +16,12 @@ namespace {
 constexpr std::size_t kLongestQuote = 40;  // of foreign text in a message
 
 bool is_hex_digit(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
+
+std::string general(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
 
 // Appends the byte, as \xHH unless it is printable ASCII.
 void append_printable(std::string& text, char c) {
@@ -53,6 +61,26 @@ std::optional<std::uint64_t> parse_whole(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+std::string rounded_up(double value, int digits) {
+  const double nearest = std::strtod(general(value, digits).c_str(), nullptr);
+  if (nearest >= value) return general(nearest, digits);
+  // The next decimal: one more in the last digit.
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*e", digits - 1, value);
+  const int last = std::atoi(std::strchr(text, 'e') + 1) - (digits - 1);
+  std::string mantissa;
+  for (const char* c = text; *c != 'e'; ++c) {
+    if (*c != '.') mantissa += *c;
+  }
+  std::snprintf(text, sizeof text, "%llde%d", std::atoll(mantissa.c_str()) + 1, last);
+  return general(std::strtod(text, nullptr), digits);
+}
+
+std::string rounded_down(double value, int digits) {
+  const std::string text = rounded_up(-value, digits);
+  return text.starts_with('-') ? text.substr(1) : text == "0" ? text : '-' + text;
 }
 
 std::string printable(std::string_view text) {

@@ -17,6 +17,12 @@ std::optional<float> parse_float32(std::string_view text);
 // Returns: the whole number that text spells, without a sign; nothing when it spells none or one too large.
 std::optional<std::uint64_t> parse_whole(std::string_view text);
 
+// Returns: the least decimal of so many significant digits that is not below the value, and the greatest that is not
+// above it, as %g writes them: 0.02032 is "0.021" and "0.02". For upper and lower bounds, which rounding to the nearest
+// would make false.   Requires: a finite value, 1 to 15 digits.
+std::string rounded_up(double value, int digits);
+std::string rounded_down(double value, int digits);
+
 // Returns: the text with each byte that is not printable ASCII as \xHH, so that it can be printed anywhere.
 std::string printable(std::string_view text);
 

@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <random>
+#include <string>
+
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -68,6 +72,38 @@ TEST(ParseWhole, TakesDigitsThatFitAndNothingElse) {
   EXPECT_EQ(parse_whole("18446744073709551615"), ~std::uint64_t{0});
   for (const char* text : {"", "-1", "+1", " 1", "1 ", "0x1", "1.0", "18446744073709551616"})
     EXPECT_EQ(parse_whole(text), std::nullopt) << text;
+}
+
+TEST(Rounded, OutwardAndNoFartherThanTheNextDecimal) {
+  EXPECT_EQ(rounded_up(0.02032, 2), "0.021");
+  EXPECT_EQ(rounded_down(0.02032, 2), "0.02");
+  EXPECT_EQ(rounded_up(0.02, 2), "0.02");
+  EXPECT_EQ(rounded_down(0.02, 2), "0.02");
+  EXPECT_EQ(rounded_up(0.0996, 2), "0.1");
+  EXPECT_EQ(rounded_up(9.99e-6, 2), "1e-05");
+  EXPECT_EQ(rounded_up(123456, 2), "1.3e+05");
+  EXPECT_EQ(rounded_up(0, 3), "0");
+  EXPECT_EQ(rounded_down(0, 3), "0");
+  EXPECT_EQ(rounded_up(-0.02032, 2), "-0.02");
+  EXPECT_EQ(rounded_down(-0.02032, 2), "-0.021");
+  EXPECT_EQ(rounded_up(1, 1), "1");
+  std::mt19937_64 bits(2012);
+  int inexact = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const double mantissa = 1 + static_cast<double>(bits() >> 12) * 0x1p-52;
+    const double value = std::ldexp(mantissa, static_cast<int>(bits() % 120) - 60);
+    const int digits = 1 + static_cast<int>(bits() % 6);
+    const double up = std::stod(rounded_up(value, digits)), down = std::stod(rounded_down(value, digits));
+    ASSERT_GE(up, value) << digits;
+    ASSERT_LE(down, value) << digits;
+    // The two are neighbours, and the nearest decimal is one of them.
+    ASSERT_LE(up - down, 1.000001 * std::pow(10, 1 - digits) * up) << value << ' ' << digits;
+    char nearest[32];
+    std::snprintf(nearest, sizeof nearest, "%.*g", digits, value);
+    ASSERT_TRUE(std::stod(nearest) == up || std::stod(nearest) == down) << value << ' ' << digits;
+    inexact += up != down;
+  }
+  EXPECT_GT(inexact, 190'000);
 }
 
 TEST(Printable, ShowsControlCharactersAndForeignBytes) {

@@ -14,6 +14,17 @@
 namespace graze::fuzz {
 namespace {
 
+// Empty where something runs the lane.
+std::string why_unavailable(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
+  if (!lane.is_cuda())
+    return runs_on_this_cpu(lane) ? "" : fmt::format("no {} instructions", info_of(lane.variant).needs);
+  if (lane.foreign) return lane.decide ? "" : lane.evidence;
+  if (device || cuda::block_on_host(lane)) return "";
+  if (lane.under && !cuda::has_policy_twins()) return not_in_a_campaigns_build("twins of lanes under tolerances");
+  if (lane.exact) return why_no_device;
+  return why_no_device.empty() ? "no twin" : why_no_device + ", and no twin";
+}
+
 std::string twin_evidence_of(const Lane& lane) { return lane.exact ? "twin, exact" : cuda::twin_evidence(lane); }
 
 // Lanes under a policy stand at the table's end; here they stand beside the others of their subject.
@@ -51,17 +62,57 @@ std::string LanesUnderTest::evidence(std::size_t l) const {
 }
 
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
-  if (lane.foreign && lane.is_cuda())
-    return fmt::format("{} ({})", lane.decide ? "available" : "unavailable", lane.evidence);
-  if (!lane.is_cuda()) {
-    const std::string needs(info_of(lane.variant).needs);
-    return runs_on_this_cpu(lane) ? "available" : "unavailable (no " + needs + " instructions)";
+  if (const std::string why = why_unavailable(lane, device, why_no_device); !why.empty())
+    return "unavailable (" + why + ")";
+  if (!lane.is_cuda()) return "available";
+  if (lane.foreign) return "available (" + lane.evidence + ")";
+  return device ? "available (device)" : "available (" + twin_evidence_of(lane) + ")";
+}
+
+void expect_each_runs(const LanesUnderTest& under_test) {
+  std::vector<std::string> patterns = under_test.asked;
+  if (patterns.empty()) {
+    for (const LaneLeftOut& row : under_test.left_out) patterns.push_back(row.id.substr(0, row.id.find('/')) + "/*");
   }
-  if (device) return "available (device)";
-  if (lane.under && !cuda::has_policy_twins())
-    return "unavailable (" + not_in_a_campaigns_build("twins of lanes under tolerances") + ")";
-  return cuda::block_on_host(lane) ? "available (" + twin_evidence_of(lane) + ")"
-                                   : "unavailable (" + why_no_device + (lane.exact ? ")" : ", and no twin)");
+  for (const std::string& pattern : patterns) {
+    if (std::any_of(under_test.lanes.begin(), under_test.lanes.end(),
+                    [&](const Lane* lane) { return matches_any({pattern}, lane->id); }))
+      continue;
+    std::vector<LaneLeftOut> of_pattern;
+    for (const LaneLeftOut& row : under_test.left_out) {
+      if (matches_any({pattern}, row.id)) of_pattern.push_back(row);
+    }
+    throw UsageError(fmt::format("'{}': expected a lane that runs here, found only some {}", printable(pattern),
+                                 fmt::join(left_out_in_words(of_pattern), "; ")));
+  }
+}
+
+std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_out) {
+  std::vector<std::pair<std::string, std::string>> by_reason;
+  for (const LaneLeftOut& row : left_out) {
+    const auto found = std::find_if(by_reason.begin(), by_reason.end(), [&](auto& r) { return r.first == row.why; });
+    if (found == by_reason.end()) {
+      by_reason.emplace_back(row.why, row.id);
+    } else {
+      found->second += ", " + row.id;
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [why, ids] : by_reason) lines.push_back(fmt::format("left out ({}): {}", why, ids));
+  return lines;
+}
+
+nlohmann::ordered_json left_out_json(const LanesUnderTest& under_test) {
+  if (under_test.left_out.empty()) return nullptr;
+  nlohmann::ordered_json why = nlohmann::ordered_json::object();
+  for (const LaneLeftOut& row : under_test.left_out) why[row.id] = row.why;
+  return {{"patterns", under_test.asked}, {"why", why}};
+}
+
+std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded) {
+  std::vector<LaneLeftOut> rows;
+  for (const auto& [id, why] : recorded.at("why").items()) rows.push_back({id, why});
+  return rows;
 }
 
 LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device) {
@@ -75,6 +126,7 @@ LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor exec
     }
   }
   LanesUnderTest under_test;
+  under_test.asked = globs;
   std::string why_not;
   if (executor != Executor::twin) under_test.device = cuda::open_device(why_not);
   const bool needs_device = require_device || executor == Executor::device || executor == Executor::both;
@@ -83,16 +135,19 @@ LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor exec
     if (!matches_any(globs, lane.id)) continue;
     const bool only_device = lane.is_cuda() && !lane.foreign && under_test.device && executor != Executor::both;
     const DecideBlock on_host = only_device ? nullptr : cuda::block_on_host(lane);
-    const bool device = under_test.device && !lane.foreign;
-    if (lane.is_cuda() ? on_host || device : runs_on_this_cpu(lane)) {
+    const std::string why = why_unavailable(lane, under_test.device.get(), why_not);
+    if (why.empty()) {
       under_test.lanes.push_back(&lane);
       under_test.on_host.push_back(on_host);
-    } else {
-      why_not = status(lane, under_test.device.get(), why_not);
+    } else if (!globs.empty() || lane.foreign) {
+      under_test.left_out.push_back({lane.id, why});
     }
   }
   sort_by_subject(under_test);
-  if (under_test.lanes.empty()) throw UsageError("expected a lane that runs here, found only some that are " + why_not);
+  if (under_test.lanes.empty()) {
+    throw UsageError(fmt::format("expected a lane that runs here, found only some {}",
+                                 fmt::join(left_out_in_words(under_test.left_out), "; ")));
+  }
   return under_test;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,17 @@ namespace graze::fuzz {
 // What runs the CUDA lanes. automatic: the device where there is one, else the twins.
 enum class Executor { automatic, device, twin, both };
 
+// A lane that was asked for and does not run here, and why: "no fma instructions".
+struct LaneLeftOut {
+  std::string id, why;
+};
+
 struct LanesUnderTest {
   std::vector<const Lane*> lanes;        // selected and available, in table order
   std::vector<DecideBlock> on_host;      // of each: the host lane or the twin; null where only the device runs it
   std::unique_ptr<cuda::Device> device;  // null when the CUDA lanes do not run on one
+  std::vector<std::string> asked;        // the patterns; none: all lanes that run here, and all of the user's own code
+  std::vector<LaneLeftOut> left_out;     // of those asked for
 
   // Foreign code runs in a process of its own, on a device as well.
   bool on_device(std::size_t l) const { return device && lanes[l]->is_cuda() && !lanes[l]->foreign; }
@@ -34,6 +42,18 @@ struct LanesUnderTest {
 // is asked for and there is none.
 LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
                             bool require_device = false);
+
+// Throws: UsageError, with the reasons, when of a pattern no lane runs here; without patterns, of a user's own code.
+void expect_each_runs(const LanesUnderTest& under_test);
+
+// Those left out in words, a line for each reason: "left out (no device, and no twin): moller_1997/f32/cuda-fast".
+std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_out);
+
+// {"patterns": those asked for, "why": {lane: reason}}, as a campaign's spec records it; null where none is left out.
+nlohmann::ordered_json left_out_json(const LanesUnderTest& under_test);
+
+// The inverse.   Throws: nlohmann::json::exception.
+std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded);
 
 // What runs the lane here, or why nothing does: "available (device)", "unavailable (no fma instructions)".
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device);

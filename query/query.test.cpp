@@ -214,11 +214,14 @@ TEST(Query, WrongArgumentsAreNamed) {
         "references: expected a pointer that is a multiple of 4");
   wrong([](auto& q) { q.part_count = 0; }, "parts: expected at least one, found none");
   wrong([](auto& q) { q.parts = nullptr; }, "parts: expected at least one, found none");
+  wrong([](auto& q) { q.part_count = UINT64_MAX; }, "parts: expected at most 65536, found 18446744073709551615");
+  wrong([&](auto& q) { q.parts = reinterpret_cast<const graze_triangles*>(reinterpret_cast<const char*>(&part) + 4); },
+        "parts: expected a pointer that is a multiple of 8");
   wrong([&](auto&) { part.rows = nullptr; }, "parts[0].rows: expected a pointer, found NULL");
   wrong([&](auto&) { part.stride = 12; },
-        "parts[0]: expected a stride of at least 36 bytes that is a multiple of 4, found 12");
+        "parts[0]: expected a stride of 36 to 9223372036854775807 bytes that is a multiple of 4, found 12");
   wrong([&](auto&) { part.stride = 38; },
-        "parts[0]: expected a stride of at least 36 bytes that is a multiple of 4, found 38");
+        "parts[0]: expected a stride of 36 to 9223372036854775807 bytes that is a multiple of 4, found 38");
   wrong([&](auto&) { part.layout = 3; }, "parts[0]: expected a layout of 0 to 2, found 3");
   wrong([&](auto&) { part.layout = GRAZE_COLUMNS; }, "parts[0].columns[0]: expected a pointer, found NULL");
   wrong([&](auto&) { part.layout = GRAZE_MESH; }, "parts[0].faces: expected a pointer, found NULL");
@@ -236,6 +239,11 @@ TEST(Query, WrongArgumentsAreNamed) {
         "lane: expected a CUDA lane for GPUs, found 'moller_1997/f32/cpu'");
   wrong([&](auto& q) { q.mode = GRAZE_ANY, q.bytes = bytes; }, "GRAZE_ANY: expected no outputs but the answer");
   wrong([](auto& q) { q.list_room = 1; }, "list: expected a pointer, found NULL");
+  std::uint64_t list[10];
+  wrong([&](auto& q) { q.list = list, q.list_room = SIZE_MAX; },
+        "list: expected an array that fits into memory, found 18446744073709551615 elements, one every 8 bytes");
+  wrong([&](auto& q) { q.list = reinterpret_cast<std::uint64_t*>(reinterpret_cast<char*>(list) + 4), q.list_room = 1; },
+        "list: expected a pointer that is a multiple of 8");
   wrong([&](auto& q) { q.bytes = bytes, q.outputs_on_device = 1; },
         "outputs_on_device: expected one part in a device's memory, and no list");
   wrong([&](auto& q) { part.device = 0, q.executor = GRAZE_ONE_CORE; },
@@ -248,6 +256,94 @@ TEST(Query, WrongArgumentsAreNamed) {
   EXPECT_EQ(graze_run(context, nullptr, &answer), GRAZE_BAD_ARGUMENT);
   EXPECT_EQ(graze_run(context, &right, nullptr), GRAZE_BAD_ARGUMENT);
   graze_close(context);
+}
+
+// Ten triangles in each layout; one of them meets the thesis's reference.
+struct InLayout {
+  std::vector<Triangle> triangles = thesis_triangles(10);
+  std::vector<std::array<std::uint32_t, 3>> faces;
+  graze_triangles part;
+
+  explicit InLayout(int layout) {
+    triangles[7] = kThesisReference;
+    for (std::uint32_t v = 0; v < 30; v += 3) faces.push_back({v, v + 1, v + 2});
+    part = part_of(triangles);
+    part.layout = layout;
+    part.stride = 0;
+    for (std::size_t k = 0; k < 9; ++k) part.columns[k] = triangles[0].data() + k;
+    if (layout == GRAZE_COLUMNS) part.stride = 36;
+    part.vertices = part.rows;
+    part.vertex_count = 30;
+    part.faces = faces[0].data();
+  }
+};
+
+constexpr int kLayouts[] = {GRAZE_ROWS, GRAZE_COLUMNS, GRAZE_MESH};
+constexpr std::size_t kElement[] = {36, 4, 12};  // bytes, by layout
+
+TEST(Query, StridesThatNoArrayHasAreRefusedInEveryLayout) {
+  for (const int layout : kLayouts) {
+    InLayout all(layout);
+    const std::uint64_t hits = Context().count(kThesisReference, all.part).hits;
+    EXPECT_GT(hits, 0u);
+    for (const int executor : {GRAZE_AUTO, GRAZE_ONE_CORE, GRAZE_ALL_CORES, GRAZE_ALL_GPUS}) {
+      const auto status = [&](std::uint64_t count, std::size_t stride) {
+        graze_triangles part = all.part;
+        part.count = count;
+        part.stride = stride;
+        graze_query query = query_of(kThesisReference, part);
+        query.executor = executor;
+        return Context().run(query).status;
+      };
+      const std::size_t size = kElement[layout];
+      for (const std::size_t stride :
+           {std::size_t{1}, size - 1, size + 1, SIZE_MAX, SIZE_MAX - 35, SIZE_MAX - 3, SIZE_MAX / 2 + 1}) {
+        for (const std::uint64_t count : {1, 2, 10}) EXPECT_EQ(status(count, stride), GRAZE_BAD_ARGUMENT) << stride;
+      }
+      // The product overflows: to 0, to little, to a little less than all; or the array ends behind the address space.
+      for (const std::size_t stride :
+           {std::size_t{1} << 62, std::size_t{1} << 60, (SIZE_MAX / 9 + 1) / 4 * 4, SIZE_MAX / 2 / 9 / 4 * 4 + 4})
+        EXPECT_EQ(status(10, stride), GRAZE_BAD_ARGUMENT) << stride;
+      EXPECT_EQ(status(GRAZE_MOST_TRIANGLES, std::size_t{1} << 16), GRAZE_BAD_ARGUMENT);
+      EXPECT_EQ(status(GRAZE_MOST_TRIANGLES + 1, 0), GRAZE_BAD_ARGUMENT);
+    }
+    std::vector<std::uint8_t> bytes;
+    graze_triangles many = all.part;
+    many.count = UINT64_MAX;
+    EXPECT_EQ(Context().all(kThesisReference, many, bytes).status, GRAZE_BAD_ARGUMENT);
+  }
+}
+
+TEST(Query, VerticesThatNoArrayHasAreRefused) {
+  InLayout all(GRAZE_MESH);
+  const std::uint64_t hits = Context().count(kThesisReference, all.part).hits;
+  EXPECT_GT(hits, 0u);
+  const auto status = [&](std::uint64_t count, std::size_t stride) {
+    graze_triangles part = all.part;
+    part.vertex_count = count;
+    part.vertex_stride = stride;
+    return Context().count(kThesisReference, part).status;
+  };
+  EXPECT_EQ(status(30, 12), GRAZE_OK);
+  for (const std::size_t stride : {std::size_t{1}, std::size_t{11}, std::size_t{13}, SIZE_MAX, SIZE_MAX - 11,
+                                   SIZE_MAX - 3, std::size_t{1} << 62, (SIZE_MAX / 29 + 1) / 4 * 4})
+    EXPECT_EQ(status(30, stride), GRAZE_BAD_ARGUMENT) << stride;
+  EXPECT_EQ(status(UINT64_MAX, 12), GRAZE_BAD_ARGUMENT);
+  EXPECT_EQ(status(UINT64_MAX / 12 + 2, 12), GRAZE_BAD_ARGUMENT);
+}
+
+TEST(Query, CountsWhoseProductsOverflowAreRefused) {
+  const std::vector<Triangle> triangles = thesis_triangles(10);
+  std::vector<graze_triangles> parts(3, part_of(triangles));
+  for (graze_triangles& part : parts) part.count = GRAZE_MOST_TRIANGLES / 2;
+  graze_query query = query_of(kThesisReference, parts[0]);
+  query.part_count = 3;
+  expect_refused(query, "parts: expected at most 2^48 triangles, found more");
+  query.part_count = 2;
+  query.reference_count = 1 << 16;
+  expect_refused(query, "parts: expected at most 2^62 pairs of a triangle and a reference, found more");
+  query.reference_count = UINT64_MAX;
+  expect_refused(query, "references: expected 1 to 65536, found 18446744073709551615");
 }
 
 TEST(Query, WithoutADeviceItSaysSo) {

@@ -16,7 +16,8 @@
 namespace graze::query {
 namespace {
 
-constexpr std::uint64_t kMostTriangles = std::uint64_t{1} << 48, kMostReferences = 1 << 16;
+constexpr std::uint64_t kMostTriangles = GRAZE_MOST_TRIANGLES, kMostReferences = 1 << 16, kMostParts = 1 << 16,
+                        kMostPairs = std::uint64_t{1} << 62;
 
 // Nanoseconds for a triangle and a reference on one core, and for a triangle's way to a device, measured on an H200 and
 // its host (docs/measurements.md); and until CUDA has started, taken, not measured. They matter for GRAZE_AUTO alone.
@@ -29,15 +30,31 @@ void expect(bool holds, const std::string& what) {
   if (!holds) refuse(what);
 }
 
-void expect_aligned(const void* at, const std::string& name) {
+void expect_aligned(const void* at, const std::string& name, std::size_t alignment = 4) {
   expect(at != nullptr, name + ": expected a pointer, found NULL");
-  expect(reinterpret_cast<std::uintptr_t>(at) % 4 == 0, name + ": expected a pointer that is a multiple of 4");
+  expect(reinterpret_cast<std::uintptr_t>(at) % alignment == 0,
+         name + ": expected a pointer that is a multiple of " + std::to_string(alignment));
+}
+
+// Whether `count` elements of `size` bytes, `stride` bytes apart, fit into an object at this address: into PTRDIFF_MAX
+// bytes, and before the end of the address space.
+bool fits(const void* at, std::uint64_t count, std::size_t stride, std::size_t size) {
+  const std::uintptr_t room =
+      std::min<std::uintptr_t>(PTRDIFF_MAX, UINTPTR_MAX - reinterpret_cast<std::uintptr_t>(at));
+  return count == 0 || (size <= room && (count - 1) <= (room - size) / stride);
+}
+
+void expect_fits(const void* at, std::uint64_t count, std::size_t stride, std::size_t size, const std::string& name) {
+  expect(fits(at, count, stride, size), name + ": expected an array that fits into memory, found " +
+                                            std::to_string(count) + " elements, one every " + std::to_string(stride) +
+                                            " bytes");
 }
 
 std::size_t stride_of(std::size_t stride, std::size_t least, const std::string& name) {
   if (stride == 0) return least;
-  expect(stride >= least && stride % 4 == 0, name + ": expected a stride of at least " + std::to_string(least) +
-                                                 " bytes that is a multiple of 4, found " + std::to_string(stride));
+  expect(stride >= least && stride <= PTRDIFF_MAX && stride % 4 == 0,
+         name + ": expected a stride of " + std::to_string(least) + " to " + std::to_string(PTRDIFF_MAX) +
+             " bytes that is a multiple of 4, found " + std::to_string(stride));
   return stride;
 }
 
@@ -51,14 +68,17 @@ cuda::TriangleArray array_of(const graze_triangles& part, const std::string& nam
       expect_aligned(part.rows, name + ".rows");
       array.rows = reinterpret_cast<const char*>(part.rows);
       array.stride = stride_of(part.stride, 36, name);
+      expect_fits(array.rows, part.count, array.stride, 36, name + ".rows");
       return array;
     case GRAZE_COLUMNS:
       array.layout = cuda::Layout::columns;
+      array.stride = stride_of(part.stride, 4, name);
       for (int k = 0; k < 9; ++k) {
-        expect_aligned(part.columns[k], name + ".columns[" + std::to_string(k) + "]");
+        const std::string column = name + ".columns[" + std::to_string(k) + "]";
+        expect_aligned(part.columns[k], column);
+        expect_fits(part.columns[k], part.count, array.stride, 4, column);
         array.columns[k] = part.columns[k];
       }
-      array.stride = stride_of(part.stride, 4, name);
       return array;
     case GRAZE_MESH:
       array.layout = cuda::Layout::mesh;
@@ -69,6 +89,8 @@ cuda::TriangleArray array_of(const graze_triangles& part, const std::string& nam
       array.vertex_count = part.vertex_count;
       array.stride = stride_of(part.stride, 12, name);
       array.vertex_stride = stride_of(part.vertex_stride, 12, name + ".vertices");
+      expect_fits(array.faces, part.count, array.stride, 12, name + ".faces");
+      expect_fits(array.vertices, part.vertex_count, array.vertex_stride, 12, name + ".vertices");
       return array;
     default:
       refuse(name + ": expected a layout of 0 to 2, found " + std::to_string(part.layout));
@@ -95,7 +117,10 @@ Lane lane_of(const char* id) {
 void check_outputs(const graze_query& query, const Question& question) {
   const bool any = query.mode == GRAZE_ANY;
   expect(!any || (!query.bytes && !query.bits && !query.list), "GRAZE_ANY: expected no outputs but the answer");
-  expect(query.list || query.list_room == 0, "list: expected a pointer, found NULL");
+  if (query.list_room != 0) expect_aligned(query.list, "list", alignof(std::uint64_t));
+  expect_fits(query.list, query.list_room, sizeof *query.list, sizeof *query.list, "list");
+  if (query.bytes) expect_fits(query.bytes, query.reference_count * question.triangles, 1, 1, "bytes");
+  if (query.bits) expect_fits(query.bits, query.reference_count * ((question.triangles + 7) / 8), 1, 1, "bits");
   if (query.bits) {
     for (std::size_t p = 0; p + 1 < question.counts.size(); ++p)
       expect(question.counts[p] % 64 == 0, "bits: expected parts of a multiple of 64 triangles, but for the last one");
@@ -169,8 +194,13 @@ Question question_of(const graze_query& query) {
   expect(query.reference_count >= 1 && query.reference_count <= kMostReferences,
          "references: expected 1 to 65536, found " + std::to_string(query.reference_count));
   expect_aligned(query.references, "references");
+  expect_fits(query.references, query.reference_count, 36, 36, "references");
   question.references = {query.references, query.reference_count * 9};
   expect(query.part_count >= 1 && query.parts, "parts: expected at least one, found none");
+  expect(query.part_count <= kMostParts,
+         "parts: expected at most 65536, found " + std::to_string(query.part_count));
+  expect_aligned(query.parts, "parts", alignof(graze_triangles));
+  expect_fits(query.parts, query.part_count, sizeof *query.parts, sizeof *query.parts, "parts");
   for (std::uint64_t p = 0; p < query.part_count; ++p) {
     const graze_triangles& part = query.parts[p];
     question.parts.push_back(array_of(part, "parts[" + std::to_string(p) + "]"));
@@ -178,9 +208,13 @@ Question question_of(const graze_query& query) {
     question.counts.push_back(part.count);
     question.places.push_back(part.device);
     question.triangles += part.count;
+    expect(question.triangles <= kMostTriangles, "parts: expected at most 2^48 triangles, found more");
   }
-  expect(question.triangles <= kMostTriangles, "parts: expected at most 2^48 triangles, found more");
+  expect(question.triangles <= kMostPairs / query.reference_count,
+         "parts: expected at most 2^62 pairs of a triangle and a reference, found more");
   question.lane = lane_of(query.lane);
+  expect(question.lane.is_cuda() || runs_on_this_cpu(question.lane),
+         "lane: expected a lane that this processor can run, found '" + question.lane.id + "'");
   check_outputs(query, question);
   choose_executor(query, question.lane.exact && !question.lane.is_cuda(), question);
   return question;

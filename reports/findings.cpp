@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include "core/text.h"
 #include "reports/lane_words.h"
 #include "reports/recommendations.h"
 #include "reports/tables.h"
@@ -100,7 +102,7 @@ std::string thesis(const CampaignCounts& counts, const Places& lanes) {
     return fmt::format(
         "On the 2012 thesis's triangles CPU and GPU agree: none of {} CUDA lanes differs from its cpu "
         "lane on any of {} pairs (with 95 % confidence fewer than {}).",
-        compared.size(), pairs, rate_words(bound_of_none(stratum->pairs)));
+        compared.size(), pairs, rate_words(bound_of_none(stratum->pairs), Bound::upper));
   }
   const int own = counts.find({"interval_overlap", "f32", "cuda-fma", ""});
   const auto own_place = static_cast<std::size_t>(own);
@@ -154,10 +156,22 @@ std::string dangerous(const CampaignCounts& counts, const Places& lanes) {
 
 }  // namespace
 
-std::string rate_words(double rate) {
+std::string rate_words(double rate, Bound bound) {
   if (rate == 0) return "0";
-  if (rate >= 0.001) return fmt::format("{:.3g} %", 100 * rate);
-  return fmt::format("1 in {}", grouped(static_cast<std::uint64_t>(std::stod(fmt::format("{:.3g}", 1 / rate)))));
+  const bool in_percent = rate >= 0.001;
+  const double shown = in_percent ? 100 * rate : 1 / rate;
+  std::string text = fmt::format("{:.3g}", shown);
+  if (bound != Bound::none) {
+    const bool up = (bound == Bound::upper) == in_percent;
+    const auto outward = [&](double value) { return up ? rounded_up(value, 3) : rounded_down(value, 3); };
+    text = outward(shown);
+    // The product and the inverse above are rounded as well.
+    const double read = in_percent ? std::stod(text) / 100 : 1 / std::stod(text);
+    if (bound == Bound::upper ? read < rate : read > rate)
+      text = outward(std::nextafter(std::stod(text), up ? HUGE_VAL : 0.0));
+  }
+  if (in_percent) return text + " %";
+  return fmt::format("1 in {}", grouped(static_cast<std::uint64_t>(std::stod(text))));
 }
 
 std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs) {

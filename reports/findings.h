@@ -15,7 +15,10 @@ namespace graze::reports {
 // sentence where no pair is decided yet. costs null: none were measured.
 std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs);
 
-// "12.3 %", "1 in 3,270", "0".
-std::string rate_words(double rate);
+enum class Bound { none, lower, upper };
+
+// "12.3 %", "1 in 3,270", "0". A bound is rounded outward: what is printed is not below an upper bound, nor above a
+// lower one.
+std::string rate_words(double rate, Bound bound = Bound::none);
 
 }  // namespace graze::reports

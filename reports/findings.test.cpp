@@ -13,7 +13,7 @@ TEST(Answer, OfOneLaneComparesNothing) {
   const auto said = answer_of(summary_of({"moller_1997/f32/cpu"}, {"uniform"}, {3, 2, 0, 0}));
   ASSERT_EQ(said.size(), 6u);
   EXPECT_EQ(said[0],
-            "The only published lane, moller_1997/f32/cpu, is wrong on 5 (0.5 %, 95 % interval 0.214 % to 1.17 %) of "
+            "The only published lane, moller_1997/f32/cpu, is wrong on 5 (0.5 %, 95 % interval 0.213 % to 1.17 %) of "
             "1,000 pairs.");
   EXPECT_EQ(said[1], "The only stratum is uniform (0.5 % of all verdicts wrong).");
   // What the campaign cannot tell comes last.
@@ -57,7 +57,7 @@ TEST(Answer, TellsWhatContractionChanges) {
   EXPECT_EQ(
       said[1],
       "Of the 3 published lanes the least wrong are interval_overlap/f32/cpu and interval_overlap/f32/cuda-nofma: on "
-      "none of 1,000 pairs (with 95 % confidence fewer than 0.299 %).");
+      "none of 1,000 pairs (with 95 % confidence fewer than 0.3 %).");
   EXPECT_TRUE(contains(said[3], "another verdict than interval_overlap/f32/cuda-nofma on 10 pairs (1 %")) << said[3];
   EXPECT_TRUE(contains(said[3], "its wrong verdicts go from 0 to 10; 1 of 1 lanes")) << said[3];
   EXPECT_TRUE(contains(said[4], "in interval_overlap/f32/cuda-fma: on 10 (1 %")) << said[4];

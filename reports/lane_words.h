@@ -38,7 +38,7 @@ inline bool all_published(const CampaignCounts& counts) {
 // "12 pairs (1.2 %, 95 % interval 0.7 % to 2.1 %)"
 inline std::string with_interval(const Share& s, const char* what = "") {
   return fmt::format("{}{} ({}, 95 % interval {} to {})", grouped(s.count), what, rate_words(s.share),
-                     rate_words(s.low), rate_words(s.high));
+                     rate_words(s.low, Bound::lower), rate_words(s.high, Bound::upper));
 }
 
 // "a, b and c"; of more than four the first three and how many more.

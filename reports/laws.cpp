@@ -55,6 +55,27 @@ std::vector<corpus::Entry> entries_of(const analysis::LawSpec& spec, const Lane&
   return entries;
 }
 
+// How much of the column "scale, in range" each power of two makes alone; empty where nothing is known, or nothing is
+// changed.
+std::string scales_table(const analysis::LawSpec& spec, const analysis::Laws& laws, const Screen& screen) {
+  std::vector<Column> columns{{"lane", Align::left}};
+  for (const int k : analysis::kScales) columns.push_back({fmt::format("2^{}", k)});
+  TextTable table(columns);
+  bool any = false;
+  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+    if (laws.lanes[l].total(analysis::Law::scale).in_range == 0) continue;
+    any = true;
+    std::vector<Cell> cells{spec.lanes[l]->id};
+    for (const LawCount& count : laws.lanes[l].by_scale)
+      cells.emplace_back(count.pairs == 0 ? "-" : bare_percent(count.in_range, count.pairs), count.in_range > 0);
+    table.add(std::move(cells));
+  }
+  if (!any) return "";
+  return wrapped("Scale, in range, by each factor alone, in % of the pairs that it scales without losing a bit:",
+                 screen.columns) +
+         table.text(screen);
+}
+
 }  // namespace
 
 std::string laws_table(const analysis::LawSpec& spec, const analysis::Laws& laws, const Screen& screen) {
@@ -79,7 +100,7 @@ std::string laws_table(const analysis::LawSpec& spec, const analysis::Laws& laws
                  "although the question is the same (part: intersects, of a part of a triangle, where the whole is "
                  "disjoint; in range: where nothing over- or underflows).",
                  screen.columns) +
-         table.text(screen);
+         table.text(screen) + scales_table(spec, laws, screen);
 }
 
 std::vector<std::string> laws_sentences(const analysis::LawSpec& spec, const analysis::Laws& laws) {
@@ -111,6 +132,7 @@ Json laws_json(const analysis::LawSpec& spec, const analysis::Laws& laws) {
   for (const LawInfo& law : kLaws) what[std::string(law.id)] = law.what;
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
     const analysis::LawsOfLane& lane = laws.lanes[l];
+    const bool knows_range = analysis::knows_range(*spec.lanes[l]);
     Json of_laws = Json::object();
     for (const LawInfo& law : kLaws) {
       Json strata = Json::object();
@@ -119,12 +141,21 @@ Json laws_json(const analysis::LawSpec& spec, const analysis::Laws& laws) {
         strata[spec.sources[s].id] = {{"pairs", count.pairs}, {"changed", count.changed}};
       }
       const LawCount all = lane.total(law.law);
+      Json factors = Json::array();
+      for (std::size_t k = 0; law.law == analysis::Law::scale && k < analysis::kScales.size(); ++k) {
+        const LawCount& count = lane.by_scale[k];
+        factors.push_back({{"log2", analysis::kScales[k]},
+                           {"pairs", count.pairs},
+                           {"changed", count.changed},
+                           {"in_range", knows_range ? Json(count.in_range) : Json()}});
+      }
       of_laws[std::string(law.id)] = {{"claimed", analysis::claims(*spec.lanes[l], law.law)},
                                       {"pairs", all.pairs},
                                       {"changed", all.changed},
-                                      {"in_range", analysis::knows_range(*spec.lanes[l]) ? Json(all.in_range) : Json()},
+                                      {"in_range", knows_range ? Json(all.in_range) : Json()},
                                       {"strata", strata},
                                       {"case", case_json(spec, case_of(lane, law))}};
+      if (!factors.empty()) of_laws[std::string(law.id)]["by_factor"] = factors;
     }
     lanes.push_back({{"lane", spec.lanes[l]->id}, {"laws", of_laws}});
   }

@@ -26,8 +26,11 @@ using Json = nlohmann::ordered_json;
 Json share_json(std::uint64_t count, std::uint64_t of) {
   const Share share = share_of(count, of);
   const auto rounded = [](double x) { return std::stod(fmt::format("{:.5g}", x)); };
-  return {{"count", count}, {"of", of}, {"share", rounded(share.share)}, {"low", rounded(share.low)},
-          {"high", rounded(share.high)}};
+  return {{"count", count},
+          {"of", of},
+          {"share", rounded(share.share)},
+          {"low", std::stod(rounded_down(share.low, 5))},
+          {"high", std::stod(rounded_up(share.high, 5))}};
 }
 
 Json counts_json(const fuzz::LeagueCounts& counts) {
@@ -185,7 +188,8 @@ std::string md(std::string text) {
 std::string percent_text(const Json& share) {
   if (share.at("of") == 0) return "-";
   const auto percent = [](double x) { return x == 0 ? "0" : x < 1e-4 ? fmt::format("{:.4f}", 100 * x) : fmt::format("{:.3g}", 100 * x); };
-  return fmt::format("{} ({}…{})", percent(share.at("share")), percent(share.at("low")), percent(share.at("high")));
+  const double low = share.at("low"), high = share.at("high");
+  return fmt::format("{} ({}…{})", percent(share.at("share")), rounded_down(100 * low, 3), rounded_up(100 * high, 3));
 }
 
 std::string table_line(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }

@@ -44,8 +44,8 @@ std::string share_cell(const Json& share) {
   return fmt::format(
       "<td class=\"number\" style=\"background: rgba(213, 94, 0, {:.3f})\" title=\"{} of {}, 95 % interval "
       "{} to {}\">{}</td>",
-      0.75 * value, grouped(share.at("count")), grouped(share.at("of")), rate_words(share.at("low")),
-      rate_words(share.at("high")), rate_words(value));
+      0.75 * value, grouped(share.at("count")), grouped(share.at("of")), rate_words(share.at("low"), Bound::lower),
+      rate_words(share.at("high"), Bound::upper), rate_words(value));
 }
 
 std::string answer_section(const Json& report, const Json& costs) {
@@ -106,7 +106,8 @@ std::string threshold_words(const Json& report, std::size_t lane, const char* si
     text += (text.empty() ? "" : "; ") +
             report.at("groups")[row.at("group").get<std::size_t>()].at("id").get<std::string>() + ": " +
             (!t.at("exponent").is_null()
-                 ? fmt::format("from 2^{} ulps (rate below {})", t.at("exponent").dump(), rate_words(t.at("bound")))
+                 ? fmt::format("from 2^{} ulps (rate below {})", t.at("exponent").dump(),
+                               rate_words(t.at("bound"), Bound::upper))
              : t.at("largest").is_null() ? std::string("no pairs")
                                          : fmt::format("errors up to 2^{} ulps", t.at("largest").dump()));
   }

@@ -118,7 +118,7 @@ int first_of_others(const CampaignCounts& counts, const Places& lanes, std::size
 std::string not_settled(const CampaignCounts& counts, const char* which, std::size_t l, std::size_t r) {
   const auto interval = [&](std::size_t lane) {
     const Share share = wrong_share(counts, lane);
-    return fmt::format("{} to {}", rate_words(share.low), rate_words(share.high));
+    return fmt::format("{} to {}", rate_words(share.low, Bound::lower), rate_words(share.high, Bound::upper));
   };
   return fmt::format(
       "Which published lane is {} is not settled: the 95 % intervals of {}, wrong on {} of all pairs, and {}, on {}, "
@@ -193,7 +193,7 @@ Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const auto less = [&](std::size_t l, std::size_t r) { return total.wrong(l) < total.wrong(r); };
   const std::size_t least = *std::min_element(lanes.begin(), lanes.end(), less);
   const std::size_t most = *std::max_element(lanes.begin(), lanes.end(), less);
-  const std::string bound = rate_words(bound_of_none(total.pairs));
+  const std::string bound = rate_words(bound_of_none(total.pairs), Bound::upper);
   if (total.wrong(most) == 0) {
     return {fmt::format("{} wrong on none of {} pairs, so with 95 % confidence {} on fewer than {} of such pairs.",
                         lanes.size() == 1 ? fmt::format("The only published lane, {}, is", counts.lanes[least].id)

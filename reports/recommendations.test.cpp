@@ -82,7 +82,7 @@ TEST(Recommendations, AnExactLaneThatErrsIsNotRecommended) {
 TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
   const CampaignCounts counts = counts_with(kThree);
   const std::string avoid =
-      "Avoid moller_1997/f32/cpu: wrong on 1,800 pairs (9 %, 95 % interval 8.61 % to 9.4 %), 0 false positives and 1,800 "
+      "Avoid moller_1997/f32/cpu: wrong on 1,800 pairs (9 %, 95 % interval 8.61 % to 9.41 %), 0 false positives and 1,800 "
       "false negatives; of general pairs on 9 %";
   EXPECT_EQ(lane_to_avoid(counts, nullptr).text, avoid + ".");
   const Costs dear = costs_with({{38, 300}, {90, 62}, {80, 82}});
@@ -93,7 +93,7 @@ TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
   EXPECT_EQ(lane_to_avoid(counts, &near).text, avoid + ".");
   EXPECT_EQ(lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 890}}), nullptr).text,
             "Which published lane is worst is not settled: the 95 % intervals of moller_1997/f32/cpu, wrong on 8.61 % to "
-            "9.4 % of all pairs, and separating_axes/f64/cpu, on 8.51 % to 9.3 %, overlap.");
+            "9.41 % of all pairs, and separating_axes/f64/cpu, on 8.51 % to 9.31 %, overlap.");
   // Variants of one lane need not be told apart.
   EXPECT_TRUE(lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900},
                                          {"moller_1997/f32/cpu-fma", 899},

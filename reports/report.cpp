@@ -79,8 +79,12 @@ Json lanes_of(const Json& summary, const CampaignCounts& counts) {
   return rows;
 }
 
-Json missing_of(const CampaignCounts& counts) {
+Json missing_of(const CampaignCounts& counts, const Json& summary) {
   Json missing = Json::array();
+  if (const Json& spec = summary.at("spec"); spec.contains("lanes_left_out")) {
+    for (const std::string& line : fuzz::left_out_in_words(fuzz::left_out_of(spec["lanes_left_out"])))
+      missing.push_back(fmt::format("Lanes that were asked for did not run: {}.", line));
+  }
   if (!counts.complete) {
     missing.push_back(
         fmt::format("The campaign is not finished, {} of {} pairs are in it: the command that began it goes "
@@ -124,7 +128,7 @@ Json make_report(const std::filesystem::path& directory) {
                    {"signatures", nullptr},
                    {"sources", nullptr},
                    {"cards", nullptr},
-                   {"missing", missing_of(counts)},
+                   {"missing", missing_of(counts, summary)},
                    {"compare", nullptr}};
     add_signatures(report, directory, summary, counts);
     return report;

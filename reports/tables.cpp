@@ -3,13 +3,17 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
+
 namespace graze::reports {
 
 using Json = nlohmann::ordered_json;
 
 namespace {
 
-double rounded(double value) { return std::stod(fmt::format("{:.5g}", value)); }
+constexpr int kDigits = 5;
+
+double rounded(double value) { return std::stod(fmt::format("{:.{}g}", value, kDigits)); }
 
 // Calls visit(place, stratum) for each stratum that has pairs, and visit(null, total).
 template <class Visit>
@@ -32,8 +36,8 @@ Json to_json(const Share& share) {
   return {{"count", share.count},
           {"of", share.of},
           {"share", rounded(share.share)},
-          {"low", rounded(share.low)},
-          {"high", rounded(share.high)}};
+          {"low", std::stod(rounded_down(share.low, kDigits))},
+          {"high", std::stod(rounded_up(share.high, kDigits))}};
 }
 
 Json rates(const CampaignCounts& counts) {
@@ -131,7 +135,7 @@ Json thresholds(const CampaignCounts& counts) {
         const Threshold t = threshold(of, l, side);
         row[name] = {{"exponent", t.found ? Json(t.exponent) : Json()},
                      {"above", t.above},
-                     {"bound", rounded(bound_of_none(t.above))},
+                     {"bound", std::stod(rounded_up(bound_of_none(t.above), kDigits))},
                      {"largest", t.largest ? Json(*t.largest) : Json()}};
       }
       rows.push_back(std::move(row));

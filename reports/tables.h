@@ -10,7 +10,7 @@
 
 namespace graze::reports {
 
-// {"count", "of", "share", "low", "high"}, rounded to 5 significant digits.
+// {"count", "of", "share", "low", "high"}, rounded to 5 significant digits, low and high outward.
 nlohmann::ordered_json to_json(const Share& share);
 
 nlohmann::ordered_json rates(const CampaignCounts& counts);

@@ -2,14 +2,57 @@
 // Intervals, and the tables of made-up summaries.
 #include "reports/tables.h"
 
+#include <random>
 #include <set>
 
+#include "reports/findings.h"
 #include "reports/test_campaign.h"
+#include "reports/tuning.h"
 #include "reports/wilson.h"
 #include "strata/groups.h"
 
 namespace graze::reports {
 namespace {
+
+// "2.04 %", "1 in 3,270" as a rate.
+double read(std::string words) {
+  std::erase(words, ',');
+  return words.starts_with("1 in ") ? 1 / std::stod(words.substr(5)) : std::stod(words) / 100;
+}
+
+TEST(Bounds, AreRoundedOutwardWhereverTheyAreWritten) {
+  EXPECT_EQ(rate_words(0.020321, Bound::upper), "2.04 %");
+  EXPECT_EQ(rate_words(0.020321, Bound::lower), "2.03 %");
+  EXPECT_EQ(rate_words(0.020321), "2.03 %");
+  EXPECT_EQ(rate_words(1 / 3274.0, Bound::upper), "1 in 3,270");
+  EXPECT_EQ(rate_words(1 / 3274.0, Bound::lower), "1 in 3,280");
+  std::mt19937_64 bits(1);
+  for (int i = 0; i < 100'000; ++i) {
+    const std::uint64_t of = 1 + bits() % (std::uint64_t{1} << bits() % 40), count = bits() % (of + 1) >> bits() % 20;
+    const Share share = share_of(count, of);
+    ASSERT_GE(read(rate_words(share.high, Bound::upper)), share.high) << count << " of " << of;
+    ASSERT_LE(read(rate_words(share.low, Bound::lower)), share.low) << count << " of " << of;
+    ASSERT_GE(read(rate_words(bound_of_none(of), Bound::upper)), bound_of_none(of)) << of;
+    const Json json = to_json(share);
+    ASSERT_GE(json["high"].get<double>(), share.high);
+    ASSERT_LE(json["low"].get<double>(), share.low);
+  }
+}
+
+// 23 of 1,610 have an upper bound of about 0.0202: not under the 0.02 that was asked for, and not printed as that.
+TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
+  const TuneQuestion question{"moller_1997/f32/cpu", analysis::Forbid::any, 0.02};
+  analysis::Tuned tuned;
+  tuned.chosen = "rel:8";
+  tuned.confirmed.pairs = 1610;
+  tuned.confirmed.misses = 23;
+  tuned.bound = analysis::upper_bound(23, 1610);
+  ASSERT_GT(tuned.bound, 0.02);
+  ASSERT_LT(tuned.bound, 0.0204);
+  tuned.result = analysis::TuneResult::too_few_pairs;
+  const std::string said = tuning_sentences(question, tuned)[0];
+  EXPECT_NE(said.find("are under 0.021, and 0.02 was asked for"), said.npos) << said;
+}
 
 TEST(Wilson, GivesKnownIntervals) {
   // Roots p of (p - count / of)² = z² p (1 - p) / of, found by bisection.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/text.h"
 #include "corpus/pair_format.h"
 #include "reports/findings.h"
 #include "reports/svg.h"
@@ -85,7 +86,7 @@ std::string trade_table(const Trade& trade, const Screen& screen) {
   for (const Offer& offer : cheapest_first(trade.offers)) {
     const PolicyErrors& e = offer.errors;
     const std::string words = offer.dominated ? "dominated"
-                              : share(e) == 0 ? fmt::format("none: under {:.1g}", analysis::upper_bound(0, e.pairs))
+                              : share(e) == 0 ? "none: under " + rounded_up(analysis::upper_bound(0, e.pairs), 1)
                                               : "front";
     std::vector<Cell> cells = {{offer.lane},
                                {nanoseconds(offer.near.middle)},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/text.h"
 #include "reports/findings.h"
 #include "reports/svg.h"
 #include "reports/terminal.h"
@@ -41,18 +42,18 @@ std::string errors(const PolicyErrors& e) {
 std::string answer(const TuneQuestion& q, const Tuned& t) {
   const std::string of =
       fmt::format("{}: on pairs other than those it was chosen on, {}", policy_words(t.chosen), errors(t.confirmed));
-  const std::string trust = fmt::format("at 95 % confidence {} are under {:.2g}", words(q.forbid), t.bound);
+  const std::string trust = fmt::format("at 95 % confidence {} are under {}", words(q.forbid), rounded_up(t.bound, 2));
   switch (t.result) {
     case TuneResult::satisfied:
       return fmt::format("Use {}; {}.", of, trust);
     case TuneResult::too_few_pairs:
       return fmt::format(
-          "Not settled: {}; {}, and {:.2g} was asked for. Without an error it takes {} pairs to say so (--pairs).", of,
+          "Not settled: {}; {}, and {} was asked for. Without an error it takes {} pairs to say so (--pairs).", of,
           trust, q.max_rate, grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
     case TuneResult::not_satisfiable:
       break;
   }
-  return fmt::format("No policy of {} keeps {} under {:.2g} here. The best is {}; the exact lane has none of either.",
+  return fmt::format("No policy of {} keeps {} under {} here. The best is {}; the exact lane has none of either.",
                      q.lane, words(q.forbid), q.max_rate, of);
 }
 

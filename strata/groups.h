@@ -19,7 +19,9 @@ struct GroupInfo {
 
 // One row for each group, in the order of the enumeration.
 inline constexpr GroupInfo kGroups[] = {
-    {Group::general, "general", "proper triangles of usual shape and size, in planes that cross; near and exact contacts"},
+    {Group::general, "general",
+     "strata of triangles of usual shape and size, with near and exact contacts; some pairs lie in parallel planes, "
+     "and some are degenerate"},
     {Group::coplanar, "coplanar", "triangles in one plane, in nearly one, or in parallel ones"},
     {Group::degenerate, "degenerate", "segments and points in place of triangles, often or always"},
     {Group::extreme, "extreme", "needles, coordinates of extreme size, and pairs far from the origin"},

@@ -10,13 +10,36 @@
 #include <set>
 #include <vector>
 
+#include "core/exact/exact.h"
 #include "strata/golden.h"
+#include "strata/groups.h"
 
 namespace graze::strata {
 namespace {
 
 TEST(Strata, RowsAreInTheOrderOfTheEnumeration) {
   for (int s = 0; s < kStrataCount; ++s) EXPECT_EQ(static_cast<int>(kStrata[s].stratum), s) << kStrata[s].id;
+}
+
+// What the group says of itself: its strata are of usual triangles, and some of their pairs are not.
+TEST(Groups, GeneralHasSomeCoplanarAndSomeDegeneratePairs) {
+  constexpr std::uint64_t kPairs = 3000;  // of each stratum
+  std::uint64_t pairs = 0, coplanar = 0, degenerate = 0;
+  for (const StratumInfo& row : kStrata) {
+    if (group_of(row.stratum) != Group::general) continue;
+    for (std::uint64_t i = 0; i < kPairs; ++i) {
+      const Pair pair = generate(1, row.stratum, i);
+      const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
+      const bool is_degenerate = r.dimension_a < 2 || r.dimension_b < 2;
+      degenerate += is_degenerate;
+      coplanar += !is_degenerate && r.coplanar;
+    }
+    pairs += kPairs;
+  }
+  EXPECT_EQ(pairs, 9 * kPairs);
+  EXPECT_GT(coplanar, 0u);
+  EXPECT_GT(degenerate, 0u);
+  EXPECT_LT(coplanar + degenerate, pairs / 10);
 }
 
 TEST(Strata, GoldenBits) {

@@ -76,7 +76,10 @@ Json campaign_spec(const Campaign& campaign) {
     pairs += source.pairs;
   }
   for (const Lane* lane : campaign.under_test->lanes) lane_ids.push_back(lane->id);
-  return {{"seed", campaign.seed}, {"pairs", pairs}, {"strata", strata}, {"lanes", lane_ids}};
+  Json spec{{"seed", campaign.seed}, {"pairs", pairs}, {"strata", strata}, {"lanes", lane_ids}};
+  const Json left_out = left_out_json(*campaign.under_test);
+  if (!left_out.is_null()) spec["lanes_left_out"] = left_out;
+  return spec;
 }
 
 Json build_info(const LanesUnderTest& under_test) {

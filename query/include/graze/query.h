@@ -97,8 +97,9 @@ class Context {
 
   // For each triangle 1: meets it, 0: does not, 2: declined.   Throws: std::bad_alloc for the vector.
   Answer all(const Triangle& reference, const graze_triangles& part, std::vector<std::uint8_t>& bytes) const {
-    bytes.resize(part.count);
     graze_query query = query_of(reference, part);
+    if (part.count > GRAZE_MOST_TRIANGLES) return run(query);  // which refuses it
+    bytes.resize(part.count);
     query.bytes = bytes.data();
     return run(query);
   }

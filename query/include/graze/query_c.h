@@ -32,7 +32,12 @@ enum graze_layout {
   GRAZE_MESH = 2     /* faces: three uint32_t each, places of vertices; a face of one that is not there is declined */
 };
 
-/* An array of triangles. Strides are in bytes, 0 where nothing lies between; everything is aligned as floats are. */
+/* The most triangles that the parts of a query have together. */
+#define GRAZE_MOST_TRIANGLES ((uint64_t)1 << 48)
+
+/* An array of triangles. Strides are in bytes, 0 where nothing lies between; everything is aligned as floats are. A
+   stride is a multiple of 4 and not less than an element's size, and an array fits into PTRDIFF_MAX bytes and into the
+   address space; GRAZE_BAD_ARGUMENT otherwise. A negative stride is none. */
 typedef struct graze_triangles {
   uint64_t count;
   int layout;
@@ -60,10 +65,10 @@ enum graze_executor {
 typedef int (*graze_progress)(void* user, uint64_t done, uint64_t triangles);
 
 typedef struct graze_query {
-  size_t size;               /* sizeof(graze_query) */
-  const float* references;   /* nine floats each, in the memory of the host */
-  uint64_t reference_count;
-  const graze_triangles* parts; /* the array: one part, or several that follow each other, as on several GPUs */
+  size_t size;                  /* sizeof(graze_query) */
+  const float* references;      /* nine floats each, in the memory of the host */
+  uint64_t reference_count;     /* 1 to 65536 */
+  const graze_triangles* parts; /* the array: one part, or up to 65536 that follow each other, as on several GPUs */
   uint64_t part_count;
   int mode;
   int executor;

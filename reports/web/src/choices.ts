@@ -3,7 +3,7 @@
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, choice, code_block, copy_button, h, on_width, section } from './dom';
-import { count, figure, percent, power_of_two } from './format';
+import { count, figure, percent, percent_bound, power_of_two } from './format';
 import type { Errors, PolicyErrors, Report, Trade, Tuned } from './report';
 import { sortable_table } from './sortable_table';
 import { cell_text } from './pairs_of_cell';
@@ -77,7 +77,7 @@ export function trade_section(report: Report, trade: Trade) {
     { label: on_device ? 'with copies' : 'from memory', numeric: true, cell: (o) => nanoseconds(far(o).middle), order: (o) => far(o).middle },
     errors('Misses', (e) => e.misses), errors('False hits', (e) => e.false_hits), errors('Declined', (e) => e.declined),
     ...(on_device ? [needs('Registers', (o) => o.registers), needs('Local bytes', (o) => o.local_bytes), needs('Threads at once', (o) => o.active_threads)] : []),
-    { label: 'On the front', cell: (o) => (o.dominated ? '' : share(o.errors) === 0 ? `yes; under ${percent(o.bound)}` : 'yes'), order: (o) => Number(o.dominated) },
+    { label: 'On the front', cell: (o) => (o.dominated ? '' : share(o.errors) === 0 ? `yes; under ${percent_bound(o.bound, 'upper')}` : 'yes'), order: (o) => Number(o.dominated) },
     { label: 'Smallest failure', cell: (o) => {
       const command = `graze check '${o.failure}' --lanes '${o.lane}'`;
       return h('td', { class: 'failure' }, o.failure ? [h('code', { title: command }, 'graze check …'), ' ', copy_button(command, `a small pair on which ${o.lane} is wrong`)] : 'none seen', ' ', pairs_of(o));

@@ -39,21 +39,38 @@ export function figure(value: number): string {
 // "42 ns", "8.5 ns"
 export const nanoseconds = (value: number) => `${value.toFixed(value < 10 ? 1 : 0)} ns`;
 
+// Decimals of a share in per cent.
+const places = (percent: number) => (percent >= 10 ? 1 : percent >= 1 ? 2 : 3);
+
 // A share in per cent, without the sign: 47.8, 0.156, <0.001.
 export function bare_percent(share: number): string {
   const percent = 100 * share;
   if (percent === 0 || percent === 100) return String(percent);
   if (percent < 0.001) return '<0.001';
   if (percent > 99.9) return '>99.9';
-  return percent.toFixed(percent >= 10 ? 1 : percent >= 1 ? 2 : 3);
+  return percent.toFixed(places(percent));
 }
 
-export function percent(share: number): string {
-  const value = 100 * share;
-  return value !== 0 && value < 0.001 ? `${figure(value)} %` : `${bare_percent(share)} %`;
+const small = (percent: number) => percent !== 0 && percent < 0.001;
+
+export const percent = (share: number) => `${small(100 * share) ? figure(100 * share) : bare_percent(share)} %`;
+
+// A bound in per cent, rounded outward: what is printed, read again, is not below an upper bound, nor above a lower one.
+export function percent_bound(share: number, bound: 'lower' | 'upper'): string {
+  const value = 100 * share, step = bound === 'upper' ? 1 : -1;
+  const holds = (read: number) => (bound === 'upper' ? read / 100 >= share : read / 100 <= share);
+  if (value === 0 || value === 100) return `${value} %`;
+  if (small(value)) {
+    const [digits, power] = value.toExponential(2).split('e'), mantissa = Math.round(100 * Number(digits));
+    const read = [mantissa, mantissa + step].map((m) => Number(`${m}e${Number(power) - 2}`)).find(holds)!;
+    return `${figure(read)} %`;
+  }
+  const digits = places(value), units = Math.round(Number(value.toFixed(digits)) * 10 ** digits);
+  return `${[units, units + step].map((u) => (u / 10 ** digits).toFixed(digits)).find((text) => holds(Number(text)))!} %`;
 }
 
-export const interval = (share: Share) => `${percent(share.low).replace(' %', '')} to ${percent(share.high)}`;
+export const interval = (share: Share) =>
+  `${percent_bound(share.low, 'lower').replace(' %', '')} to ${percent_bound(share.high, 'upper')}`;
 
 // "10,802 of 52,632 = 20.5 % (95 %: 20.2 to 20.9 %)"
 export const in_full = (share: Share) =>

@@ -4,7 +4,7 @@
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, choice, h, lazy_details, on_width, section } from './dom';
-import { count, figure, in_full, percent, power_of_two } from './format';
+import { count, figure, in_full, percent, percent_bound, power_of_two } from './format';
 import { lane_picker, type Picker } from './lane_picker';
 import type { Report, Share, Threshold } from './report';
 import { series_colour, series_dash, series_width } from './series';
@@ -54,7 +54,7 @@ export function margins_section(report: Report) {
       return [
         { label: `No error from (ulps ${name})`, numeric: true, cell: (t: Row) => from_words(t[side]), order: (t: Row) => t[side].exponent ?? 999 },
         { label: 'Pairs beyond', numeric: true, cell: (t: Row) => count(t[side].above), order: (t: Row) => t[side].above },
-        { label: 'Rate below (95 %)', numeric: true, cell: (t: Row) => (t[side].above ? percent(t[side].bound) : '–'), order: (t: Row) => t[side].bound },
+        { label: 'Rate below (95 %)', numeric: true, cell: (t: Row) => (t[side].above ? percent_bound(t[side].bound, 'upper') : '–'), order: (t: Row) => t[side].bound },
       ];
     }),
   ], { caption: 'Thresholds of the lanes chosen', class: 'plain thresholds' });
@@ -122,7 +122,7 @@ export function margins_section(report: Report) {
       const own = pooled(lane);
       const seen = (['disjoint', 'intersects'] as const).flatMap((side) => {
         const t = own?.[side];
-        return t && t.exponent !== null && t.above ? [{ x: place(side, t.exponent), words: `${report.lanes[lane].id}\nno error in ${count(t.above)} pairs from ${power_of_two(t.exponent)} ulps on\nrate below ${percent(t.bound)} (95 %)` }] : [];
+        return t && t.exponent !== null && t.above ? [{ x: place(side, t.exponent), words: `${report.lanes[lane].id}\nno error in ${count(t.above)} pairs from ${power_of_two(t.exponent)} ulps on\nrate below ${percent_bound(t.bound, 'upper')} (95 %)` }] : [];
       });
       marks.push(Plot.dot(seen, { x: 'x', y: log ? none : 0, symbol: 'triangle', r: 6, dy: 0, fill: stroke, stroke: 'var(--page)', title: 'words', className: 'threshold' }));
     }

@@ -152,6 +152,31 @@ TEST(Docs, WhatTheyNameExists) {
   EXPECT_GE(paths, 15);
 }
 
+// Commits, and builds by their commit, in prose and in published data. A build of sources that were changed since is none.
+TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
+  const Shell shell("history");
+  const std::string git = "git -C '" + kRoot.string() + "' ";
+  if (shell(git + "rev-parse --is-shallow-repository").out != "false\n") GTEST_SKIP() << "no git, or not the whole history";
+  const auto named_in = [](const fs::path& file, const std::regex& pattern) {
+    const std::string text = contents(file);
+    std::string ids;
+    for (std::sregex_iterator found(text.begin(), text.end(), pattern), end; found != end; ++found)
+      ids += " " + ((*found)[1].matched ? (*found)[1] : (*found)[2]).str();
+    return ids;
+  };
+  std::string ids;
+  for (const fs::path& file : documents()) ids += named_in(file, std::regex("`([0-9a-f]{7,12}(?:-dirty)?)`|[Cc]ommit ([0-9a-f]{7,12})\\b"));
+  for (const auto& file : fs::directory_iterator(kRoot / "reports/published")) {
+    if (file.path().extension() != ".json") continue;
+    const std::string of_file = named_in(file, std::regex("\"commit\": ?\"([^\"]+)\""));
+    EXPECT_TRUE(!of_file.empty() || file.path().stem().string().ends_with("_timings")) << file;
+    ids += of_file;
+  }
+  EXPECT_GE(std::count(ids.begin(), ids.end(), ' '), 30);
+  const Ran missing = shell("for id in" + ids + "; do " + git + "merge-base --is-ancestor \"$id\" HEAD 2> /dev/null || echo \"$id\"; done");
+  EXPECT_EQ(missing.out, "") << "not in the history";
+}
+
 TEST(Docs, ReadmesAreShort) {
   EXPECT_LE(lines_of(contents(kRoot / "README.md")).size(), 120u);
   int folders = 0;

@@ -3,6 +3,8 @@
 #include <fcntl.h>
 #include <pty.h>
 
+#include <cerrno>
+#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -58,7 +60,18 @@ int widest(const std::string& text) {
 
 class ScreenTest : public CommandTest {};
 
-TEST_F(ScreenTest, ColourIsForTerminalsThatWantIt) {
+class TerminalTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    int terminal = -1, shown = -1;
+    if (openpty(&terminal, &shown, nullptr, nullptr, nullptr) != 0)
+      GTEST_SKIP() << "no pseudo-terminal: " << std::strerror(errno);
+    close(terminal);
+    close(shown);
+  }
+};
+
+TEST_F(TerminalTest, ColourIsForTerminalsThatWantIt) {
   const std::string explain = "graze explain exact_contact:1:10 --lanes '*/f32/cpu'";
   const std::string piped = shell(explain).out;
   EXPECT_EQ(piped.find('\033'), std::string::npos) << piped;
@@ -72,13 +85,13 @@ TEST_F(ScreenTest, ColourIsForTerminalsThatWantIt) {
   EXPECT_EQ(on_terminal(shell, explain + " | cat", 80), piped);
 }
 
-TEST_F(ScreenTest, ErrorsAreColouredWhereTheyAreRead) {
+TEST_F(TerminalTest, ErrorsAreColouredWhereTheyAreRead) {
   EXPECT_NE(on_terminal(shell, "graze check missing > /dev/null || true", 80).find(kColour), std::string::npos);
   EXPECT_EQ(on_terminal(shell, "graze check missing 2> error || cat error", 80).find('\033'), std::string::npos);
   EXPECT_EQ(on_terminal(shell, "graze check missing || true", 80, "export NO_COLOR=1").find('\033'), std::string::npos);
 }
 
-TEST_F(ScreenTest, WhatIsPrintedFitsEightyColumnsAndUsesMore) {
+TEST_F(TerminalTest, WhatIsPrintedFitsEightyColumnsAndUsesMore) {
   ASSERT_EQ(shell("graze fuzz --pairs 3000 --executor twin --out c > /dev/null && "
                   "graze minimize lattice:1:1 --lanes 'projected*/f32/cpu' --out m.pairs > /dev/null")
                 .status,
@@ -101,7 +114,7 @@ TEST_F(ScreenTest, WhatIsPrintedFitsEightyColumnsAndUsesMore) {
   EXPECT_GT(wide["graze lanes"], 80);
 }
 
-TEST_F(ScreenTest, TheLiveLineNeverWraps) {
+TEST_F(TerminalTest, TheLiveLineNeverWraps) {
   for (const unsigned short columns : std::initializer_list<unsigned short>{30, 80, 140}) {
     const std::string out = "c" + std::to_string(columns);
     const std::string fuzz =
@@ -117,7 +130,7 @@ TEST_F(ScreenTest, TheLiveLineNeverWraps) {
   EXPECT_LT(widest(text), 40) << text;
 }
 
-TEST_F(ScreenTest, StrataAreOneLineEachForProgramsAndWrappedForPeople) {
+TEST_F(TerminalTest, StrataAreOneLineEachForProgramsAndWrappedForPeople) {
   const std::string piped = shell("graze strata").out, shown = on_terminal(shell, "graze strata", 80);
   EXPECT_LE(widest(shown), 80);
   EXPECT_LT(std::count(piped.begin(), piped.end(), '\n'), std::count(shown.begin(), shown.end(), '\n'));

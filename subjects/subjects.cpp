@@ -153,8 +153,9 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
       if (lane.at("hash") != build.hash || build.twin.empty() || count("twin_pairs") == 0 || count("differences") > 0 ||
           count("twin_differences") > 0)
         continue;
-      return fmt::format("twin, verified on {}, nvcc {}, {:.3g} pairs", record.at("device").get<std::string>(),
-                         record.at("toolkit").get<std::string>(), static_cast<double>(count("twin_pairs")));
+      return cuda::evidence(cuda::TwinProof{record.at("device").get_ref<const std::string&>(),
+                                            record.at("toolkit").get_ref<const std::string&>(),
+                                            static_cast<double>(count("pairs")), static_cast<double>(count("twin_pairs"))});
     }
   } catch (const Json::exception&) {  // no record, or a damaged one, verifies nothing
   }

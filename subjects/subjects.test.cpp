@@ -371,10 +371,10 @@ __device__ bool intersects(const float a[9], const float b[9]) { return area(a) 
   const std::vector<cuda::NamedBuild> builds = cuda_builds();
   const auto build = std::find_if(builds.begin(), builds.end(), [](const auto& b) { return b.lane == "gpu/f32/cuda-fma"; });
   ASSERT_NE(build, builds.end());
-  nlohmann::ordered_json record{{"device", "a device"}, {"toolkit", "13.0"}, {"lanes", {{{"hash", build->build->hash}, {"twin_pairs", 100}, {"differences", 0}, {"twin_differences", 0}}}}};
+  nlohmann::ordered_json record{{"device", "a device"}, {"toolkit", "13.0"}, {"lanes", {{{"hash", build->build->hash}, {"pairs", 0}, {"twin_pairs", 100}, {"differences", 0}, {"twin_differences", 0}}}}};
   std::ofstream(proof_file(source)) << record;
   open_one("proven=" + source.string());
-  EXPECT_EQ(find_lane("proven/f32/cuda-fma")->evidence, "twin, verified on a device, nvcc 13.0, 100 pairs");
+  EXPECT_EQ(find_lane("proven/f32/cuda-fma")->evidence, "twin, verified on a device, nvcc 13.0: GPU and twin agree on 100 pairs");
   EXPECT_EQ(find_lane("proven/f32/cuda-nofma")->evidence, rounded->evidence);
   record["lanes"][0]["twin_differences"] = 1;
   std::ofstream(proof_file(source)) << record;

@@ -8,14 +8,13 @@
 namespace graze::cuda {
 namespace {
 
-// What a record in cuda/proofs says of one kernel; see cuda/twin/generator/proofs.h.
-struct Proof {
+// A row of cuda/twin/generator/proofs.h: two kernels by their hashes, and what a record in cuda/proofs says of them.
+struct ProofRow {
   std::string_view hash, trace_hash;
-  std::string_view device, toolkit;
-  double pairs;
+  TwinProof proof;
 };
 
-constexpr Proof kProofs[] = {
+constexpr ProofRow kProofs[] = {
 #include "cuda/generated/twin_proofs.inc"
     {}};
 
@@ -120,15 +119,22 @@ const char* twin_toolkit() {
   return "";
 }
 
+std::string evidence(const TwinProof& proof) {
+  const auto count = [](double pairs) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.3g", pairs);
+    return std::string(digits);
+  };
+  std::string words = "twin, verified on " + std::string(proof.device) + ", nvcc " + std::string(proof.toolkit) +
+                      ": GPU and twin agree on " + count(proof.twin_pairs) + " pairs";
+  if (proof.pairs > 0) words += ", the GPU's default build and explicit PTX on " + count(proof.pairs);
+  return words;
+}
+
 std::string twin_evidence(const Lane& lane) {
   const TwinRow& row = twin_row(lane);
-  for (const Proof& proof : kProofs) {
-    if (row.decide && proof.hash == row.hash && proof.trace_hash == row.trace_hash) {
-      char pairs[32];
-      std::snprintf(pairs, sizeof pairs, "%.3g", proof.pairs);
-      return "twin, verified on " + std::string(proof.device) + ", nvcc " + std::string(proof.toolkit) + ", " + pairs +
-             " pairs";
-    }
+  for (const auto& [hash, trace_hash, proof] : kProofs) {
+    if (row.decide && hash == row.hash && trace_hash == row.trace_hash) return evidence(proof);
   }
   return "twin";
 }

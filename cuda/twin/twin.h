@@ -32,8 +32,16 @@ const char* twin_toolkit();
 const char* twin_hash(const Lane& lane);
 const char* twin_trace_hash(const Lane& lane);
 
-// "twin, verified on NVIDIA H100 80GB HBM3, nvcc 13.0.88, 1.2e+10 pairs" where a record in cuda/proofs says so of this
-// very kernel, else "twin".
+// What a record of `graze prove-twin` says of one lane; see LaneProof in prove.h.
+struct TwinProof {
+  std::string_view device, toolkit;
+  double pairs, twin_pairs;
+};
+
+// "twin, verified on H100, nvcc 13.0: GPU and twin agree on 1e+08 pairs, the GPU's default build and explicit PTX on 1e+10".
+std::string evidence(const TwinProof& proof);
+
+// The words of `evidence` where a record in cuda/proofs holds for this very kernel, else "twin".
 std::string twin_evidence(const Lane& lane);
 
 struct SourceLine {

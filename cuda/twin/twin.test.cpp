@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <vector>
 
 #include "cuda/lanes/trace.h"
@@ -75,6 +78,32 @@ TEST_P(Twin, EveryCudaLaneHasOne) {
   }
   EXPECT_EQ(twin(Variant::cpu), nullptr);
   EXPECT_STRNE(twin_hash(sibling(Variant::cuda_fma)), twin_hash(sibling(Variant::cuda_nofma)));
+}
+
+// Its record, read anew: pairs that GPU and twin decided, and pairs that two builds decided, both on the GPU.
+TEST_P(Twin, EvidenceSaysWhatTheRecordSays) {
+  const auto record = nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h100_nvcc_13.0.88.json"));
+  int told = 0;
+  for (Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
+    for (const auto& proven : record.at("lanes")) {
+      if (proven.at("hash") != twin_hash(sibling(variant)) || proven.at("trace_hash") != twin_trace_hash(sibling(variant)))
+        continue;
+      std::ostringstream words;
+      words << "twin, verified on " << record.at("device").get<std::string>() << ", nvcc "
+            << record.at("toolkit").get<std::string>() << ": GPU and twin agree on "
+            << proven.at("twin_pairs").get<double>() << " pairs, the GPU's default build and explicit PTX on "
+            << proven.at("pairs").get<double>();
+      EXPECT_EQ(twin_evidence(sibling(variant)), words.str());
+      ++told;
+    }
+  }
+  EXPECT_EQ(told, 2);
+}
+
+TEST(TwinEvidence, IsOfWhatWasCompared) {
+  EXPECT_EQ(evidence(TwinProof{"GPU", "1.2", 0, 1500}), "twin, verified on GPU, nvcc 1.2: GPU and twin agree on 1.5e+03 pairs");
+  EXPECT_EQ(evidence(TwinProof{"GPU", "1.2", 4e9, 30}),
+            "twin, verified on GPU, nvcc 1.2: GPU and twin agree on 30 pairs, the GPU's default build and explicit PTX on 4e+09");
 }
 
 TEST_P(Twin, WithoutContractionIsTheCpuLane) {

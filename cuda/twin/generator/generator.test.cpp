@@ -240,7 +240,7 @@ TEST(TwinGenerator, ProofsWithoutDifferencesBecomeRows) {
            std::to_string(differences) + R"(, "twin_pairs": )" + std::to_string(twin_pairs) +
            R"(, "twin_differences": )" + std::to_string(twin_differences) + "}]}";
   };
-  EXPECT_EQ(rows_of(record(0, 0, 10)), "{\"a\", \"b\", \"GPU\", \"13.0.88\", 100.0},\n");
+  EXPECT_EQ(rows_of(record(0, 0, 10)), "{\"a\", \"b\", {\"GPU\", \"13.0.88\", 100.0, 10.0}},\n");
   EXPECT_EQ(rows_of(record(1, 0, 10)), "");
   EXPECT_EQ(rows_of(record(0, 1, 10)), "");
   EXPECT_EQ(rows_of(record(0, 0, 0)), "");

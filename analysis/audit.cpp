@@ -44,20 +44,20 @@ Settled of_range(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
 }
 
 Settled of_rounding(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
-  if (lane.deciding.comparisons.empty()) return Settled::unknown;
   const Lane& row = *lane.lane;
-  std::vector<Correction<double>> corrections;
-  for (const Decider& decider : lane.deciding.comparisons) corrections.push_back(decider.to_exact);
+  const Verdict corrected = run_led(row, pair, lane.rule, lane.deciding.back().corrected()).verdict;
   const Verdict alone = oracle::run_limited(row.algorithm, row.scalar, pair, {}, Contraction::none).verdict;
-  return both(run_led(row, pair, lane.rule, {}, corrections).verdict == truth, alone != truth);
+  return both(corrected == truth, alone != truth);
 }
 
 }  // namespace
 
 Settled audit(const LaneExplanation& lane, const Pair& pair, Verdict truth) {
   if (lane.cause == Cause::logic) return both(true, lane.exactly.settled && lane.exactly.verdict != truth);
+  if (lane.cause == Cause::fast_math) return Settled::unknown;
+  if (lane.evidence != Evidence::none && lane.deciding.empty()) return Settled::not_by_few;
   if (lane.cause == Cause::contraction) return of_contraction(lane, pair, truth);
-  if (lane.cause == Cause::fast_math || lane.evidence == Evidence::none) return Settled::unknown;
+  if (lane.evidence == Evidence::none) return Settled::unknown;
   return lane.cause == Cause::rounding ? of_rounding(lane, pair, truth) : of_range(lane, pair, truth);
 }
 

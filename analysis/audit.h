@@ -13,8 +13,9 @@ namespace graze::analysis {
 //                limits of the exponent
 //   fast math    the compiler's freedom; what is left cannot be run, for what was computed is not known
 //   overflow, underflow   that limit of the exponent, and both; exact arithmetic with that limit alone
-//   rounding     the rounding of what the deciding comparisons compare, all that follows being computed as the lane
-//                does; rounding to the scalar's mantissa, without contraction and limits of the exponent
+//   rounding     the wrong outcomes of the deciding comparisons; rounding to the scalar's mantissa, without contraction
+//                and limits of the exponent
+// Where comparisons are known but no few of them decide, no cause but logic and fast math stands up to it.
 // The lane's source is run in other arithmetic for it, a contracted one by the rule that gives the lane's own run.
 // Requires: an explanation's lane for this pair, whose truth this is; its `settled` is not read.
 Settled audit(const LaneExplanation& lane, const Pair& pair, Verdict truth);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which comparison of a wrong lane decides: the first one that, its two sides alone replaced by their exact values and
-// all that follows computed from them as the lane does, makes the verdict right.
+// Which comparisons of a wrong lane decide: the smallest set whose correction makes the verdict right.
+// To correct a comparison is to change its outcome alone, to the one that exact arithmetic gives at that point of the
+// same path; no value changes. Where the outcome selects a value (the smaller end of a range, an absolute value), the
+// lane goes on with the other value, as it computed it. All that follows is computed and compared as the lane does.
 #pragma once
 
 #include <functional>
@@ -11,30 +13,38 @@
 
 namespace graze::analysis {
 
-// A comparison that goes wrong.
+// A comparison whose outcome is wrong once those before it in the set are corrected.
 struct Decider {
-  std::size_t place;  // in the run's `seen`; of a later one in a set, in the run with those before it corrected
+  std::size_t place;  // among what that run saw
   Seen<double> seen;
   oracle::ExactStep exact;
-  Path before;                  // outcomes of the comparisons before it
-  Correction<double> to_exact;  // gives the lane the exact values, rounded to its scalar, and the exact outcome
-  Correction<double> to_lane;   // gives exact arithmetic the lane's values and outcome
+  Path path;      // all outcomes of that run
+  Path before;    // those of the comparisons before it
+  bool by_cause;  // see is_by_cause
+
+  // Outcomes up to this one, corrected.
+  Path corrected() const {
+    Path outcomes = before;
+    outcomes.push_back(exact.held);
+    return outcomes;
+  }
 };
 
-struct Deciding {
-  std::vector<Decider> comparisons;  // one; or, where no single one does, a set that does together, in order
-  bool smallest = true;              // no smaller set of comparisons that go wrong does
-  bool by_cause = true;              // each of them goes right without the cause
-};
+// No larger set is searched for.
+inline constexpr int kMostDeciding = 4;
 
-// What comparisons would say without the cause of the failure, along that path; one entry for each of the run's `seen`.
+// What comparisons would say without the cause of the failure, along that path; one entry for each thing seen.
 using WithoutCause = std::function<Trace<double>(const Path&)>;
 
-// Rather comparisons that go wrong in the lane and right without the cause, or of what is not finite any more (where it
-// is empty: all that go wrong); where these do not suffice, any. Sets of up to three are searched for the smallest.
-// Requires: the lane's replay, with evidence, and its exact steps; in exact arithmetic the algorithm says `truth`,
-// found with so many bits.
-Deciding deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay,
-                              const std::vector<oracle::ExactStep>& exact, int bits, const WithoutCause& without_cause);
+// The smallest set; of equally small ones the first, their comparisons taken in order of execution. Empty where no set
+// of up to kMostDeciding makes the verdict right.
+// Requires: the lane's replay, with evidence; in exact arithmetic the algorithm says `truth`.
+// without_cause: empty where exact arithmetic is what is without it.
+std::vector<Decider> deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay,
+                                          const WithoutCause& without_cause);
+
+// Whether its outcome is right without the cause, or it compares what is not finite: that is the cause's doing,
+// whatever rounding would say in its place.
+bool is_by_cause(const Decider& decider, const WithoutCause& without_cause);
 
 }  // namespace graze::analysis

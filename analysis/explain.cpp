@@ -114,30 +114,29 @@ Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
           exact.held};
 }
 
-// What the comparisons on a path would say without the cause; empty for rounding, without which they are exact.
-WithoutCause without(Cause cause, const Lane& lane, const Pair& pair, const Replay& run) {
+// What the comparisons on a path would say without the cause; empty for rounding: exact arithmetic says it.
+WithoutCause without(Cause cause, const Lane& lane, const Pair& pair, Contraction rule) {
   if (cause == Cause::contraction)
-    return [&](const Path& path) { return run_led(lane, pair, Contraction::none, path); };
+    return [&lane, &pair](const Path& path) { return run_led(lane, pair, Contraction::none, path); };
   if (cause == Cause::overflow || cause == Cause::underflow) {
-    return [&](const Path& path) {
-      return oracle::run_limited(lane.algorithm, lane.scalar, pair, {false, false}, run.rule, path);
+    return [&lane, &pair, rule](const Path& path) {
+      return oracle::run_limited(lane.algorithm, lane.scalar, pair, {false, false}, rule, path);
     };
   }
   return {};
 }
 
-void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth, const oracle::Exactly& exactly) {
+void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth) {
   const Lane& lane = *result.lane;
   const Replay run = replay(lane, pair);
   result.evidence = run.evidence;
   result.rule = run.rule;
   if (run.evidence == Evidence::none) return;
   const std::vector<oracle::ExactStep> exact =
-      oracle::exact_steps(lane.algorithm, lane.scalar, pair, run.run, exactly.bits);
+      oracle::exact_steps(lane.algorithm, lane.scalar, pair, run.run);
   if (result.cause != Cause::logic)
-    result.deciding =
-        deciding_comparisons(lane, pair, truth, run, exact, exactly.bits, without(result.cause, lane, pair, run));
-  const std::vector<Decider>& deciding = result.deciding.comparisons;
+    result.deciding = deciding_comparisons(lane, pair, truth, run, without(result.cause, lane, pair, run.rule));
+  const std::vector<Decider>& deciding = result.deciding;
   for (std::size_t i = 0; i < exact.size(); ++i) {
     const Seen<double>& seen = run.run.seen[i];
     if (!deciding.empty() && deciding.front().place == i) result.decisive = static_cast<int>(result.steps.size());
@@ -153,8 +152,12 @@ LaneExplanation account_of(const Lane& lane, Verdict verdict, const Pair& pair, 
   result.verdict = verdict;
   result.cause = first_cause(lane, pair, truth, exactly);
   result.exactly = exactly;
-  add_steps(result, pair, truth, exactly);
-  result.cause = refined(result, pair);
+  add_steps(result, pair, truth);
+  if (const Cause cause = refined(result, pair); cause != result.cause) {
+    result.cause = cause;
+    for (Decider& decider : result.deciding)
+      decider.by_cause = is_by_cause(decider, without(cause, lane, pair, result.rule));
+  }
   if (!cuda::contraction_sites(lane).empty()) result.contractions = blame(lane, pair);
   result.settled = audit(result, pair, truth);
   return result;
@@ -244,7 +247,7 @@ Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
   result.cause = first_cause(lane, pair, truth, result.exactly);
   // The steps can only tell of a rounding that the range had a part in it.
   if (result.cause != Cause::rounding || !leaves_exponents(lane, pair)) return result.cause;
-  add_steps(result, pair, truth, result.exactly);
+  add_steps(result, pair, truth);
   return refined(result, pair);
 }
 
@@ -258,7 +261,7 @@ bool leaves_exponents(const Lane& lane, const Pair& pair) {
 }
 
 std::string_view name(Settled settled) {
-  constexpr std::string_view kNames[] = {"yes", "not without it", "not alone", "unknown"};
+  constexpr std::string_view kNames[] = {"yes", "not without it", "not alone", "not by few comparisons", "unknown"};
   return kNames[static_cast<int>(settled)];
 }
 

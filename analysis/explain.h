@@ -55,6 +55,7 @@ enum class Settled {
   yes,
   not_without,  // without it something else makes the verdict wrong as well
   not_alone,    // alone it does not make the verdict wrong
+  not_by_few,   // correcting up to kMostDeciding comparisons does not make the verdict right (deciding.h)
   unknown       // what the lane computed is not known, or no experiment shows it
 };
 std::string_view name(Settled settled);
@@ -83,7 +84,7 @@ struct LaneExplanation {
   Evidence evidence;        // how well the steps are known to be the lane's own
   std::vector<Step> steps;  // in order: values and comparisons of the policy's, and all comparisons that went wrong
   Contraction rule;         // by which the run was replayed
-  Deciding deciding;        // the comparisons that decide, as far as they go wrong by the cause
+  std::vector<Decider> deciding;  // the comparisons that decide, see deciding.h; empty for logic
   int decisive = -1;        // the first of them, a step; -1 where none is known
   std::vector<Step> then;   // the others: each goes wrong once those before it are corrected
   Blame contractions;       // of a cuda-fma lane whose verdict contraction changes

@@ -70,22 +70,44 @@ std::string list(const std::vector<std::string>& all) {
   return more == 0 ? result : fmt::format("{} and {} more", result, more);
 }
 
-// "turns a signed distance of exactly 0 into 1.2e-09, so that the comparison at … goes the wrong way"
-std::string effect(const LaneExplanation& lane) {
+std::string words(double x) {
+  if (std::isnan(x)) return "NaN";
+  if (std::isinf(x)) return x < 0 ? "-infinity" : "infinity";
+  return fmt::format("{:.6g}", x + 0.0);  // no -0
+}
+
+std::string exact_words(const oracle::Beside& value) { return std::isnan(value.exact) ? "NaN" : value.decimal; }
+
+// "a signed distance of exactly 0 into 1.2e-09"; the lane computes no difference of two numbers, so where theirs is not
+// finite, "two interval ends of exactly 3 and 4 into infinity and 4".
+std::string turned(const LaneExplanation& lane, const Step& told) {
+  const bool with_zero = told.right.decimal == "0" && told.right.lane == 0;
+  if (with_zero || (std::isfinite(told.difference.lane) && std::isfinite(told.difference.exact)))
+    return fmt::format("{} of exactly {} into {}", what(lane, told), exact_words(told.difference),
+                       words(told.difference.lane));
+  return fmt::format("two {} of exactly {} and {} into {} and {}",
+                     told.site == "separation" ? "interval ends" : "numbers", exact_words(told.left),
+                     exact_words(told.right), words(told.left.lane), words(told.right.lane));
+}
+
+// ", which turns a signed distance of exactly 0 into 1.2e-09, so that the comparison at … goes the wrong way".
+// replayed: words about how that is known, or none.
+std::string effect(const LaneExplanation& lane, std::string_view replayed) {
   const Step* told = lane.told();
   if (!told) return "";
-  const std::string into = std::isfinite(told->difference.lane) ? fmt::format("{:.6g}", told->difference.lane)
-                           : std::isnan(told->difference.lane)  ? "NaN"
-                                                                : "infinity";
-  std::string text = fmt::format("turns {} of exactly {} into {}, so that the comparison at {} goes the wrong way",
-                                 what(lane, *told), told->difference.decimal, into, told->line);
-  if (!lane.deciding.by_cause)
-    text = fmt::format("makes it wrong together with rounding, by the comparison at {}", told->line);
+  std::string text;
+  if (lane.deciding.front().by_cause) {
+    text = fmt::format("{} {}turns {}, so that the comparison at {} goes the wrong way",
+                       lane.cause == Cause::rounding ? "" : ", which", replayed, turned(lane, *told), told->line);
+  } else {
+    text = fmt::format("; {}the comparison at {}, which decides, goes the wrong way without that too", replayed,
+                       told->line);
+  }
   std::vector<std::string> then;
   for (const Step& step : lane.then) then.push_back(step.line);
   if (!then.empty())
-    text +=
-        fmt::format(" and, were it right, {} at {}", lane.then.size() == 1 ? "the next one" : "later ones", list(then));
+    text += fmt::format(" and, {} right, {} at {}", then.size() == 1 ? "were it" : "were each in turn",
+                        then.size() == 1 ? "a later one" : "later ones", list(then));
   return text;
 }
 
@@ -109,6 +131,8 @@ std::string doubt(const LaneExplanation& lane) {
       return "; not settled: without that something else makes it wrong as well";
     case Settled::not_alone:
       return "; not settled: that alone, with all else exact, does not make it wrong";
+    case Settled::not_by_few:
+      return fmt::format("; not settled: it takes more than {} corrected comparisons to make it right", kMostDeciding);
     case Settled::unknown:
       return lane.cause == Cause::fast_math ? "" : "; not settled: what it computed is not known";
     default:
@@ -117,9 +141,7 @@ std::string doubt(const LaneExplanation& lane) {
 }
 
 std::string reason(const LaneExplanation& lane) {
-  const std::string effect_text = effect(lane);
-  const std::string replayed = lane.evidence <= Evidence::hash ? "" : "in a replay with the same verdict ";
-  const std::string then = effect_text.empty() ? "" : ", which " + replayed + effect_text;
+  const std::string then = effect(lane, lane.evidence <= Evidence::hash ? "" : "in a replay with the same verdict ");
   const std::string_view scalar = lane.lane->scalar == Scalar::f32 ? "float32" : "float64";
   switch (lane.cause) {
     case Cause::logic:
@@ -133,7 +155,7 @@ std::string reason(const LaneExplanation& lane) {
     case Cause::underflow:
       return fmt::format("an intermediate result is too small for {}{}", scalar, then);
     default:
-      return effect_text.empty() ? "rounding" : "rounding " + replayed + effect_text;
+      return "rounding" + then;
   }
 }
 
@@ -294,11 +316,13 @@ nlohmann::ordered_json to_json(const LaneExplanation& lane) {
                               {"settled", name(lane.settled)},
                               {"exactly", name(lane.exactly.verdict)},
                               {"exactly_settled", lane.exactly.settled},
-                              {"evidence", name(lane.evidence)}};
+                              {"evidence", name(lane.evidence)},
+                              {"contracted", name(lane.rule)}};
   json["decisive"] = lane.decisive < 0 ? nlohmann::ordered_json() : nlohmann::ordered_json(lane.decisive);
   json["then"] = nlohmann::ordered_json::array();
   for (const Step& s : lane.then) json["then"].push_back(to_json(s));
-  json["decisive_smallest"] = lane.deciding.smallest;
+  json["deciding"] = nlohmann::ordered_json::array();
+  for (const Decider& decider : lane.deciding) json["deciding"].push_back(decider.before.size());
   json["steps"] = nlohmann::ordered_json::array();
   for (const Step& s : lane.steps) json["steps"].push_back(to_json(s));
   json["contractions"] = nlohmann::ordered_json::array();

@@ -23,11 +23,10 @@ std::uint64_t trace_hash(const Trace<double>& run) {
 }
 
 template <class Real>
-Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Path& lead,
-                     const std::vector<Correction<double>>& corrections) {
-  if (rule == Contraction::nvcc) return run_traced<Real, Contraction::nvcc>(algorithm, pair, lead, corrections);
-  if (rule == Contraction::left) return run_traced<Real, Contraction::left>(algorithm, pair, lead, corrections);
-  return run_traced<Real>(algorithm, pair, lead, corrections);
+Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Path& lead) {
+  if (rule == Contraction::nvcc) return run_traced<Real, Contraction::nvcc>(algorithm, pair, lead);
+  if (rule == Contraction::left) return run_traced<Real, Contraction::left>(algorithm, pair, lead);
+  return run_traced<Real>(algorithm, pair, lead);
 }
 
 // How well the run of a contracting lane is known to be its own.
@@ -48,10 +47,14 @@ std::string_view name(Evidence evidence) {
   return kNames[static_cast<int>(evidence)];
 }
 
-Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead,
-                      const std::vector<Correction<double>>& corrections) {
-  return lane.scalar == Scalar::f32 ? run_in<float>(lane.algorithm, pair, rule, lead, corrections)
-                                    : run_in<double>(lane.algorithm, pair, rule, lead, corrections);
+std::string_view name(Contraction rule) {
+  constexpr std::string_view kNames[] = {"none", "left", "nvcc"};
+  return kNames[static_cast<int>(rule)];
+}
+
+Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead) {
+  return lane.scalar == Scalar::f32 ? run_in<float>(lane.algorithm, pair, rule, lead)
+                                    : run_in<double>(lane.algorithm, pair, rule, lead);
 }
 
 Replay replay(const Lane& lane, const Pair& pair) {

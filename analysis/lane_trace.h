@@ -12,6 +12,7 @@ namespace graze::analysis {
 // verdict is the lane's; the values may not be. none: no rule gave even that.
 enum class Evidence { source, hash, verdict, none };
 std::string_view name(Evidence evidence);
+std::string_view name(Contraction rule);
 
 struct Replay {
   Contraction rule = Contraction::none;
@@ -22,9 +23,8 @@ struct Replay {
 // The lane's run on the pair; without evidence for a lane whose operations the compiler rewrites.
 Replay replay(const Lane& lane, const Pair& pair);
 
-// The same in other circumstances: the algorithm in the lane's scalar and by that rule, led down the path, corrected.
-Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead,
-                      const std::vector<Correction<double>>& corrections = {});
+// The same in other circumstances: the algorithm in the lane's scalar and by that rule, led down the path.
+Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead);
 
 // The lane itself, on the host; for CUDA lanes the twin.   Throws: std::invalid_argument without either.
 DecideBlock block_of(const Lane& lane);

@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/screen.h"
 #include "core/text.h"
+#include "fuzz/minimise/kinds.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
@@ -152,7 +153,7 @@ void explain_cases(const ExplainOptions& options) {
     if (options.exact_input) expect_exact_input(options.name, entry);
     const analysis::Explanation explanation = analysis::explain(entry.pair, under_test.lanes);
     if (options.json) {
-      nlohmann::ordered_json line{{"case", options.name}, {"line", entry.line}};
+      nlohmann::ordered_json line{{"case", options.name}, {"line", entry.line}, {"pair", fuzz::pair_text(entry.pair)}};
       line.update(to_json(explanation));
       line["cuda"] = cuda_evidence(under_test);
       if (const std::string note = written_note(entry, explanation.truth); !note.empty()) line["note"] = note;

@@ -36,11 +36,41 @@ Verdict decide_in_multi(int algorithm, const Pair& pair, std::index_sequence<i..
   return kDecide[algorithm](pair);
 }
 
-Trace<Ball> run_exactly(int algorithm, const Pair& pair, int bits, const Path& lead = {},
-                        const std::vector<Correction<Ball>>& corrections = {}) {
+Trace<Ball> run_exactly(int algorithm, const Pair& pair, int bits, const Path& lead = {}) {
   Multi::precision = bits;
   Ball::untold = 0;
-  return run_traced<Ball>(algorithm, pair, lead, corrections);
+  return run_traced<Ball>(algorithm, pair, lead);
+}
+
+Path outcomes_of(const Trace<Ball>& run) {
+  Path outcomes;
+  for (const Seen<Ball>& seen : run.seen) {
+    if (seen.compared) outcomes.push_back(seen.held);
+  }
+  return outcomes;
+}
+
+// Led down the path, with as many bits as that path needs. Multi::precision stays at them.
+struct SettledRun {
+  Trace<Ball> run;
+  Exactly exactly;
+};
+SettledRun run_settled(int algorithm, const Pair& pair, const Path& lead = {}) {
+  Path last;
+  long last_untold = 0;
+  constexpr int kLeast = 256, kMost = 16384;
+  for (int bits = kLeast;; bits *= 4) {
+    Trace<Ball> run = run_exactly(algorithm, pair, bits, lead);
+    const long untold = Ball::untold;
+    const bool certain = untold == 0;
+    const bool settled = certain || (bits > kLeast && untold == last_untold && outcomes_of(run) == last);
+    if (settled || bits == kMost) {
+      const Verdict verdict = run.verdict;
+      return {std::move(run), {verdict, bits, certain, settled}};
+    }
+    last = outcomes_of(run);
+    last_untold = untold;
+  }
 }
 
 Trace<Multi> run_multi(int algorithm, const Pair& pair, Contraction rule, const Path& lead) {
@@ -99,33 +129,15 @@ int bits_needed(int algorithm, const Pair& pair, Verdict verdict, int least) {
   return bits > kMostBits ? 0 : bits;
 }
 
-Exactly decide_exactly(int algorithm, const Pair& pair) {
-  Trace<Ball> last;
-  long last_untold = 0;
-  constexpr int kLeast = 256, kMost = 16384;
-  for (int bits = kLeast;; bits *= 4) {
-    Trace<Ball> run = run_exactly(algorithm, pair, bits);
-    const long untold = Ball::untold;
-    const bool certain = untold == 0;
-    const bool settled = certain || (bits > kLeast && untold == last_untold && path_of(run) == path_of(last));
-    if (settled || bits == kMost) return {run.verdict, bits, certain, settled};
-    last = std::move(run);
-    last_untold = untold;
-  }
-}
+Exactly decide_exactly(int algorithm, const Pair& pair) { return run_settled(algorithm, pair).exactly; }
 
-Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits, const Path& lead,
-                           std::span<const Correction<double>> corrections) {
+Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits) {
   const ExponentRange range(scalar, limits);
-  Multi::precision = bits;
-  std::vector<Correction<Ball>> balls;
-  for (const Correction<double>& c : corrections)
-    balls.push_back({c.left_result, c.right_result, Ball(c.left), Ball(c.right), c.relation, c.taken});
-  return run_exactly(algorithm, pair, bits, lead, balls).verdict;
+  return run_exactly(algorithm, pair, bits).verdict;
 }
 
-std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run, int bits) {
-  const Trace<Ball> exact = run_exactly(algorithm, pair, bits, path_of(run));
+std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run) {
+  const Trace<Ball> exact = run_settled(algorithm, pair, path_of(run)).run;
   if (exact.seen.size() != run.seen.size()) throw std::logic_error("exact_steps: the run is of another algorithm");
   const int mantissa = mantissa_bits(scalar);
   std::vector<ExactStep> steps;
@@ -136,6 +148,10 @@ std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pai
                      beside(lane.left - lane.right, seen.left - seen.right, mantissa), seen.held});
   }
   return steps;
+}
+
+Path exact_outcomes(int algorithm, const Pair& pair, const Path& path) {
+  return outcomes_of(run_settled(algorithm, pair, path).run);
 }
 
 }  // namespace graze::oracle

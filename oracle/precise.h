@@ -3,7 +3,6 @@
 // Algorithms are named by their place in Algorithms (core/algorithms/algorithms.h).
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -51,11 +50,9 @@ struct Exactly {
 };
 Exactly decide_exactly(int algorithm, const Pair& pair);
 
-// The algorithm in exact arithmetic, but for one end of the scalar's exponents, or for results that are corrected to
-// what a lane made of them, and along a given path.
+// The algorithm in exact arithmetic, but for one end of the scalar's exponents.
 // Requires: bits as decide_exactly found them.
-Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits,
-                           const Path& lead = {}, std::span<const Correction<double>> corrections = {});
+Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits);
 
 // A number of a lane beside what it should be.
 struct Beside {
@@ -72,7 +69,11 @@ struct ExactStep {
 };
 
 // The exact values of a lane's run, step by step, along the path that the lane took.
-// Requires: run is of that algorithm in that scalar; bits as decide_exactly found them.
-std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run, int bits);
+// With as many bits as that path needs.
+// Requires: run is of that algorithm in that scalar.
+std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run);
+
+// The outcomes alone, of each comparison on the path.
+Path exact_outcomes(int algorithm, const Pair& pair, const Path& path);
 
 }  // namespace graze::oracle

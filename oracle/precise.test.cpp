@@ -150,7 +150,7 @@ TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
 TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
   const Pair pair{{{0, 0, 0}, {0x1p-60f, 0, 0}, {0, 0x1p-60f, 0}}, {{0, 0, 0x1p-60f}, {1, 0, 1}, {0, 1, 2}}};
   const Trace<double> run = run_traced<float>(2, pair);
-  const std::vector<ExactStep> steps = exact_steps(2, Scalar::f32, pair, run, 256);
+  const std::vector<ExactStep> steps = exact_steps(2, Scalar::f32, pair, run);
   ASSERT_EQ(steps.size(), run.seen.size());
   const Beside& distance = steps[0].left;  // of b[0] to the plane of a, times the normal's length
   EXPECT_EQ(distance.lane, 0);

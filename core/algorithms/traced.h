@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers and a policy that write down what an algorithm does with them: every comparison and every value asked of the
-// policy, with its source line. They can also lead it: down a given path, whatever the values say, or with some of its
-// results corrected.
+// policy, with its source line. They can also lead it down a given path, whatever the values say.
 #pragma once
 
 #include <cmath>
@@ -46,16 +45,7 @@ struct Seen {
   Number left, right;
   int left_result, right_result;  // which results of the run they are, counted from 0; -1: a coordinate or a constant
   bool held;                      // by the values
-  bool taken;                     // what the algorithm was told: the same, unless it was led or corrected
-};
-
-// Both sides of a comparison, replaced where they were computed, so that all that uses them later uses these values.
-template <class Number>
-struct Correction {
-  int left_result, right_result;  // as in Seen
-  Number left, right;
-  Relation relation;
-  bool taken;  // what the algorithm is told when it compares these two by that relation
+  bool taken;                     // what the algorithm was told: the same, unless it was led
 };
 
 // Outcomes of a run's comparisons, in order.
@@ -83,7 +73,6 @@ struct Recorder {
 
   Trace<Kept> run;
   Path lead;  // what to say of the first comparisons; those beyond go by their values
-  std::vector<Correction<Kept>> corrections;
   std::size_t comparisons = 0;
   int results = 0;
   std::vector<int> uses;        // of each product, by additions
@@ -91,27 +80,11 @@ struct Recorder {
 
   static inline thread_local Recorder* current = nullptr;
 
-  // Numbers the result and corrects it where it is to be. Returns whether it was.
-  bool add_result(Number& value, int& result) {
-    result = results++;
-    bool corrected = false;
-    for (const Correction<Kept>& correction : corrections) {
-      if (correction.left_result != result && correction.right_result != result) continue;
-      value = Number(correction.left_result == result ? correction.left : correction.right);
-      corrected = true;
-    }
-    return corrected;
-  }
   template <class Operand>  // a value and which result it is
   bool compare(Relation relation, const Operand& l, const Operand& r, std::optional<Site> site,
                const std::source_location& where) {
     const bool held = holds(relation, order(l.value, r.value));
-    bool taken = held;
-    for (const Correction<Kept>& correction : corrections) {
-      if (correction.left_result == l.result && correction.right_result == r.result && correction.relation == relation)
-        taken = correction.taken;
-    }
-    if (comparisons < lead.size()) taken = lead[comparisons];
+    const bool taken = comparisons < lead.size() ? lead[comparisons] : held;
     ++comparisons;
     run.seen.push_back({where, site, true, relation, Kept(l.value), Kept(r.value), l.result, r.result, held, taken});
     return taken;
@@ -178,13 +151,12 @@ struct Traced {
     return computed(l.value - r.value);
   }
   friend Traced operator*(const Traced& l, const Traced& r) {
-    bool corrected = false;
-    Traced product = computed(l.value * r.value, &corrected);
+    Traced product = computed(l.value * r.value);
     if constexpr (contraction != Contraction::none) {
       product.x = l.value;
       product.y = r.value;
       product.scaled = r.quotient;
-      if (!corrected) product.product = static_cast<int>(Recorder<Number>::current->uses.size());
+      product.product = static_cast<int>(Recorder<Number>::current->uses.size());
       Recorder<Number>::current->uses.push_back(0);
     }
     return product;
@@ -207,10 +179,9 @@ struct Traced {
   friend bool operator>=(Operand l, Operand r) { return compare(Relation::at_least, l, r); }
 
  private:
-  static Traced computed(Number value, bool* corrected = nullptr) {
+  static Traced computed(Number value) {
     Traced number(std::move(value));
-    const bool was = Recorder<Number>::current->add_result(number.value, number.result);
-    if (corrected) *corrected = was;
+    number.result = Recorder<Number>::current->results++;
     return number;
   }
   // Which operand of an addition is contracted: -1 the left, 1 the right, 0 neither.
@@ -254,15 +225,12 @@ struct TracingPolicy {
   }
 };
 
-// The algorithm (its place in Algorithms) on the pair in these numbers, led down the path, with these corrections.
+// The algorithm (its place in Algorithms) on the pair in these numbers, led down the path.
 template <class Number, Contraction contraction = Contraction::none>
-Trace<typename Recorder<Number>::Kept> run_traced(
-    int algorithm, const Pair& pair, const Path& lead = {},
-    const std::vector<Correction<typename Recorder<Number>::Kept>>& corrections = {}) {
+Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const Pair& pair, const Path& lead = {}) {
   using Real = Traced<Number, contraction>;
   const auto run = [&]<std::size_t... i>(Recorder<Number> & recorder, std::index_sequence<i...>) {
     recorder.lead = lead;
-    recorder.corrections = corrections;
     Recorder<Number>::current = &recorder;
     Vec3<Real> a[3], b[3];
     for (int v = 0; v < 3; ++v) {

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the second program finds of a pair: truth, runs, and the comparisons that decide."""
+from fractions import Fraction
+
+import numpy as np
+
+from auditing.algorithms import ROOTS, Run, add, cross, dot, sub, times
+from auditing.numbers import Real, Root
+
+MOST_DECIDING = 4  # graze::analysis::kMostDeciding
+
+
+class Audited:
+    """What this program finds of a pair, asked lane by lane. Runs are kept: lanes share them."""
+
+    def __init__(self, coordinates):
+        self.floats = coordinates
+        self.fractions = [Fraction(c) for c in coordinates]
+        k = max(f.denominator for f in self.fractions)
+        self.integers = [int(f * k) for f in self.fractions]  # every comparison is between numbers of one degree
+        self.runs, self.outcomes, self.sets = {}, {}, {}
+        self.contact, self.distance_squared = contact_and_distance(self.fractions)
+        self.truth = "intersects" if self.contact else "disjoint"
+
+    def run(self, name, scalar, rule, lead=()):
+        key = name, scalar, rule, lead
+        if key not in self.runs:
+            self.runs[key] = Run(name, np.float32 if scalar == "f32" else np.float64, self.floats, lead, rule)
+        return self.runs[key]
+
+    def exactly(self, name, lead=()):
+        """In exact arithmetic; values scaled."""
+        if name in ROOTS:
+            return Run(name, lambda x: Root(Fraction(x)), self.integers, lead)
+        return Run(name, int, self.integers, lead)
+
+    def exact_outcomes(self, name, path):
+        if (name, path) not in self.outcomes:
+            self.outcomes[name, path] = [s.held for s in self.exactly(name, path).seen]
+        return self.outcomes[name, path]
+
+    def exact_seen(self, name, path):
+        """With the values themselves."""
+        return Run(name, lambda x: Root(Fraction(x)), self.fractions, path).seen
+
+    def sized(self, name, scalar, bits=None, upper=False, lower=False, rule="none", lead=()):
+        """With a mantissa of so many bits, and with ends of the scalar's exponents or without."""
+        single = scalar == "f32"
+
+        class Sized(Real):
+            pass
+        Sized.bits = bits or (24 if single else 53)
+        Sized.upper = Fraction(2) ** (128 if single else 1024) if upper else None
+        Sized.lower = (-149 if single else -1074) if lower else None
+        return Run(name, lambda x: Sized.made(Fraction(x)), self.fractions, lead, rule)
+
+    def deciding(self, name, scalar, rule):
+        """The smallest set of comparisons whose correction gives the truth, the first of equals: their numbers and, of
+        each, the path that leads to it. None where it takes more than MOST_DECIDING."""
+        key = name, scalar, rule
+        if key not in self.sets:
+            for size in range(1, MOST_DECIDING + 1):
+                found = self._with(name, scalar, rule, (), 0, size)
+                if found is not None:
+                    break
+            self.sets[key] = found
+        return self.sets[key]
+
+    def _with(self, name, scalar, rule, lead, begin, more):
+        """Depth first: a set of `more` further comparisons from `begin` on, the earliest first."""
+        path = self.run(name, scalar, rule, lead).path()
+        exact = self.exact_outcomes(name, path)
+        for i in range(begin, len(path)):
+            if path[i] == exact[i]:
+                continue
+            corrected = path[:i] + (exact[i],)
+            if more == 1:
+                if self.verdict(self.run(name, scalar, rule, corrected)) == self.truth:
+                    return [(i, path)]
+                continue
+            rest = self._with(name, scalar, rule, corrected, i + 1, more - 1)
+            if rest is not None:
+                return [(i, path)] + rest
+        return None
+
+    @staticmethod
+    def verdict(run):
+        return "intersects" if run.intersects else "disjoint"
+
+
+def solved(rows, right):
+    """The one solution of a linear system, or None without one, and without exactly one."""
+    rows = [list(row) + [value] for row, value in zip(rows, right)]
+    n, rank = len(rows[0]) - 1, 0
+    for column in range(n):
+        pivot = next((i for i in range(rank, len(rows)) if rows[i][column]), None)
+        if pivot is None:
+            return None
+        rows[rank], rows[pivot] = rows[pivot], rows[rank]
+        for i in range(len(rows)):
+            if i != rank and rows[i][column]:
+                factor = rows[i][column] / rows[rank][column]
+                rows[i] = [x - factor * y for x, y in zip(rows[i], rows[rank])]
+        rank += 1
+    if any(row[n] for row in rows[rank:]):
+        return None
+    return [rows[i][n] / rows[i][i] for i in range(n)]
+
+
+FACES = [[0], [1], [2], [0, 1], [1, 2], [0, 2], [0, 1, 2]]
+
+
+def contact_and_distance(c):
+    """The dimension of the common set as a word, '' for none, and the squared distance. The corners of the common set
+    are where faces of both meet in one point; the distance is that of a pair of faces' affine hulls."""
+    v = [c[i:i + 3] for i in range(0, 18, 3)]
+    points, least = [], None
+    for f in FACES:
+        for g in FACES:
+            origin, other = v[f[0]], v[3 + g[0]]
+            columns = [sub(v[i], origin) for i in f[1:]] + [sub(other, v[3 + j]) for j in g[1:]]
+            gap = sub(other, origin)
+            if columns:
+                normal = [[dot(p, q) for q in columns] for p in columns]
+                t = solved(normal, [dot(p, gap) for p in columns])
+            else:
+                t = []
+            if t is None:
+                continue
+            s, u = t[:len(f) - 1], t[len(f) - 1:]
+            if min(s + u, default=0) < 0 or sum(s) > 1 or sum(u) > 1:
+                continue
+            at_a = origin
+            for i, share in enumerate(s):
+                at_a = add(at_a, times(columns[i], share))
+            rest = gap
+            for column, share in zip(columns, t):
+                rest = sub(rest, times(column, share))
+            square = dot(rest, rest)
+            least = square if least is None else min(least, square)
+            if not square and at_a not in points:
+                points.append(at_a)
+    if not points:
+        return "", least
+    edges = [sub(p, points[0]) for p in points[1:]]
+    if not edges:
+        return "point", least
+    return "segment" if not any(any(cross(edges[0], e)) for e in edges) else "area", least

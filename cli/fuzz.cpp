@@ -19,6 +19,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "cli/shard_option.h"
 #include "core/error.h"
@@ -174,6 +175,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   if (const Json subjects = subjects::record(campaign.spec["lanes"].get<std::vector<std::string>>()); !subjects.is_null())
     campaign.spec["subjects"] = subjects;
   campaign.build = fuzz::build_info(under_test);
+  expect_campaign_folder(options.out);
 
   const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);

@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -65,6 +66,7 @@ int main(int argc, char** argv) {
   graze::cli::add_prove_twin(app, status);
   graze::cli::add_query(app, status);
   graze::cli::add_bench(app, status);
+  graze::cli::add_force(app);
   try {
     expect_verb(app, argc > 1 ? argv[1] : "");
     app.parse(argc, argv);

@@ -20,6 +20,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "cli/shard_option.h"
 #include "core/error.h"
@@ -83,7 +84,15 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
   std::cout.flush();
 }
 
+// By which graze knows the file again.
+std::string with_header(const std::string& text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";  // of UTF-8, which stands first or nowhere
+  const std::string plain = text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+  return plain.starts_with(std::string_view(kPairs).substr(0, 11)) ? plain : kPairs + plain;
+}
+
 int minimize_case(const MinimizeOptions& options) {
+  if (!options.out.empty()) expect_replaceable(options.out, kPairs);
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
   std::vector<corpus::Entry> entries = read_cases(options.name);
   for (const corpus::Entry& entry : entries) {
@@ -125,7 +134,7 @@ int minimize_case(const MinimizeOptions& options) {
   if (results.empty())
     throw std::runtime_error(options.name + ": expected a case on which a lane is wrong, found none");
   for (const fuzz::MinimisedCase& found : results) print(found, options.name);
-  if (!options.out.empty()) fuzz::write_whole(options.out, fuzz::with_results(text, entries, results));
+  if (!options.out.empty()) write_result(options.out, with_header(fuzz::with_results(text, entries, results)));
   // Nothing can be read again from a pipe or a device; behind a link may be the standard output.
   if (options.out.empty() || fs::is_regular_file(fs::symlink_status(options.out)))
     fmt::print("Next: graze explain {}\n", shell_word(options.out.empty() ? options.name : options.out));

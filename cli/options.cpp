@@ -159,13 +159,6 @@ void open_subjects_of(const std::filesystem::path& name) {
   }
 }
 
-std::filesystem::path made_folder(const std::filesystem::path& out) {
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) throw std::runtime_error(out.string() + ": expected a folder, found: " + error.message());
-  return out;
-}
-
 void open_subjects(const LaneOptions& options) {
   if (options.subjects.empty()) return;
   std::string why_not;

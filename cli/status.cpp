@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/run_status.h"
 #include "reports/terminal.h"
@@ -166,7 +167,7 @@ std::string prometheus(const Json& all) {
 
 int status_command(const StatusOptions& options) {
   const Json all = status_of(options);
-  if (!options.prometheus.empty()) fuzz::write_whole(options.prometheus, prometheus(all));
+  if (!options.prometheus.empty()) write_result(options.prometheus, prometheus(all));
   std::cout << (options.json ? all.dump(1) + '\n' : table(all));
   for (const char* bad : {"failed", "killed", "stalled"}) {
     if (all["states"].contains(bad)) return 1;

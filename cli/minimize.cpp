@@ -25,6 +25,7 @@
 #include "cli/shard_option.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/cost_estimate.h"
 #include "fuzz/minimise/kinds.h"
@@ -194,14 +195,14 @@ int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
   const bool whole = options.shard.whole();
-  const fuzz::FolderLock held(directory, whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
-  const Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
-  const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
-                          summary.value("spec", Json()).contains("lanes");
-  if (!is_summary)
-    throw std::runtime_error(options.name + ": expected a campaign's directory with summary.json, found none");
+  // Read before the lock is taken, which reading the database of a run that was killed takes for itself.
+  const std::string text = fuzz::read_whole(directory / "summary.json");
+  const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
+  const fuzz::FolderLock held(directory, whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
+  if (fuzz::read_whole(directory / "summary.json") != text)
+    throw std::runtime_error(options.name + ": expected to be alone, found that another process changed it");
   std::vector<fs::path> files;
   for (std::size_t i = 0; i < summary["signatures"].size(); ++i) {  // the commonest first: each shard gets some of them
     if (i % options.shard.of == options.shard.number - 1)

@@ -62,6 +62,10 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
     row["state"] = state_of(status, silent, stalled);
     for (const char* count : {"pairs", "done", "disagreements", "signatures"})
       row[count] = status.at(count).get<std::uint64_t>();
+    if (row["done"] > row["pairs"] || row["disagreements"] > row["done"])
+      throw std::runtime_error(fmt::format("{}: expected at most {} pairs done and as many disagreements, found {} and {}",
+                                           (directory / "status.json").string(), row["pairs"].dump(), row["done"].dump(),
+                                           row["disagreements"].dump()));
     std::size_t fresh = 0;
     for (const std::string way : status.value("ways", Json::array())) fresh += known.insert(way).second;
     row["new"] = fresh;

@@ -8,6 +8,7 @@
 
 #include "cli/bench_rows.h"
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "cli/interrupt.h"
 #include "cli/screen.h"
 #include "core/error.h"
@@ -138,7 +139,7 @@ void bench(const Options& options, int& status) {
     status = kInterrupted;
     return;
   }
-  if (!options.plot.empty()) fuzz::write_whole(options.plot, bench_plot(result, words(result.machine)));
+  if (!options.plot.empty()) write_result(options.plot, bench_plot(result, words(result.machine)));
   if (options.json) {
     fmt::print("{}\n", json_of(result).dump(1));
     return;

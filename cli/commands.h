@@ -54,9 +54,6 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
 // Opens the subjects.   Throws: as subjects::open.
 void open_subjects(const LaneOptions& options);
 
-// A folder for results, made where it is not there.   Throws: std::runtime_error.
-std::filesystem::path made_folder(const std::filesystem::path& out);
-
 // Opens the subjects that a campaign's directory recorded, or that of which this is a case file.   Throws: as
 // subjects::open_recorded. Of anything else: nothing happens.
 void open_subjects_of(const std::filesystem::path& name);

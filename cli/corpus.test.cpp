@@ -105,10 +105,9 @@ TEST_F(CorpusVerb, BadInputGetsOneLine) {
   expect_error("graze corpus list --corpus none", 1, "none/cases.pairs: expected a regression corpus");
   expect_error("mkdir e; echo 'graze-pairs 1' > e/cases.pairs; graze corpus verify --corpus e", 1,
                "e/cases.pairs: expected at least one case, found none");
-  expect_error("mkdir d; graze corpus add d", 1, "d: expected a campaign's directory, found no summary.json in it");
+  expect_error("mkdir d; graze corpus add d", 1, "d: expected a campaign's directory with summary.json, found none");
   expect_error("echo '{\"complete\":true}' > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
-  expect_error("echo '{\"complete\":false}' > d/summary.json; graze corpus add d", 2,
-               "d: expected a finished campaign");
+  expect_error("echo '{\"complete\":false}' > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
   expect_error("head -c 99 /dev/urandom > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
   expect_error("graze corpus add missing.pairs", 1, "missing.pairs: expected");
   expect_error("graze corpus add nowhere:1:2", 2, "found 'nowhere'");

@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "strata/pair_source.h"
@@ -54,10 +55,7 @@ Dumped of_stratum(const DumpOptions& options) {
 
 // The campaign's pairs, drawn or read again; of an unfinished one also those that are not judged yet.
 Dumped of_campaign(const DumpOptions& options) {
-  const fs::path file = fs::path(options.name) / "summary.json";
-  const Json summary = Json::parse(fuzz::read_whole(file), nullptr, false);
-  if (!summary.is_object())
-    throw std::runtime_error(options.name + ": expected a campaign's directory with summary.json, found none");
+  const Json summary = fuzz::checked_summary(options.name);
   Dumped dumped;
   try {
     const Json& spec = summary.at("spec");
@@ -67,7 +65,7 @@ Dumped of_campaign(const DumpOptions& options) {
     if (spec.contains("scene")) dumped.scene = spec["scene"].at("name");
     dumped.sources = fuzz::recorded_sources(spec);
   } catch (const Json::exception&) {
-    throw std::runtime_error(file.string() + ": expected a campaign's summary, found something else");
+    throw std::runtime_error(options.name + "/summary.json: expected a campaign's summary, found something else");
   }
   if (options.pairs > 0) {  // the same share of every source, the first ones taking the rest
     for (std::size_t s = 0; s < dumped.sources.size(); ++s) {

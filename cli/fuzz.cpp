@@ -19,6 +19,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "cli/shard_option.h"
 #include "core/error.h"
@@ -174,6 +175,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   if (const Json subjects = subjects::record(campaign.spec["lanes"].get<std::vector<std::string>>()); !subjects.is_null())
     campaign.spec["subjects"] = subjects;
   campaign.build = fuzz::build_info(under_test);
+  expect_campaign_folder(options.out);
 
   const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);
@@ -253,6 +255,11 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
   }
   reports::print_summary(std::cout, summary, outcome.oracle, output_screen());
   std::cout << left_out_text(left_out);
+  for (const Json& subject : summary["spec"].value("subjects", Json::array())) {
+    if (subject.contains("not_covered"))
+      std::cout << fmt::format("{}: the hash of its code, by which a change is noticed, does not cover {}.\n",
+                               subject["name"].get<std::string>(), subject["not_covered"].get<std::string>());
+  }
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", out);
   if (summary["signatures"].empty()) return;

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "cli/shard_option.h"
 #include "core/text.h"
@@ -89,6 +90,7 @@ int hunt(const HuntOptions& options) {
   if (const Json subjects = subjects::record(hunt.campaign.spec["lanes"].get<std::vector<std::string>>()); !subjects.is_null())
     hunt.campaign.spec["subjects"] = subjects;
   hunt.campaign.build = fuzz::build_info(under_test);
+  expect_campaign_folder(options.out);
 
   const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);

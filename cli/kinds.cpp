@@ -10,9 +10,8 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/screen.h"
-#include "fuzz/files.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/minimise/kinds.h"
-#include "reports/report.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 
@@ -86,15 +85,18 @@ void print_audit(const Json& kinds, const reports::Screen& screen) {
   fmt::print("{}", table.text(screen));
 }
 
-void kinds_of(const std::string& directory, bool json, bool all) {
-  const Json summary = reports::read_summary(directory);
+int kinds_of(const std::string& directory, bool json, bool all) {
+  const Json summary = fuzz::checked_summary(directory);
   const std::atomic<bool>& interrupted = catch_interrupts();
   const Json kinds = fuzz::kinds_of(directory, summary, [&] { return interrupted.load(); });
-  if (interrupted) throw std::runtime_error(directory + ": interrupted, nothing was written");
+  if (interrupted) {
+    fmt::print(stderr, "graze: interrupted; wrote nothing\n");
+    return kInterrupted;
+  }
   const reports::Screen screen = output_screen();
   if (json) {
     for (const Json& kind : kinds) fmt::print("{}\n", kind.dump());
-    return;
+    return 0;
   }
   if (kinds.empty()) fmt::print("no failures\n");
   const std::size_t shown = all ? kinds.size() : std::min(kinds.size(), fuzz::kMostShown);
@@ -110,6 +112,7 @@ void kinds_of(const std::string& directory, bool json, bool all) {
                                       screen.columns));
   if (!kinds.empty()) fmt::print("\n");
   print_audit(kinds, screen);
+  return 0;
 }
 
 }  // namespace
@@ -124,8 +127,7 @@ void add_kinds(CLI::App& app, int& status) {
   command->add_flag("--json", *json, "One object a line, as docs/formats.md describes it");
   command->add_flag("--all", *all, "Also the rare ones");
   command->callback([directory, json, all, &status] {
-    kinds_of(*directory, *json, *all);
-    status = 0;
+    status = kinds_of(*directory, *json, *all);
   });
 }
 

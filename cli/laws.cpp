@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/text.h"
 #include "fuzz/files.h"
@@ -31,10 +32,11 @@ int laws(const LawsOptions& options) {
   spec.sources = std::move(all.sources);
   spec.threads = options.threads;
   spec.simpler = [](const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); };
+  const ResultFolder folder(options.out, "laws.json");
   const analysis::Laws found = analysis::laws(spec);
 
-  const fs::path out = made_folder(options.out);
-  made_folder(out / "cases");
+  const fs::path& out = folder.path;
+  fs::create_directories(out / "cases");
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::laws_table(spec, found, screen));
   for (const std::string& sentence : reports::laws_sentences(spec, found))
@@ -43,10 +45,10 @@ int laws(const LawsOptions& options) {
   nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
   if (!options.scene.empty()) json["scene"] = options.scene;
   json.update(reports::laws_json(spec, found));
-  fuzz::write_whole(out / "laws.json", json.dump(1) + "\n");
+  write_result(out / "laws.json", json.dump(1) + "\n");
   const std::map<std::string, std::string> cases = reports::laws_cases(spec, found);
-  for (const analysis::LawInfo& law : analysis::kLaws) fs::remove(out / "cases" / (std::string(law.id) + ".pairs"));
-  for (const auto& [file, text] : cases) fuzz::write_whole(out / "cases" / file, text);
+  for (const analysis::LawInfo& law : analysis::kLaws) remove_result(out / "cases" / (std::string(law.id) + ".pairs"), kPairs);
+  for (const auto& [file, text] : cases) write_result(out / "cases" / file, text);
   fmt::print("Wrote {0}/laws.json{1}\n", out.string(),
              cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
   if (cases.empty()) return 0;

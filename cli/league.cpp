@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
@@ -92,6 +93,14 @@ void open(reports::LeagueSubject& subject, double timeout) {
   if (!said.convention.empty()) subject.convention = said.convention;
 }
 
+// Of another run.
+void remove_other_drawings(const fs::path& folder, const std::map<std::string, std::string>& drawings) {
+  if (drawings.empty()) return;
+  for (const auto& there : std::vector<fs::directory_entry>(fs::directory_iterator(folder), fs::directory_iterator())) {
+    if (!drawings.contains(there.path().filename().string())) remove_result(there.path(), drawings.begin()->second);
+  }
+}
+
 int league(const LeagueOptions& options) {
   fuzz::MostPairs most;
   std::vector<reports::LeagueSubject> subjects = read_subjects(options.subjects, most);
@@ -99,6 +108,7 @@ int league(const LeagueOptions& options) {
   const fuzz::LanesUnderTest lanes = fuzz::league_lanes({"*/cpu", "*/cpu-fma"});
   const strata::SceneSources drawn_pairs = drawn(options.scene, options.seed, options.pairs, options.strata);
   const std::vector<strata::PairSource>& sources = drawn_pairs.sources;
+  const ResultFolder folder(options.out, "league.json");
   const std::atomic<bool>& interrupted = catch_interrupts();
   const auto start = std::chrono::steady_clock::now();
   Progress progress("pairs", options.pairs, isatty(STDERR_FILENO), error_screen());
@@ -119,12 +129,13 @@ int league(const LeagueOptions& options) {
                                     options.pairs, options.seed);
   if (!options.scene.empty()) command += " --scene " + shell_word(options.scene);
   for (const std::string& glob : options.strata) command += " --strata " + shell_word(glob);
-  const fs::path out = options.out;
-  fs::remove_all(out / "league");  // drawings of another run
+  const fs::path& out = folder.path;
   fs::create_directories(out / "league");
-  fuzz::write_whole(out / "league.json", json.dump(1) + "\n");
-  fuzz::write_whole(out / "league.md", reports::league_page(json, command));
-  for (const auto& [file, svg] : reports::league_drawings(json)) fuzz::write_whole(out / "league" / file, svg);
+  write_result(out / "league.json", json.dump(1) + "\n");
+  write_result(out / "league.md", reports::league_page(json, command));
+  const std::map<std::string, std::string> drawings = reports::league_drawings(json);
+  for (const auto& [file, svg] : drawings) write_result(out / "league" / file, svg);
+  remove_other_drawings(out / "league", drawings);
   std::cout << reports::league_table(json, output_screen());
   fmt::print("\nWrote {0}/league.json, {0}/league.md, {0}/league/\n", options.out);
   return 0;

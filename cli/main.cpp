@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -66,6 +67,7 @@ int main(int argc, char** argv) {
   graze::cli::add_prove_twin(app, status);
   graze::cli::add_query(app, status);
   graze::cli::add_bench(app, status);
+  graze::cli::add_force(app);
   try {
     expect_verb(app, argc > 1 ? argv[1] : "");
     app.parse(argc, argv);

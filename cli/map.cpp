@@ -10,6 +10,7 @@
 
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -91,16 +92,13 @@ void print_counts(const analysis::UlpMap& map) {
 // One picture, or one for each panel where a directory is asked for.
 void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
   if (out.extension() == ".png") {
-    fuzz::write_whole(out, reports::sheet_png(map));
+    write_result(out, reports::sheet_png(map));
   } else {
-    std::error_code error;
-    fs::create_directories(out, error);
-    if (error)
-      throw std::runtime_error(out.string() + ": expected a file.png or a directory, found: " + error.message());
+    const ResultFolder folder(out, "truth.png");
     for (const analysis::UlpPanel& panel : map.panels) {
       std::string name = panel.name();
       std::replace(name.begin(), name.end(), '/', '-');
-      fuzz::write_whole(out / (name + ".png"), reports::panel_png(panel));
+      write_result(out / (name + ".png"), reports::panel_png(panel));
     }
   }
   fmt::print("Wrote {}\n", out.string());

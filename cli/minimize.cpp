@@ -20,10 +20,12 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "cli/shard_option.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/cost_estimate.h"
 #include "fuzz/minimise/kinds.h"
@@ -83,7 +85,15 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
   std::cout.flush();
 }
 
+// By which graze knows the file again.
+std::string with_header(const std::string& text) {
+  constexpr std::string_view kMark = "\xef\xbb\xbf";  // of UTF-8, which stands first or nowhere
+  const std::string plain = text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+  return plain.starts_with(std::string_view(kPairs).substr(0, 11)) ? plain : kPairs + plain;
+}
+
 int minimize_case(const MinimizeOptions& options) {
+  if (!options.out.empty()) expect_replaceable(options.out, kPairs);
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
   std::vector<corpus::Entry> entries = read_cases(options.name);
   for (const corpus::Entry& entry : entries) {
@@ -125,7 +135,7 @@ int minimize_case(const MinimizeOptions& options) {
   if (results.empty())
     throw std::runtime_error(options.name + ": expected a case on which a lane is wrong, found none");
   for (const fuzz::MinimisedCase& found : results) print(found, options.name);
-  if (!options.out.empty()) fuzz::write_whole(options.out, fuzz::with_results(text, entries, results));
+  if (!options.out.empty()) write_result(options.out, with_header(fuzz::with_results(text, entries, results)));
   // Nothing can be read again from a pipe or a device; behind a link may be the standard output.
   if (options.out.empty() || fs::is_regular_file(fs::symlink_status(options.out)))
     fmt::print("Next: graze explain {}\n", shell_word(options.out.empty() ? options.name : options.out));
@@ -185,14 +195,14 @@ int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
   const bool whole = options.shard.whole();
-  const fuzz::FolderLock held(directory, whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
-  const Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
-  const bool is_summary = summary.is_object() && summary.value("signatures", Json()).is_array() &&
-                          summary.value("spec", Json()).contains("lanes");
-  if (!is_summary)
-    throw std::runtime_error(options.name + ": expected a campaign's directory with summary.json, found none");
+  // Read before the lock is taken, which reading the database of a run that was killed takes for itself.
+  const std::string text = fuzz::read_whole(directory / "summary.json");
+  const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
+  const fuzz::FolderLock held(directory, whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
+  if (fuzz::read_whole(directory / "summary.json") != text)
+    throw std::runtime_error(options.name + ": expected to be alone, found that another process changed it");
   std::vector<fs::path> files;
   for (std::size_t i = 0; i < summary["signatures"].size(); ++i) {  // the commonest first: each shard gets some of them
     if (i % options.shard.of == options.shard.number - 1)

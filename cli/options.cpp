@@ -11,7 +11,7 @@
 #include "cli/shard_option.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "fuzz/campaign/result_files.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "subjects/subjects.h"
 
 namespace graze::cli {
@@ -164,17 +164,11 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
 void open_subjects_of(const std::filesystem::path& name) {
   for (const std::filesystem::path& directory : {name, name.parent_path().parent_path()}) {
     if (!std::filesystem::is_regular_file(directory / "summary.json")) continue;
-    const fuzz::Json summary = fuzz::Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
-    if (summary.is_object() && summary.value("spec", fuzz::Json()).is_object())
-      return subjects::open_recorded(summary["spec"]);
+    const fuzz::Json spec = fuzz::recorded_spec(directory);
+    if (spec.is_null()) continue;
+    for (const std::string& line : subjects::open_recorded(spec)) fmt::print(stderr, "graze: {}\n", printable(line));
+    return;
   }
-}
-
-std::filesystem::path made_folder(const std::filesystem::path& out) {
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) throw std::runtime_error(out.string() + ": expected a folder, found: " + error.message());
-  return out;
 }
 
 void open_subjects(const LaneOptions& options) {

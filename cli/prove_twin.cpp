@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "cuda/twin/prove.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/terminal.h"
@@ -32,7 +33,7 @@ cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions
 int prove(const cuda::ProofOptions& options, const LaneOptions& lanes, std::string out) {
   const cuda::ProofRecord record = record_of(options, lanes, out);
   if (out.empty()) out = "proof.json";
-  fuzz::write_whole(out, to_json(record).dump(1) + "\n");
+  write_result(out, to_json(record).dump(1) + "\n");
   fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", "lane", "explicit PTX", "differences", "twin", "differences");
   for (const cuda::LaneProof& lane : record.lanes) {
     fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", lane.lane, reports::grouped(lane.pairs()),

@@ -15,6 +15,7 @@
 #include "cli/progress.h"
 #include "cli/query_input.h"
 #include "cli/query_self.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -108,7 +109,7 @@ void write_pairs(const std::string& file, const std::vector<corpus::Entry>& entr
   std::ostringstream text;
   corpus::write_header(text);
   for (const corpus::Entry& entry : entries) corpus::write_entry(text, entry);
-  fuzz::write_whole(file, text.str());
+  write_result(file, text.str());
 }
 
 // What the first run found, as files.
@@ -124,7 +125,7 @@ void write_hits(const QueryOptions& options, const Run& run, const std::vector<q
     hits.triangles.push_back(triangles[triangle]);
   }
   if (!options.pairs.empty()) write_pairs(options.pairs, entries);
-  if (!options.obj.empty()) fuzz::write_whole(options.obj, obj_of({{"reference", references}, hits}));
+  if (!options.obj.empty()) write_result(options.obj, obj_of({{"reference", references}, hits}));
 }
 
 Json json_of(const Run& run) {

@@ -65,7 +65,7 @@ Pair pair_of(const query::Triangle& a, const query::Triangle& b) {
 }
 
 std::string obj_of(const std::vector<ObjGroup>& groups) {
-  std::string text;
+  std::string text = "# Written by graze query\n";
   std::size_t vertex = 1;
   for (const ObjGroup& group : groups) {
     text += "g " + group.name + "\n";

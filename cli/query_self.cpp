@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/query_input.h"
+#include "cli/results.h"
 #include "core/exact/exact.h"
 #include "corpus/pair_format.h"
 #include "fuzz/files.h"
@@ -73,8 +74,8 @@ void query_self(const SelfOptions& options) {
       std::copy_n(from, 9, piercing.triangles.back().begin());
     }
   }
-  if (!options.pairs.empty()) fuzz::write_whole(options.pairs, pairs.str());
-  if (!options.obj.empty()) fuzz::write_whole(options.obj, obj_of({piercing}));
+  if (!options.pairs.empty()) write_result(options.pairs, pairs.str());
+  if (!options.obj.empty()) write_result(options.obj, obj_of({piercing}));
   if (options.json) {
     const nlohmann::ordered_json json = {{"triangles", mesh.triangles.size()},
                                          {"hits", count(kPiercing)},

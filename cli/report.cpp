@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
@@ -35,17 +36,19 @@ void say_what_the_page_is() {
 // NAME.html, NAME.json, costs.json and tables in the directory.
 void write_report(const fs::path& directory, const Json& report, const char* name) {
   const Json costs = reports::make_costs(directory);
-  fuzz::write_whole(directory / fmt::format("{}.json", name), reports::report_text(report));
-  fuzz::write_whole(directory / fmt::format("{}.html", name), reports::page(report, costs, reports::make_choices(directory)));
+  const std::string html = reports::page(report, costs, reports::make_choices(directory));
+  const fuzz::FolderLock alone(directory, fuzz::FolderLock::WhenTaken::refuse);
+  write_result(directory / fmt::format("{}.json", name), reports::report_text(report));
+  write_result(directory / fmt::format("{}.html", name), html);
   std::string tables;
   if (costs.is_null()) {
-    fs::remove(directory / "costs.json");
+    remove_result(directory / "costs.json", R"({"machine": "", "passes": 0})");
   } else {
-    fuzz::write_whole(directory / "costs.json", reports::report_text(costs));
+    write_result(directory / "costs.json", reports::report_text(costs));
     tables = ", costs.json";
   }
   for (const reports::CsvTable& table : reports::csv_tables(directory, report)) {
-    fuzz::write_whole(directory / table.name, table.text);
+    write_result(directory / table.name, table.text);
     tables += fmt::format(", {}", table.name);
   }
   fmt::print("Wrote {0}/{1}.html, {1}.json{2}\n", directory.string(), name, tables);
@@ -70,7 +73,7 @@ void report(const ReportOptions& options) {
   if (options.from.empty() != options.out.empty())
     throw UsageError("expected --from and --out together, found one of them");
   if (!options.from.empty()) {
-    fuzz::write_whole(options.out, page_of(options.from));
+    write_result(options.out, page_of(options.from));
     fmt::print("Wrote {}\n", options.out);
     say_what_the_page_is();
   } else if (!options.compare.empty()) {

@@ -20,6 +20,60 @@ class Report : public CommandTest {
   nlohmann::json json(const char* file) { return nlohmann::json::parse(contents(shell.folder / file)); }
 };
 
+// What another has written into a campaign's JSON is refused by every verb that reads it, by its name.
+TEST_F(Report, CountsThatCannotBeAreRefused) {
+  expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && graze report c");
+  const nlohmann::ordered_json summary = nlohmann::ordered_json::parse(contents(shell.folder / "c/summary.json"));
+  const auto write = [&](const char* file, const nlohmann::ordered_json& json) { std::ofstream(shell.folder / file) << json.dump(1) << '\n'; };
+  const std::string readers[] = {"report c", "report --compare c c", "kinds c", "minimize c", "corpus add c --corpus r", "dump c"};
+  for (const char* place : {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", "/strata/thesis/pairs", "/disagreements",
+                            "/signatures/0/count", "/spec/seed", "/build/version"}) {
+    nlohmann::ordered_json other = summary;
+    const nlohmann::ordered_json::json_pointer at(place);
+    other[at] = other[at].is_string() ? nlohmann::ordered_json("x") : nlohmann::ordered_json(other[at].get<std::uint64_t>() + 1200);
+    write("c/summary.json", other);
+    for (const std::string& reader : readers) {
+      if (&reader != &readers[0] && place != std::string("/disagreements")) continue;
+      expect_error("graze " + reader, 1, "c/summary.json: expected what campaign.sqlite says: " + std::string(place).substr(1, 4));
+    }
+  }
+  write("c/summary.json", summary);
+  nlohmann::ordered_json kinds = nlohmann::ordered_json::parse(contents(shell.folder / "c/kinds.json")), more = kinds;
+  more["kinds"][0]["pairs"] = more["kinds"][0]["pairs"].get<std::uint64_t>() + 1;
+  write("c/kinds.json", more);
+  expect_error("graze kinds c", 1, "c/kinds.json: expected what `graze minimize` writes");
+  write("c/kinds.json", kinds);
+
+  nlohmann::ordered_json report = nlohmann::ordered_json::parse(contents(shell.folder / "c/report.json"));
+  for (const char* part : {"count", "of", "share"}) {
+    nlohmann::ordered_json other = report;
+    other["rates"][0]["wrong"][part] = 12345678;
+    write("r.json", other);
+    expect_error("graze report --from r.json --out r.html", 1, "r.json: expected a share of at most ");
+  }
+  report["strata"][0]["pairs"] = 1;
+  write("r.json", report);
+  expect_error("graze report --from r.json --out r.html", 1, "r.json: expected 3000 pairs in its strata");
+
+  // Without its database a summary is compared with itself.
+  std::filesystem::remove(shell.folder / "c/campaign.sqlite");
+  expect_done("graze report c | grep 'checked only against each other'");
+  for (const auto& [place, value, said] :
+       {std::tuple("/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", 1230, "degenerate: expected at most "),
+        {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/declined", 3, "wrong of moller_1997/f32/cpu by margin, found "},
+        {"/strata/degenerate/intersects", 1001, "degenerate: expected at most 1000 pairs that intersect, found 1001"},
+        {"/strata/degenerate/pairs", 1001, "degenerate: expected 1001 pairs by margin, found 1000"},
+        {"/spec/pairs", 2999, "expected exactly 2999 pairs in all strata, found 3000"},
+        {"/disagreements", 3001, "expected at most 3000 disagreements, found 3001"},
+        {"/signatures/0/count", 3001, "expected at most 3000 pairs of the signature "}}) {
+    nlohmann::ordered_json other = summary;
+    other[nlohmann::ordered_json::json_pointer(place)] = value;
+    write("c/summary.json", other);
+    expect_error("graze report c", 1, "c/summary.json: ");
+    expect_error("graze kinds c", 1, said);
+  }
+}
+
 TEST_F(Report, SameBytesWhateverTheThreads) {
   expect_done(std::string(kFuzz) + "--threads 1 --out one > /dev/null && graze minimize one && graze report one");
   // What lanes cost is of each run its own, and stands in costs.json and the page alone.

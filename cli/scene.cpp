@@ -6,6 +6,7 @@
 
 #include "analysis/measure_scene.h"
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
@@ -78,7 +79,7 @@ void scene(const SceneVerb& options) {
     std::cout << text;
     return;
   }
-  fuzz::write_whole(options.out, text);
+  write_result(options.out, text);
   fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", options.out,
              reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
   fmt::print("Next: graze fuzz --scene {}\n", shell_word(options.out));

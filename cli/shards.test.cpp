@@ -8,7 +8,7 @@
 namespace graze::cli {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 class Shards : public CommandTest {
  protected:

@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/progress.h"
+#include "cli/results.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/run_status.h"
 #include "reports/terminal.h"
@@ -61,6 +62,10 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
     row["state"] = state_of(status, silent, stalled);
     for (const char* count : {"pairs", "done", "disagreements", "signatures"})
       row[count] = status.at(count).get<std::uint64_t>();
+    if (row["done"] > row["pairs"] || row["disagreements"] > row["done"])
+      throw std::runtime_error(fmt::format("{}: expected at most {} pairs done and as many disagreements, found {} and {}",
+                                           (directory / "status.json").string(), row["pairs"].dump(), row["done"].dump(),
+                                           row["disagreements"].dump()));
     std::size_t fresh = 0;
     for (const std::string way : status.value("ways", Json::array())) fresh += known.insert(way).second;
     row["new"] = fresh;
@@ -166,7 +171,7 @@ std::string prometheus(const Json& all) {
 
 int status_command(const StatusOptions& options) {
   const Json all = status_of(options);
-  if (!options.prometheus.empty()) fuzz::write_whole(options.prometheus, prometheus(all));
+  if (!options.prometheus.empty()) write_result(options.prometheus, prometheus(all));
   std::cout << (options.json ? all.dump(1) + '\n' : table(all));
   for (const char* bad : {"failed", "killed", "stalled"}) {
     if (all["states"].contains(bad)) return 1;

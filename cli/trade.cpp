@@ -4,6 +4,7 @@
 
 #include "analysis/trade.h"
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/text.h"
 #include "cuda/lanes/device.h"
@@ -114,6 +115,7 @@ int trade(TradeOptions options) {
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
   const Measured lanes = measured(options, under_test);
   const strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
+  const ResultFolder folder(options.out, "trade.json");
   analysis::Trade trade = offers_of(options, lanes, all.sources);
   const auto some =
       drawn(options.scene, options.seed, std::max<std::uint64_t>(options.pairs / 50, 1000), options.strata).sources;
@@ -126,7 +128,7 @@ int trade(TradeOptions options) {
     }
   }
 
-  const fs::path out = made_folder(options.out);
+  const fs::path& out = folder.path;
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::trade_table(trade, screen));
   if (options.device) {
@@ -140,10 +142,10 @@ int trade(TradeOptions options) {
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
   json.update(reports::trade_json(trade));
-  fuzz::write_whole(out / "trade.json", json.dump(1) + "\n");
-  fuzz::write_whole(out / "front.svg", reports::trade_figure(trade));
+  write_result(out / "trade.json", json.dump(1) + "\n");
+  write_result(out / "front.svg", reports::trade_figure(trade));
   for (const analysis::Extreme extreme : analysis::kExtremes)
-    fuzz::write_whole(out / (std::string(name(extreme)) + ".svg"), reports::extreme_figure(trade.curves, extreme));
+    write_result(out / (std::string(name(extreme)) + ".svg"), reports::extreme_figure(trade.curves, extreme));
   fmt::print("Wrote {}/{{trade.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n", out.string());
   if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", shell_word(out.string()));
   return 0;

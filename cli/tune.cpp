@@ -6,6 +6,7 @@
 
 #include "analysis/trade.h"
 #include "cli/commands.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -93,10 +94,11 @@ int tune(const TuneOptions& options) {
   spec.sites = analysis::sites_asked(*lane, spec.sources);
   spec.forbid = static_cast<analysis::Forbid>(options.forbid);
   spec.max_rate = options.max_rate;
+  const ResultFolder folder(options.out, "tune.json");
   const analysis::Tuned tuned = analysis::tune(spec);
 
   const reports::TuneQuestion question{lane->id, spec.forbid, spec.max_rate};
-  const fs::path out = made_folder(options.out);
+  const fs::path& out = folder.path;
   const reports::Screen screen = output_screen();
   for (const std::string& sentence : reports::tuning_sentences(question, tuned))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
@@ -105,15 +107,15 @@ int tune(const TuneOptions& options) {
   if (const std::string cost = cost_sentence(*lane, chosen, spec.others, on_device); !cost.empty())
     fmt::print("{}", reports::wrapped(cost, screen.columns));
   std::vector<std::string> written = {"tune.json", "curves.svg", "policy.h"};
-  fuzz::write_whole(out / "tune.json", reports::tuning_json(question, tuned).dump(1) + "\n");
-  fuzz::write_whole(out / "curves.svg", reports::tuning_figure(question, tuned));
-  fuzz::write_whole(out / "policy.h", reports::policy_header(chosen));
+  write_result(out / "tune.json", reports::tuning_json(question, tuned).dump(1) + "\n");
+  write_result(out / "curves.svg", reports::tuning_figure(question, tuned));
+  write_result(out / "policy.h", reports::policy_header(chosen));
   for (const auto& [place, name] :
        {std::pair{tuned.confirmed.first_mended, "mended.pairs"}, {tuned.confirmed.first_broken, "broken.pairs"}}) {
-    fs::remove(out / name);  // of another run
+    if (!place) remove_result(out / name, kPairs);
     if (!place) continue;
     const Pair pair = spec.others[static_cast<std::size_t>(place->source)].pair(place->index);
-    fuzz::write_whole(out / name, smallest(*lane, chosen, pair));
+    write_result(out / name, smallest(*lane, chosen, pair));
     written.emplace_back(name);
   }
   fmt::print("Wrote {}/{{{}}}\n", out.string(), fmt::join(written, ","));

@@ -11,6 +11,7 @@
 #include "cli/cases.h"
 #include "cli/commands.h"
 #include "cli/query_input.h"
+#include "cli/results.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "cuda/twin/twin.h"
@@ -163,7 +164,7 @@ void view(const std::string& what, const std::string& mesh, const std::string& o
         "which scripts/setup installs");
   }
   const Viewed viewed = viewed_of(what, mesh);
-  fuzz::write_whole(out, reports::viewer_page(viewed));
+  write_result(out, reports::viewer_page(viewed));
   const std::size_t count = viewed.pairs.size();
   fmt::print("Wrote {}: {}{}\n", shell_word(out),
              count == 0 ? "the special cases of 2012" : fmt::format("{} pair{}", count, count == 1 ? "" : "s"),

@@ -18,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kPart = ".graze.part";  // behind the name of a file that is being written
+
 [[noreturn]] void fail(const fs::path& file, const char* expected, const std::string& found) {
   throw std::runtime_error(file.string() + ": expected " + expected + ", found: " + found);
 }
@@ -47,9 +49,13 @@ fs::path behind_links(fs::path file) {
   return file;
 }
 
+bool same_file(const struct stat& one, const struct stat& other) {
+  return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
+}
+
 bool is_standard_output(const struct stat& file) {
   struct stat output {};
-  return fstat(STDOUT_FILENO, &output) == 0 && output.st_dev == file.st_dev && output.st_ino == file.st_ino;
+  return fstat(STDOUT_FILENO, &output) == 0 && same_file(output, file);
 }
 
 // Into a device or a pipe, which cannot be replaced by a file.
@@ -60,18 +66,31 @@ void write_into(const fs::path& file, bool standard_output, const std::string& t
   if (own.number < 0 || !write_all(own.number, text)) fail(file, "to write it", std::strerror(errno));
 }
 
+// Opens the file for this writer alone: another one waits until this one has moved it to its place.
+// Returns: its number; negative when errno says why not.
+int opened_alone(const std::string& file) {
+  while (true) {
+    const int number = open(file.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (number < 0) return number;
+    struct stat opened {}, named {};
+    if (fstat(number, &opened) != 0 || !S_ISREG(opened.st_mode)) return number;
+    const bool locked = flock(number, LOCK_EX) == 0;
+    if (!locked && errno != EINTR) return number;  // a file system without locks
+    if (locked && lstat(file.c_str(), &named) == 0 && same_file(opened, named)) return number;
+    close(number);
+  }
+}
+
 void replace(const fs::path& file, const fs::path& asked, const std::string& text, mode_t mode) {
-  const std::string beside = file.string() + ".part";
-  const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
-  Handle part{open(beside.c_str(), flags, 0666)};
+  const std::string beside = file.string() + kPart;
+  Handle part{opened_alone(beside)};
   struct stat state {};
   if (part.number < 0) fail(asked, "to write it", std::strerror(errno));
   if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode)) fail(beside, "no such file", "a device or a pipe");
-  bool done = write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
-  if (done) {
-    done = close(part.number) == 0;  // where a full disk may show as well
-    part.number = -1;
-  }
+  bool done = ftruncate(part.number, 0) == 0 && write_all(part.number, text) &&
+              (mode == 0 || fchmod(part.number, mode) == 0);
+  // A full disk may show only on closing; the file itself stays open, and so locked, until it is in its place.
+  done = done && close(dup(part.number)) == 0;
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
   const int error = errno;
   unlink(beside.c_str());

@@ -12,7 +12,8 @@ namespace graze::fuzz {
 std::string read_whole(const std::filesystem::path& file);
 
 // Writes the file, through symbolic links; a device or a pipe stays what it is. Nothing is left beside it when this
-// fails.   Throws: std::runtime_error for a folder, and when there is no room.
+// fails. Two may write the same file at once: each writes a whole one, and the last one stays.
+// Throws: std::runtime_error for a folder, and when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
 // Held as long as it lives: no other process, and no other part of this one, holds the folder's lock; where it is shared,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stands where a file is written: links, devices, pipes and folders stay what they are.
 #include "fuzz/files.h"
+#include "fuzz/own_files.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -129,6 +130,68 @@ TEST_F(Files, OneHoldsAFoldersLock) {
   const FolderLock again(folder_, FolderLock::WhenTaken::refuse);
   EXPECT_THROW(FolderLock(folder_, FolderLock::WhenTaken::share), std::runtime_error);
   EXPECT_THROW(FolderLock(folder_ / "none", FolderLock::WhenTaken::wait), std::runtime_error);
+}
+
+TEST_F(Files, OfManyWritersOfOneFileEachWritesAWholeOne) {
+  std::vector<std::future<void>> writers;
+  std::vector<std::string> texts;
+  for (char c = 'a'; c < 'e'; ++c) texts.emplace_back(300'000 + c, c);
+  for (const std::string& text : texts)
+    writers.push_back(std::async(std::launch::async, [&] {
+      for (int i = 0; i < 50; ++i) write_whole(folder_ / "one", text);
+    }));
+  for (int i = 0; i < 200; ++i) {
+    const std::string found = read_whole(folder_ / "one");
+    EXPECT_TRUE(found.empty() || std::find(texts.begin(), texts.end(), found) != texts.end()) << found.size();
+  }
+  for (std::future<void>& writer : writers) writer.get();
+  EXPECT_EQ(count(), 1u);
+}
+
+TEST_F(Files, GrazeKnowsItsOwn) {
+  const auto replaces = [&](const std::string& there, const std::string& text) {
+    write_whole(folder_ / "file", there);
+    return may_replace(folder_ / "file", text);
+  };
+  EXPECT_TRUE(may_replace(folder_ / "missing", "text"));
+  EXPECT_TRUE(may_replace("/dev/null", "text"));
+  EXPECT_TRUE(replaces("", "graze-pairs 1\n"));
+  EXPECT_TRUE(replaces("graze-pairs 1\n# mine\n", "graze-pairs 1\n0 0 0\n"));
+  EXPECT_FALSE(replaces("0 0 0 1 1 1\n", "graze-pairs 1\n0 0 0\n"));
+  EXPECT_FALSE(replaces("graze-pairs 1, and a poem", "{}"));
+  EXPECT_TRUE(replaces("lane,group\n1,2\n", "lane,group\n"));
+  EXPECT_FALSE(replaces("a,b\n1,2\n", "lane,group\n"));
+  EXPECT_TRUE(replaces(R"({"pairs": 1, "seed": 2})", R"({"pairs": 3, "seed": 4, "laws": []})"));
+  for (const char* other : {R"({"seed": 1, "pairs": 2})", R"({"pairs": 1})", "[1]", "{", "{}"})
+    EXPECT_FALSE(replaces(other, R"({"pairs": 3, "seed": 4, "laws": []})")) << other;
+  EXPECT_TRUE(replaces("<!doctype html>\n<title>Graze: viewer</title>", "<!DOCTYPE html>\n<title>Graze: discrepancy report</title>"));
+  EXPECT_FALSE(replaces("<!DOCTYPE html>\n<title>My thesis</title>", "<!DOCTYPE html>\n<title>Graze: discrepancy report</title>"));
+  EXPECT_TRUE(replaces("<svg width=\"1\" fill=\"#777\"><g/></svg>", "<svg width=\"1\" fill=\"#777\"><text/></svg>"));
+  EXPECT_FALSE(replaces("<svg width=\"2\"></svg>", "<svg width=\"1\" fill=\"#777\"><text/></svg>"));
+  const std::string picture = std::string("\x89PNG....") + "PLTE" + std::string(24, 'c');
+  EXPECT_TRUE(replaces(picture + "x", picture + "y"));
+  EXPECT_FALSE(replaces(std::string("\x89PNG....") + "PLTE" + std::string(24, 'd'), picture));
+  fs::create_symlink("file", folder_ / "link");
+  EXPECT_FALSE(may_replace(folder_ / "link", "graze-pairs 1\n"));
+}
+
+TEST_F(Files, ResultsGoIntoFoldersThatAreTheirOwnOrEmpty) {
+  const fs::path out = folder_ / "out";
+  EXPECT_TRUE(may_fill(out, {"tune.json"}));
+  fs::create_directories(out / "cases/of");
+  write_whole(out / "tune.json.graze.part", "what a killed write left");
+  EXPECT_TRUE(may_fill(out, {"tune.json"}));
+  EXPECT_TRUE(may_hold_campaign(out));
+  write_whole(out / "cases/of/mine", "text");
+  EXPECT_FALSE(may_fill(out, {"tune.json"}));
+  EXPECT_FALSE(may_hold_campaign(out));
+  write_whole(out / "tune.json", "{}");
+  EXPECT_TRUE(may_fill(out, {"tune.json"}));
+  EXPECT_FALSE(may_hold_campaign(out));
+  fs::create_directories(out / "rank-0");
+  EXPECT_TRUE(may_hold_campaign(out));
+  EXPECT_FALSE(may_fill("/", {"tune.json"}));
+  EXPECT_FALSE(may_hold_campaign("/"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "reports/csv.h"
 
 #include "reports/failure_cards.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "reports/report.h"
 #include "reports/tables.h"
 
@@ -125,7 +126,7 @@ std::string compare_csv(const Json& compare) {
 }  // namespace
 
 std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const Json& report) {
-  const Json summary = read_summary(directory);
+  const Json summary = fuzz::checked_summary(directory);
   const CampaignCounts counts = counts_of(summary);
   std::vector<CsvTable> tables{{"rates.csv", rates_csv(report)},
                                {"margins.csv", margins_csv(counts)},

@@ -108,16 +108,26 @@ TEST(Page, OfManySignaturesIsUnderNineMebibytes) {
   summary["spec"]["lanes"] = Json::array();
   for (const Lane& lane : lanes()) summary["spec"]["lanes"].push_back(lane.id);
   Json stratum = summary["strata"]["uniform"];
+  constexpr std::uint64_t kPairs = 99'999'999'999, kWrong = 12'345'678'901;  // in a bucket
+  constexpr std::uint64_t kExponents = 70;
+  stratum["pairs"] = kBucketCount * kPairs;
+  stratum["intersects"] = kBucketCount * kPairs / 2;
+  stratum["lanes"]["moller_1997/f32/cpu"]["false_positive"] = kWrong;
+  stratum["lanes"]["moller_1997/f32/cpu"]["false_negative"] = (kBucketCount - 1) * kWrong;
   for (const Lane& lane : lanes()) stratum["lanes"][lane.id] = stratum["lanes"]["moller_1997/f32/cpu"];
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
-    stratum["margins"][name_of_bucket(static_cast<Bucket>(b))] = {{"pairs", 99'999'999'999}, {"wrong", Json::object()}};
+    stratum["margins"][name_of_bucket(static_cast<Bucket>(b))] = {{"pairs", kPairs}, {"wrong", Json::object()}};
     for (const Lane& lane : lanes())
-      stratum["margins"][name_of_bucket(static_cast<Bucket>(b))]["wrong"][lane.id] = 12'345'678'901;
+      stratum["margins"][name_of_bucket(static_cast<Bucket>(b))]["wrong"][lane.id] = kWrong;
   }
-  for (int e = -152; e <= 124; e += 4) {
-    stratum["extremes"]["scale"][std::to_string(e)] = {{"pairs", 99'999'999'999}, {"wrong", Json::object()}};
-    stratum["extremes"]["offset"][std::to_string(e / 4)] = {{"pairs", 99'999'999'999}, {"wrong", Json::object()}};
+  for (std::uint64_t e = 0; e < kExponents; ++e) {
+    const auto share = [&](std::uint64_t all) { return all / kExponents + (e < all % kExponents); };
+    Json cell = {{"pairs", share(kBucketCount * kPairs)}, {"wrong", Json::object()}};
+    for (const Lane& lane : lanes()) cell["wrong"][lane.id] = share(kBucketCount * kWrong);
+    stratum["extremes"]["scale"][std::to_string(4 * static_cast<int>(e) - 152)] = cell;
+    stratum["extremes"]["offset"][std::to_string(static_cast<int>(e) - 38)] = cell;
   }
+  summary["spec"]["pairs"] = 19 * kBucketCount * kPairs;
   summary["strata"] = Json::object();
   for (int s = 0; s < 19; ++s) summary["strata"]["a_stratum_with_a_name_" + std::to_string(s)] = stratum;
   const fs::path directory = fs::temp_directory_path() / ("graze_size_" + std::to_string(getpid()));
@@ -129,7 +139,7 @@ TEST(Page, OfManySignaturesIsUnderNineMebibytes) {
         "segment/22/skew/+2^-1/guigue_devillers_2003:+f32/cpu;+f32/cpu-fma;+f32/cpu-fast;-f32/cuda-nofma;"
         "-f32/cuda-fma;-f32/cuda-fast;+f64/cpu;+f64/cpu-fma;+f64/cpu-fast;+f64/cuda-nofma;+f64/cuda-fma/abs:" +
         std::to_string(i);
-    summary["signatures"].push_back({{"key", key}, {"count", 99'999'999'999}, {"case", "cases/1.pairs"}});
+    summary["signatures"].push_back({{"key", key}, {"count", kPairs}, {"case", "cases/1.pairs"}});
   }
   fuzz::write_whole(directory / "cases/1.pairs", "graze-pairs 1\n" + fuzz::pair_text(pair) +
                                                      " | stratum=s seed=1 index=1 truth=disjoint contact=none "
@@ -168,12 +178,14 @@ TEST(Page, OfManySignaturesIsUnderNineMebibytes) {
     kind["simplest"]["verdicts"][lane.id] = "intersects";
   }
   for (int s = 0; s < 19; ++s) kind["strata"]["a_stratum_with_a_name_" + std::to_string(s)] = 4 * 12'000;
-  for (int b = -kBucketMost; b <= kBucketMost; ++b)
-    kind["margins"][name_of_bucket(static_cast<Bucket>(b))] = 99'999'999'999;
   for (int k = 0; k < 100; ++k) {
     kind["key"] = "guigue_devillers_2003/rounding/range.h:31/" + std::to_string(k);
     kind["places"] = Json::array();  // as if each of its eleven lanes were wrong for another reason
     for (int i = k % 9; i < 12'000; i += 9) kind["places"].push_back(i);
+    kind["signatures"] = kind["places"].size();
+    kind["pairs"] = kind["places"].size() * kPairs;
+    for (int b = -kBucketMost; b <= kBucketMost; ++b) kind["margins"][name_of_bucket(static_cast<Bucket>(b))] = kPairs;
+    kind["margins"]["0"] = (kind["places"].size() - (kBucketCount - 1)) * kPairs;
     kinds.push_back(kind);
   }
   fuzz::write_kinds(directory, kinds);

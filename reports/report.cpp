@@ -10,12 +10,14 @@
 
 #include "core/error.h"
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/costs.h"
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/tables.h"
 #include "reports/terminal.h"
+#include "reports/wilson.h"
 #include "strata/strata.h"
 
 namespace graze::reports {
@@ -79,8 +81,10 @@ Json lanes_of(const Json& summary, const CampaignCounts& counts) {
   return rows;
 }
 
-Json missing_of(const CampaignCounts& counts, const Json& summary) {
+Json missing_of(const CampaignCounts& counts, const Json& summary, const std::filesystem::path& directory) {
   Json missing = Json::array();
+  if (!fuzz::has_database(directory))
+    missing.push_back("The counts are those of summary.json, checked only against each other: the campaign's database is not beside it.");
   if (const Json& spec = summary.at("spec"); spec.contains("lanes_left_out")) {
     for (const std::string& line : fuzz::left_out_in_words(fuzz::left_out_of(spec["lanes_left_out"])))
       missing.push_back(fmt::format("Lanes that were asked for did not run: {}.", line));
@@ -99,17 +103,49 @@ Json missing_of(const CampaignCounts& counts, const Json& summary) {
   return missing;
 }
 
-}  // namespace
-
-Json read_summary(const std::filesystem::path& directory) {
-  Json summary = Json::parse(fuzz::read_whole(directory / "summary.json"), nullptr, false);
-  if (!summary.is_object() || !summary.contains("spec") || !summary.contains("strata"))
-    throw std::runtime_error(directory.string() + ": expected a campaign's directory with summary.json, found none");
-  return summary;
+// Every share in it is what its counts give.   Throws: std::runtime_error for one that is not; Json::exception.
+void expect_shares(const Json& part) {
+  if (part.is_object() && part.contains("count") && part.contains("of") && part.contains("share")) {
+    const std::uint64_t count = part["count"], of = part["of"];
+    if (!part["count"].is_number_unsigned() || !part["of"].is_number_unsigned() || count > of || part != to_json(share_of(count, of)))
+      throw std::runtime_error(fmt::format("expected a share of at most {} pairs, found {}", part["of"].dump(), part.dump()));
+    return;
+  }
+  if (part.is_structured()) {
+    for (const Json& inner : part) expect_shares(inner);
+  }
 }
 
+// The counts of its lanes are within its strata, and add up.   Throws: as expect_shares.
+void expect_possible(const Json& report) {
+  expect_shares(report);
+  std::uint64_t pairs = 0, intersects = 0;
+  for (const Json& stratum : report.at("strata")) {
+    pairs += stratum.at("pairs").get<std::uint64_t>();
+    intersects += stratum.at("intersects").get<std::uint64_t>();
+  }
+  const std::uint64_t all = report.at("run").at("pairs");
+  if (pairs > all || (report["run"].at("complete").get<bool>() && pairs != all))
+    throw std::runtime_error(fmt::format("expected {} pairs in its strata, found {}", all, pairs));
+  for (const Json& row : report.at("rates")) {
+    const bool total = row.at("stratum").is_null();
+    const Json of = total ? Json{{"pairs", pairs}, {"intersects", intersects}}
+                          : report["strata"].at(row["stratum"].get<std::size_t>());
+    std::uint64_t wrong = 0;
+    for (const char* field : {"declined", "crashed", "timed_out", "unstable"}) wrong += row.value(field, std::uint64_t{0});
+    for (const char* field : {"false_positive", "false_negative"}) wrong += row.at(field).at("count").get<std::uint64_t>();
+    const bool fits = row.at("wrong").at("count") == wrong && row["wrong"].at("of") == of.at("pairs") &&
+                      row["false_negative"].at("of") == of.at("intersects") &&
+                      row["false_positive"].at("of").get<std::uint64_t>() + of.at("intersects").get<std::uint64_t>() == of.at("pairs");
+    if (!fits)
+      throw std::runtime_error(fmt::format("expected rates of {} pairs that add up, found {}", of["pairs"].dump(), row.dump()));
+  }
+}
+
+}  // namespace
+
 Json make_report(const std::filesystem::path& directory) {
-  const Json summary = read_summary(directory);
+  const Json summary = fuzz::checked_summary(directory);
   try {
     const CampaignCounts counts = counts_of(summary);
     Json report = {{"format", 2},
@@ -128,7 +164,7 @@ Json make_report(const std::filesystem::path& directory) {
                    {"signatures", nullptr},
                    {"sources", nullptr},
                    {"cards", nullptr},
-                   {"missing", missing_of(counts, summary)},
+                   {"missing", missing_of(counts, summary, directory)},
                    {"compare", nullptr}};
     add_signatures(report, directory, summary, counts);
     return report;
@@ -142,7 +178,7 @@ Json make_report(const std::filesystem::path& directory) {
 }
 
 Json make_costs(const std::filesystem::path& directory) {
-  const CampaignCounts counts = counts_of(read_summary(directory));
+  const CampaignCounts counts = counts_of(fuzz::checked_summary(directory));
   try {
     const std::optional<Costs> costs = read_costs(directory, counts);
     return costs ? to_json(*costs, counts) : Json();
@@ -152,12 +188,29 @@ Json make_costs(const std::filesystem::path& directory) {
   }
 }
 
+namespace {
+
+// Of `graze tune` and `graze trade`: no lane errs on more pairs than there were.
+bool possible_errors(const Json& part) {
+  if (part.is_object() && part.contains("misses") && part.contains("pairs")) {
+    std::uint64_t errors = 0;
+    for (const char* field : {"misses", "false_hits", "declined"}) {
+      if (!part.value(field, Json(0)).is_number_unsigned()) return false;
+      errors += part.value(field, std::uint64_t{0});
+    }
+    return part["pairs"].is_number_unsigned() && errors <= part["pairs"].get<std::uint64_t>();
+  }
+  return !part.is_structured() || std::all_of(part.begin(), part.end(), possible_errors);
+}
+
+}  // namespace
+
 Json make_choices(const std::filesystem::path& directory) {
   const auto read = [&](const char* name, const char* needs) -> Json {
     const std::filesystem::path file = directory / name;
     if (!std::filesystem::exists(file)) return nullptr;
     Json found = Json::parse(fuzz::read_whole(file), nullptr, false);
-    if (!found.is_object() || !found.contains(needs) || !found.contains("sentences"))
+    if (!found.is_object() || !found.contains(needs) || !found.contains("sentences") || !possible_errors(found))
       throw corpus::FormatError(
           fmt::format("{}: expected what graze writes into it, found something else", file.string()));
     return found;
@@ -185,6 +238,13 @@ Json read_report(const std::filesystem::path& file) {
   if (!report.is_object() || report.value("format", Json()) != 2 || !is_list("rates") || !is_list("lanes") ||
       !is_list("strata"))
     throw corpus::FormatError(file.string() + ": expected a report of `graze report`, found something else");
+  try {
+    expect_possible(report);
+  } catch (const Json::exception&) {
+    throw corpus::FormatError(file.string() + ": expected a report of `graze report`, found something else");
+  } catch (const std::runtime_error& error) {
+    throw corpus::FormatError(file.string() + ": " + error.what());
+  }
   return report;
 }
 

@@ -9,10 +9,7 @@
 
 namespace graze::reports {
 
-// summary.json of a campaign's directory.   Throws: std::runtime_error where there is none.
-nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
-
-// Throws: std::runtime_error for a directory without a campaign, FormatError too for damaged files.
+// Throws: as fuzz::checked_summary, FormatError too for other damaged files.
 nlohmann::ordered_json make_report(const std::filesystem::path& directory);
 
 // What the campaign's lanes cost, and the answer with it (costs.h): apart from the report, because it depends on the
@@ -29,7 +26,7 @@ std::string campaign_command(const nlohmann::ordered_json& summary);
 // The report as text: each row on a line of its own, so that two can be compared.
 std::string report_text(const nlohmann::ordered_json& report);
 
-// A report that was written before.   Throws: FormatError.
+// A report that was written before.   Throws: FormatError, also for counts that cannot be.
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 
 }  // namespace graze::reports

@@ -164,7 +164,8 @@ class Torture(unittest.TestCase):
         return counts, said.getvalue()
 
     def test_nothing_of_one_that_does_what_it_must(self):
-        for kind in torture.KINDS:
+        of_results = {kind for kind, attack in torture.KINDS.items() if attack.__module__.endswith(".results")}  # the stand-in has none of these verbs
+        for kind in sorted(torture.KINDS.keys() - of_results):
             with self.subTest(kind):
                 counts, said = self.attack("good", kind)
                 self.assertEqual(said, "")

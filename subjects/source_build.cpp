@@ -117,6 +117,7 @@ fs::path build_source(const fs::path& source, const std::string& function, const
   const std::string compiler = chosen && *chosen ? chosen : c ? "cc" : "c++";
   int status = 0;
   const std::string version = output_of(compiler + " --version 2>&1", status);
+  const std::string identity = version.substr(0, version.find('\n'));  // below it are paths
   if (status != 0) throw std::runtime_error("expected a compiler " + compiler + " for " + name + ", found none");
   std::string command = fmt::format("{} {} -O2 -fPIC -shared {}", compiler, c ? "-std=gnu11" : "-std=c++20", variant.flags);
   for (const std::string& flag : flags) command += ' ' + shell_word(flag);
@@ -140,7 +141,7 @@ fs::path build_source(const fs::path& source, const std::string& function, const
   command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(part.string()));
   const std::string preprocessed = output_of(command + " -E -P 2>/dev/null", status);
   const fs::path kept =
-      folder / fmt::format("{:016x}.so", fnv1a(preprocessed, fnv1a(fmt::format("{}\n{}\n{}", version, variant.flags, fmt::join(flags, "\n")))));
+      folder / fmt::format("{:016x}.so", fnv1a(preprocessed, fnv1a(fmt::format("{}\n{}\n{}", identity, variant.flags, fmt::join(flags, "\n")))));
   if (status == 0 && fs::exists(kept)) {
     clean();
     return kept;

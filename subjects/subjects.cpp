@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <deque>
 #include <fstream>
 #include <sstream>
@@ -16,6 +14,7 @@
 #include "core/text.h"
 #include "cuda/subject/cuda_subject.h"
 #include "cuda/twin/twin.h"
+#include "subjects/code_hash.h"
 #include "subjects/process.h"
 #include "subjects/source_build.h"
 
@@ -45,18 +44,6 @@ std::deque<Entry>& entries() {
 
 constexpr std::string_view kCommand = "cmd:";
 
-std::uint64_t hash_of_file(const fs::path& file) {
-  std::error_code why;
-  const bool is_file = fs::is_regular_file(file, why);
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!is_file || !(text << in.rdbuf())) {
-    throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown(file.string()),
-                                         why ? why.message() : is_file ? std::strerror(errno) : "not a file"));
-  }
-  return fnv1a(text.str());
-}
-
 // "library", "cuda" or "source" by the file's ending; empty for any other.
 std::string kind_of(std::string_view file) {
   const std::size_t version = file.find_last_not_of("0123456789.") + 1;  // libx.so.1.2
@@ -72,7 +59,8 @@ Opened parsed(const Wanted& wanted) {
   result.wanted = wanted;
   if (wanted.what.starts_with(kCommand)) {
     result.kind = "command";
-    result.hash = fnv1a(wanted.what);
+    result.code = hash_of_command(wanted.what.substr(kCommand.size()));
+    result.hash = result.code.hash;
     return result;
   }
   const std::string_view what = wanted.what;
@@ -85,7 +73,8 @@ Opened parsed(const Wanted& wanted) {
   result.file = what.substr(0, end);
   if (end < what.size()) result.function = what.substr(end + 1);
   result.kind = kind_of(what.substr(0, end));
-  result.hash = hash_of_file(result.file);
+  result.code = hash_of_library(result.file);  // of a source, until it is built
+  result.hash = result.code.hash;
   return result;
 }
 
@@ -162,8 +151,16 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
   return cuda::evidence(build);
 }
 
+// recorded: the hash of the code that a campaign ran; empty where any will do.
+void expect_code(const Opened& subject, const std::string& recorded) {
+  if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
+    throw std::runtime_error(fmt::format("{}: expected the code that the campaign ran ({}), found that it has changed ({}); "
+                                         "--subject {}=… takes it as it is now",
+                                         subject.wanted.what, recorded, found, subject.wanted.name));
+}
+
 // The device's build where there is a device, else its twin. A build with neither is a lane that says why.
-void add_cuda_lanes(Entry& entry, bool on_device) {
+void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   const fs::path cache = cache_folder();
   std::vector<Lane> made;
@@ -183,6 +180,10 @@ void add_cuda_lanes(Entry& entry, bool on_device) {
     made.back().evidence = on_device ? "device" : evidence_of(o.file, build);
     entry.builds.push_back(std::move(build));
   }
+  std::vector<std::string_view> variants;
+  for (const cuda::CudaBuild& build : entry.builds) variants.push_back(build.ptx);
+  entry.opened.code = hash_of_ptx(variants);
+  expect_code(entry.opened, recorded);
   describe_info(entry, {});
   add_lanes(std::move(made));
   for (const cuda::CudaBuild& build : entry.builds) {
@@ -190,6 +191,8 @@ void add_cuda_lanes(Entry& entry, bool on_device) {
     cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, build))), build.twin, o.wanted.timeout);
   }
 }
+
+void open_as(const Wanted& wanted, bool on_device, const std::string& recorded);
 
 }  // namespace
 
@@ -206,7 +209,11 @@ Wanted parse_subject(const std::string& text) {
   return wanted;
 }
 
-void open(const Wanted& wanted, bool on_device) {
+void open(const Wanted& wanted, bool on_device) { open_as(wanted, on_device, ""); }
+
+namespace {
+
+void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) {
   const Opened wish = parsed(wanted);
   if (const Opened* there = opened(wanted.name)) {
     if (there->hash == wish.hash && there->wanted.what == wanted.what && there->wanted.flags == wanted.flags) return;
@@ -231,7 +238,7 @@ void open(const Wanted& wanted, bool on_device) {
         throw UsageError(fmt::format("--subject {}: expected FUNCTION/f32 or FUNCTION/f64, found '{}'", wanted.name,
                                      printable(wish.function)));
     }
-    if (wish.kind == "cuda") return add_cuda_lanes(entry, on_device);
+    if (wish.kind == "cuda") return add_cuda_lanes(entry, on_device, recorded);
     std::vector<std::pair<Variant, Code>> builds;
     if (wish.kind == "source") {
       for (const VariantInfo& row : kVariants) {
@@ -262,14 +269,27 @@ void open(const Wanted& wanted, bool on_device) {
     if (made.empty())
       throw std::runtime_error(fmt::format("--subject {}: {} says that it has no function, of floats or of doubles",
                                            wanted.name, shown(wanted.what)));
+    if (wish.kind == "source") {
+      std::vector<fs::path> built;
+      for (const auto& [variant, of_variant] : builds) built.emplace_back(of_variant.what);
+      entry.opened.code = hash_of_builds(built, wanted.flags);
+    }
+    if (wish.kind == "command") {
+      entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,
+                                                 description.convention, description.outside),
+                                     entry.opened.code.hash);
+    }
+    expect_code(entry.opened, recorded);
     entry.opened.description = description;
     describe_info(entry, description);
     add_lanes(std::move(made));
-  } catch (const std::exception&) {
+  } catch (...) {
     entries().pop_back();
     throw;
   }
 }
+
+}  // namespace
 
 fs::path proof_file(const fs::path& source) { return source.string() + ".proof.json"; }
 
@@ -311,24 +331,26 @@ Json record(const std::vector<std::string>& lanes) {
                     {"flags", o.wanted.flags},
                     {"timeout", o.wanted.timeout},
                     {"memory", o.wanted.memory},
-                    {"hash", fmt::format("{:016x}", o.hash)}});
+                    {"hash", fmt::format("{:016x}", o.code.hash)}});
+    if (!o.code.not_covered.empty()) rows.back()["not_covered"] = o.code.not_covered;
   }
   return rows;
 }
 
-void open_recorded(const Json& spec, bool on_device) {
+std::vector<std::string> open_recorded(const Json& spec, bool on_device) {
+  std::vector<std::string> changed;
   for (const Json& row : spec.value("subjects", Json::array())) {
-    const std::string name = row.at("name");
-    if (opened(name)) continue;
+    const std::string name = row.at("name"), hash = row.at("hash");
+    if (const Opened* there = opened(name)) {
+      if (const std::string found = fmt::format("{:016x}", there->code.hash); found != hash)
+        changed.push_back(fmt::format("{}: its code is not what the campaign ran: {} then, {} now", name, hash, found));
+      continue;
+    }
     const Wanted wanted{name, row.at("what"), row.at("flags").get<std::vector<std::string>>(), row.at("timeout"),
                         row.at("memory")};
-    const std::string hash = row.at("hash");
-    if (const std::string found = fmt::format("{:016x}", parsed(wanted).hash); found != hash) {
-      throw std::runtime_error(fmt::format("{}: expected the code that the campaign ran ({}), found other code ({})",
-                                           wanted.what, hash, found));
-    }
-    open(wanted, on_device);
+    open_as(wanted, on_device, hash);
   }
+  return changed;
 }
 
 }  // namespace graze::subjects

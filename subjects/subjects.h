@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cuda/subject/subject_device.h"
+#include "subjects/code_hash.h"
 #include "subjects/process.h"
 
 namespace graze::subjects {
@@ -35,12 +36,14 @@ Wanted parse_subject(const std::string& text);
 void open(const Wanted& wanted, bool on_device = false);
 
 // Of the subjects whose lanes are among these: what a campaign records, so that it can open them again: [{"name",
-// "what", "flags", "timeout", "memory", "hash"}, …]. Null where there are none.
+// "what", "flags", "timeout", "memory", "hash", "not_covered": what the hash is not of, where that is anything}, …].
+// Null where there are none.
 nlohmann::ordered_json record(const std::vector<std::string>& lanes);
 
-// Opens what a campaign recorded, where it is not open yet.   Throws: std::runtime_error where the code is not what it
-// was, or is not there.
-void open_recorded(const nlohmann::ordered_json& spec, bool on_device = false);
+// Opens what a campaign recorded, where it is not open yet.
+// Returns: a line for each subject that was open and whose code is not what the campaign ran.
+// Throws: std::runtime_error where the code of one that is opened now is not what it was, or is not there.
+std::vector<std::string> open_recorded(const nlohmann::ordered_json& spec, bool on_device = false);
 
 // How a lane's subject is had, for a person or a program that shows a case again; empty for our own.
 struct Opened {
@@ -48,7 +51,8 @@ struct Opened {
   std::string kind;      // "library", "source", "cuda", "command"
   std::filesystem::path file;
   std::string function;  // empty: none named
-  std::uint64_t hash = 0;
+  std::uint64_t hash = 0;   // of the file, or of the command
+  CodeHash code;            // of all that is compiled or run
   Description description;  // of its first build
 };
 const Opened* opened(std::string_view subject);

@@ -430,5 +430,50 @@ TEST_F(Subjects, ACampaignsRecordOpensThemAgainUnlessTheyChanged) {
   EXPECT_NE(error_of([&] { open_one("recorded=" + source.string()); }).find("found two"), std::string::npos);
 }
 
+TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
+  const fs::path header = write("part.h", "#define LESS <\n"), script = write("answers.sh", "while read line; do echo 1; done\n");
+  const fs::path source = write("whole.c", "#include \"part.h\"\nint intersects(const float a[9], const float b[9]) { return a[0] LESS b[0]; }");
+  for (const auto& [name, what, lane, part, other] :
+       {std::tuple(std::string("includes"), source.string(), "includes/f32/cpu", header, "#define LESS >\n"),
+        std::tuple(std::string("script"), "cmd:sh '" + script.string() + "'", "script/f32/cpu", script, "while read line; do echo 0; done\n"),
+        std::tuple(std::string("says"), "cmd:sh " + script.string() + " ", "says/f32/cpu", script, "echo '{\"version\": \"2\"}'; while read line; do echo 0; done\n")}) {
+    open_one(name + "=" + what);
+    nlohmann::ordered_json spec{{"subjects", record({lane})}};
+    ASSERT_EQ(spec["subjects"].size(), 1u);
+    EXPECT_EQ(spec["subjects"][0].contains("not_covered"), name != "includes");
+    EXPECT_TRUE(open_recorded(spec).empty());
+    spec["subjects"][0]["name"] = name + "_again";
+    EXPECT_TRUE(open_recorded(spec).empty());
+    std::ofstream(part) << other;
+    spec["subjects"][0]["name"] = name + "_changed";
+    const std::string error = error_of([&] { open_recorded(spec); });
+    EXPECT_NE(error.find("expected the code that the campaign ran (" + spec["subjects"][0]["hash"].get<std::string>() + "), found that it has changed"),
+              std::string::npos) << error;
+    EXPECT_FALSE(opened(name + "_changed"));
+    open_one(name + "_changed=" + what);  // as a person asks for it
+    EXPECT_EQ(open_recorded(spec).size(), 1u);
+  }
+}
+
+TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
+  const fs::path file = write("with space.txt", "one");
+  const auto hash = [&](const std::string& command) { return hash_of_command(command).hash; };
+  const std::string quoted = "sh -c 'x' \"" + file.string() + "\"", escaped = "sh " + (folder / "with\\ space.txt").string();
+  const std::uint64_t before = hash(quoted), of_escaped = hash(escaped);
+  EXPECT_NE(hash("sh a"), hash("sh b"));
+  write("with space.txt", "two");
+  EXPECT_NE(hash(quoted), before);
+  EXPECT_NE(hash(escaped), of_escaped);
+  write("with space.txt", "one");
+  EXPECT_EQ(hash(quoted), before);
+  write("program", "one");
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (folder.string() + ':' + path).c_str(), 1);
+  const std::uint64_t one = hash("X=1 program");
+  write("program", "two");
+  EXPECT_NE(hash("X=1 program"), one);
+  setenv("PATH", path.c_str(), 1);
+}
+
 }  // namespace
 }  // namespace graze::subjects

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
-#include "fuzz/files.h"
+#include "fuzz/campaign/checked_summary.h"
 
 namespace graze::fuzz {
 
@@ -18,10 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 
 NamedScene scene_of_campaign(const fs::path& directory) {
-  const Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
-  if (!summary.is_object() || !summary.contains("spec") || !summary["spec"].contains("scene"))
+  const Json spec = recorded_spec(directory);
+  if (!spec.contains("scene"))
     throw std::runtime_error(directory.string() + ": expected a campaign in a scene, found none");
-  return recorded_scene(summary["spec"]["scene"]);
+  return recorded_scene(spec["scene"]);
 }
 
 }  // namespace

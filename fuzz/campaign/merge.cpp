@@ -15,6 +15,7 @@
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/campaign/run_status.h"
 #include "fuzz/hunt/hunt_rounds.h"
+#include "fuzz/own_files.h"
 
 namespace graze::fuzz {
 namespace {
@@ -116,6 +117,8 @@ fs::path fresh_beside(const fs::path& out) {
   part += ".part";
   fs::create_directories(part, error);
   if (error) throw std::runtime_error(part.string() + ": expected a directory that can be written, found: " + error.message());
+  if (!may_hold_campaign(part) && !fs::exists(rounds_folder(part)))
+    throw UsageError(part.string() + ": expected no folder, or what a merge that was killed left, found other things; remove it");
   const FolderLock alone(part, FolderLock::WhenTaken::refuse);
   for (const auto& left : fs::directory_iterator(part)) fs::remove_all(left);  // by one that was killed
   return part;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 
 namespace graze::fuzz {
@@ -15,7 +16,8 @@ std::vector<fs::path> rank_directories(const fs::path& campaign) {
   std::vector<fs::path> found;
   if (!fs::is_directory(campaign)) return found;
   for (const auto& entry : fs::directory_iterator(campaign)) {
-    if (entry.path().filename().string().starts_with("rank-") && entry.is_directory()) found.push_back(entry.path());
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("rank-") && parse_whole(name.substr(5)) && entry.is_directory()) found.push_back(entry.path());
   }
   std::sort(found.begin(), found.end());
   return found;

@@ -35,12 +35,19 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
   return out.str();
 }
 
+// The lane of the same subject, scalar and policy that the processor runs as it is written.
+std::string cpu_lane_of(const std::string& id) {
+  LaneName name = parse_lane_name(id).value();
+  name.variant = graze::name(Variant::cpu);
+  return id_of(name);
+}
+
 // differs_from_cpu is null for the cpu lanes, and for lanes that ran without theirs.
-void leave_out_what_was_not_compared(Json& strata, const std::vector<const Lane*>& lanes) {
-  const std::vector<int> cpu = analysis::cpu_twins(lanes);
-  for (std::size_t l = 0; l < lanes.size(); ++l) {
-    if (cpu[l] >= 0 && cpu[l] != static_cast<int>(l)) continue;
-    for (Json& row : strata) row["lanes"][lanes[l]->id]["differs_from_cpu"] = nullptr;
+void leave_out_what_was_not_compared(Json& strata, const std::vector<std::string>& lanes) {
+  for (const std::string& lane : lanes) {
+    const std::string cpu = cpu_lane_of(lane);
+    if (cpu != lane && std::find(lanes.begin(), lanes.end(), cpu) != lanes.end()) continue;
+    for (Json& row : strata) row["lanes"][lane]["differs_from_cpu"] = nullptr;
   }
 }
 
@@ -53,32 +60,40 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Trut
           {"margin_ulps", fmt::format("{}", t.margin_ulps)}};
 }
 
-Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
-  Json results = store.results();
-  leave_out_what_was_not_compared(results["strata"], campaign.under_test->lanes);
-  const auto row_of = [&](const std::string& key, const SignatureCount& found) {
-    const std::string file = case_name(key), text = case_text(campaign, key, found);
-    if (!is_minimised_from(read_whole(campaign.directory / file), text)) write_whole(campaign.directory / file, text);
-    return file;
-  };
+Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_source,
+                const std::map<std::string, SignatureCount>& signatures,
+                const std::map<std::string, SignatureCount>& executors_apart, bool complete) {
+  Json results = results_of(spec, of_source);
+  leave_out_what_was_not_compared(results["strata"], spec.lanes);
   std::vector<const std::pair<const std::string, SignatureCount>*> by_count;
-  for (const auto& row : store.signatures()) by_count.push_back(&row);
+  for (const auto& row : signatures) by_count.push_back(&row);
   std::stable_sort(by_count.begin(), by_count.end(),
                    [](auto* l, auto* r) { return l->second.count > r->second.count; });
-  Json signatures = Json::array();
-  for (const auto* row : by_count) {
-    signatures.push_back(
-        {{"key", row->first}, {"count", row->second.count}, {"case", row_of(row->first, row->second)}});
-  }
-  Json summary = {{"spec", campaign.spec},
-                  {"build", campaign.build},
+  Json rows = Json::array();
+  for (const auto* row : by_count)
+    rows.push_back({{"key", row->first}, {"count", row->second.count}, {"case", case_name(row->first)}});
+  Json summary = {{"spec", spec.spec},
+                  {"build", spec.build},
                   {"complete", complete},
                   {"strata", results["strata"]},
                   {"disagreements", results["disagreements"]},
-                  {"signatures", signatures}};
+                  {"signatures", rows}};
   // Pairs on which a device and its twin differ: nobody's failure.
-  for (const auto& [lane, found] : store.executors_apart())
-    summary["executors_apart"].push_back({{"lane", lane}, {"count", found.count}, {"case", row_of(lane, found)}});
+  for (const auto& [lane, found] : executors_apart)
+    summary["executors_apart"].push_back({{"lane", lane}, {"count", found.count}, {"case", case_name(lane)}});
+  return summary;
+}
+
+Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
+  for (const auto* cases : {&store.signatures(), &store.executors_apart()}) {
+    for (const auto& [key, found] : *cases) {
+      const std::filesystem::path file = campaign.directory / case_name(key);
+      const std::string text = case_text(campaign, key, found);
+      if (!is_minimised_from(read_whole(file), text)) write_whole(file, text);
+    }
+  }
+  const Json summary =
+      summary_of(store.spec(), store.of_source(), store.signatures(), store.executors_apart(), complete);
   write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");
   return summary;
 }

@@ -17,6 +17,11 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Trut
 // put into it.   Returns: the summary.
 Json write_summary(const Campaign& campaign, const Store& store, bool complete);
 
+// The summary of a store's counts, those of each source and the signatures of all.
+Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_source,
+                const std::map<std::string, SignatureCount>& signatures,
+                const std::map<std::string, SignatureCount>& executors_apart, bool complete);
+
 // What a shard says instead, until all are merged: {"shard", "complete", "pairs", "disagreements", "signatures"}.
 Json shard_summary(const Shard& shard, const Store& store, bool complete, std::uint64_t pairs);
 

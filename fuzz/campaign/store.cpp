@@ -22,8 +22,16 @@ const std::filesystem::path& with_folders(const StoreSpec& spec) {
   return directory;
 }
 
-Json source_results(const strata::PairSource& source, const std::vector<std::string>& lanes,
-                    const StoredCounts& counts) {
+// Whether it is of foreign code, opened here or recorded.
+bool is_foreign(const StoreSpec& spec, const std::string& id) {
+  if (const Lane* lane = find_lane(id)) return lane->foreign;
+  const Json subjects = spec.spec.value("subjects", Json::array());
+  return std::any_of(subjects.begin(), subjects.end(),
+                     [&](const Json& row) { return id.starts_with(row.at("name").get<std::string>() + '/'); });
+}
+
+Json source_results(const strata::PairSource& source, const StoreSpec& spec, const StoredCounts& counts) {
+  const std::vector<std::string>& lanes = spec.lanes;
   std::uint64_t pairs = 0, intersects = 0;
   std::vector<analysis::LaneCounts> of_lane(lanes.size());
   Json margins = Json::object(), extremes = Json::object();
@@ -49,8 +57,7 @@ Json source_results(const strata::PairSource& source, const std::vector<std::str
                                          {"false_negative", of_lane[l].false_negative},
                                          {"declined", of_lane[l].declined},
                                          {"differs_from_cpu", of_lane[l].differs_from_cpu}};
-    const Lane* lane = find_lane(lanes[l]);
-    if (!lane || !lane->foreign) continue;
+    if (!is_foreign(spec, lanes[l])) continue;
     of["crashed"] = of_lane[l].crashed;
     of["timed_out"] = of_lane[l].timed_out;
     of["unstable"] = of_lane[l].unstable;
@@ -170,12 +177,14 @@ std::uint64_t Store::disagreements() const {
   return all;
 }
 
-Json Store::results() const {
+Json results_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_source) {
   Json strata = Json::object();
-  for (std::size_t s = 0; s < spec_.sources.size(); ++s) {
-    strata[spec_.sources[s].id] = source_results(spec_.sources[s], spec_.lanes, of_source_[s]);
+  std::uint64_t disagreements = 0;
+  for (std::size_t s = 0; s < spec.sources.size(); ++s) {
+    strata[spec.sources[s].id] = source_results(spec.sources[s], spec, of_source[s]);
+    disagreements += of_source[s].disagreements;
   }
-  return {{"strata", strata}, {"disagreements", disagreements()}};
+  return {{"strata", strata}, {"disagreements", disagreements}};
 }
 
 Json Store::oracle() const {

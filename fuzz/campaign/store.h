@@ -14,6 +14,9 @@
 
 namespace graze::fuzz {
 
+// {"strata": …, "disagreements": …} of the counts of each source, in a fixed order.
+Json results_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_source);
+
 class Store {
  public:
   // Opens the campaign in the directory, or begins it; no other process can while this lives.
@@ -47,8 +50,13 @@ class Store {
   // Pairs on which some lane is wrong.
   std::uint64_t disagreements() const;
 
-  // Of all that is committed: {"strata": …, "disagreements": …}, in a fixed order.
-  Json results() const;
+  // Of all that is committed; see results_of.
+  Json results() const { return results_of(spec_, of_source_); }
+
+  const StoreSpec& spec() const { return spec_; }
+
+  // Of all that is committed, but for signatures and executors_apart: of each source.
+  const std::vector<StoredCounts>& of_source() const { return of_source_; }
 
   const std::map<std::string, SignatureCount>& signatures() const { return signatures_; }  // by key
   // Pairs on which a device and its twin differ, by lane.

@@ -218,6 +218,19 @@ void expect_kind(const Json& kind) {
   kind.at("worst").at("margin_ulps").get<double>();
 }
 
+// Throws: std::runtime_error where what the kind counts is not what its signatures in the summary count.
+void expect_counts(const Json& kind, const Json& signatures) {
+  std::uint64_t pairs = 0, by_margin = 0;
+  for (const std::uint64_t place : kind.at("places")) {
+    if (place >= signatures.size()) throw std::runtime_error("");
+    pairs += signatures[place].at("count").get<std::uint64_t>();
+  }
+  for (const Json& margin : kind.at("margins")) by_margin += margin.get<std::uint64_t>();
+  const std::array<std::uint64_t, 2> settled = kind.at("settled");
+  if (kind.at("pairs") != pairs || by_margin != pairs || kind.at("signatures") != kind.at("places").size() || settled[0] > settled[1])
+    throw std::runtime_error("");
+}
+
 std::string hash_of_summary(const std::filesystem::path& directory) {
   return fmt::format("{:016x}", fnv1a(read_whole(directory / "summary.json")));
 }
@@ -291,7 +304,11 @@ Json read_kinds(const std::filesystem::path& directory) {
   try {
     const Json& kinds = stored.at("kinds");
     if (!kinds.is_array()) throw std::runtime_error("");
-    for (const Json& kind : kinds) expect_kind(kind);
+    const Json signatures = Json::parse(read_whole(directory / "summary.json")).at("signatures");
+    for (const Json& kind : kinds) {
+      expect_kind(kind);
+      expect_counts(kind, signatures);
+    }
     return kinds;
   } catch (const std::exception&) {
     throw corpus::FormatError(file.string() + ": expected what `graze minimize` writes, found something else");

@@ -12,6 +12,7 @@
 #include "analysis/signature.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/kinds.h"
@@ -90,12 +91,9 @@ std::vector<FoundFailure> found_in_kinds(const std::filesystem::path& directory,
 std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most) {
   const std::filesystem::path file = directory / "summary.json";
-  const std::string text = read_whole(file);
-  if (text.empty())
-    throw std::runtime_error(directory.string() + ": expected a campaign's directory, found no summary.json in it");
-  Json summary, kinds;
+  const Json summary = checked_summary(directory);
+  Json kinds;
   try {
-    summary = Json::parse(text);
     if (!summary.at("complete").get<bool>())
       throw UsageError(directory.string() + ": expected a finished campaign, found one that was interrupted");
     kinds = kinds_of(directory, summary);

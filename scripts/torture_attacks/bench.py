@@ -48,14 +48,14 @@ class Bench:
         pairs, strata = {"large": ("240000", many), "small": ("600", many), "tiny": ("24", "near_edge_edge,degenerate")}[name]
         return ["fuzz", "--pairs", pairs, "--seed", seed, "--strata", strata, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]
 
-    def reference(self, name, minimised=False, reported=False):
+    def reference(self, name, minimised=False, reported=False, shard=None):
         """The folder of the campaign, run without disturbance. It must not be changed."""
-        key = (name, minimised, reported)
+        key = (name, minimised, reported) if shard is None else (name, shard)
         if key not in self.undisturbed:
-            folder = self.folder / "undisturbed" / "-".join(map(str, key))
+            folder = self.folder / "undisturbed" / "-".join(map(str, key)).replace("/", "of")
             if reported or minimised:
                 shutil.copytree(self.reference(name, minimised and reported), folder)
-            steps = [["report", folder]] if reported else [["minimize", folder]] if minimised else [[*self.campaign(name), "--out", folder]]
+            steps = [["report", folder]] if reported else [["minimize", folder]] if minimised else [[*self.campaign(name), *(["--shard", shard] if shard else []), "--out", folder]]
             start = time.monotonic()
             for step in steps:
                 turn = Round(self, "undisturbed", 0, self.folder / "undisturbed")
@@ -101,7 +101,7 @@ class Round:
         out, err = (self.folder / f".{number}.{stream}" for stream in ("out", "err"))
         with open(out, "wb") as to_out, open(err, "wb") as to_err:
             process = subprocess.Popen([self.bench.graze, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=to_out, stderr=to_err,
-                                       env={**os.environ, "MALLOC_ARENA_MAX": "2"}, preexec_fn=limit)
+                                       env={**os.environ, "MALLOC_ARENA_MAX": "2", "XDG_CACHE_HOME": os.fspath(self.bench.folder / "cache")}, preexec_fn=limit)
         return process, out, err
 
     def finish(self, started, kill_after=None, judged=True):

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/results.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "core/error.h"
+#include "fuzz/own_files.h"
+
+namespace graze::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool forced = false;  // by this command line
+
+void refuse_folder(const fs::path& out, const std::string& own) {
+  throw UsageError(fmt::format("{}: expected a new or an empty folder, or {}, found other things; choose another --out, or --force",
+                               out.string(), own));
+}
+
+fs::path made(const fs::path& out, const char* own) {
+  if (!forced && !fuzz::may_fill(out, {own}) && !fuzz::may_hold_campaign(out))
+    refuse_folder(out, fmt::format("one with {} or a campaign", own));
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (!error && access(out.c_str(), W_OK | X_OK) != 0) error = {errno, std::generic_category()};
+  if (error) throw std::runtime_error(out.string() + ": expected a folder that can be written, found: " + error.message());
+  return out;
+}
+
+}  // namespace
+
+void add_force(CLI::App& app) {
+  for (CLI::App* verb : app.get_subcommands([](const CLI::App* v) { return v->get_name() != "merge"; })) {
+    const char* const places[] = {"--out", "--plot", "--obj", "--prometheus"};
+    if (std::any_of(std::begin(places), std::end(places), [&](const char* name) { return verb->get_option_no_throw(name); }))
+      verb->add_flag("--force", forced, "Replace files that graze did not write, and use folders with other things");
+  }
+}
+
+void expect_replaceable(const fs::path& file, const std::string& text) {
+  if (!forced && !fuzz::may_replace(file, text))
+    throw UsageError(file.string() + ": expected no file, or one that graze wrote, found another; --force replaces it");
+}
+
+void write_result(const fs::path& file, const std::string& text) {
+  expect_replaceable(file, text);
+  fuzz::write_whole(file, text);
+}
+
+void remove_result(const fs::path& file, const std::string& text) {
+  if (fs::is_regular_file(file) && fuzz::may_replace(file, text)) fs::remove(file);
+}
+
+void expect_campaign_folder(const fs::path& out) {
+  if (!forced && !fuzz::may_hold_campaign(out)) refuse_folder(out, "a campaign's");
+}
+
+ResultFolder::ResultFolder(const std::string& out, const char* own)
+    : path(made(out, own)), alone(path, fuzz::FolderLock::WhenTaken::refuse) {}
+
+}  // namespace graze::cli

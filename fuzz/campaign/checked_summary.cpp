@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/campaign/checked_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "corpus/pair_format.h"
+#include "fuzz/campaign/result_files.h"
+#include "strata/strata.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Which counts of a summary cannot be, in words.
+struct Impossible : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void expect(bool possible, const std::string& expected, std::uint64_t found) {
+  if (!possible) throw Impossible(fmt::format("expected {}, found {}", expected, found));
+}
+
+std::uint64_t count(const Json& row, const char* field) {
+  const Json& value = row.at(field);
+  if (!value.is_number_unsigned()) throw Impossible(fmt::format("expected a count as {}, found {}", field, value.dump()));
+  return value.get<std::uint64_t>();
+}
+
+std::uint64_t wrong_of(const Json& lane) {
+  std::uint64_t wrong = 0;
+  for (const char* field : {"false_positive", "false_negative", "declined", "crashed", "timed_out", "unstable"})
+    wrong += lane.contains(field) ? count(lane, field) : 0;
+  return wrong;
+}
+
+// Rows {"pairs", "wrong": {lane: count}}, which split the stratum's pairs.
+void expect_split(const std::string& where, const Json& rows, const Json& stratum) {
+  std::uint64_t pairs = 0;
+  std::map<std::string, std::uint64_t> wrong;
+  for (const auto& [name, row] : rows.items()) {
+    pairs += count(row, "pairs");
+    for (const auto& [lane, unused] : row.at("wrong").items()) {
+      const std::uint64_t of_lane = count(row["wrong"], lane.c_str());
+      expect(of_lane <= count(row, "pairs"), fmt::format("at most {} wrong of {} at {} {}", count(row, "pairs"), lane, where, name), of_lane);
+      wrong[lane] += of_lane;
+    }
+  }
+  expect(pairs == count(stratum, "pairs"), fmt::format("{} pairs by {}", count(stratum, "pairs"), where), pairs);
+  for (const auto& [lane, row] : stratum.at("lanes").items())
+    expect(wrong[lane] == wrong_of(row), fmt::format("{} wrong of {} by {}", wrong_of(row), lane, where), wrong[lane]);
+}
+
+void expect_possible(const Json& stratum) {
+  const std::uint64_t pairs = count(stratum, "pairs"), intersects = count(stratum, "intersects");
+  expect(intersects <= pairs, fmt::format("at most {} pairs that intersect", pairs), intersects);
+  for (const auto& [lane, row] : stratum.at("lanes").items()) {
+    const auto most = [&](const char* field, std::uint64_t limit) {
+      expect(count(row, field) <= limit, fmt::format("at most {} {} of {}", limit, field, lane), count(row, field));
+    };
+    most("false_positive", pairs - intersects);
+    most("false_negative", intersects);
+    if (!row.at("differs_from_cpu").is_null()) most("differs_from_cpu", pairs);
+    const std::uint64_t judged = wrong_of(row) + (row.contains("by_convention") ? count(row, "by_convention") : 0);
+    expect(judged <= pairs, fmt::format("at most {} verdicts of {} that are not the truth's", pairs, lane), judged);
+  }
+  expect_split("margin", stratum.at("margins"), stratum);
+  const Json extremes = stratum.value("extremes", Json::object());
+  for (const auto& [axis, rows] : extremes.items()) expect_split(axis, rows, stratum);
+}
+
+// Of a summary without its database: counts within each other, and sums that agree.
+void expect_possible_summary(const Json& summary) {
+  std::uint64_t pairs = 0;
+  for (const auto& [id, stratum] : summary.at("strata").items()) {
+    try {
+      expect_possible(stratum);
+    } catch (const Impossible& error) {
+      throw Impossible(id + ": " + error.what());
+    }
+    pairs += count(stratum, "pairs");
+  }
+  const std::uint64_t all = count(summary.at("spec"), "pairs"), disagreements = count(summary, "disagreements");
+  const bool complete = summary.at("complete");
+  expect(complete ? pairs == all : pairs <= all, fmt::format("{} {} pairs in all strata", complete ? "exactly" : "at most", all), pairs);
+  expect(disagreements <= pairs, fmt::format("at most {} disagreements", pairs), disagreements);
+  for (const Json& row : summary.at("signatures"))
+    expect(count(row, "count") <= pairs, fmt::format("at most {} pairs of the signature {}", pairs, row.at("key").dump()), count(row, "count"));
+}
+
+// What the store's rows add up to, as the summary says it.
+Json summary_of_database(const fs::path& directory) {
+  StoreSpec store = recorded_store(directory);
+  std::vector<StoredCounts> of_source;
+  for (const std::string id : store.spec.at("strata")) {
+    const auto row = std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata), [&](auto& s) { return s.id == id; });
+    // How many pairs a mesh has is known from the mesh alone; no source has more than all.
+    strata::PairSource source{id, store.spec.at("pairs"), nullptr};
+    if (row != std::end(strata::kStrata) && !store.spec.contains("scene")) source.axis = row->axis;
+    store.sources.push_back(std::move(source));
+    of_source.emplace_back(static_cast<int>(store.lanes.size()));
+  }
+  std::uint64_t done = 0;
+  for_each_row(store, [&](const PairRange& range, const StoredCounts& counts) {
+    of_source[static_cast<std::size_t>(range.source)].add(counts);
+    done += range.pairs;
+  });
+  StoredCounts all(static_cast<int>(store.lanes.size()));
+  for (const StoredCounts& counts : of_source) all.add(counts);
+  return summary_of(store, of_source, all.signatures, all.executors_apart, done == store.spec.at("pairs"));
+}
+
+}  // namespace
+
+bool has_database(const fs::path& directory) { return fs::exists(directory / kDatabase); }
+
+Json checked_summary(const fs::path& directory) {
+  const fs::path file = directory / "summary.json";
+  const std::string text = read_whole(file);
+  if (text.empty())
+    throw std::runtime_error(directory.string() + ": expected a campaign's directory with summary.json, found none");
+  const Json summary = Json::parse(text, nullptr, false);
+  try {
+    if (!summary.is_object()) throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
+    if (has_database(directory)) {
+      const Json expected = summary_of_database(directory);
+      if (summary != expected)
+        throw Impossible(fmt::format("expected what {} says: {}; the command that began the campaign writes it again", kDatabase,
+                                     first_difference(expected, summary)));
+    } else {
+      expect_possible_summary(summary);
+    }
+  } catch (const Impossible& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  } catch (const Json::exception&) {
+    throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
+  }
+  return summary;
+}
+
+Json recorded_spec(const fs::path& directory) {
+  if (has_database(directory)) return recorded_store(directory).spec;
+  const Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
+  const Json spec = summary.is_object() ? summary.value("spec", Json()) : Json();
+  return spec.is_object() ? spec : Json();
+}
+
+}  // namespace graze::fuzz

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuzz/own_files.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "fuzz/campaign/rank_stores.h"
+#include "fuzz/files.h"
+
+namespace graze::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The first keys of the object, at most two; nothing where the text is no object.
+std::vector<std::string> first_keys(const std::string& text) {
+  std::vector<std::string> keys;
+  const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
+  if (!json.is_object()) return keys;
+  for (const auto& [key, unused] : json.items()) {
+    keys.push_back(key);
+    if (keys.size() == 2) break;
+  }
+  return keys;
+}
+
+// What files of this kind have in common; the line ends before `>`, behind which a picture has its own.
+std::string mark_of(const std::string& text) {
+  constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
+  constexpr std::size_t kColours = 24;  // bytes: the first eight, which all ulp maps have
+  if (text.starts_with("\x89PNG")) return text.substr(std::min(text.find(kPalette), text.size()), kPalette.size() + kColours);
+  if (text.find(kTitle) != text.npos) return std::string(kTitle);
+  return text.substr(0, text.find_first_of(">\n"));
+}
+
+bool is_nothing(const fs::path& entry) {
+  if (entry.string().ends_with(".part")) return true;
+  return fs::is_directory(fs::symlink_status(entry)) &&
+         std::all_of(fs::directory_iterator(entry), fs::directory_iterator(), [](const auto& e) { return is_nothing(e.path()); });
+}
+
+}  // namespace
+
+bool may_replace(const fs::path& file, const std::string& text) {
+  std::error_code none;
+  if (!fs::is_regular_file(file, none)) return true;  // a folder is refused by write_whole
+  const std::string there = read_whole(file);
+  if (there.empty()) return true;
+  if (text.starts_with('{')) return there.starts_with('{') && first_keys(there) == first_keys(text);
+  const std::string mark = mark_of(text);
+  const bool at_the_start = text.starts_with(mark);
+  return !mark.empty() && (at_the_start ? there.starts_with(mark) : there.find(mark) != there.npos);
+}
+
+bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) return true;  // who makes it finds out what is wrong
+  return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); }) ||
+         std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const auto& e) { return is_nothing(e.path()); });
+}
+
+bool may_hold_campaign(const fs::path& folder) {
+  return may_fill(folder, {kDatabase, "summary.json", "status.json"}) || !rank_directories(folder).empty();
+}
+
+}  // namespace graze::fuzz

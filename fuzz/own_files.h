@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which files and folders are Graze's own: results go where nothing is, or where Graze's own results are.
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+
+namespace graze::fuzz {
+
+// Whether a result with this text may replace the file, seen through symbolic links: it is missing or empty, a device or
+// a pipe, or Graze wrote it. Graze knows its files by what all of their kind have: the same first line, or first tag;
+// of a JSON object the first two keys; of a page its title; of a picture of points its colours.
+// Throws: std::runtime_error for a file that cannot be read.
+bool may_replace(const std::filesystem::path& file, const std::string& text);
+
+// Whether results may go into the folder: it is missing, has nothing but empty folders and what a killed write left, or
+// has one of these files.
+bool may_fill(const std::filesystem::path& folder, std::initializer_list<const char*> own);
+
+// The same of a campaign's or a shard's, as `graze fuzz`, `hunt` and `merge` leave it.
+bool may_hold_campaign(const std::filesystem::path& folder);
+
+}  // namespace graze::fuzz

@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Verbs that leave results beside a campaign's: killed, without room, where nothing can be written, and two at once; then the
+same bytes as undisturbed, timings aside, and never a part of a file. And what they must not replace."""
+import json
+import shutil
+import subprocess
+import time
+
+from torture_attacks.bench import Violation
+from torture_attacks.interruptions import small_disk
+
+ATTEMPTS = 3  # verbs in a round
+TIMED = {"machine", "date", "near", "far", "in_cache", "from_memory", "dominated", "sentences", "costs", "nanoseconds", "ns", "updated"}
+ASIDE = {"front.svg", "league.md", "timings.json", "status.json", "campaign.sqlite"}  # and what a database has beside it
+SUBJECT = "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n"
+PAIR = "0.1 0.2 0.3  0.4 0.9 0.2  0.7 0.1 0.6   0.1 0.2 0.3  0.5 0.5 0.9  -0.3 0.8 0.4\n"
+
+
+def inputs(bench):
+    """What the verbs read: made once."""
+    folder = bench.folder / "inputs"
+    if not folder.exists():
+        folder.mkdir(parents=True)
+        (folder / "mine.c").write_text(SUBJECT)
+        (folder / "subjects.txt").write_text(f"mine={folder / 'mine.c'}\n")
+        (folder / "pair.txt").write_text(PAIR)
+    return folder
+
+
+def shards(bench):
+    return [bench.reference("small", shard=number + "/2") for number in ("1", "2")]
+
+
+def command(bench, verb, out):
+    """Its arguments."""
+    folder = inputs(bench)
+    few = ["--strata", "near_edge_edge,degenerate"]
+    return {
+        "tune": lambda: ["tune", "moller_1997/f32/cpu", *few, "--pairs", "2000", "--threads", "2", "--out", out],
+        "trade": lambda: ["trade", "--lanes", "moller_1997/f32/cpu,exact/f32/cpu", *few, "--pairs", "1000", "--out", out],
+        "laws": lambda: ["laws", "--lanes", "moller_1997/f32/cpu", *few, "--pairs", "300", "--threads", "2", "--out", out],
+        "league": lambda: ["league", "--subjects", folder / "subjects.txt", *few, "--pairs", "200", "--out", out],
+        "merge": lambda: ["merge", *shards(bench), "--out", out],
+        "report": lambda: ["report", out],
+        "view": lambda: ["view", folder / "pair.txt", "--out", out / "view.html"],
+    }[verb]()
+
+
+VERBS = ["tune", "trade", "laws", "league", "merge", "report", "view"]
+
+
+def begin(turn, verb, out):
+    shutil.rmtree(out, ignore_errors=True)
+    if verb == "report":
+        shutil.copytree(turn.bench.reference("tiny", minimised=True), out)
+    if verb == "view":
+        out.mkdir(parents=True)
+
+
+def without_times(value):
+    if isinstance(value, dict):
+        return {key: without_times(inner) for key, inner in value.items() if key not in TIMED}
+    return [without_times(inner) for inner in value] if isinstance(value, list) else value
+
+
+def snapshot(out):
+    """All results by name, without what was timed. Throws: Violation for half a JSON file."""
+    found = {}
+    for file in sorted(out.rglob("*")):
+        name = file.relative_to(out).as_posix()
+        if not file.is_file() or name.endswith(".part") or name in ASIDE or name.startswith("campaign.sqlite"):
+            continue
+        data = file.read_bytes()
+        if file.suffix == ".json":
+            try:
+                data = without_times(json.loads(data))
+            except ValueError:
+                raise Violation(f"expected whole JSON in {name}, found {data[:80]!r}") from None
+        found[name] = data
+    return found
+
+
+def undisturbed(turn, verb):
+    """Its results; none where this build is without the verb."""
+    key = ("results", verb)
+    if key not in turn.bench.undisturbed:
+        out = turn.bench.folder / "undisturbed" / verb
+        begin(turn, verb, out)
+        start = time.monotonic()
+        ran = turn.run(*command(turn.bench, verb, out))
+        left_out = ran.status != 0 and ("in this build" in ran.err or "expected a build with" in ran.err)
+        if not left_out:
+            turn.must_succeed(ran)
+        turn.bench.seconds[key] = time.monotonic() - start
+        turn.bench.undisturbed[key] = None if left_out else snapshot(out)
+    return turn.bench.undisturbed[key]
+
+
+def each(turn, attack):
+    """The attack on some verbs."""
+    for verb in turn.random.sample(VERBS, ATTEMPTS):
+        expected = undisturbed(turn, verb)
+        if expected is None:
+            turn.count("refused")
+            continue
+        out = turn.folder / verb
+        begin(turn, verb, out)
+        attack(turn, verb, out, expected)
+        shutil.rmtree(out, ignore_errors=True)
+
+
+def must_be_whole(out, expected, begun):
+    """No part of a result: each file is as it was before, or as it is in the end."""
+    for name, data in snapshot(out).items():
+        if data != expected.get(name) and data != begun.get(name):
+            raise Violation(f"expected {name} whole or not at all, found something else")
+
+
+def must_end_alike(turn, verb, out, expected):
+    ran = turn.run(*command(turn.bench, verb, out))
+    turn.must_succeed(ran)
+    found = snapshot(out)
+    apart = [name for name in sorted({*found, *expected}) if found.get(name) != expected.get(name)]
+    if apart:
+        raise Violation(f"expected the results of the undisturbed {verb}, found that {len(apart)} files differ, the first {apart[0]}")
+    left = [file.name for file in [*out.rglob("*.part*"), *out.parent.glob(out.name + ".part*")]]
+    if left:
+        raise Violation(f"expected nothing left behind, found {left}")
+
+
+def kill_results(turn):
+    def attack(turn, verb, out, expected):
+        begun = snapshot(out)
+        for _ in range(2):
+            turn.run(*command(turn.bench, verb, out), kill_after=turn.bench.seconds["results", verb] * turn.random.choice([turn.random.random(), 0.9 + 0.2 * turn.random.random()]))
+            must_be_whole(out, expected, begun)
+            if verb == "merge" and out.exists():  # done; it goes into a new folder alone
+                shutil.rmtree(out)
+        must_end_alike(turn, verb, out, expected)
+        turn.count("same")
+
+    each(turn, attack)
+
+
+def full_results(turn):
+    def attack(turn, verb, out, expected):
+        begun = snapshot(out)
+        largest = max(len(data) if isinstance(data, bytes) else len(json.dumps(data)) for data in expected.values())
+        ran = turn.run(*command(turn.bench, verb, out), file_bytes=turn.random.randrange(largest))
+        refused = turn.is_refused(ran, verb, "campaign.sqlite", "room")
+        must_be_whole(out, expected, begun)
+        if verb == "merge" and out.exists():
+            shutil.rmtree(out)
+        must_end_alike(turn, verb, out, expected)
+        turn.count("refused" if refused else "same")
+
+    each(turn, attack)
+
+
+def read_only_results(turn):
+    def attack(turn, verb, out, expected):
+        disk = turn.folder / f"disk-{verb}"
+        with small_disk(disk, 64 << 20) as mounted:
+            there = disk / verb
+            begin(turn, verb, there)
+            before = {file: file.read_bytes() for file in disk.rglob("*") if file.is_file()}
+            refused = False
+            if mounted:
+                remount = lambda how: subprocess.run(["mount", "-o", f"remount,{how}", disk], check=True, capture_output=True)
+                remount("ro")
+                try:
+                    ran = turn.run(*command(turn.bench, verb, there))
+                    refused = turn.is_refused(ran, verb)
+                    if not refused or "Read-only file system" not in ran.err:
+                        raise Violation(f"expected the system's reason, Read-only file system, found {ran.err!r}")
+                finally:
+                    remount("rw")
+                if {file: file.read_bytes() for file in disk.rglob("*") if file.is_file()} != before:
+                    raise Violation("expected a folder that can only be read to stay as it is, found it changed")
+            must_end_alike(turn, verb, there, expected)
+            turn.count("refused" if refused else "same")
+
+    each(turn, attack)
+
+
+def two_results(turn):
+    def attack(turn, verb, out, expected):
+        started = turn.start(*command(turn.bench, verb, out))
+        time.sleep(turn.random.choice([0, 0, 0.01, 0.05]))
+        both = [turn.finish(other, judged=False) for other in (turn.start(*command(turn.bench, verb, out)), started)]
+        for ran in both:
+            turn.must_end(ran)
+        refused = [turn.is_refused(ran, verb) for ran in both]
+        if all(refused):
+            raise Violation(f"expected one of two at once to go on, found both refused: {both[0].err!r} {both[1].err!r}")
+        if verb == "merge":
+            shutil.rmtree(out)
+        must_end_alike(turn, verb, out, expected)
+        turn.count("refused" if any(refused) else "same")
+
+    each(turn, attack)
+
+
+def leaves(value, place=()):
+    """The places of all counts."""
+    if isinstance(value, (dict, list)):
+        for key, inner in (value.items() if isinstance(value, dict) else enumerate(value)):
+            yield from leaves(inner, (*place, key))
+    elif isinstance(value, int) and not isinstance(value, bool):
+        yield place
+
+
+def changed(value, place, by):
+    holder = value
+    for key in place[:-1]:
+        holder = holder[key]
+    holder[place[-1]] += by
+
+
+def forged_summaries(turn):
+    """Counts that another writes into a campaign's JSON: refused by the file's name, with the database beside it or without."""
+    reported = turn.bench.reference("tiny", minimised=True, reported=True)
+    for attempt in range(4):
+        campaign = turn.folder / f"campaign-{attempt}"
+        shutil.copytree(reported, campaign)
+        name = turn.random.choice(["summary.json", "summary.json", "kinds.json", "report.json"])
+        value = json.loads((campaign / name).read_text())
+        part = {"summary.json": ["strata", "signatures", "disagreements", "spec"], "kinds.json": ["kinds"], "report.json": ["rates", "strata"]}[name]
+        counts = {"kinds.json": {"pairs", "signatures"}, "report.json": {"count", "of", "pairs", "intersects", "declined"}}.get(name)
+        places = [place for place in leaves({key: value[key] for key in part}) if counts is None or place[-1] in counts]
+        readers = [["report", campaign], ["report", "--compare", reported, campaign], ["kinds", campaign], ["minimize", campaign],
+                   ["dump", campaign], ["corpus", "add", campaign, "--corpus", turn.folder / "corpus"]]
+        place = turn.random.choice(places)
+        changed(value, place, turn.random.choice([1, 7, 1 << 40]))
+        if name == "report.json":
+            readers = [["report", "--from", campaign / name, "--out", turn.folder / "page.html"]]
+        elif name == "kinds.json":
+            readers = [["report", campaign], ["kinds", campaign]]
+        elif turn.random.random() < 0.4:
+            (campaign / "campaign.sqlite").unlink()
+            value = json.loads((campaign / name).read_text())
+            stratum = turn.random.choice(list(value["strata"].values()))
+            lane = turn.random.choice(list(stratum["lanes"].values()))
+            lane[turn.random.choice(["false_negative", "false_positive", "declined"])] = stratum["pairs"] + 1
+        (campaign / name).write_text(json.dumps(value, indent=1) + "\n")
+        ran = turn.run(*turn.random.choice(readers))
+        if not turn.is_refused(ran, name):
+            raise Violation(f"expected {name} with another number at {place} to be refused, found status {ran.status}")
+        turn.count("refused")
+        shutil.rmtree(campaign)
+
+
+def foreign_places(turn):
+    """Where a person's own files are: refused in one line, and they stay; with --force the results go there."""
+    folder = turn.folder / "mine"
+    folder.mkdir()
+    (folder / "notes.txt").write_text("kept")
+    pair = inputs(turn.bench) / "pair.txt"
+    lane = ["--lanes", "guigue_devillers_2003/f32/cpu"]
+    report = turn.bench.reference("tiny", reported=True) / "report.json"
+    files = [["minimize", pair, *lane, "--out"], ["map", pair, *lane, "--out"], ["report", "--from", report, "--out"], ["view", pair, "--out"]]
+    for place, verb in enumerate(files):
+        theirs, link = turn.folder / f"theirs-{place}.png", turn.folder / f"link-{place}.png"
+        theirs.write_text("kept")
+        link.symlink_to(theirs.name)
+        for name in (theirs, link):
+            ran = turn.run(*verb, name)
+            if not turn.is_refused(ran, name.name, "in this build", "build with"):
+                raise Violation(f"expected {verb[0]} to refuse a file of another, found status {ran.status}")
+            if theirs.read_text() != "kept" or not link.is_symlink():
+                raise Violation(f"expected a file that is not of graze to stay, found that {verb[0]} replaced it")
+            turn.count("refused")
+        if "--force" in ran.err:
+            turn.must_succeed(turn.run(*verb, link, "--force"))
+            if theirs.read_bytes() == b"kept":
+                raise Violation(f"expected {verb[0]} --force to replace the file, found it as it was")
+            turn.count("same")
+    tiny = [*turn.bench.campaign("tiny"), "--out"]
+    for verb in [tiny, *(command(turn.bench, name, folder)[:-1] for name in ("tune", "trade", "laws", "league", "merge"))]:
+        ran = turn.run(*verb, folder)
+        if not turn.is_refused(ran, folder.name, "in this build"):
+            raise Violation(f"expected {verb[0]} to refuse a folder of other things, found status {ran.status}")
+        if [file.name for file in folder.iterdir()] != ["notes.txt"]:
+            raise Violation(f"expected a folder that is not of graze to stay as it is, found that {verb[0]} wrote into it")
+        turn.count("refused")
+    league = turn.folder / "league"
+    (league / "league").mkdir(parents=True)
+    (league / "league" / "mine.svg").write_text("kept")
+    ran = turn.run(*command(turn.bench, "league", league))
+    turn.is_refused(ran, "league", "in this build")
+    ran = turn.run(*command(turn.bench, "league", league), "--force")
+    if (league / "league" / "mine.svg").read_text() != "kept":
+        raise Violation("expected league to remove only drawings of its own, found another gone")
+    turn.count("same" if ran.status == 0 else "refused")

@@ -47,7 +47,7 @@ TEST_F(MapCommand, BadInputGetsOneLine) {
         {"lattice:1:1 --x 'b[0].x' --y 'b[0].x'", 2, "b[0].x twice"},
         {"lattice:1:1 --x 'b[0].x' --y 'b[3].x'", 2,
          "--y: expected a coordinate from a[0].x to b[2].z, found 'b[3].x'"},
-        {"lattice:1:1 --out file", 1, "file: expected a file.png or a directory"},
+        {"lattice:1:1 --out file", 1, "file: expected a folder that can be written, found: Not a directory"},
         {"lattice:1:1 --out no/where.png > /dev/null", 1, "no/where.png"}}) {
     const Ran ran = shell(std::string("graze map ") + arguments);
     EXPECT_EQ(ran.status, status) << arguments << ran.err;

@@ -123,7 +123,7 @@ TEST_F(Minimize, BadInputGetsOneLine) {
   expect_error("graze minimize nowhere:1:2", 2, "found 'nowhere'");
   expect_error("mkdir empty; graze minimize empty", 1, "empty: expected a campaign's directory");
   expect_error("mkdir odd; echo '{\"spec\": 1, \"signatures\": 2}' > odd/summary.json; graze minimize odd", 1,
-               "odd: expected a campaign's directory");
+               "odd/summary.json: expected a campaign's summary");
   expect_error("echo '0 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5' > right.pairs; graze minimize right.pairs", 1,
                "right.pairs: expected a case on which a lane is wrong");
   expect_error("echo 'nan 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5' > nan.pairs; graze minimize nan.pairs", 1,

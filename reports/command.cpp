@@ -20,13 +20,20 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+// The lanes that ran; where others were asked for as well, the patterns that asked. Empty for all that run here.
+std::string lane_option(const Json& spec, const std::vector<std::string>& ids) {
+  if (spec.contains("lanes_left_out"))
+    return fmt::format(" --lanes '{}'", fmt::join(spec["lanes_left_out"].at("patterns").get<std::vector<std::string>>(), ","));
+  return ids.size() == lanes().size() ? "" : fmt::format(" --lanes '{}'", fmt::join(ids, ","));
+}
+
 // What the hunt draws from stands for its one source.
 std::string hunt_command(const Json& spec, const std::vector<std::string>& ids) {
   const std::vector<std::string> strata = spec.at("hunt").at("strata");
   std::string command = fmt::format("graze hunt --runs {} --seed {}", spec.at("pairs").dump(), spec.at("seed").dump());
   if (spec.contains("scene")) command += " --scene " + quoted(spec.at("scene").at("file").get<std::string>());
   if (spec.contains("scene") || strata.size() != strata::kStrataCount) command += fmt::format(" --strata {}", fmt::join(strata, ","));
-  if (ids.size() != lanes().size()) command += fmt::format(" --lanes '{}'", fmt::join(ids, ","));
+  command += lane_option(spec, ids);
   return command + " --out hunt";
 }
 
@@ -54,7 +61,7 @@ std::string campaign_command(const Json& summary) {
   if (!strata.empty()) command += fmt::format(" --pairs {} --seed {}", pairs, spec.at("seed").dump());
   const bool all_strata = strata.size() == strata::kStrataCount && !spec.contains("mesh");
   if (!strata.empty() && !all_strata) command += fmt::format(" --strata {}", joined(strata));
-  if (ids.size() != lanes().size()) command += fmt::format(" --lanes '{}'", joined(ids));
+  command += lane_option(spec, ids);
   const Json executors = summary.at("build").value("executors", Json::object());
   const auto any = [&](std::string_view start) {
     return std::any_of(executors.begin(), executors.end(),

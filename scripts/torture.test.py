@@ -19,7 +19,7 @@ loader.exec_module(torture)
 
 # A campaign of eight rows, 50 ms each. MODE says what it does wrong.
 GRAZE = r'''#!%(python)s -BS
-import fcntl, os, pathlib, shutil, signal, sqlite3, stat, sys, time
+import fcntl, os, pathlib, shutil, signal, sqlite3, stat, subprocess, sys, time
 MODE = "%(mode)s"
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 words = sys.argv[1:]
@@ -108,7 +108,10 @@ def fuzz():
         fail(f"{file}: no room")
     write(folder / "cases/1.pairs", "1 2 3\n")
     write(folder / "margins.svg", "picture\n")
-    write(folder / "summary.json", '{"resumed": %%d, "signatures": [1, 2]}\n' %% resumed)
+    counts = '{"uniform": {"pairs": 60, "lanes": {"moller_1997/f32/cpu": %%d}}}' %% (MODE == "infects" and "--subject" in words)
+    write(folder / "summary.json", '{"resumed": %%d, "signatures": [1, 2], "strata": %%s}\n' %% (resumed, counts))
+    if MODE == "leaves" and "--subject" in words:
+        subprocess.Popen(["sleep", "60"], start_new_session=True)
 
 
 if out == "":
@@ -178,6 +181,8 @@ class Torture(unittest.TestCase):
                 ("kill_minimize", "loses", "found that 1 files differ, the first cases/1.json"),
                 ("full_disk", "litters", "expected nothing left behind"),
                 ("two_at_once", "collides", "expected one line on stderr"),
+                ("foreign", "leaves", "expected no process after the end"),
+                ("foreign", "infects", "expected moller_1997/f32/cpu to have the counts"),
                 ("flips", "believes", "found that 1 files differ, the first summary.json"),
                 ("flips", "crashes", "expected exit status 0, 1 or 2, found -11"),
                 ("flips", "stuck", "expected success, found status 1"),
@@ -197,6 +202,29 @@ class Torture(unittest.TestCase):
                 self.assertRegex(said, f"again: scripts/torture --graze {self.folder}/graze-{mode} --seed 1 --repeat {kind}:[0-9]+\n")
                 kept = pathlib.Path(said.rsplit("kept:  ", 1)[1].strip())
                 self.assertTrue((kept / ".commands").read_text())
+
+    def test_what_the_real_one_would_do_wrong_with_results(self):
+        """The real program, but what this makes of each of its runs."""
+        real = SCRIPT.parents[1] / "build/bin/graze"
+        if not real.exists():
+            self.skipTest("no build/bin/graze")
+        for kind, wrong, what in (
+                ("foreign_places", f'exec {real} "$@" --force', "to refuse a file of another"),
+                ("forged_summaries", f'{real} "$@" || exit 0', "to be refused, found status 0"),
+                ("kill_results", f'{real} "$@" && find . -name "*.json" -newer "$0" -exec truncate -s 9 {{}} +', "expected whole JSON"),
+                ("two_results", f'{real} "$@" && {{ touch "${{@: -1}}/x.part" 2> /dev/null; true; }}', "expected nothing left behind")):
+            with self.subTest(kind):
+                graze = self.folder / f"graze-{kind}"
+                graze.write_text(f"#!/bin/bash\n{wrong}\n")
+                graze.chmod(0o755)
+                bench = torture.Bench(graze, 1, self.folder / f"bench-{kind}")
+                said = io.StringIO()
+                for number in range(6):
+                    with contextlib.redirect_stdout(said):
+                        torture.attack(bench, kind, number, types.SimpleNamespace(graze=graze, seed=1))
+                    if said.getvalue():
+                        break
+                self.assertIn(what, said.getvalue())
 
     def test_one_that_hangs(self):
         bench = sys.modules["torture_attacks.bench"]

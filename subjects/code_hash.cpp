@@ -82,7 +82,7 @@ std::uint64_t hash_of_file(const fs::path& file) {
 CodeHash hash_of_library(const fs::path& file) { return {hash_of_file(file), "the libraries that it loads"}; }
 
 CodeHash hash_of_command(const std::string& command) {
-  CodeHash code{fnv1a(command), "what the files named in its command load, and what they do with the machine"};
+  CodeHash code{fnv1a(command), "what its files load"};
   const std::vector<std::string> words = words_of(command);
   const auto is_setting = [](const std::string& word) { return word.find('=') != word.npos; };  // NAME=VALUE
   const auto program = std::find_if_not(words.begin(), words.end(), is_setting);

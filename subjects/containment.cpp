@@ -2,21 +2,28 @@
 #include "subjects/containment.h"
 
 #include <fcntl.h>
+#include <linux/audit.h>
 #include <linux/capability.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <poll.h>
 #include <sched.h>
 #include <sys/mount.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
+#include <sys/utsname.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -43,6 +50,21 @@ bool mount_proc() {
   return mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
          mount("proc", "/proc", "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr) == 0 &&
          fs::exists("/proc/thread-self/children");
+}
+
+// Tasks, threads among them: for what starts more of them between two looks than the machine has room for.
+constexpr int kMostTasks = 1024;
+
+// Since Linux 6.14 a namespace of processes has a largest number of its own; before, this is the whole machine's. Root has
+// no other limit. A user has one for all tasks in a namespace of users.
+void limit_tasks() {
+  utsname system{};
+  int major = 0, minor = 0;
+  if (uname(&system) == 0 && std::sscanf(system.release, "%d.%d", &major, &minor) == 2 &&
+      (major > 6 || (major == 6 && minor >= 14)))
+    std::ofstream("/proc/sys/kernel/pid_max") << 300 + kMostTasks;  // the first 300 numbers are given only once
+  const rlimit most{kMostTasks, kMostTasks};
+  if (geteuid() != 0) setrlimit(RLIMIT_NPROC, &most);
 }
 
 [[noreturn]] void guard(pid_t supervisor) {
@@ -101,6 +123,7 @@ void enter_containment(bool namespaces) {
       close(answer[0]);
       const bool ready = (user == 0 || map_user(user, group)) && mount_proc();
       if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
+      limit_tasks();
       close(answer[1]);
       return;
     }
@@ -161,6 +184,30 @@ bool end_children(pid_t except) {
       if (child != except) waitpid(child, nullptr, WNOHANG);
     }
   }
+}
+
+void forbid_limits_of_others() {
+  // prlimit64 with a process id, in each of the processor's tables of system calls: i386 has it under another number, and
+  // x32 with another bit.
+  constexpr std::uint32_t kI386Prlimit = 340, kX32 = 0x40000000;
+  constexpr std::uint32_t kArch = offsetof(seccomp_data, arch), kNumber = offsetof(seccomp_data, nr);
+  constexpr std::uint32_t kProcess = offsetof(seccomp_data, args);
+  sock_filter steps[] = {
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArch),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, 2),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kNumber),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kI386Prlimit, 3, 5),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kNumber),
+      BPF_STMT(BPF_ALU | BPF_AND | BPF_K, ~kX32),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_prlimit64, 0, 2),
+      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kProcess),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 0, 1),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM),
+  };
+  const sock_fprog program{std::size(steps), steps};
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
 }
 
 void drop_rights() {

@@ -30,6 +30,10 @@ Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processe
 // Kills all children but one, and what they leave behind.   Returns: whether none is left.
 bool end_children(pid_t except);
 
+// From here on neither this process nor what it starts can change the limits of other processes: those of its supervisor,
+// which has the same user, would be open to it.
+void forbid_limits_of_others();
+
 // Gives up the rights of root that would reach beyond the limits: tracing, mounting, lifting limits, rebooting.
 void drop_rights();
 

@@ -22,6 +22,12 @@ static int bad(const float a[9]) { return a[0] > 0.9f; }
 static int good(const float a[9], const float b[9]) { return a[0] < b[0]; }
 #define ATTACK(name, ...) int name(const float a[9], const float b[9]) { if (bad(a)) { __VA_ARGS__; } return good(a, b); }
 
+// Whether only its own processes are in reach.
+static int alone(void) {
+  char name[100] = {0};
+  return readlink("/proc/1/exe", name, 99) > 0 && strstr(name, "graze-subject") != 0;
+}
+
 // Of the memory that is shared with the supervisor.
 static void mappings(const char* name, void (*act)(char* from, size_t bytes)) {
   FILE* maps = fopen("/proc/self/maps", "r");
@@ -75,7 +81,7 @@ ATTACK(says_it_has_answered, uint64_t said[3] = {3, 1, 1}; for (int i = 0; i < 1
 
 ATTACK(kills_parent, kill(getppid(), SIGKILL); abort())
 ATTACK(stops_parent, kill(getppid(), SIGSTOP); usleep(2000); abort())
-ATTACK(kills_grandparent, for (int i = 1; i < getpid(); ++i) if (getpid() < 1000) kill(i, SIGKILL); abort())
+ATTACK(kills_grandparent, for (int i = 1; alone() && i < getpid(); ++i) kill(i, SIGKILL); abort())
 ATTACK(kills_group, kill(0, SIGKILL))
 ATTACK(stops_itself, raise(SIGSTOP))
 ATTACK(ends_itself_quietly, _exit(0))
@@ -95,7 +101,7 @@ static void leave_a_child(void) {
 }
 ATTACK(leaves_children, leave_a_child(); abort())
 int leaves_children_silently(const float a[9], const float b[9]) { if (bad(a)) leave_a_child(); return good(a, b); }
-ATTACK(forks_without_end, for (int i = 0; i < 300; ++i) if (fork() == 0) for (;;) pause(); for (;;) pause())
+ATTACK(forks_without_end, for (int i = 0; i < 2000; ++i) if (fork() == 0) for (;;) pause(); for (;;) pause())
 static void child_eats(void) {
   if (fork() == 0) {
     char* p = malloc(100 << 20);
@@ -107,4 +113,13 @@ ATTACK(children_eat, for (int i = 0; i < 4; ++i) child_eats(); for (;;) pause())
 ATTACK(eats_shared, char* p = mmap(0, 300 << 20, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0); if (p != MAP_FAILED) memset(p, 1, 300 << 20); for (;;) pause())
 ATTACK(lifts_limits, struct rlimit no = {RLIM_INFINITY, RLIM_INFINITY}; if (setrlimit(RLIMIT_DATA, &no) == 0) for (;;) pause(); abort())
 ATTACK(writes_a_large_file, char name[] = "/tmp/graze-hostile-XXXXXX"; int fd = mkstemp(name); unlink(name); if (ftruncate(fd, (off_t)8 << 30) == 0) for (;;) pause(); abort())
-ATTACK(kills_all, char name[100] = {0}; if (readlink("/proc/1/exe", name, 99) > 0 && strstr(name, "graze-subject")) kill(-1, SIGKILL); abort())
+static void limit_others(void) {
+  const struct rlimit none = {0, 0};
+  for (int i = 0; i < 16; ++i) {
+    if (alone()) prlimit(1, i, &none, 0);
+    prlimit(getppid(), i, &none, 0);
+    for (int p = 2; alone() && p < getpid(); ++p) prlimit(p, i, &none, 0);
+  }
+}
+ATTACK(limits_others, limit_others(); abort())
+ATTACK(kills_all, if (alone()) kill(-1, SIGKILL); abort())

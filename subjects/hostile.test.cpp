@@ -140,7 +140,7 @@ constexpr Attack kAttacks[] = {
     {"says_it_is_ready"}, {"says_it_has_answered"}, {"kills_parent"}, {"stops_parent"},
     {"kills_grandparent", false}, {"kills_group"}, {"stops_itself"}, {"ends_itself_quietly"}, {"pretends_not_ready"},
     {"traces_parent"}, {"becomes_another_program"}, {"closes_everything"}, {"leaves_children"},
-    {"forks_without_end"}, {"children_eat"}, {"eats_shared"}, {"lifts_limits"}, {"writes_a_large_file"},
+    {"forks_without_end"}, {"children_eat"}, {"eats_shared"}, {"lifts_limits"}, {"writes_a_large_file"}, {"limits_others"},
     {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {
@@ -264,6 +264,27 @@ TEST_F(Hostile, ARequestToStopEndsEveryWait) {
   EXPECT_THROW(describe({"library", slow.string(), ""}), Stopped);
   stop_requested = false;
   expect_nothing_left();
+}
+
+// What a fork leaves is one process for each pair, and no worker beside the worker.
+TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
+  const fs::path file = built_from("forks_twice", "#include <signal.h>\n#include <unistd.h>\n"
+                                                  "int intersects(const float a[9], const float b[9]) {\n"
+                                                  "  signal(SIGCHLD, SIG_IGN); fork(); return a[0] < b[0]; }");
+  {
+    ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
+    const std::vector<Verdict> found = verdicts(subject);
+    for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+  }
+  expect_nothing_left();
+}
+
+// Always the same verdict, also of a program that ends before it is written to.
+TEST_F(Hostile, ProgramsThatEndAtOnceCrashOnEveryPair) {
+  for (int times = 0; times < 5; ++times) {
+    ForeignProcesses subject({"command", "exit 1", "", "f32", 3600}, Scalar::f32);
+    EXPECT_EQ(verdicts(subject), std::vector<Verdict>(pairs.size(), Verdict::crashed));
+  }
 }
 
 // Whoever asks may be ended at any time: all others end with it.

@@ -97,12 +97,10 @@ void LineProtocol::send(const std::string& lines) {
     pollfd ready[] = {{to_, POLLOUT, 0}, {from_, POLLIN, 0}};
     poll(ready, 2, -1);
     if (ready[1].revents & POLLIN) read_some();
-    if (ready[0].revents & POLLOUT) {
-      const ssize_t count = write(to_, lines.data() + sent, lines.size() - sent);
-      if (count > 0) sent += static_cast<std::size_t>(count);
-    } else if (ready[0].revents & (POLLERR | POLLHUP)) {
-      return;  // it reads no more; what it has answered still counts
-    }
+    if (ready[0].revents & (POLLERR | POLLHUP)) return;  // it reads no more; what it has answered still counts
+    if (!(ready[0].revents & POLLOUT)) continue;
+    const ssize_t count = write(to_, lines.data() + sent, lines.size() - sent);
+    if (count > 0) sent += static_cast<std::size_t>(count);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "subjects/questions.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <stdexcept>
 #include <vector>
@@ -26,7 +27,10 @@ void ask_hostile(std::string_view bytes) {
   const std::size_t count = 1 + static_cast<unsigned char>(bytes[0]) % 9;
   Questions questions(count, bytes[0] & 64);
   static std::uint64_t words[kWords];
-  std::memset(words, 0, sizeof words);
+  const auto set_words = [&](int byte) {
+    for (std::uint64_t* pass : {words, words + kMostAsked}) std::memset(pass, byte, 16 * sizeof *pass);
+  };
+  set_words(0);
   std::uint64_t nonce = 1;
   std::size_t failures = 0;
   bool asked = false;
@@ -34,16 +38,15 @@ void ask_hostile(std::string_view bytes) {
     const auto what = static_cast<unsigned char>(bytes[at]), how = static_cast<unsigned char>(bytes[at + 1]);
     if (!asked || questions.answered()) {
       const Question question = questions.next(++nonce);
-      std::size_t chosen = 0;
-      for (std::size_t i = 0; i < kMostAsked; ++i) {
-        const bool one = is_chosen(question.first, i) || is_chosen(question.second, i);
-        must_hold(!one || i < count, "only pairs of the block are asked about");
-        chosen += one;
-      }
-      must_hold(chosen > 0 && question.count == count, "a question asks something");
+      std::uint64_t beyond = 0;
+      for (std::size_t w = 0; w < question.first.size(); ++w)
+        beyond |= (question.first[w] | question.second[w]) >> (w == 0 ? count : 0);
+      must_hold(beyond == 0, "only pairs of the block are asked about");
+      must_hold((question.first[0] | question.second[0]) != 0 && question.count == count, "a question asks something");
       asked = true;
     }
-    std::vector<signed char> before(questions.answers().begin(), questions.answers().end());
+    std::array<signed char, kMostAsked> before;
+    std::copy(questions.answers().begin(), questions.answers().end(), before.begin());
     const bool second = how & 32;
     std::uint64_t& word = words[(second ? kMostAsked : 0) + how % 16];
     const auto answer = static_cast<signed char>(static_cast<int>(what >> 4) % 3 - 1);
@@ -63,7 +66,7 @@ void ask_hostile(std::string_view bytes) {
         word ^= std::uint64_t{1} << how % 64;
         break;
       case 5:
-        std::memset(words, how, sizeof words);
+        set_words(how);
         break;
       case 6: {
         const std::size_t taken = questions.take(words);
@@ -77,7 +80,7 @@ void ask_hostile(std::string_view bytes) {
         asked = false;
         must_hold(++failures <= 1 + 4 * count, "failures come to an end");
     }
-    must_follow(before, questions.answers());
+    must_follow({before.data(), count}, questions.answers());
   }
   questions.give_up(kCrashed);
   must_hold(questions.done(), "it can be given up");

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -40,6 +41,7 @@ Time after(double seconds) {
 class Supervisor {
  public:
   Supervisor(const Limits& limits, char* const* arguments) : limits_(limits), arguments_(arguments) {
+    prctl(PR_SET_DUMPABLE, 0);  // nobody of the same user looks into this process
     const int fd = memfd_create("graze-answers", MFD_CLOEXEC | MFD_ALLOW_SEALING);
     if (fd < 0 || ftruncate(fd, kWords * sizeof(std::uint64_t)) != 0 ||
         fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
@@ -69,11 +71,18 @@ class Supervisor {
     _exit(0);
   }
 
+  // Without the system's help there is no supervision: graze starts another supervisor.
+  int wait_for(pollfd* of, nfds_t count, int milliseconds) {
+    const int found = poll(of, count, milliseconds);
+    if (found < 0 && errno != EINTR) leave();
+    return found;
+  }
+
   // Waits for what graze asks next, and meanwhile for what the processes take.   Returns: whether there is more to come.
   bool next_block(Block& block) {
     for (;;) {
       pollfd control{kControlFd, POLLIN, 0};
-      if (poll(&control, 1, 1000) > 0)
+      if (wait_for(&control, 1, 1000) > 0)
         return recv(kControlFd, &block, sizeof block, 0) == sizeof block && block.count > 0 && block.count <= kMostAsked;
       reap();
       if (!within_limits()) end_all();
@@ -142,7 +151,7 @@ class Supervisor {
   bool wait(Time until) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
     pollfd news[] = {{talk_, POLLIN, 0}, {worker_fd_, POLLIN, 0}, {kControlFd, POLLIN, 0}};
-    poll(news, 3, static_cast<int>(std::max<long>(0, left)));
+    wait_for(news, 3, static_cast<int>(std::max<long>(0, left)));
     if (news[2].revents) leave();  // nobody waits for the answers
     if (Clock::now() >= next_look_) {
       reap();
@@ -211,6 +220,7 @@ class Supervisor {
     for (int i = 0; i < 3; ++i) dup2(from[i], to[i]);
     close_range(kTalkFd + 1, ~0u, 0);
     drop_rights();
+    forbid_limits_of_others();
     execv("/proc/self/exe", arguments_);
     _exit(127);
   }
@@ -220,7 +230,7 @@ class Supervisor {
     while (Clock::now() < until) {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
       pollfd news[] = {{talk_, POLLIN, 0}, {process_fd, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
-      poll(news, 3, static_cast<int>(std::max<long>(0, left)));
+      wait_for(news, 3, static_cast<int>(std::max<long>(0, left)));
       if (news[2].revents & (POLLHUP | POLLERR | POLLRDHUP)) leave();
       if (news[0].revents & POLLIN) return true;
       if (news[0].revents || news[1].revents) return false;

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Subjects that attack what runs them (subjects/hostile.c), in campaigns that end by themselves, are stopped or are killed. Then the
+campaign has an end, the other lanes have the verdicts of a campaign without them, and no process is left."""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import time
+
+from torture_attacks.bench import Violation
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2] / "subjects/hostile.c"
+OURS = "moller_1997/f32/cpu"
+ATTEMPTS = 3
+ENDS = 20  # seconds after which a campaign that was asked to stop must have ended, on a busy machine too
+
+
+def attacks():
+    return re.findall(r"^ATTACK\((\w+),", SOURCE.read_text(), re.MULTILINE)
+
+
+def library(bench):
+    built = bench.folder / "libhostile.so"
+    if not built.exists():
+        subprocess.run(["cc", "-O1", "-w", "-shared", "-fPIC", SOURCE, "-o", built, "-lpthread"], check=True)
+    return built
+
+
+def left_over(bench):
+    """Processes that a graze of this bench started, by their environment."""
+    mark = f"XDG_CACHE_HOME={bench.folder}".encode()
+    found = []
+    for folder in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if mark in (folder / "environ").read_bytes():
+                found.append(int(folder.name))
+        except OSError:  # it ended
+            pass
+    return found
+
+
+def must_leave_nothing(turn):
+    for _ in range(100):
+        if not left_over(turn.bench):
+            return
+        time.sleep(0.1)
+    raise Violation(f"expected no process after the end, found {left_over(turn.bench)}")
+
+
+def counts_of_ours(campaign):
+    strata = json.loads((campaign / "summary.json").read_text())["strata"]
+    return {stratum: (counts["pairs"], counts["lanes"][OURS]) for stratum, counts in strata.items()}
+
+
+def foreign(turn):
+    for attempt in range(ATTEMPTS):
+        name = turn.random.choice(attacks())
+        seed = str(turn.random.randrange(1 << 32))
+        few = ["--pairs", "60", "--strata", "uniform", "--seed", seed, "--threads", "2"]
+        campaign, alone = turn.folder / f"with-{attempt}", turn.folder / f"without-{attempt}"
+        command = ["fuzz", *few, "--subject", f"h={library(turn.bench)}:{name}", "--subject-timeout", "0.1", "--lanes", "h/*",
+                   "--lanes", OURS, "--out", campaign]
+        way = turn.random.choice(["whole", "stopped", "killed"])
+        if way != "whole":
+            started = turn.start(*command)
+            time.sleep(turn.random.random() * 0.5)
+            os.kill(started[0].pid, signal.SIGTERM if way == "stopped" else signal.SIGKILL)  # still there until it is waited for
+            ran = turn.finish(started, kill_after=ENDS)
+            if ran.late:
+                raise Violation(f"expected an end within {ENDS} s of SIGTERM, found none")
+            if way == "stopped" and ran.status not in (0, 130, -signal.SIGTERM):  # by itself before, in order, before it began
+                raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
+            must_leave_nothing(turn)
+        turn.must_succeed(turn.run(*command))
+        must_leave_nothing(turn)
+        turn.must_succeed(turn.run("fuzz", *few, "--lanes", OURS, "--out", alone))
+        if counts_of_ours(campaign) != counts_of_ours(alone):
+            raise Violation(f"expected {OURS} to have the counts that it has without {name}, found others")
+        turn.count("same")

@@ -16,15 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool forced = false;  // by this command line
-
 void refuse_folder(const fs::path& out, const std::string& own) {
   throw UsageError(fmt::format("{}: expected a new or an empty folder, or {}, found other things; choose another --out, or --force",
                                out.string(), own));
 }
 
 fs::path made(const fs::path& out, const char* own) {
-  if (!forced && !fuzz::may_fill(out, {own}) && !fuzz::may_hold_campaign(out))
+  if (!fuzz::may_replace_foreign && !fuzz::may_fill(out, {own}) && !fuzz::may_hold_campaign(out))
     refuse_folder(out, fmt::format("one with {} or a campaign", own));
   std::error_code error;
   fs::create_directories(out, error);
@@ -39,12 +37,12 @@ void add_force(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands([](const CLI::App* v) { return v->get_name() != "merge"; })) {
     const char* const places[] = {"--out", "--plot", "--obj", "--prometheus"};
     if (std::any_of(std::begin(places), std::end(places), [&](const char* name) { return verb->get_option_no_throw(name); }))
-      verb->add_flag("--force", forced, "Replace files that graze did not write, and use folders with other things");
+      verb->add_flag("--force", fuzz::may_replace_foreign, "Replace files that graze did not write, and use folders with other things");
   }
 }
 
 void expect_replaceable(const fs::path& file, const std::string& text) {
-  if (!forced && !fuzz::may_replace(file, text))
+  if (!fuzz::may_replace_foreign && !fuzz::may_replace(file, text))
     throw UsageError(file.string() + ": expected no file, or one that graze wrote, found another; --force replaces it");
 }
 
@@ -58,7 +56,7 @@ void remove_result(const fs::path& file, const std::string& text) {
 }
 
 void expect_campaign_folder(const fs::path& out) {
-  if (!forced && !fuzz::may_hold_campaign(out)) refuse_folder(out, "a campaign's");
+  if (!fuzz::may_replace_foreign && !fuzz::may_hold_campaign(out)) refuse_folder(out, "a campaign's");
 }
 
 ResultFolder::ResultFolder(const std::string& out, const char* own)

@@ -13,6 +13,8 @@
 #include <memory>
 #include <stdexcept>
 
+#include "fuzz/own_files.h"
+
 namespace graze::fuzz {
 namespace {
 
@@ -118,6 +120,7 @@ void write_whole(const fs::path& file, const std::string& text) {
   // The standard output may be a file too: replaced, it would lose what else is printed.
   const bool standard_output = exists && is_standard_output(there);
   if (exists && (standard_output || !S_ISREG(there.st_mode))) return write_into(file, standard_output, text);
+  expect_own(file, text);
   replace(behind_links(file), file, text, exists ? there.st_mode & 07777 : 0);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stands where a file is written: links, devices, pipes and folders stay what they are.
 #include "fuzz/files.h"
+#include "core/error.h"
 #include "fuzz/own_files.h"
 
 #include <fcntl.h>
@@ -55,11 +56,11 @@ TEST_F(Files, AFileIsReplacedAndKeepsItsPermissions) {
 
 TEST_F(Files, LinksAreWrittenThrough) {
   fs::create_directories(folder_ / "far");
-  write_whole(folder_ / "far/target", "old");
+  write_whole(folder_ / "far/target", "text\nold");
   fs::create_symlink("far/target", folder_ / "link");
   fs::create_symlink("link", folder_ / "second");
-  write_whole(folder_ / "second", "new");
-  EXPECT_EQ(read_whole(folder_ / "far/target"), "new");
+  write_whole(folder_ / "second", "text\nnew");
+  EXPECT_EQ(read_whole(folder_ / "far/target"), "text\nnew");
   fs::create_symlink("far/none_yet", folder_ / "dangling");
   write_whole(folder_ / "dangling", "first");
   EXPECT_EQ(read_whole(folder_ / "far/none_yet"), "first");
@@ -173,6 +174,28 @@ TEST_F(Files, GrazeKnowsItsOwn) {
   EXPECT_FALSE(replaces(std::string("\x89PNG....") + "PLTE" + std::string(24, 'd'), picture));
   fs::create_symlink("file", folder_ / "link");
   EXPECT_FALSE(may_replace(folder_ / "link", "graze-pairs 1\n"));
+}
+
+// What has a campaign's file name, or lies behind a link, is replaced only where it begins as the new text does.
+TEST_F(Files, ACampaignsFilesDoNotReplaceThoseOfAnother) {
+  const std::string summary = "{\n \"spec\": {}\n}\n", status = "{\n \"state\": \"done\"\n}\n";
+  write_whole(folder_ / "victim", "precious");
+  fs::create_directories(folder_ / "linked");
+  fs::create_symlink("../victim", folder_ / "linked/status.json");
+  EXPECT_FALSE(may_hold_campaign(folder_ / "linked"));
+  EXPECT_THROW(write_whole(folder_ / "linked/status.json", status), UsageError);
+  fs::create_symlink("victim", folder_ / "link.csv");
+  EXPECT_THROW(write_whole(folder_ / "link.csv", "lane,group\n"), UsageError);
+  EXPECT_EQ(read_whole(folder_ / "victim"), "precious");
+  std::ofstream(folder_ / "kinds.json") << "[1, 2]";
+  EXPECT_THROW(write_whole(folder_ / "kinds.json", "{\n \"summary\": 1\n}\n"), UsageError);
+  std::ofstream(folder_ / "summary.json") << "{\n \"spec\": damaged";
+  write_whole(folder_ / "summary.json", summary);
+  EXPECT_EQ(read_whole(folder_ / "summary.json"), summary);
+  may_replace_foreign = true;
+  write_whole(folder_ / "linked/status.json", status);
+  may_replace_foreign = false;
+  EXPECT_EQ(read_whole(folder_ / "victim"), status);
 }
 
 TEST_F(Files, ResultsGoIntoFoldersThatAreTheirOwnOrEmpty) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/error.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/files.h"
 
@@ -53,6 +54,18 @@ bool may_replace(const fs::path& file, const std::string& text) {
   return !mark.empty() && (at_the_start ? there.starts_with(mark) : there.find(mark) != there.npos);
 }
 
+void expect_own(const fs::path& file, const std::string& text) {
+  constexpr std::string_view kResults[] = {"summary.json", "status.json", "timings.json", "kinds.json", "hunt.json", "margins.svg"};
+  std::error_code none;
+  const bool in_question = fs::is_symlink(fs::symlink_status(file, none)) ||
+                           std::find(std::begin(kResults), std::end(kResults), file.filename().string()) != std::end(kResults);
+  if (may_replace_foreign || !in_question || !fs::is_regular_file(file, none) || fs::file_size(file, none) == 0) return;
+  const std::size_t key = text.find('"');  // of a JSON object, up to its first key's end
+  const std::string mark = text.starts_with('{') && key != text.npos ? text.substr(0, text.find('"', key + 1) + 1) : mark_of(text);
+  if (read_whole(file).find(mark) != 0 && !may_replace(file, text))
+    throw UsageError(file.string() + ": expected no file, or one that graze wrote, found another; --force replaces it");
+}
+
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   std::error_code none;
   if (!fs::is_directory(folder, none)) return true;  // who makes it finds out what is wrong
@@ -61,7 +74,9 @@ bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
 }
 
 bool may_hold_campaign(const fs::path& folder) {
-  return may_fill(folder, {kDatabase, "summary.json", "status.json"}) || !rank_directories(folder).empty();
+  const auto begins = [&](const char* name, const char* with) { return read_whole(folder / name).starts_with(with); };
+  return may_fill(folder, {kDatabase}) || begins("summary.json", "{\n \"spec\"") || begins("status.json", "{\n \"state\"") ||
+         !rank_directories(folder).empty();
 }
 
 }  // namespace graze::fuzz

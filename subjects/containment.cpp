@@ -52,6 +52,13 @@ bool mount_proc() {
          fs::exists("/proc/thread-self/children");
 }
 
+// In the new namespace: memory that is shared by name, of System V and of POSIX, ends with it and has a limit.
+bool limit_shared_memory(std::uint64_t bytes) {
+  std::ofstream("/proc/sys/kernel/shmall") << bytes / static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  return mount("tmpfs", "/dev/shm", "tmpfs", MS_NOSUID | MS_NODEV, ("size=" + std::to_string(bytes)).c_str()) == 0 ||
+         errno == ENOENT;
+}
+
 // Tasks, threads among them: for what starts more of them between two looks than the machine has room for.
 constexpr int kMostTasks = 1024;
 
@@ -111,17 +118,17 @@ std::uint64_t bytes_of(pid_t process, std::uint64_t most) {
 
 }  // namespace
 
-void enter_containment(bool namespaces) {
+void enter_containment(bool namespaces, std::uint64_t shared_bytes) {
   const uid_t user = geteuid();
   const gid_t group = getegid();
   int answer[2];
   if (namespaces && pipe2(answer, O_CLOEXEC) == 0) {
-    const unsigned long flags = CLONE_NEWPID | CLONE_NEWNS | (user == 0 ? 0 : CLONE_NEWUSER) | SIGCHLD;
+    const unsigned long flags = CLONE_NEWPID | CLONE_NEWNS | CLONE_NEWIPC | (user == 0 ? 0 : CLONE_NEWUSER) | SIGCHLD;
     const auto supervisor = static_cast<pid_t>(syscall(SYS_clone, flags, nullptr, nullptr, nullptr, nullptr));
     if (supervisor == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       close(answer[0]);
-      const bool ready = (user == 0 || map_user(user, group)) && mount_proc();
+      const bool ready = (user == 0 || map_user(user, group)) && mount_proc() && limit_shared_memory(shared_bytes);
       if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
       limit_tasks();
       close(answer[1]);
@@ -186,19 +193,21 @@ bool end_children(pid_t except) {
   }
 }
 
-void forbid_limits_of_others() {
-  // prlimit64 with a process id, in each of the processor's tables of system calls: i386 has it under another number, and
-  // x32 with another bit.
-  constexpr std::uint32_t kI386Prlimit = 340, kX32 = 0x40000000;
+void forbid_calls() {
+  // prlimit64 with a process id, and memfd_create, in each of the processor's tables of system calls: i386 has them under
+  // other numbers, and x32 with another bit.
+  constexpr std::uint32_t kI386Prlimit = 340, kI386MemfdCreate = 356, kX32 = 0x40000000;
   constexpr std::uint32_t kArch = offsetof(seccomp_data, arch), kNumber = offsetof(seccomp_data, nr);
   constexpr std::uint32_t kProcess = offsetof(seccomp_data, args);
   sock_filter steps[] = {
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArch),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, 2),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, 3),
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kNumber),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kI386Prlimit, 3, 5),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kI386MemfdCreate, 8, 0),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kI386Prlimit, 4, 6),
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kNumber),
       BPF_STMT(BPF_ALU | BPF_AND | BPF_K, ~kX32),
+      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_memfd_create, 4, 0),
       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_prlimit64, 0, 2),
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kProcess),
       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 0, 1),

@@ -11,9 +11,10 @@ namespace graze::subjects {
 
 // The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Returns in
 // the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own processes,
-// and which the system ends with it. Where no namespace can be had, returns in the calling process, as a subreaper.
-// namespaces: whether to try.   Requires: one thread.
-void enter_containment(bool namespaces);
+// and has only shared memory of its own, and which the system ends with it. Where no namespace can be had, returns in the
+// calling process, as a subreaper.
+// namespaces: whether to try. shared_bytes: of memory that is shared by name.   Requires: one thread.
+void enter_containment(bool namespaces, std::uint64_t shared_bytes);
 
 // The descriptor that becomes readable when the process ends; -1 where there is no such process.
 int open_process(pid_t process);
@@ -30,9 +31,9 @@ Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processe
 // Kills all children but one, and what they leave behind.   Returns: whether none is left.
 bool end_children(pid_t except);
 
-// From here on neither this process nor what it starts can change the limits of other processes: those of its supervisor,
-// which has the same user, would be open to it.
-void forbid_limits_of_others();
+// From here on neither this process nor what it starts can change the limits of other processes, as those of its
+// supervisor, which has the same user, or take memory that no limit counts (memfd_create).
+void forbid_calls();
 
 // Gives up the rights of root that would reach beyond the limits: tracing, mounting, lifting limits, rebooting.
 void drop_rights();

@@ -359,10 +359,10 @@ int host(int argc, char** argv) {
   const bool on_device = std::strcmp(argv[1], "device") == 0;
   fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
   close_range(kSupervisorPairsFd + 1, ~0u, 0);
-  enter_containment(!on_device && *argv[8] == '1');
   Limits limits;
   limits.seconds = std::strtod(argv[6], nullptr);
   limits.bytes = on_device ? 0 : std::strtoull(argv[5], nullptr, 10) << 20;
+  enter_containment(!on_device && *argv[8] == '1', limits.bytes);
   char worker[] = "--worker";
   char* const arguments[] = {argv[0], worker, argv[1], argv[2], argv[3], argv[4], argv[5], argv[7], nullptr};
   return supervise(limits, arguments);

@@ -92,6 +92,7 @@ struct Hostile : testing::Test {
   static void expect_nothing_left() {
     for (int times = 0; times < 500 && !left_over().empty(); ++times) usleep(10'000);
     EXPECT_TRUE(left_over().empty()) << "of " << left_over().size() << " processes the first is " << *left_over().begin();
+    EXPECT_FALSE(fs::exists("/dev/shm/graze-hostile"));
     EXPECT_EQ(waitpid(bystander, nullptr, WNOHANG), 0) << "an unrelated process was ended";
   }
 };
@@ -140,7 +141,7 @@ constexpr Attack kAttacks[] = {
     {"says_it_is_ready"}, {"says_it_has_answered"}, {"kills_parent"}, {"stops_parent"},
     {"kills_grandparent", false}, {"kills_group"}, {"stops_itself"}, {"ends_itself_quietly"}, {"pretends_not_ready"},
     {"traces_parent"}, {"becomes_another_program"}, {"closes_everything"}, {"leaves_children"},
-    {"forks_without_end"}, {"children_eat"}, {"eats_shared"}, {"lifts_limits"}, {"writes_a_large_file"}, {"limits_others"},
+    {"forks_without_end"}, {"children_eat"}, {"eats_shared"}, {"eats_system_v", false}, {"eats_memfd"}, {"eats_dev_shm", false}, {"lifts_limits"}, {"writes_a_large_file"}, {"limits_others"},
     {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {

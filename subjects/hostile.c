@@ -112,6 +112,7 @@ static void child_eats(void) {
 }
 ATTACK(children_eat, for (int i = 0; i < 4; ++i) child_eats(); for (;;) pause())
 ATTACK(eats_shared, char* p = mmap(0, 300 << 20, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0); if (p != MAP_FAILED) memset(p, 1, 300 << 20); for (;;) pause())
+ATTACK(waits_uninterruptibly, if (vfork() == 0) for (;;) pause())
 ATTACK(eats_system_v, for (;;) { int id = shmget(IPC_PRIVATE, 100 << 20, 0600 | IPC_CREAT); if (id < 0) abort(); char* p = shmat(id, 0, 0); memset(p, 1, 100 << 20); shmdt(p); })
 ATTACK(eats_memfd, for (;;) { int fd = memfd_create("x", 0); if (fd < 0) abort(); static char page[1 << 20]; for (int i = 0; i < 100; ++i) write(fd, page, sizeof page); })
 ATTACK(eats_dev_shm, int fd = open("/dev/shm/graze-hostile", O_CREAT | O_RDWR, 0600); static char page[1 << 20]; for (int i = 0; i < 1000; ++i) if (write(fd, page, sizeof page) < 0) abort())

@@ -141,7 +141,7 @@ constexpr Attack kAttacks[] = {
     {"says_it_is_ready"}, {"says_it_has_answered"}, {"kills_parent"}, {"stops_parent"},
     {"kills_grandparent", false}, {"kills_group"}, {"stops_itself"}, {"ends_itself_quietly"}, {"pretends_not_ready"},
     {"traces_parent"}, {"becomes_another_program"}, {"closes_everything"}, {"leaves_children"},
-    {"forks_without_end"}, {"children_eat"}, {"eats_shared"}, {"eats_system_v", false}, {"eats_memfd"}, {"eats_dev_shm", false}, {"lifts_limits"}, {"writes_a_large_file"}, {"limits_others"},
+    {"forks_without_end"}, {"children_eat"}, {"waits_uninterruptibly"}, {"eats_shared"}, {"eats_system_v", false}, {"eats_memfd"}, {"eats_dev_shm", false}, {"lifts_limits"}, {"writes_a_large_file"}, {"limits_others"},
     {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {

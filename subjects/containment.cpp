@@ -220,7 +220,7 @@ void forbid_calls() {
 }
 
 void drop_rights() {
-  for (const int right : {CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_RESOURCE, CAP_SYS_BOOT, CAP_SYS_MODULE, CAP_SYS_RAWIO})
+  for (const int right : {CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_RESOURCE, CAP_SYS_BOOT, CAP_SYS_MODULE, CAP_SYS_RAWIO, CAP_NET_ADMIN})
     prctl(PR_CAPBSET_DROP, right, 0, 0, 0);
 }
 

@@ -263,6 +263,7 @@ void set_limits(const char* mib) {
   set_limit(RLIMIT_DATA, std::strtoull(mib, nullptr, 10) << 20);
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, rlim_t{1} << 30);
+  set_limit(RLIMIT_NOFILE, 1024);  // each of a socket holds memory of the system, which is not the process's
 }
 
 // Addresses are the same in every process, where that may be had: code whose answers depend on them says the same again.

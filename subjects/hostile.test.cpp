@@ -49,6 +49,7 @@ struct Hostile : testing::Test {
     if (bystander == 0) execlp("sleep", "sleep", "1000", nullptr);
   }
   static void TearDownTestSuite() {
+    unsetenv("GRAZE_HOSTILE_TEST");  // not of what other suites start
     kill(bystander, SIGKILL);
     waitpid(bystander, nullptr, 0);
     fs::remove_all(folder);

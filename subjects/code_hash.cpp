@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -89,8 +90,17 @@ CodeHash hash_of_command(const std::string& command) {
   if (program != words.end() && program->find('/') == program->npos) {
     if (const fs::path file = on_path(*program); !file.empty()) code.hash = add_number(hash_of_file(file), code.hash);
   }
-  for (const std::string& word : words) {
-    if (is_file(word)) code.hash = add_number(hash_of_file(word), code.hash);
+  // Also within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
+  std::set<std::string> files;
+  for (const std::string& word : words) files.insert(word);
+  constexpr std::string_view kEnds = " \t\n;|&<>()'\"`=:,{}[]$\\";
+  for (std::size_t begin = 0; begin < command.size();) {
+    const std::size_t end = std::min(command.find_first_of(kEnds, begin), command.size());
+    if (end > begin) files.insert(command.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  for (const std::string& file : files) {
+    if (is_file(file)) code.hash = add_number(hash_of_file(file), fnv1a(file, code.hash));
   }
   return code;
 }

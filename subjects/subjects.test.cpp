@@ -466,6 +466,14 @@ TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
   EXPECT_NE(hash(escaped), of_escaped);
   write("with space.txt", "one");
   EXPECT_EQ(hash(quoted), before);
+  const std::string script = write("s.py", "one").string();
+  for (const std::string& within : {"sh -c \"exec python3 " + script + "\"", "env SCRIPT=" + script + " sh -c x"}) {
+    const std::uint64_t of_one = hash(within);
+    write("s.py", "two");
+    EXPECT_NE(hash(within), of_one) << within;
+    write("s.py", "one");
+    EXPECT_EQ(hash(within), of_one) << within;
+  }
   write("program", "one");
   const std::string path = std::getenv("PATH");
   setenv("PATH", (folder.string() + ':' + path).c_str(), 1);

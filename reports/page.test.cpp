@@ -108,7 +108,7 @@ TEST(Page, OfManySignaturesIsUnderNineMebibytes) {
   summary["spec"]["lanes"] = Json::array();
   for (const Lane& lane : lanes()) summary["spec"]["lanes"].push_back(lane.id);
   Json stratum = summary["strata"]["uniform"];
-  constexpr std::uint64_t kPairs = 99'999'999'999, kWrong = 12'345'678'901;  // in a bucket
+  constexpr std::uint64_t kPairs = 19'999'999'999, kWrong = 2'345'678'901;  // in a bucket
   constexpr std::uint64_t kExponents = 70;
   stratum["pairs"] = kBucketCount * kPairs;
   stratum["intersects"] = kBucketCount * kPairs / 2;

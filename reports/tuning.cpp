@@ -53,7 +53,8 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
     case TuneResult::not_satisfiable:
       break;
   }
-  return fmt::format("No policy of {} keeps {} under {} here. The best is {}; the exact lane has none of either.",
+  return fmt::format("No policy of {} keeps {} under {} here. None had fewer on the pairs of the choice than {}; the exact "
+                     "lane has none of either.",
                      q.lane, words(q.forbid), q.max_rate, of);
 }
 

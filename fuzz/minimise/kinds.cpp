@@ -226,6 +226,9 @@ void expect_counts(const Json& kind, const Json& signatures) {
     pairs += signatures[place].at("count").get<std::uint64_t>();
   }
   for (const Json& margin : kind.at("margins")) by_margin += margin.get<std::uint64_t>();
+  for (const Json& kept : kind.at("strata")) {  // of its pairs, those that are stored
+    if (kept.get<std::uint64_t>() > pairs) throw std::runtime_error("");
+  }
   const std::array<std::uint64_t, 2> settled = kind.at("settled");
   if (kind.at("pairs") != pairs || by_margin != pairs || kind.at("signatures") != kind.at("places").size() || settled[0] > settled[1])
     throw std::runtime_error("");

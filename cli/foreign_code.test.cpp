@@ -15,7 +15,7 @@ class ForeignCode : public CommandTest {
   ForeignCode() { shell("echo '0 0 0 4 0 0 0 4 0  1 1 -1 1 1 1 3 3 1' > pair.txt"); }
 
   void expect_none_sleeps() const {
-    EXPECT_EQ(shell("for i in $(seq 100); do pgrep -f '^" + sleeps + "' > /dev/null || exit 0; sleep 0.1; done; exit 1").status, 0);
+    EXPECT_EQ(shell("command -v pgrep || exit 1; for i in $(seq 100); do pgrep -f '^" + sleeps + "' > /dev/null || exit 0; sleep 0.1; done; exit 1").status, 0);
   }
 };
 

@@ -71,6 +71,12 @@ inline std::uint64_t word_of(std::uint64_t nonce, bool second, std::size_t pair,
 static_assert(kMostAsked << 3 <= 1 << 16);
 
 inline constexpr std::size_t kWords = 2 * kMostAsked;  // of both passes
+
+// In the worker: writes an answer to the question where the supervisor looks for it.
+inline void put_answer(std::uint64_t* words, const Question& question, bool second, std::size_t pair, signed char answer) {
+  __atomic_store_n(&words[(second ? kMostAsked : 0) + pair], word_of(question.nonce, second, pair, answer), __ATOMIC_RELEASE);
+}
+
 inline constexpr std::size_t kPairsBytes = kMostAsked * 18 * sizeof(double);
 
 // Descriptors: of the supervisor, and of the worker.

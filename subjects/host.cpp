@@ -172,7 +172,7 @@ class Asking {
         ask_block(question, false, 0, question.count);
         break;
       }
-      answer(question, false, i, one(i));
+      put_answer(words, question, false, i, one(i));
     }
     const std::uint64_t taken = processor_nanoseconds() - start;
     if (block_ && !question.singly) {
@@ -180,7 +180,7 @@ class Asking {
       ask_block(question, true, 0, question.count / 2);
     } else {
       for (std::size_t i = question.count; i-- > 0;) {
-        if (is_chosen(question.second, i)) answer(question, true, i, one(i));
+        if (is_chosen(question.second, i)) put_answer(words, question, true, i, one(i));
       }
     }
     return taken;
@@ -188,10 +188,6 @@ class Asking {
 
  private:
   const Number* pair(std::size_t i) const { return static_cast<const Number*>(pairs) + 18 * i; }
-
-  static void answer(const Question& question, bool second, std::size_t i, signed char said) {
-    __atomic_store_n(&words[(second ? kMostAsked : 0) + i], word_of(question.nonce, second, i, said), __ATOMIC_RELEASE);
-  }
 
   signed char one(std::size_t i) const {
     if (!block_) return answer_of(single_(pair(i), pair(i) + 9));
@@ -205,7 +201,7 @@ class Asking {
     signed char said[kMostAsked];
     std::fill_n(said, kMostAsked, static_cast<signed char>(kDeclined));
     block_(pair(begin), end - begin, said);
-    for (std::size_t i = begin; i < end; ++i) answer(question, second, i, answer_of(said[i - begin]));
+    for (std::size_t i = begin; i < end; ++i) put_answer(words, question, second, i, answer_of(said[i - begin]));
   }
 
   Single single_;

@@ -31,10 +31,6 @@ std::string line_of(const float* pair) {
   return line;
 }
 
-void answer(const Question& question, bool second, std::size_t i, signed char said, std::uint64_t* words) {
-  __atomic_store_n(&words[(second ? kMostAsked : 0) + i], word_of(question.nonce, second, i, said), __ATOMIC_RELEASE);
-}
-
 }  // namespace
 
 void Lines::add(const char* bytes, std::size_t count) {
@@ -121,13 +117,13 @@ void LineProtocol::ask(const Question& question, const float* pairs, std::uint64
       if (!question.singly) continue;
       send(asked);
       asked.clear();
-      answer(question, second, i, answer_of_line(line()), words);
+      put_answer(words, question, second, i, answer_of_line(line()));
     }
     if (question.singly) continue;
     send(asked);
     for (std::size_t k = 0; k < question.count; ++k) {
       const std::size_t i = second ? question.count - 1 - k : k;
-      if (is_chosen(chosen, i)) answer(question, second, i, answer_of_line(line()), words);
+      if (is_chosen(chosen, i)) put_answer(words, question, second, i, answer_of_line(line()));
     }
   }
 }

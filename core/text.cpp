@@ -13,7 +13,7 @@
 namespace graze {
 namespace {
 
-constexpr std::size_t kLongestQuote = 40;  // of foreign text in a message
+constexpr std::size_t kLongestQuote = 40, kLongestPath = 400;  // in a message
 
 bool is_hex_digit(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
 
@@ -32,6 +32,10 @@ void append_printable(std::string& text, char c) {
   } else {
     text += {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
   }
+}
+
+std::string cut_in_quotes(std::string_view text, std::size_t longest) {
+  return text.size() <= longest ? in_quotes(text) : in_quotes(text.substr(0, longest)) + "...";
 }
 
 }  // namespace
@@ -98,9 +102,9 @@ std::string in_quotes(std::string_view text) {
   return result + '"';
 }
 
-std::string shown(std::string_view text) {
-  return text.size() <= kLongestQuote ? in_quotes(text) : in_quotes(text.substr(0, kLongestQuote)) + "...";
-}
+std::string shown(std::string_view text) { return cut_in_quotes(text, kLongestQuote); }
+
+std::string shown_path(std::string_view path) { return cut_in_quotes(path, kLongestPath); }
 
 std::string shell_word(std::string_view word) {
   const bool plain = !word.empty() && std::all_of(word.begin(), word.end(), [](char c) {

@@ -29,8 +29,9 @@ std::string printable(std::string_view text);
 // Returns: the text in quotes, quotes and backslashes behind a backslash, other bytes as printable() shows them.
 std::string in_quotes(std::string_view text);
 
-// in_quotes, cut short for a message.
+// in_quotes, cut short for a message. The file's path is cut only where no person would read on.
 std::string shown(std::string_view text);
+std::string shown_path(std::string_view path);
 
 // Returns: the word as a shell reads it back; quoted where it has to be.
 std::string shell_word(std::string_view word);

@@ -204,14 +204,14 @@ class Torture(unittest.TestCase):
                 self.assertTrue((kept / ".commands").read_text())
 
     def test_what_the_real_one_would_do_wrong_with_results(self):
-        """The real program, but what this makes of each of its runs."""
+        """The real program, but what this makes of each of its runs. It dies with its shell, and the next waits for that."""
         real = SCRIPT.parents[1] / "build/bin/graze"
         if not real.exists():
             self.skipTest("no build/bin/graze")
         for kind, wrong, what in (
                 ("foreign_places", f'exec {real} "$@" --force', "to refuse a file of another"),
                 ("forged_summaries", f'{real} "$@" || exit 0', "to be refused, found status 0"),
-                ("kill_results", f'{real} "$@" && find . -name "*.json" -newer "$0" -exec truncate -s 9 {{}} +', "expected whole JSON"),
+                ("kill_results", f'exec 9< "$0"; flock 9; setpriv --pdeathsig KILL {real} "$@" && find . -name "*.json" -newer "$0" -exec truncate -s 9 {{}} +', "expected whole JSON"),
                 ("two_results", f'{real} "$@" && {{ touch "${{@: -1}}/x.part" 2> /dev/null; true; }}', "expected nothing left behind")):
             with self.subTest(kind):
                 graze = self.folder / f"graze-{kind}"

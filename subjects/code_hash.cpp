@@ -74,7 +74,7 @@ std::uint64_t hash_of_file(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   if (!regular || !(text << in.rdbuf())) {
-    throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown(file.string()),
+    throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
                                          why ? why.message() : regular ? std::strerror(errno) : "not a file"));
   }
   return fnv1a(text.str());

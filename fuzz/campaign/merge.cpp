@@ -107,20 +107,22 @@ void expect_sealed(const StoreSpec& store) {
                                    (store.directory / kDatabase).string(), printable(status["hash"].get<std::string>()), found));
 }
 
-// The directory that becomes `out`: beside it, and empty.
-fs::path fresh_beside(const fs::path& out) {
-  std::error_code error;
+void expect_new(const fs::path& out) {
   if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
     throw UsageError(out.string() + ": expected a new or an empty directory, found other things; choose another --out");
+}
+
+// The folder beside `out` in which the campaign grows. A merge that was killed may have left it.
+fs::path folder_beside(const fs::path& out) {
+  std::error_code error;
+  expect_new(out);
   fs::path part = fs::absolute(out).lexically_normal();
   if (!part.has_filename()) part = part.parent_path();
   part += ".part";
   fs::create_directories(part, error);
   if (error) throw std::runtime_error(part.string() + ": expected a directory that can be written, found: " + error.message());
-  if (!may_hold_campaign(part) && !fs::exists(rounds_folder(part)))
+  if (!may_fill(part, {}))
     throw UsageError(part.string() + ": expected no folder, or what a merge that was killed left, found other things; remove it");
-  const FolderLock alone(part, FolderLock::WhenTaken::refuse);
-  for (const auto& left : fs::directory_iterator(part)) fs::remove_all(left);  // by one that was killed
   return part;
 }
 
@@ -229,12 +231,18 @@ Outcome merge(const MergeOptions& options) {
                                          printable(campaign.build["commit"].get<std::string>())));
   const LanesUnderTest under_test = recorded_lanes(campaign.spec);
   campaign.under_test = &under_test;
-  campaign.directory = fresh_beside(options.out);
+  const fs::path beside = folder_beside(options.out);
+  const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // up to the end, so that no other merge empties it
+  campaign.directory = beside / "campaign.part";
 
   Sums sums(campaign.sources, static_cast<int>(under_test.lanes.size()));
   std::vector<std::uint64_t> held(stores.size());
   std::optional<Store> partial;
+  std::error_code unimportant;
   try {
+    expect_new(options.out);  // as another merge may just have ended
+    fs::remove_all(campaign.directory);
+    fs::create_directory(campaign.directory);
     if (options.partial) partial.emplace(store_spec(campaign));
     for (std::size_t i = 0; i < stores.size(); ++i) {
       try {
@@ -260,12 +268,13 @@ Outcome merge(const MergeOptions& options) {
     Outcome outcome = partial ? write_results(campaign, *partial, sums.gaps().empty()) : write_merged(campaign, sums);
     partial.reset();
     for (const auto& [machine, run] : timings_of(stores)) append_timing(campaign.directory, run, outcome.oracle);
-    if (fs::exists(options.out)) fs::remove(options.out);
-    fs::rename(campaign.directory, options.out);
+    fs::rename(campaign.directory, options.out);  // over an empty folder too
+    fs::remove(beside, unimportant);
     return outcome;
   } catch (...) {
     partial.reset();
-    fs::remove_all(campaign.directory);
+    fs::remove_all(campaign.directory, unimportant);
+    fs::remove(beside, unimportant);
     throw;
   }
 }

@@ -54,7 +54,8 @@ TEST(Tally, SumsAreTheTallyOfTheUnion) {
 
 // Blocks of any length: words that are full, begun, or not there at all.
 TEST(Tally, CountsEveryPairOfABlockOfAnyLength) {
-  for (const std::size_t count : {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, std::size_t{128}, std::size_t{130}}) {
+  for (const std::size_t count :
+       {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, std::size_t{128}, std::size_t{130}}) {
     Bits truth((count + 63) / 64), wrong = truth;
     for (std::size_t i = 0; i < count; ++i) wrong[i / 64] |= std::uint64_t{1} << i % 64;
     const Bits none(truth.size());
@@ -93,12 +94,14 @@ TEST(Tally, AddsEveryLaneInEveryBucket) {
   for (int l = 0; l < 2; ++l) {
     for (int b = -kBucketMost; b <= kBucketMost; ++b) one.add(static_cast<Bucket>(b), l, LaneCounts{++n});
   }
-  for (int b = -kBucketMost; b <= kBucketMost; ++b) one.add(static_cast<Bucket>(b), static_cast<std::uint64_t>(b + kBucketMost + 1), 1);
+  for (int b = -kBucketMost; b <= kBucketMost; ++b)
+    one.add(static_cast<Bucket>(b), static_cast<std::uint64_t>(b + kBucketMost + 1), 1);
   sum.add(one);
   sum.add(one);
   n = 0;
   for (int l = 0; l < 2; ++l) {
-    for (int b = -kBucketMost; b <= kBucketMost; ++b) EXPECT_EQ(sum.lane(l, static_cast<Bucket>(b)).false_positive, 2 * ++n);
+    for (int b = -kBucketMost; b <= kBucketMost; ++b)
+      EXPECT_EQ(sum.lane(l, static_cast<Bucket>(b)).false_positive, 2 * ++n);
   }
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
     EXPECT_EQ(sum.pairs(static_cast<Bucket>(b)), 2 * static_cast<std::uint64_t>(b + kBucketMost + 1));
@@ -107,15 +110,17 @@ TEST(Tally, AddsEveryLaneInEveryBucket) {
 }
 
 TEST(Signature, EachVerdictHasItsMark) {
-  const std::pair<Verdict, char> wrong[] = {{Verdict::disjoint, '-'}, {Verdict::declined, '?'},  {Verdict::crashed, '!'},
-                                            {Verdict::timed_out, '@'}, {Verdict::unstable, '%'}, {Verdict::intersects, '.'}};
+  const std::pair<Verdict, char> wrong[] = {{Verdict::disjoint, '-'}, {Verdict::declined, '?'},
+                                            {Verdict::crashed, '!'},  {Verdict::timed_out, '@'},
+                                            {Verdict::unstable, '%'}, {Verdict::intersects, '.'}};
   for (const auto& [verdict, expected] : wrong) EXPECT_EQ(mark(verdict, Verdict::intersects), expected);
   EXPECT_EQ(mark(Verdict::intersects, Verdict::disjoint), '+');
   EXPECT_EQ(mark(Verdict::declined, Verdict::declined), '.');
 }
 
 std::vector<std::uint64_t> fields(const LaneCounts& c) {
-  return {c.false_positive, c.false_negative, c.declined, c.differs_from_cpu, c.crashed, c.timed_out, c.unstable, c.by_convention};
+  return {c.false_positive, c.false_negative, c.declined, c.differs_from_cpu,
+          c.crashed,        c.timed_out,      c.unstable, c.by_convention};
 }
 
 TEST(LaneCounts, EachAddsToItself) {
@@ -136,7 +141,8 @@ TEST(LaneCounts, EachAddsToItself) {
 }
 
 TEST(LaneCounts, AWrongVerdictCountsByWhatItIs) {
-  constexpr std::size_t kField[] = {1, 0, 2, 4, 5, 6};  // of disjoint, intersects, declined, crashed, timed out, unstable
+  constexpr std::size_t kField[] = {1, 0, 2,
+                                    4, 5, 6};  // of disjoint, intersects, declined, crashed, timed out, unstable
   for (int verdict = 0; verdict < 6; ++verdict) {
     LaneCounts counts;
     counts.count(static_cast<Verdict>(verdict), 3);
@@ -178,9 +184,12 @@ TEST(Convention, LeavesOpenWhatItNames) {
   Pair thin_b = thin_a;
   std::swap(thin_b.a, thin_b.b);
   const Pair plain{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, -1}, {1, 1, 1}, {3, 3, 1}}};
-  const std::pair<const Pair*, unsigned> open[] = {{&touching, kOutsideTouching}, {&coplanar, kOutsideCoplanar},
-                                                   {&overlapping, kOutsideCoplanar}, {&shared, kOutsideShared},
-                                                   {&thin_a, kOutsideDegenerate}, {&thin_b, kOutsideDegenerate},
+  const std::pair<const Pair*, unsigned> open[] = {{&touching, kOutsideTouching},
+                                                   {&coplanar, kOutsideCoplanar},
+                                                   {&overlapping, kOutsideCoplanar},
+                                                   {&shared, kOutsideShared},
+                                                   {&thin_a, kOutsideDegenerate},
+                                                   {&thin_b, kOutsideDegenerate},
                                                    {&plain, 0}};
   Lane lane = *find_lane("moller_1997/f32/cpu");
   for (const auto& [pair, bits] : open) {
@@ -198,8 +207,9 @@ TEST(Convention, LeavesOpenWhatItNames) {
   EXPECT_EQ(excused(two, {Verdict::disjoint, Verdict::disjoint}, touching, oracle::truth(touching)),
             (std::vector{Verdict::intersects, Verdict::disjoint}));
   const Lane* others[] = {two[1], two[0], two[0]};
-  EXPECT_EQ(excused(others, {Verdict::disjoint, Verdict::disjoint, Verdict::disjoint}, touching, oracle::truth(touching)),
-            (std::vector{Verdict::disjoint, Verdict::intersects, Verdict::intersects}));
+  EXPECT_EQ(
+      excused(others, {Verdict::disjoint, Verdict::disjoint, Verdict::disjoint}, touching, oracle::truth(touching)),
+      (std::vector{Verdict::disjoint, Verdict::intersects, Verdict::intersects}));
   EXPECT_EQ(outside_in_words(0), "");
   EXPECT_EQ(outside_in_words(kOutsideTouching | kOutsideShared), "touching pairs, pairs that share a vertex");
   EXPECT_EQ(outside_in_words(kOutsideCoplanar | kOutsideDegenerate), "coplanar pairs, degenerate triangles");
@@ -268,9 +278,10 @@ TEST(Signature, AKeyIsReadBack) {
   EXPECT_EQ(read->mark_of("f32/cpu/a=abs:1,b=rel:2"), '-');
   EXPECT_EQ(read->mark_of("f64/cpu"), '+');
   EXPECT_EQ(read->mark_of("f32/cpu"), '.');
-  for (const char* text : {"", "point", "point/22", "point/22/skew", "point/22/skew/mine:", "point/22/skew/0/mine", "dot/22/skew/0/mine:", "point/23/skew/0/mine:",
-                           "point/22/flat/0/mine:", "point/22/skew/2^3/mine:", "point/22/skew/0/mine:f32/cpu",
-                           "point/22/skew/+2^32/mine:", "point/22/skew/0/:+f32/cpu", "point/22/skew/0/mine:+", "executors/moller_1997/f32/cuda-fma"})
+  for (const char* text : {"", "point", "point/22", "point/22/skew", "point/22/skew/mine:", "point/22/skew/0/mine",
+                           "dot/22/skew/0/mine:", "point/23/skew/0/mine:", "point/22/flat/0/mine:",
+                           "point/22/skew/2^3/mine:", "point/22/skew/0/mine:f32/cpu", "point/22/skew/+2^32/mine:",
+                           "point/22/skew/0/:+f32/cpu", "point/22/skew/0/mine:+", "executors/moller_1997/f32/cuda-fma"})
     EXPECT_FALSE(parse_signature(text)) << text;
 }
 

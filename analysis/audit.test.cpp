@@ -148,8 +148,8 @@ TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
 TEST(Deciding, WhatIsToldOfARangeComesFromIt) {
   int told = 0;
   for (const Wrong& wrong : all_wrong()) {
-    if ((wrong.lane.cause != Cause::overflow && wrong.lane.cause != Cause::underflow) ||
-        wrong.lane.deciding.empty() || !wrong.lane.deciding.front().by_cause)
+    if ((wrong.lane.cause != Cause::overflow && wrong.lane.cause != Cause::underflow) || wrong.lane.deciding.empty() ||
+        !wrong.lane.deciding.front().by_cause)
       continue;
     const Decider& first = wrong.lane.deciding.front();
     const Lane& lane = *wrong.lane.lane;

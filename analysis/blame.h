@@ -24,8 +24,8 @@ struct Blame {
 // asked: called before each verdict.
 Blame blame(const Lane& lane, const Pair& pair, const std::function<void()>& asked = {});
 
-// The same of foreign code, which may crash or not come back with some of its operations fused: in a process of its own,
-// in which each verdict may take `seconds`.   Deterministic, of code that takes less.
+// The same of foreign code, which may crash or not come back with some of its operations fused: in a process of its
+// own, in which each verdict may take `seconds`.   Deterministic, of code that takes less.
 Blame blame_apart(const Lane& lane, const Pair& pair, double seconds);
 
 }  // namespace graze::analysis

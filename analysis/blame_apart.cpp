@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search for contractions in foreign code, in a child of this process, which is ended when a verdict takes too long.
+// The search for contractions in foreign code, in a child of this process, which is ended when a verdict takes too
+// long.
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>

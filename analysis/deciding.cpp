@@ -53,8 +53,8 @@ class Search {
         before += run.seen[place].compared;
       const Seen<double>& seen = run.seen[place];
       const oracle::ExactStep exact = oracle::exact_steps(lane_.algorithm, lane_.scalar, pair_, run)[place];
-      result.push_back({place, seen, exact, path,
-                        Path(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(comparison)), true});
+      result.push_back(
+          {place, seen, exact, path, Path(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(comparison)), true});
       result.back().by_cause = is_by_cause(result.back(), without_cause);
     }
     return result;

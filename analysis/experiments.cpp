@@ -90,7 +90,8 @@ class Trial {
            kMostFactors * (size_.largest_difference + 1) < limits().most;
   }
 
-  // Right as it may be by luck, code that is wrong here in exact arithmetic too: then float64 or another scale shows it.
+  // Right as it may be by luck, code that is wrong here in exact arithmetic too: then float64 or another scale shows
+  // it.
   Experiment by_build(const Lane& rounded, Cause cause, std::string evidence) const {
     const Lane* f64 = in_float64(rounded);
     if (f64 && !asked(*f64, {pair_})[0]) return {cause, false, evidence + ", but in float64 so built wrong"};
@@ -175,9 +176,10 @@ class Trial {
     strictly_ = scales_in_range(size_, lane_.scalar, kMostFactors);
     if (!strictly_.empty()) {
       if (const auto turn = turn_within(strictly_, 16, right)) {
-        std::string text = fmt::format("{}, and no product of up to {} coordinates leaves the exponents of {} at these "
-                                       "scales",
-                                       turn->text(), kMostFactors, limits().name);
+        std::string text = fmt::format(
+            "{}, and no product of up to {} coordinates leaves the exponents of {} at these "
+            "scales",
+            turn->text(), kMostFactors, limits().name);
         const bool once = turns_once(*turn);
         if (!once) text += "; but it turns at more than this scale";
         return Experiment{Cause::absolute_epsilon, once, std::move(text)};

@@ -12,8 +12,9 @@ namespace graze::analysis {
 //   contraction, fast math   the same code with every operation rounded as written is right, at all scales and in
 //                float64 too: no luck, of code that is wrong in exact arithmetic as well
 //   absolute epsilon   the verdict changes with the pair's scale, once and for the better upwards, though no product of
-//                up to kMostFactors coordinates leaves the scalar's exponents. Scaling by a power of two changes nothing
-//                else in an algorithm whose numbers keep their units; code that adds lengths and areas turns more often
+//                up to kMostFactors coordinates leaves the scalar's exponents. Scaling by a power of two changes
+//                nothing else in an algorithm whose numbers keep their units; code that adds lengths and areas turns
+//                more often
 //   underflow, overflow   right at all scales at which no product of kUsualFactors leaves the exponents, and the pair
 //                is below or above these
 //   rounding     right in float64 at every scale, and wrong in float32 at each that leaves no exponents

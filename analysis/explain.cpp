@@ -132,8 +132,7 @@ void add_steps(LaneExplanation& result, const Pair& pair, Verdict truth) {
   result.evidence = run.evidence;
   result.rule = run.rule;
   if (run.evidence == Evidence::none) return;
-  const std::vector<oracle::ExactStep> exact =
-      oracle::exact_steps(lane.algorithm, lane.scalar, pair, run.run);
+  const std::vector<oracle::ExactStep> exact = oracle::exact_steps(lane.algorithm, lane.scalar, pair, run.run);
   if (result.cause != Cause::logic)
     result.deciding = deciding_comparisons(lane, pair, truth, run, without(result.cause, lane, pair, run.rule));
   const std::vector<Decider>& deciding = result.deciding;

@@ -31,7 +31,8 @@ namespace graze::analysis {
 //   rounding     otherwise
 // Of foreign code by experiments, see experiments.h; the causes from absolute_epsilon on are of foreign code alone, but
 // for the last:
-//   policy       of a lane under a policy: the same lane under none is right, or the policy may decline. Where that lane
+//   policy       of a lane under a policy: the same lane under none is right, or the policy may decline. Where that
+//   lane
 //                is wrong too, its cause; not settled.
 enum class Cause {
   rounding,
@@ -85,9 +86,9 @@ struct LaneExplanation {
   std::vector<Step> steps;  // in order: values and comparisons of the policy's, and all comparisons that went wrong
   Contraction rule;         // by which the run was replayed
   std::vector<Decider> deciding;  // the comparisons that decide, see deciding.h; empty for logic
-  int decisive = -1;        // the first of them, a step; -1 where none is known
-  std::vector<Step> then;   // the others: each goes wrong once those before it are corrected
-  Blame contractions;       // of a cuda-fma lane whose verdict contraction changes
+  int decisive = -1;              // the first of them, a step; -1 where none is known
+  std::vector<Step> then;         // the others: each goes wrong once those before it are corrected
+  Blame contractions;             // of a cuda-fma lane whose verdict contraction changes
   Settled settled;
   int bits_needed;  // least mantissa, from the lane's own on, with which and with any longer one of up to
                     // kMostBits it is right; 0 without one, and where it would be luck (see explain.cpp)
@@ -120,8 +121,8 @@ std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span
 Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth);
 
 // Whether a result leaves the scalar's exponents when the lane's source runs without contraction; where none does, the
-// cause is neither overflow nor underflow. By the processor's flags, and so quick; may say yes where none does, and says
-// no of foreign code, of which it is not known.
+// cause is neither overflow nor underflow. By the processor's flags, and so quick; may say yes where none does, and
+// says no of foreign code, of which it is not known.
 bool leaves_exponents(const Lane& lane, const Pair& pair);
 
 // One English sentence on a wrong algorithm, for a bug report; empty when no lane of it is wrong. It names the lanes

@@ -173,13 +173,12 @@ struct Run {
         if (!breaks(group.law, said[group.pair], said[i])) continue;
         if (group.law == Law::part && is_outside(lane, asked.all[i])) continue;
         const LawCase found{place, asked.all[group.pair], asked.all[i], said[group.pair], said[i]};
-        const bool stays =
-            (scale || !in_range) && knows_range(lane) && !leaves(lane, found.pair, found.image);
+        const bool stays = (scale || !in_range) && knows_range(lane) && !leaves(lane, found.pair, found.image);
         in_range = in_range || stays;
         if (scale) result.by_scale[scales[i - group.first]] += {0, 1, stays};
         if (lane.exact || (claims(lane, group.law) && in_range))
-          throw broken(lane.id + (lane.exact ? "" : ", which claims it,"), group.law, source, place.index, found.of_pair,
-                       found.of_image);
+          throw broken(lane.id + (lane.exact ? "" : ", which claims it,"), group.law, source, place.index,
+                       found.of_pair, found.of_image);
         if (!changed) keep(result.simplest[law], found);
         changed = true;
       }
@@ -254,8 +253,7 @@ std::vector<Law> claimed_laws(std::string_view algorithm) {
 bool knows_range(const Lane& lane) { return lane.algorithm >= 0 && lane.policy.empty(); }
 
 bool claims(const Lane& lane, Law law) {
-  if (!knows_range(lane) || info_of(lane.variant).arithmetic != Arithmetic::rounded)
-    return false;
+  if (!knows_range(lane) || info_of(lane.variant).arithmetic != Arithmetic::rounded) return false;
   const std::vector<Law> claimed = claimed_laws(lane.info->id);
   return std::find(claimed.begin(), claimed.end(), law) != claimed.end();
 }

@@ -64,8 +64,8 @@ struct LawBroken : std::runtime_error {
 struct LawCount {
   std::uint64_t pairs = 0;    // that have an image, and that the lane's convention does not leave open
   std::uint64_t changed = 0;  // on which the verdict on some image breaks the law
-  // Of these, those on which one does although nothing over- or underflows, neither of the pair nor of that image, where
-  // the lane's source runs without contraction. Of published lanes without a policy; else 0, for it is not known.
+  // Of these, those on which one does although nothing over- or underflows, neither of the pair nor of that image,
+  // where the lane's source runs without contraction. Of published lanes without a policy; else 0, for it is not known.
   std::uint64_t in_range = 0;
   LawCount& operator+=(const LawCount& other);
 };
@@ -95,14 +95,14 @@ struct LawSpec {
   int threads = 0;  // 0: one on each core
   // Whether l is simpler than r, for the case that is kept; equal ones are kept by their place.
   std::function<bool(const Pair& l, const Pair& r)> simpler;
-  DecideBlock exact = find_lane("exact/f32/cpu")->decide;               // asked of every image
-  std::function<bool(const Pair&)> intersects = oracle_intersects;      // asked of every image of some pairs:
-  std::uint64_t oracle_every = 8;                                       // of the first of so many
+  DecideBlock exact = find_lane("exact/f32/cpu")->decide;           // asked of every image
+  std::function<bool(const Pair&)> intersects = oracle_intersects;  // asked of every image of some pairs:
+  std::uint64_t oracle_every = 8;                                   // of the first of so many
 };
 
 struct Laws {
   std::vector<LawsOfLane> lanes;
-  std::uint64_t pairs = 0, images = 0;         // all of them decided by the exact decision
+  std::uint64_t pairs = 0, images = 0;          // all of them decided by the exact decision
   std::uint64_t by_oracle = 0, its_images = 0;  // and these by CGAL and GMP
 };
 

@@ -109,8 +109,8 @@ Pair changed(const Pair& pair, float scale, float step) {
 // Each way once, the pair itself first.
 TEST(Laws, NoWayIsMissingAndNoneIsThereTwice) {
   const Pair pair{{{1, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
-  const std::vector<std::pair<std::vector<Pair>, std::size_t>> ways = {{orders(pair), 72},  {mirrored(pair), 8},
-                                                                       {axes(pair), 6},     {scalings(pair), 129},
+  const std::vector<std::pair<std::vector<Pair>, std::size_t>> ways = {{orders(pair), 72},    {mirrored(pair), 8},
+                                                                       {axes(pair), 6},       {scalings(pair), 129},
                                                                        {translated(pair), 9}, {parts(pair), 9}};
   for (const auto& [pairs, count] : ways) {
     const std::vector<std::string> all = texts(pairs);
@@ -123,7 +123,8 @@ TEST(Laws, NoWayIsMissingAndNoneIsThereTwice) {
 TEST(Laws, ScaleByThesePowersAndMoveByTheLargestCoordinates) {
   Pair pair{{{9, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
   std::vector<Pair> scaled;
-  for (const float k : {2.0f, 0.5f, 16.0f, 0x1p-4f, 0x1p16f, 0x1p-16f, 0x1p64f, 0x1p-64f}) scaled.push_back(changed(pair, k, 0));
+  for (const float k : {2.0f, 0.5f, 16.0f, 0x1p-4f, 0x1p16f, 0x1p-16f, 0x1p64f, 0x1p-64f})
+    scaled.push_back(changed(pair, k, 0));
   EXPECT_EQ(texts(images(Law::scale, pair)), texts(scaled));
   for (int largest = 0; largest < kCoordinates; ++largest) {
     std::swap(coordinates(pair)[0], coordinates(pair)[largest]);
@@ -140,7 +141,8 @@ TEST(Laws, NudgesAreAnUlpAndAThousandthOfTheCoordinateOrOfTheLargest) {
   coordinates(pair)[17] = -0x1p-10f;
   const auto steps = [&](int coordinate) {
     std::vector<float> all;
-    for (const Pair& moved : nudged(pair, coordinate)) all.push_back(coordinates(moved)[coordinate] - coordinates(pair)[coordinate]);
+    for (const Pair& moved : nudged(pair, coordinate))
+      all.push_back(coordinates(moved)[coordinate] - coordinates(pair)[coordinate]);
     return all;
   };
   EXPECT_EQ(steps(3), (std::vector<float>{0x1p-43f, -0x1p-43f, 0x1p-30f, -0x1p-30f}));
@@ -191,7 +193,8 @@ TEST(Laws, ClaimsHoldAndNothingElseDoes) {
 
 // Counted a second time, one pair and one image after the other.
 TEST(Laws, CountsAreThoseOfAPlainLoop) {
-  const LawSpec spec = spec_of({"moller_1997/f32/cpu", "guigue_devillers_2003/f32/cuda-fma"}, 300, {"near_edge_edge", "lattice"});
+  const LawSpec spec =
+      spec_of({"moller_1997/f32/cpu", "guigue_devillers_2003/f32/cuda-fma"}, 300, {"near_edge_edge", "lattice"});
   const Laws found = laws(spec);
   std::uint64_t changes = 0;
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
@@ -206,10 +209,11 @@ TEST(Laws, CountsAreThoseOfAPlainLoop) {
             return breaks(law.law, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image));
           });
           const Lane& host = *counterpart(*spec.lanes[l], Variant::cpu);
-          counted.in_range += !leaves_exponents(host, pair) && std::any_of(all.begin(), all.end(), [&](const Pair& image) {
-            return breaks(law.law, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image)) &&
-                   !leaves_exponents(host, image);
-          });
+          counted.in_range +=
+              !leaves_exponents(host, pair) && std::any_of(all.begin(), all.end(), [&](const Pair& image) {
+                return breaks(law.law, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image)) &&
+                       !leaves_exponents(host, image);
+              });
         }
         const LawCount& count = found.lanes[l].counts[static_cast<std::size_t>(law.law)][s];
         EXPECT_EQ(count.pairs, counted.pairs) << spec.lanes[l]->id << " " << law.id;
@@ -287,24 +291,27 @@ TEST(Laws, WhatAConventionLeavesOpenIsNotAsked) {
   spec.sources = {{"one", 1, [](std::uint64_t) {
                      return Pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, -1}, {2, 1, 1}, {6, 1, 0}}};
                    }}};
-  spec.on_host[0] = DecideBlock(+[](const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-    std::fill_n(intersects, (count + 63) / 64, 0);
-    std::fill_n(declined, (count + 63) / 64, 0);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec3<float>(&a)[3] = pairs[i].a;
-      if (a[0].x + a[1].x + a[2].x == 4 && a[0].y + a[1].y + a[2].y == 4 && a[0].x < 3 && a[1].x < 3 && a[2].x < 3)
-        intersects[i / 64] |= std::uint64_t{1} << i % 64;
-    }
-  });
+  spec.on_host[0] =
+      DecideBlock(+[](const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+        std::fill_n(intersects, (count + 63) / 64, 0);
+        std::fill_n(declined, (count + 63) / 64, 0);
+        for (std::size_t i = 0; i < count; ++i) {
+          const Vec3<float>(&a)[3] = pairs[i].a;
+          if (a[0].x + a[1].x + a[2].x == 4 && a[0].y + a[1].y + a[2].y == 4 && a[0].x < 3 && a[1].x < 3 && a[2].x < 3)
+            intersects[i / 64] |= std::uint64_t{1} << i % 64;
+        }
+      });
   EXPECT_EQ(laws(spec).lanes[0].total(Law::part).changed, 1u);
   lane.outside = kOutsideTouching;
   EXPECT_EQ(laws(spec).lanes[0].total(Law::part).changed, 0u);
-  // A common area is no touch, though an ulp can part the two: it is asked about, as such a touch is not; and so are those apart.
+  // A common area is no touch, though an ulp can part the two: it is asked about, as such a touch is not; and so are
+  // those apart.
   for (const auto& [x, asked_about] : {std::pair{1.0f, 1u}, {4.0f, 0u}, {9.0f, 1u}}) {
     spec.sources = {{"one", 1, [x](std::uint64_t) {
                        return Pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{x, 0, 0}, {x + 4, 0, 0}, {x, 4, 0}}};
                      }}};
-    for (const LawInfo& law : kLaws) EXPECT_EQ(laws(spec).lanes[0].total(law.law).pairs, asked_about) << law.id << ' ' << x;
+    for (const LawInfo& law : kLaws)
+      EXPECT_EQ(laws(spec).lanes[0].total(law.law).pairs, asked_about) << law.id << ' ' << x;
   }
 }
 
@@ -347,21 +354,26 @@ TEST(Laws, StopWhereTheTruthBreaksOne) {
   const Pair swapped = images(Law::swap, spec.sources[0].pair(3)).front();
   static Pair wrong_on;
   wrong_on = swapped;
-  spec.exact = DecideBlock(+[](const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
-    find_lane("exact/f32/cpu")->decide(pairs, count, intersects, declined);
-    for (std::size_t i = 0; i < count; ++i) {
-      if (std::equal(coordinates(pairs[i]), coordinates(pairs[i]) + kCoordinates, coordinates(wrong_on)))
-        intersects[i / 64] ^= std::uint64_t{1} << i % 64;
-    }
-  });
-  EXPECT_EQ(refusal(spec), "exact breaks the law \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
+  spec.exact =
+      DecideBlock(+[](const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
+        find_lane("exact/f32/cpu")->decide(pairs, count, intersects, declined);
+        for (std::size_t i = 0; i < count; ++i) {
+          if (std::equal(coordinates(pairs[i]), coordinates(pairs[i]) + kCoordinates, coordinates(wrong_on)))
+            intersects[i / 64] ^= std::uint64_t{1} << i % 64;
+        }
+      });
+  EXPECT_EQ(refusal(spec),
+            "exact breaks the law \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
   spec.exact = find_lane("exact/f32/cpu")->decide;
   EXPECT_EQ(refusal(spec), "nothing broken");
   spec.oracle_every = 1;
   spec.intersects = [&](const Pair& pair) {
-    return oracle_intersects(pair) != std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(swapped));
+    return oracle_intersects(pair) !=
+           std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(swapped));
   };
-  EXPECT_EQ(refusal(spec), "the oracle breaks the law \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
+  EXPECT_EQ(
+      refusal(spec),
+      "the oracle breaks the law \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
   // Wrong on the pair itself: seen before its images are.
   spec.intersects = [&](const Pair& pair) { return oracle_intersects(pair) && simpler(pair, pair); };
   EXPECT_EQ(refusal(spec), "exact and the oracle differ on pair 0 of shared_vertex: intersects and disjoint");

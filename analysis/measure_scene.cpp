@@ -54,14 +54,13 @@ void measure_sizes(const std::vector<Triangle>& triangles, const std::string& na
     edges.push_back(longest);
     aspect.push_back(std::clamp(longest * longest / area2, 1.1547005, 1e12));  // one that rounding leaves without area
   }
-  if (edges.empty())
-    throw std::runtime_error(name + ": expected a triangle that is not degenerate, found none");
+  if (edges.empty()) throw std::runtime_error(name + ": expected a triangle that is not degenerate, found none");
   scene.edges = quantiles_of(std::move(edges));
   scene.aspect = quantiles_of(std::move(aspect));
 }
 
-// A coordinate that has room for n more bits than the grid's agrees with it by chance once in 2^n times: so many must be
-// found in all.
+// A coordinate that has room for n more bits than the grid's agrees with it by chance once in 2^n times: so many must
+// be found in all.
 constexpr double kEvidence = 128;
 
 // Of all coordinates, signs left out, each value once.
@@ -110,7 +109,10 @@ Kind kind_of(const Pair& pair, const oracle::Shape& shape) {
   int shared = 0;
   for (const Vec3<float>& u : pair.a)
     shared += std::any_of(std::begin(pair.b), std::end(pair.b), [&](const Vec3<float>& v) { return u == v; });
-  return shared == 2 ? Kind::shared_edge : shared == 1 ? Kind::shared_vertex : shape.coplanar ? Kind::coplanar : Kind::general;
+  return shared == 2      ? Kind::shared_edge
+         : shared == 1    ? Kind::shared_vertex
+         : shape.coplanar ? Kind::coplanar
+                          : Kind::general;
 }
 
 void measure_pairs(const SceneSample& sample, strata::SceneFile& scene) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene of real triangles: what is drawn in it is like them, grids are found where they are and nowhere else, and near
-// contacts are near in the scene's own ulps.
+// A scene of real triangles: what is drawn in it is like them, grids are found where they are and nowhere else, and
+// near contacts are near in the scene's own ulps.
 #include "analysis/measure_scene.h"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,8 @@ SceneSample all_pairs_of(const std::vector<Triangle>& triangles) {
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
-      pairs.push_back({{triangles[j][0], triangles[j][1], triangles[j][2]}, {triangles[i][0], triangles[i][1], triangles[i][2]}});
+      pairs.push_back(
+          {{triangles[j][0], triangles[j][1], triangles[j][2]}, {triangles[i][0], triangles[i][1], triangles[i][2]}});
   }
   SceneSample sample = sample_of(pairs);
   sample.triangles = triangles;
@@ -103,13 +104,13 @@ TEST(MeasureScene, WhatIsDrawnIsLikeTheMesh) {
 TEST(MeasureScene, KindsAndMarginsAreThoseOfThePairs) {
   const Vec3<float> o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, xy{1, 1, 0}, z{0.3f, 0.3f, 1}, w{0.3f, 0.3f, 0.25f};
   const Vec3<float> far{9, 9, 9};
-  const std::vector<Pair> pairs = {{{o, x, y}, {o, x, y}},                                  // the same: coplanar
-                                   {{o, x, y}, {x, y, xy}},                                 // shared edge
-                                   {{o, x, y}, {o, z, {-1, 0.5f, 0.5f}}},                   // shared vertex
-                                   {{o, x, y}, {w, z, {0.3f, 0.4f, -1}}},                   // general
+  const std::vector<Pair> pairs = {{{o, x, y}, {o, x, y}},                 // the same: coplanar
+                                   {{o, x, y}, {x, y, xy}},                // shared edge
+                                   {{o, x, y}, {o, z, {-1, 0.5f, 0.5f}}},  // shared vertex
+                                   {{o, x, y}, {w, z, {0.3f, 0.4f, -1}}},  // general
                                    {{o, x, y}, {{0.1f, 0.1f, 0}, {0.2f, 0.1f, 0}, {0.1f, 0.3f, 0}}},  // coplanar
-                                   {{o, x, y}, {w, w, {0.3f, 0.3f, -1}}},                   // degenerate
-                                   {{o, x, y}, {far, far, far}}};                           // boxes apart
+                                   {{o, x, y}, {w, w, {0.3f, 0.3f, -1}}},                             // degenerate
+                                   {{o, x, y}, {far, far, far}}};                                     // boxes apart
   const SceneSample sample = sample_of(pairs);
   EXPECT_EQ(sample.pairs, 6u);
   const strata::SceneFile file = measure_scene(sample, "pairs");
@@ -142,7 +143,8 @@ TEST(MeasureScene, GridsAreFoundWhereTheyAre) {
   EXPECT_EQ(grid_found(37, true, 0), (GridSpec{false, 0}));  // whole numbers
   EXPECT_EQ(grid_found(3.7, true, 12), std::nullopt);        // finer than float32
   EXPECT_EQ(measure_scene(all_pairs_of(sheet(12, 3.7, {1e6, 2e6, 3e6})), "sheet").grid, std::nullopt);
-  EXPECT_EQ(measure_scene(all_pairs_of(sheet(1, 1.25, {0, 0, 0})), "two").grid, std::nullopt);  // few numbers tell nothing
+  EXPECT_EQ(measure_scene(all_pairs_of(sheet(1, 1.25, {0, 0, 0})), "two").grid,
+            std::nullopt);  // few numbers tell nothing
 }
 
 TEST(MeasureScene, WhatCannotBeMeasuredIsSaid) {
@@ -173,12 +175,13 @@ double near_share(const Draw& draw) {
 }
 
 TEST(SceneStrata, NearContactsAreNearInTheScenesUlps) {
-  for (const char* text : {"extent = [[120000, 120800], [-5400, -5000], [300, 900]]\nedges = [0.5, 40]",
-                           "extent = [[120000, 120800], [-5400, -5000], [300, 900]]\nedges = [0.5, 40]\ngrid = { decimals = 3 }",
-                           "extent = [-1, 1]\nedges = [0.01, 0.5]", "extent = [-1e30, 1e30]\nedges = [1e28, 3e29]"}) {
+  for (const char* text :
+       {"extent = [[120000, 120800], [-5400, -5000], [300, 900]]\nedges = [0.5, 40]",
+        "extent = [[120000, 120800], [-5400, -5000], [300, 900]]\nedges = [0.5, 40]\ngrid = { decimals = 3 }",
+        "extent = [-1, 1]\nedges = [0.01, 0.5]", "extent = [-1e30, 1e30]\nedges = [1e28, 3e29]"}) {
     const strata::Scene scene = strata::resolved(strata::parse_scene("s", text));
-    for (const Stratum stratum : {Stratum::near_vertex_face, Stratum::near_edge_edge, Stratum::near_vertex_edge,
-                                  Stratum::near_vertex_vertex}) {
+    for (const Stratum stratum :
+         {Stratum::near_vertex_face, Stratum::near_edge_edge, Stratum::near_vertex_edge, Stratum::near_vertex_vertex}) {
       const double without = near_share([&](std::uint64_t i) { return strata::generate(1, stratum, i); });
       const double within = near_share([&](std::uint64_t i) { return strata::generate(1, stratum, scene, i); });
       EXPECT_GT(without, 0.6);
@@ -190,8 +193,9 @@ TEST(SceneStrata, NearContactsAreNearInTheScenesUlps) {
 
 // Both decisions of the oracle, and both verdicts, in the strata of a scene as in those without.
 TEST(SceneStrata, BothVerdictsOccurAndTheOraclesDecisionsAgree) {
-  const strata::SceneFile file = strata::parse_scene(
-      "s", "extent = [[1000, 1800], [-540, -500], [3, 900]]\nedges = [0.5, 20]\naspect = [1.2, 3000]\ngrid = { power_of_two = -5 }");
+  const strata::SceneFile file = strata::parse_scene("s",
+                                                     "extent = [[1000, 1800], [-540, -500], [3, 900]]\nedges = [0.5, "
+                                                     "20]\naspect = [1.2, 3000]\ngrid = { power_of_two = -5 }");
   const strata::Scene scene = strata::resolved(file);
   for (const strata::StratumInfo& row : strata::kStrata) {
     if (strata::left_out(file, row.stratum)) continue;

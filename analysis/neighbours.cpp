@@ -21,7 +21,8 @@ std::optional<float> exact_sum(float x, float y) {
 std::optional<float> exact_middle(float x, float y) {
   const double middle = (double{x} + double{y}) / 2;  // of floats far apart the sum is rounded
   const auto result = static_cast<float>(middle);
-  const bool exact = double{result} == middle && middle * 2 - double{x} == double{y} && middle * 2 - double{y} == double{x};
+  const bool exact =
+      double{result} == middle && middle * 2 - double{x} == double{y} && middle * 2 - double{y} == double{x};
   return exact ? std::optional(result) : std::nullopt;
 }
 
@@ -118,7 +119,8 @@ std::vector<Pair> parts(const Pair& pair) {
     const auto& whole = first ? pair.a : pair.b;
     Vec3<float> m[3];
     if (!exact_middles(whole, m)) continue;
-    const Vec3<float> divided[4][3] = {{whole[0], m[0], m[2]}, {m[0], whole[1], m[1]}, {m[2], m[1], whole[2]}, {m[0], m[1], m[2]}};
+    const Vec3<float> divided[4][3] = {
+        {whole[0], m[0], m[2]}, {m[0], whole[1], m[1]}, {m[2], m[1], whole[2]}, {m[0], m[1], m[2]}};
     for (const auto& part : divided) {
       Pair with = pair;
       std::copy(part, part + 3, first ? with.a : with.b);

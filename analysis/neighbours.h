@@ -15,8 +15,8 @@ std::vector<Pair> mirrored(const Pair& pair);  // the 8: each axis turned round 
 inline constexpr int kMostScaling = 64;
 std::vector<Pair> scalings(const Pair& pair);
 std::vector<Pair> axes(const Pair& pair);  // the 6 orders of the axes
-// Moved so that a vertex lies in the origin, and by the power of two of the largest coordinate along (1, 1, 1) and back,
-// where no coordinate is rounded by it.
+// Moved so that a vertex lies in the origin, and by the power of two of the largest coordinate along (1, 1, 1) and
+// back, where no coordinate is rounded by it.
 std::vector<Pair> translated(const Pair& pair);
 
 // One triangle replaced by one of the four into which the middles of its edges divide it, where these are exact in

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Powers of two by which a pair can be scaled, and with which no product of its coordinates leaves a scalar's exponents.
+// Powers of two by which a pair can be scaled, and with which no product of its coordinates leaves a scalar's
+// exponents.
 #pragma once
 
 #include <algorithm>

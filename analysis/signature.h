@@ -16,8 +16,8 @@
 
 namespace graze::analysis {
 
-// How a lane's answer compares with the truth: '.' right, '+' false positive, '-' false negative, '?' declined; of foreign
-// code '!' crashed, '@' timed out, '%' unstable.
+// How a lane's answer compares with the truth: '.' right, '+' false positive, '-' false negative, '?' declined; of
+// foreign code '!' crashed, '@' timed out, '%' unstable.
 char mark(Verdict lane, Verdict truth);
 
 // A lane that is wrong: its mark, and its name within the subject, such as "f32/cpu-fma".

@@ -62,8 +62,8 @@ void add(const SourceBlock& block, const Verdicts& truth, const Verdicts& withou
 // Policies that are decided together, by their places.
 struct Together {
   std::vector<std::size_t> places;
-  DecideBlock one;               // of a single policy
-  DecideLadder ladder = nullptr; // of several
+  DecideBlock one;                // of a single policy
+  DecideLadder ladder = nullptr;  // of several
   std::vector<Epsilons> rungs;
 };
 
@@ -180,11 +180,16 @@ Sweep device_sweep(std::function<Lane(const std::string& policy)> lane_of) {
       const std::vector<cuda::ErrorCounts> found = cuda::count_errors(zero, lanes, sources[s]);
       for (std::size_t p = 0; p < found.size(); ++p) {
         const auto place = [s](std::uint64_t index) {
-          return index == ~std::uint64_t{0} ? std::nullopt
-                                            : std::optional<PairPlace>({static_cast<int>(s), index});
+          return index == ~std::uint64_t{0} ? std::nullopt : std::optional<PairPlace>({static_cast<int>(s), index});
         };
-        errors[p] += {policies[p],          sources[s].pairs,  found[p].misses, found[p].false_hits,
-                      found[p].declined,    found[p].mended,   found[p].broken, place(found[p].first_mended),
+        errors[p] += {policies[p],
+                      sources[s].pairs,
+                      found[p].misses,
+                      found[p].false_hits,
+                      found[p].declined,
+                      found[p].mended,
+                      found[p].broken,
+                      place(found[p].first_mended),
                       place(found[p].first_broken)};
       }
     }

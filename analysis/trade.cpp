@@ -88,8 +88,7 @@ std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::
 void mark_dominated(std::vector<Offer>& offers) {
   for (Offer& offer : offers) {
     offer.dominated = std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
-      const double less = share(other.errors) - share(offer.errors),
-                   faster = other.near.middle - offer.near.middle;
+      const double less = share(other.errors) - share(offer.errors), faster = other.near.middle - offer.near.middle;
       return less <= 0 && faster <= 0 && (less < 0 || faster < 0);
     });
   }

@@ -86,13 +86,13 @@ TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   }
 }
 
-// Of 20,000 pairs of each stratum, how many a shortcut in single and in double precision decides, and how many distances
-// are proven in integers.
+// Of 20,000 pairs of each stratum, how many a shortcut in single and in double precision decides, and how many
+// distances are proven in integers.
 constexpr std::array<int, 3> kDecided[strata::kStrataCount] = {
-    {20000, 20000, 0}, {19934, 19942, 9}, {19963, 19999, 0}, {19999, 19999, 0}, {11842, 19999, 0},
-    {6504, 16511, 775}, {5584, 5590, 855}, {0, 6310, 0}, {0, 9936, 0}, {6985, 16380, 1}, {7256, 15705, 2940},
-    {9837, 18445, 313}, {5654, 8250, 1574}, {348, 1912, 0}, {0, 0, 0}, {17476, 17519, 193}, {1214, 14371, 169},
-    {5956, 15003, 56}, {10801, 10842, 1539},
+    {20000, 20000, 0},   {19934, 19942, 9},  {19963, 19999, 0},  {19999, 19999, 0},    {11842, 19999, 0},
+    {6504, 16511, 775},  {5584, 5590, 855},  {0, 6310, 0},       {0, 9936, 0},         {6985, 16380, 1},
+    {7256, 15705, 2940}, {9837, 18445, 313}, {5654, 8250, 1574}, {348, 1912, 0},       {0, 0, 0},
+    {17476, 17519, 193}, {1214, 14371, 169}, {5956, 15003, 56},  {10801, 10842, 1539},
 };
 
 // The engine's shortcuts to a bucket: quick bounds in two precisions, and the proof of a distance in integers.

@@ -123,8 +123,7 @@ class Tuner {
       }
     }
     result_.chosen = best->policy;
-    const std::vector<PolicyErrors> found =
-        spec_.sweep(std::vector<std::string>{"", result_.chosen}, spec_.others);
+    const std::vector<PolicyErrors> found = spec_.sweep(std::vector<std::string>{"", result_.chosen}, spec_.others);
     result_.zero_confirmed = found[0];
     result_.confirmed = found[1];
     const std::uint64_t bad = forbidden(result_.confirmed, spec_.forbid), of = result_.confirmed.pairs;

@@ -59,7 +59,9 @@ class Panels {
   static constexpr int kMostFailures = 3000, kOfALate = 1000;  // three that took all of their time are enough
 
   static Cell cell_of(Verdict failure) {
-    return failure == Verdict::crashed ? Cell::crashed : failure == Verdict::timed_out ? Cell::timed_out : Cell::unstable;
+    return failure == Verdict::crashed     ? Cell::crashed
+           : failure == Verdict::timed_out ? Cell::timed_out
+                                           : Cell::unstable;
   }
 
   // Word by word; writes what failures are.   Returns: false where the panel is given up.

@@ -105,8 +105,8 @@ class Fails : public ForeignCode {
   Verdict failure(const Pair& pair) override {
     const auto at = [&](int column) { return pair.b[0].x == pair_at(kOnTheDiagonal, {9, 10}, column, 0).b[0].x; };
     const float highest = pair_at(kOnTheDiagonal, {9, 10}, 0, 0).b[0].y;
-    return at(10) ? Verdict::crashed
-           : at(12) ? Verdict::unstable
+    return at(10)                                         ? Verdict::crashed
+           : at(12)                                       ? Verdict::unstable
            : (at(14) || at(16)) && pair.b[0].y == highest ? Verdict::timed_out
                                                           : Verdict::disjoint;
   }

@@ -8,8 +8,8 @@
 
 #include "cli/bench_rows.h"
 #include "cli/commands.h"
-#include "cli/results.h"
 #include "cli/interrupt.h"
+#include "cli/results.h"
 #include "cli/screen.h"
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"

@@ -42,7 +42,9 @@ std::vector<corpus::Entry> read_cases(const std::string& name) {
                                 number(name.substr(middle + 1, last - middle - 1), name),
                                 number(name.substr(last + 1), name)};
     return {{fuzz::draw_again(named),
-             {{"stratum", named.id}, {"seed", std::to_string(named.seed)}, {"index", std::to_string(named.index)},
+             {{"stratum", named.id},
+              {"seed", std::to_string(named.seed)},
+              {"index", std::to_string(named.index)},
               {"scene", named.scene}},
              0}};
   }

@@ -245,7 +245,9 @@ TEST_F(Cli, AHuntIsACampaignForOtherVerbs) {
   const std::string hunt = "graze hunt --runs 600 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out h";
   const Ran first = shell(hunt);
   if (first.status != 0) {
-    EXPECT_EQ(first.out, "graze: hunt: expected a build with clang's libFuzzer, found none; install libclang-rt-14-dev and build again\n");
+    EXPECT_EQ(first.out,
+              "graze: hunt: expected a build with clang's libFuzzer, found none; install libclang-rt-14-dev and build "
+              "again\n");
     GTEST_SKIP() << "this build has no libFuzzer";
   }
   EXPECT_NE(first.out.find("600 pairs: some lane is wrong on"), std::string::npos) << first.out;
@@ -258,7 +260,9 @@ TEST_F(Cli, AHuntIsACampaignForOtherVerbs) {
   EXPECT_NE(shell("graze kinds h").out.find("moller_1997"), std::string::npos);
   EXPECT_EQ(shell("graze minimize h").status, 0);
   EXPECT_EQ(shell("graze report h").status, 0);
-  EXPECT_EQ(Json::parse(contents(shell.folder / "h/report.json"))["run"]["command"].dump().find("graze hunt --runs 600 --seed 1"), 1u);
+  EXPECT_EQ(Json::parse(contents(shell.folder / "h/report.json"))["run"]["command"].dump().find(
+                "graze hunt --runs 600 --seed 1"),
+            1u);
   EXPECT_EQ(shell("graze dump h").status, 1);
   EXPECT_EQ(shell("graze hunt --runs 601 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out h").status, 2);
 }
@@ -287,14 +291,22 @@ TEST_F(Cli, WhatACampaignsBuildLeavesOutSaysSo) {
   for (std::string verb; names >> verb;) {
     const Ran ran = shell("graze_campaign " + verb + " some thing --or other");
     EXPECT_EQ(ran.status, 1);
-    EXPECT_EQ(ran.err, "graze: graze " + verb + ": not in this build, which scripts/campaign made; scripts/setup builds everything\n");
+    EXPECT_EQ(ran.err, "graze: graze " + verb +
+                           ": not in this build, which scripts/campaign made; scripts/setup builds everything\n");
   }
   for (const std::string program : {"graze", "graze_campaign"}) {
     const std::string out = " by_" + program;
-    EXPECT_EQ(shell(program + " fuzz --pairs 300 --strata near_edge_edge --lanes 'moller_1997/f32/*' --executor twin --out" + out + " && " + program + " minimize" + out + " && " +
-                    program + " report" + out).status, 0);
+    EXPECT_EQ(
+        shell(program + " fuzz --pairs 300 --strata near_edge_edge --lanes 'moller_1997/f32/*' --executor twin --out" +
+              out + " && " + program + " minimize" + out + " && " + program + " report" + out)
+            .status,
+        0);
   }
-  EXPECT_EQ(shell("cmp by_graze/summary.json by_graze_campaign/summary.json && diff -r by_graze/cases by_graze_campaign/cases").out, "");
+  EXPECT_EQ(
+      shell(
+          "cmp by_graze/summary.json by_graze_campaign/summary.json && diff -r by_graze/cases by_graze_campaign/cases")
+          .out,
+      "");
 }
 
 TEST_F(Cli, TheLastOutAndFlagsInAnyOrderCount) {

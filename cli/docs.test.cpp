@@ -53,7 +53,8 @@ bool can_run(const Shell& shell, const std::string& command) {
   return command.find("node ") == std::string::npos || shell("command -v node").status == 0;
 }
 
-// Runs the document's commands in one folder; a block that begins with ```language NAME is the file of that name there. Where an output differs, DOCUMENT.new has all of them as they are now.
+// Runs the document's commands in one folder; a block that begins with ```language NAME is the file of that name there.
+// Where an output differs, DOCUMENT.new has all of them as they are now.
 void expect_true_commands(const std::string& document, std::size_t least_commands) {
   const fs::path file = kRoot / document, renewed = file.string() + ".new";
   const Lines lines = lines_of(contents(file));
@@ -152,11 +153,13 @@ TEST(Docs, WhatTheyNameExists) {
   EXPECT_GE(paths, 15);
 }
 
-// Commits, and builds by their commit, in prose and in published data. A build of sources that were changed since is none.
+// Commits, and builds by their commit, in prose and in published data. A build of sources that were changed since is
+// none.
 TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
   const Shell shell("history");
   const std::string git = "git -C '" + kRoot.string() + "' ";
-  if (shell(git + "rev-parse --is-shallow-repository").out != "false\n") GTEST_SKIP() << "no git, or not the whole history";
+  if (shell(git + "rev-parse --is-shallow-repository").out != "false\n")
+    GTEST_SKIP() << "no git, or not the whole history";
   const auto named_in = [](const fs::path& file, const std::regex& pattern) {
     const std::string text = contents(file);
     std::string ids;
@@ -165,7 +168,8 @@ TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
     return ids;
   };
   std::string ids;
-  for (const fs::path& file : documents()) ids += named_in(file, std::regex("`([0-9a-f]{7,12}(?:-dirty)?)`|[Cc]ommit ([0-9a-f]{7,12})\\b"));
+  for (const fs::path& file : documents())
+    ids += named_in(file, std::regex("`([0-9a-f]{7,12}(?:-dirty)?)`|[Cc]ommit ([0-9a-f]{7,12})\\b"));
   for (const auto& file : fs::directory_iterator(kRoot / "reports/published")) {
     if (file.path().extension() != ".json") continue;
     const std::string of_file = named_in(file, std::regex("\"commit\": ?\"([^\"]+)\""));
@@ -173,7 +177,8 @@ TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
     ids += of_file;
   }
   EXPECT_GE(std::count(ids.begin(), ids.end(), ' '), 30);
-  const Ran missing = shell("for id in" + ids + "; do " + git + "merge-base --is-ancestor \"$id\" HEAD 2> /dev/null || echo \"$id\"; done");
+  const Ran missing = shell("for id in" + ids + "; do " + git +
+                            "merge-base --is-ancestor \"$id\" HEAD 2> /dev/null || echo \"$id\"; done");
   EXPECT_EQ(missing.out, "") << "not in the history";
 }
 

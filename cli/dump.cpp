@@ -60,7 +60,8 @@ Dumped of_campaign(const DumpOptions& options) {
   try {
     const Json& spec = summary.at("spec");
     if (spec.contains("hunt"))
-      throw std::runtime_error(options.name + ": expected pairs that can be drawn again, found those of a hunt; it kept some in cases/");
+      throw std::runtime_error(
+          options.name + ": expected pairs that can be drawn again, found those of a hunt; it kept some in cases/");
     dumped.seed = spec.at("seed");
     if (spec.contains("scene")) dumped.scene = spec["scene"].at("name");
     dumped.sources = fuzz::recorded_sources(spec);

@@ -36,8 +36,10 @@ const std::vector<Verb>& verbs() {
       {"lanes", "", ""},
       {"strata", "", ""},
       {"laws", "--pairs 40 --strata uniform --lanes moller_1997/f32/cpu --out laws", "--scene none.toml --out x"},
-      {"trade", "--pairs 1000 --strata uniform --lanes moller_1997/f32/cpu,exact/f32/cpu --out trade", "--scene none.toml --out x"},
-      {"tune", "moller_1997/f32/cpu --pairs 100 --strata uniform --out tuned", "moller_1997/f32/cpu --scene none.toml --out x"},
+      {"trade", "--pairs 1000 --strata uniform --lanes moller_1997/f32/cpu,exact/f32/cpu --out trade",
+       "--scene none.toml --out x"},
+      {"tune", "moller_1997/f32/cpu --pairs 100 --strata uniform --out tuned",
+       "moller_1997/f32/cpu --scene none.toml --out x"},
       {"prove-twin", "", ""},
       {"query", "'mesh.off#0' mesh.off", "none.txt mesh.off"},
       {"bench", "", "--mesh none.off"},
@@ -49,18 +51,22 @@ class ExitStatus : public CommandTest {
  protected:
   void SetUp() override {
     std::ofstream(shell.folder / "p") << "0.1 0.2 0.3 0.4 0.9 0.2 0.7 0.1 0.6 0.1 0.2 0.3 0.5 0.5 0.9 -0.3 0.8 0.4\n";
-    std::ofstream(shell.folder / "mesh.off") << "OFF\n6 2 0\n0 0 0\n4 0 0\n0 4 0\n1 1 -1\n1 1 1\n3 3 1\n3 0 1 2\n3 3 4 5\n";
-    std::ofstream(shell.folder / "mine.c") << "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n";
+    std::ofstream(shell.folder / "mesh.off")
+        << "OFF\n6 2 0\n0 0 0\n4 0 0\n0 4 0\n1 1 -1\n1 1 1\n3 3 1\n3 0 1 2\n3 3 4 5\n";
+    std::ofstream(shell.folder / "mine.c")
+        << "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n";
     std::ofstream(shell.folder / "subjects.txt") << "mine=" << (shell.folder / "mine.c").string() << '\n';
     std::filesystem::create_directories(shell.folder / "broken");
     std::ofstream(shell.folder / "broken/status.json") << "{}";
     for (const char* k : {"1", "2"})
-      expect_done("graze fuzz --pairs 60 --strata uniform --lanes moller_1997/f32/cpu --shard " + std::string(k) + "/2 --out s" + k);
+      expect_done("graze fuzz --pairs 60 --strata uniform --lanes moller_1997/f32/cpu --shard " + std::string(k) +
+                  "/2 --out s" + k);
   }
 
   // Of the command when it is asked to stop, once it catches the signal: before, SIGTERM ends it with 143.
   int interrupted(const std::string& command) const {
-    const Ran ran = shell("graze " + command + " & p=$!; until [ $((0x$(awk '/SigCgt/ {print $2}' /proc/$p/status) >> 14 & 1)) = 1 ]; "
+    const Ran ran = shell("graze " + command +
+                          " & p=$!; until [ $((0x$(awk '/SigCgt/ {print $2}' /proc/$p/status) >> 14 & 1)) = 1 ]; "
                           "do sleep 0.02; kill -0 $p || exit 99; done; kill -TERM $p; wait $p");
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     return ran.status;
@@ -103,19 +109,23 @@ TEST_F(ExitStatus, PlacesWithOtherThingsAreWrongUse) {
       const std::string done = verb.done, name = verb.name;
       const std::size_t at = done.find("--out ");
       if (at == done.npos || name == "map") continue;
-      expect_error("graze " + name + ' ' + done.substr(0, at) + "--out " + out, 2, out + ": expected a new or an empty ");
+      expect_error("graze " + name + ' ' + done.substr(0, at) + "--out " + out, 2,
+                   out + ": expected a new or an empty ");
     }
   }
   for (const std::string file : {"p", "link"}) {
     expect_done("ln -sf p link");
-    expect_error("graze minimize p --lanes 'guigue*/f32/cpu' --out " + file, 2, file + ": expected no file, or one that graze wrote");
+    expect_error("graze minimize p --lanes 'guigue*/f32/cpu' --out " + file, 2,
+                 file + ": expected no file, or one that graze wrote");
     expect_error("graze scene mesh.off --out " + file, 2, "--force replaces it");
     expect_error("graze query 'mesh.off#0' mesh.off --obj " + file, 2, "--force replaces it");
     expect_error("graze status s1 --prometheus " + file, 2, "--force replaces it");
   }
   EXPECT_EQ(contents(shell.folder / "p").substr(0, 4), "0.1 ");
   EXPECT_EQ(contents(shell.folder / "mine/notes.txt"), "kept");
-  expect_done("graze minimize p --lanes 'guigue*/f32/cpu' --out link --force && test -L link && head -n 1 p | grep -q graze-pairs");
+  expect_done(
+      "graze minimize p --lanes 'guigue*/f32/cpu' --out link --force && test -L link && head -n 1 p | grep -q "
+      "graze-pairs");
   expect_done("graze minimize p --lanes 'guigue*/f32/cpu' --out link");  // graze's own by now
 }
 

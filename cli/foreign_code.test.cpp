@@ -15,16 +15,25 @@ class ForeignCode : public CommandTest {
   ForeignCode() { shell("echo '0 0 0 4 0 0 0 4 0  1 1 -1 1 1 1 3 3 1' > pair.txt"); }
 
   void expect_none_sleeps() const {
-    EXPECT_EQ(shell("command -v pgrep || exit 1; for i in $(seq 100); do pgrep -f '^" + sleeps + "' > /dev/null || exit 0; sleep 0.1; done; exit 1").status, 0);
+    EXPECT_EQ(shell("command -v pgrep || exit 1; for i in $(seq 100); do pgrep -f '^" + sleeps +
+                    "' > /dev/null || exit 0; sleep 0.1; done; exit 1")
+                  .status,
+              0);
   }
 };
 
 // Killed after half a minute, it would exit with 137.
 TEST_F(ForeignCode, SigtermEndsACampaignInOrderWhileASubjectHangs) {
-  ASSERT_EQ(shell("echo 'int intersects(const float a[9], const float b[9]) { for (;;) ; }' > h.c && cc -shared -fPIC h.c -o h.so").status, 0);
-  for (const std::string& subject : {std::string("h=./h.so"), "h=cmd:read l; [ \"$l\" = describe ] || exec " + sleeps}) {
-    const Ran ran = shell("timeout -k 30 --preserve-status 1 graze fuzz --subject '" + subject + "' --subject-timeout 3600 "
-                          "--lanes 'h/*' --strata uniform --pairs 100 --out out-" + std::to_string(subject.size()));
+  ASSERT_EQ(shell("echo 'int intersects(const float a[9], const float b[9]) { for (;;) ; }' > h.c && cc -shared -fPIC "
+                  "h.c -o h.so")
+                .status,
+            0);
+  for (const std::string& subject :
+       {std::string("h=./h.so"), "h=cmd:read l; [ \"$l\" = describe ] || exec " + sleeps}) {
+    const Ran ran = shell("timeout -k 30 --preserve-status 1 graze fuzz --subject '" + subject +
+                          "' --subject-timeout 3600 "
+                          "--lanes 'h/*' --strata uniform --pairs 100 --out out-" +
+                          std::to_string(subject.size()));
     EXPECT_EQ(ran.status, 130) << ran.err;
     EXPECT_NE(ran.err.find("interrupted; what was done is kept"), std::string::npos) << ran.err;
   }
@@ -32,25 +41,33 @@ TEST_F(ForeignCode, SigtermEndsACampaignInOrderWhileASubjectHangs) {
 }
 
 TEST_F(ForeignCode, NothingOutlivesACampaignOrItsKill) {
-  const std::string leaves = "--subject 'l=cmd:setsid " + sleeps + " & while read l; do echo 1; done' --lanes 'l/*' --strata uniform";
+  const std::string leaves =
+      "--subject 'l=cmd:setsid " + sleeps + " & while read l; do echo 1; done' --lanes 'l/*' --strata uniform";
   EXPECT_EQ(shell("graze fuzz " + leaves + " --pairs 10 --out done").status, 0);
   expect_none_sleeps();
   EXPECT_EQ(shell("timeout -s KILL 1 graze fuzz --subject 'l=cmd:setsid " + sleeps + " & exec " + sleeps +
-                  "' --subject-timeout 3600 --lanes 'l/*' --pairs 10 --out killed").status, 137);
+                  "' --subject-timeout 3600 --lanes 'l/*' --pairs 10 --out killed")
+                .status,
+            137);
   expect_none_sleeps();
 }
 
 TEST_F(ForeignCode, OptionsOfSubjectsAreWithinBounds) {
   for (const std::string seconds : {"nan", "inf", "-1", "0", "1e9", "1s"})
-    expect_error("graze check pair.txt --subject s=cmd:true --subject-timeout=" + seconds, 2, "expected a number from 0.001 to 86400");
+    expect_error("graze check pair.txt --subject s=cmd:true --subject-timeout=" + seconds, 2,
+                 "expected a number from 0.001 to 86400");
   expect_error("graze check pair.txt --subject s=$(printf 'x%.0s' $(seq 100000)).so", 1, "File name too long");
 }
 
 // Whether a constructor says that it has no function, or nonsense: one line says whose code it is.
 TEST_F(ForeignCode, ASubjectWithoutAFunctionIsNamed) {
-  ASSERT_EQ(shell("printf '#include <string.h>\\n#include <sys/socket.h>\\n#include <unistd.h>\\n__attribute__((constructor)) "
-                  "static void f(void) { char b[10008] = {0}; send(5, b, sizeof b, 0); pause(); }' > c.c && cc -shared -fPIC c.c -o c.so")
-                .status, 0);
+  ASSERT_EQ(
+      shell(
+          "printf '#include <string.h>\\n#include <sys/socket.h>\\n#include <unistd.h>\\n__attribute__((constructor)) "
+          "static void f(void) { char b[10008] = {0}; send(5, b, sizeof b, 0); pause(); }' > c.c && cc -shared -fPIC "
+          "c.c -o c.so")
+          .status,
+      0);
   expect_error("graze check pair.txt --subject s=./c.so --lanes 's/*'", 1, "--subject s: ");
 }
 

@@ -26,8 +26,8 @@
 #include "core/lanes.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
-#include "fuzz/campaign/scratch.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/campaign/scratch.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/ranks/rank_campaign.h"
@@ -70,9 +70,9 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
           reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
 }
 
-// The subject's smallest case: of its signatures the kMostShrunk whose first kept pair is the simplest are minimised, as
-// `graze minimize` would; the simplest result counts, and of equal ones that of the simpler kept pair.
-// Returns: it, and its file.
+// The subject's smallest case: of its signatures the kMostShrunk whose first kept pair is the simplest are minimised,
+// as `graze minimize` would; the simplest result counts, and of equal ones that of the simpler kept pair. Returns: it,
+// and its file.
 std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                      const fuzz::LanesUnderTest& under_test, const Json& summary,
                                                      const std::string& subject) {
@@ -104,8 +104,8 @@ std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path
   return smallest;
 }
 
-// The first subject of these, or of any where there are none, that is wrong on more pairs than it may be: says so in one
-// line, with its simplest case, minimised.   Returns: the exit status.
+// The first subject of these, or of any where there are none, that is wrong on more pairs than it may be: says so in
+// one line, with its simplest case, minimised.   Returns: the exit status.
 int fail_above(const FuzzOptions& options, const fuzz::LanesUnderTest& under_test, const Json& summary) {
   std::map<std::string, std::uint64_t> wrong;
   for (const Json& row : summary["signatures"]) {
@@ -115,9 +115,11 @@ int fail_above(const FuzzOptions& options, const fuzz::LanesUnderTest& under_tes
   for (const auto& [subject, count] : wrong) {
     const auto names_it = [&, &id = subject](const std::string& text) { return text.starts_with(id + '='); };
     const auto& given = options.lanes.subjects;
-    if (count <= *options.fail_above || (!given.empty() && std::none_of(given.begin(), given.end(), names_it))) continue;
+    if (count <= *options.fail_above || (!given.empty() && std::none_of(given.begin(), given.end(), names_it)))
+      continue;
     const auto [pair, file] = smallest_case(options.out, under_test, summary, subject);
-    fmt::print(stderr, "graze: {}: expected at most {} wrong pairs, found {}; the smallest is {}; again: graze repro {}\n",
+    fmt::print(stderr,
+               "graze: {}: expected at most {} wrong pairs, found {}; the smallest is {}; again: graze repro {}\n",
                subject, reports::grouped(*options.fail_above), reports::grouped(count), fuzz::pair_text(pair),
                shell_word(file.string()));
     return 1;
@@ -140,8 +142,7 @@ int on_ranks(const FuzzOptions& options, fuzz::Campaign& campaign, const std::ve
 }
 
 int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
-  const fuzz::LanesUnderTest under_test =
-      lanes_under_test(options.lanes, {}, options.require_device);
+  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, {}, options.require_device);
   fuzz::Campaign campaign;
   campaign.seed = options.seed;
   campaign.under_test = &under_test;
@@ -156,7 +157,8 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
         drawn_from_scene(options.scene, options.seed, options.pairs, options.strata, scene_spec);
     campaign.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
-  } else if (options.mesh.empty() || !options.strata.empty()) {  // a mesh stands alone unless strata are asked for as well
+  } else if (options.mesh.empty() ||
+             !options.strata.empty()) {  // a mesh stands alone unless strata are asked for as well
     campaign.sources = strata::stratum_sources(options.seed, options.pairs, options.strata);
   }
   Json mesh_spec;
@@ -172,7 +174,8 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   campaign.spec = fuzz::campaign_spec(campaign);
   if (!scene_spec.is_null()) campaign.spec["scene"] = scene_spec;
   if (!mesh_spec.is_null()) campaign.spec["mesh"] = mesh_spec;
-  if (const Json subjects = subjects::record(campaign.spec["lanes"].get<std::vector<std::string>>()); !subjects.is_null())
+  if (const Json subjects = subjects::record(campaign.spec["lanes"].get<std::vector<std::string>>());
+      !subjects.is_null())
     campaign.spec["subjects"] = subjects;
   campaign.build = fuzz::build_info(under_test);
   expect_campaign_folder(options.out);
@@ -215,7 +218,8 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
 
 // Alone, or as one of those that mpirun started: of these one that fails ends all.
 int start(const FuzzOptions& options) {
-  if (!options.scratch.empty() && options.shard.whole()) throw UsageError("--scratch: expected --shard with it, found none");
+  if (!options.scratch.empty() && options.shard.whole())
+    throw UsageError("--scratch: expected --shard with it, found none");
   if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);
   if (!options.shard.whole() || options.fail_above || options.discard_damaged)
     throw UsageError("expected no --shard, --fail-above or --discard-damaged under mpirun, found one");
@@ -239,10 +243,11 @@ void print_shard(const std::string& out, const Json& summary, bool json) {
     std::cout << summary.dump(1) << '\n';
     return;
   }
-  std::cout << fmt::format("Shard {}: {} pairs, {} disagreements, {} signatures\nWrote {}/campaign.sqlite\n"
-                           "Next, when all shards are done: graze merge DIR… --out campaign\n",
-                           summary["shard"].get<std::string>(), reports::grouped(summary["pairs"]),
-                           reports::grouped(summary["disagreements"]), reports::grouped(summary["signatures"]), out);
+  std::cout << fmt::format(
+      "Shard {}: {} pairs, {} disagreements, {} signatures\nWrote {}/campaign.sqlite\n"
+      "Next, when all shards are done: graze merge DIR… --out campaign\n",
+      summary["shard"].get<std::string>(), reports::grouped(summary["pairs"]),
+      reports::grouped(summary["disagreements"]), reports::grouped(summary["signatures"]), out);
 }
 
 void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,
@@ -287,9 +292,10 @@ void add_fuzz(CLI::App& app, int& status) {
       ->take_last()
       ->check(not_empty())
       ->capture_default_str();
-  add_shard_option(*command, options->shard,
-                   "Only the K-th of N parts of the campaign, into a directory of its own; graze merge makes all of them "
-                   "one campaign, the same as without shards");
+  add_shard_option(
+      *command, options->shard,
+      "Only the K-th of N parts of the campaign, into a directory of its own; graze merge makes all of them "
+      "one campaign, the same as without shards");
   command
       ->add_option("--scratch", options->scratch,
                    "Folder on a local disk for a shard's database while it runs; --out gets it as one file")
@@ -307,26 +313,27 @@ void add_fuzz(CLI::App& app, int& status) {
   static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
                 static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   command
-      ->add_option(
-          "--engine", options->engine,
-          "What judges the pairs: cpu (see --judge), gpu (all on the device, where all lanes are CUDA lanes), "
-          "or auto; results do not depend on it")
+      ->add_option("--engine", options->engine,
+                   "What judges the pairs: cpu (see --judge), gpu (all on the device, where all lanes are CUDA lanes), "
+                   "or auto; results do not depend on it")
       ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
       ->option_text("auto|cpu|gpu");
   command
-      ->add_option("--judge", options->by_exact_lane,
-                   "What the cpu engine holds for true: oracle (CGAL for every pair, GMP for every disagreement) or exact "
-                   "(the exact lane; CGAL and GMP for one pair in 1,000 and every case that is kept); results do not "
-                   "depend on it")
+      ->add_option(
+          "--judge", options->by_exact_lane,
+          "What the cpu engine holds for true: oracle (CGAL for every pair, GMP for every disagreement) or exact "
+          "(the exact lane; CGAL and GMP for one pair in 1,000 and every case that is kept); results do not "
+          "depend on it")
       ->transform(one_of({"oracle", "exact"}, Chosen::place))
       ->option_text("oracle|exact");
   command->add_flag("--discard-damaged", options->discard_damaged,
                     "Go on with a damaged campaign from the batches that check");
   command
-      ->add_option("--fail-above", options->fail_above,
-                   "Exit with 1 where a subject given by --subject, or any lanes where none is, is wrong on more pairs; "
-                   "with its smallest case on standard error: the simplest that minimising the eight signatures with the "
-                   "simplest kept pairs gives")
+      ->add_option(
+          "--fail-above", options->fail_above,
+          "Exit with 1 where a subject given by --subject, or any lanes where none is, is wrong on more pairs; "
+          "with its smallest case on standard error: the simplest that minimising the eight signatures with the "
+          "simplest kept pairs gives")
       ->transform(whole_number(0, kMostWhole))
       ->excludes("--shard");
   command->add_flag("--json", options->json, "Print the summary as JSON");

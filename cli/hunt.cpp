@@ -44,18 +44,22 @@ std::vector<std::string> details(const fuzz::HuntProgress& progress) {
   return {reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s",
           fmt::format("{} kinds, {} of them new, the last {} ago", reports::grouped(progress.kinds),
                       reports::grouped(progress.new_kinds), duration(progress.seconds_since_kind)),
-          reports::grouped(progress.signatures) + " signatures", reports::grouped(progress.units) + " pairs in the corpus"};
+          reports::grouped(progress.signatures) + " signatures",
+          reports::grouped(progress.units) + " pairs in the corpus"};
 }
 
 void print_mutations(const std::filesystem::path& directory) {
   const Json told = Json::parse(fuzz::read_whole(directory / "hunt.json"));
-  reports::TextTable table({{"mutation", reports::Align::left}, {"pairs"}, {"some lane is wrong"}, {"kept to go on from"}, {"new kinds"}});
+  reports::TextTable table(
+      {{"mutation", reports::Align::left}, {"pairs"}, {"some lane is wrong"}, {"kept to go on from"}, {"new kinds"}});
   for (const Json& row : told.at("mutations")) {
     const auto count = [&](const char* what) { return reports::grouped(row.at(what).get<std::uint64_t>()); };
-    table.add({row.at("mutation").get<std::string>(), count("pairs"), count("disagreements"), count("units"), count("kinds")});
+    table.add({row.at("mutation").get<std::string>(), count("pairs"), count("disagreements"), count("units"),
+               count("kinds")});
   }
-  fmt::print("\n{}\nGuided search kept {} pairs to go on from, and met {} kinds of failure or more.\n", table.text(output_screen()),
-             reports::grouped(told.at("units").get<std::uint64_t>()), reports::grouped(told.at("kinds").size()));
+  fmt::print("\n{}\nGuided search kept {} pairs to go on from, and met {} kinds of failure or more.\n",
+             table.text(output_screen()), reports::grouped(told.at("units").get<std::uint64_t>()),
+             reports::grouped(told.at("kinds").size()));
 }
 
 int hunt(const HuntOptions& options) {
@@ -78,7 +82,8 @@ int hunt(const HuntOptions& options) {
   std::vector<strata::LeftOut> left_out;
   std::optional<strata::Scene> scene;
   if (!options.scene.empty()) {
-    strata::SceneSources drawn = drawn_from_scene(options.scene, options.seed, options.runs, options.strata, scene_spec);
+    strata::SceneSources drawn =
+        drawn_from_scene(options.scene, options.seed, options.runs, options.strata, scene_spec);
     hunt.drawn.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
     hunt.drawn.scene = &scene.emplace(strata::resolved(fuzz::open_scene(options.scene).scene));
@@ -87,7 +92,8 @@ int hunt(const HuntOptions& options) {
   }
   hunt.campaign.spec = fuzz::hunt_spec(hunt);
   if (!scene_spec.is_null()) hunt.campaign.spec["scene"] = scene_spec;
-  if (const Json subjects = subjects::record(hunt.campaign.spec["lanes"].get<std::vector<std::string>>()); !subjects.is_null())
+  if (const Json subjects = subjects::record(hunt.campaign.spec["lanes"].get<std::vector<std::string>>());
+      !subjects.is_null())
     hunt.campaign.spec["subjects"] = subjects;
   hunt.campaign.build = fuzz::build_info(under_test);
   expect_campaign_folder(options.out);
@@ -99,7 +105,8 @@ int hunt(const HuntOptions& options) {
     if (!on_terminal) return;
     if (!live) live.emplace("pairs", progress.total, on_terminal, error_screen());
     const double each = progress.seconds / static_cast<double>(std::max<std::uint64_t>(progress.done_here, 1));
-    if (const auto line = live->line(progress.done, progress.seconds, each * static_cast<double>(progress.total - progress.done), details(progress)))
+    if (const auto line = live->line(progress.done, progress.seconds,
+                                     each * static_cast<double>(progress.total - progress.done), details(progress)))
       fmt::print(stderr, "{}", *line);
   });
   if (live) fmt::print(stderr, "{}", live->end());
@@ -119,7 +126,8 @@ int hunt(const HuntOptions& options) {
   reports::print_summary(std::cout, summary, oracle, output_screen());
   std::cout << left_out_text(left_out) << std::flush;
   print_mutations(options.out);
-  fmt::print("\nWrote {0}/summary.json, {0}/hunt.json, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite, {0}/hunt/\n", options.out);
+  fmt::print("\nWrote {0}/summary.json, {0}/hunt.json, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite, {0}/hunt/\n",
+             options.out);
   if (!summary["signatures"].empty()) fmt::print("Next: graze minimize {}\n", shell_word(options.out));
   return 0;
 }
@@ -127,27 +135,35 @@ int hunt(const HuntOptions& options) {
 }  // namespace
 
 void add_hunt(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "hunt", "Search for wrong verdicts, guided by what the lanes compute, or go on with it: mutated pairs through all lanes and the oracle");
+  CLI::App* command = app.add_subcommand("hunt",
+                                         "Search for wrong verdicts, guided by what the lanes compute, or go on with "
+                                         "it: mutated pairs through all lanes and the oracle");
   command->footer("Example: graze hunt --runs 1000000 --seed 1 --lanes 'moller*' --out hunt");
   auto options = std::make_shared<HuntOptions>();
   command->add_option("--runs", options->runs, "Pairs in all")
       ->transform(whole_number(1, kMostWhole))
       ->capture_default_str();
-  command->add_option("--minutes", options->minutes, "Stop after so many minutes, if not done; the same command goes on; 0: no limit")
+  command
+      ->add_option("--minutes", options->minutes,
+                   "Stop after so many minutes, if not done; the same command goes on; 0: no limit")
       ->transform(whole_number(0, 1'000'000))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Seed of the search")->transform(whole_number(0, kMostWhole))->capture_default_str();
-  command->add_option("--threads", options->threads, "Rounds at once, at most four; 0 for one on each core; results do not depend on it")
+  command->add_option("--seed", options->seed, "Seed of the search")
+      ->transform(whole_number(0, kMostWhole))
+      ->capture_default_str();
+  command
+      ->add_option("--threads", options->threads,
+                   "Rounds at once, at most four; 0 for one on each core; results do not depend on it")
       ->transform(whole_number(0, 4096))
       ->capture_default_str();
   command->add_option("--out", options->out, "Directory of the hunt; an unfinished one is gone on with")
       ->take_last()
       ->check(not_empty())
       ->capture_default_str();
-  add_shard_option(*command, options->shard,
-                   "Only the K-th of N searches, each through its part of the runs, into a directory of its own; graze merge "
-                   "makes all of them one, by kind of failure");
+  add_shard_option(
+      *command, options->shard,
+      "Only the K-th of N searches, each through its part of the runs, into a directory of its own; graze merge "
+      "makes all of them one, by kind of failure");
   add_globs(*command, "--strata", options->strata, "Start from, and draw again from, only strata that match a pattern");
   add_lane_options(*command, options->lanes, Executors::twins);
   add_scene_option(*command, options->scene);

@@ -126,9 +126,7 @@ void add_kinds(CLI::App& app, int& status) {
       ->required();
   command->add_flag("--json", *json, "One object a line, as docs/formats.md describes it");
   command->add_flag("--all", *all, "Also the rare ones");
-  command->callback([directory, json, all, &status] {
-    status = kinds_of(*directory, *json, *all);
-  });
+  command->callback([directory, json, all, &status] { status = kinds_of(*directory, *json, *all); });
 }
 
 }  // namespace graze::cli

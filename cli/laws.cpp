@@ -47,10 +47,10 @@ int laws(const LawsOptions& options) {
   json.update(reports::laws_json(spec, found));
   write_result(out / "laws.json", json.dump(1) + "\n");
   const std::map<std::string, std::string> cases = reports::laws_cases(spec, found);
-  for (const analysis::LawInfo& law : analysis::kLaws) remove_result(out / "cases" / (std::string(law.id) + ".pairs"), kPairs);
+  for (const analysis::LawInfo& law : analysis::kLaws)
+    remove_result(out / "cases" / (std::string(law.id) + ".pairs"), kPairs);
   for (const auto& [file, text] : cases) write_result(out / "cases" / file, text);
-  fmt::print("Wrote {0}/laws.json{1}\n", out.string(),
-             cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
+  fmt::print("Wrote {0}/laws.json{1}\n", out.string(), cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
   if (cases.empty()) return 0;
   const std::string first = (out / "cases" / cases.begin()->first).string();
   fmt::print("Next: graze explain {}\n", shell_word(first));
@@ -61,7 +61,8 @@ int laws(const LawsOptions& options) {
 
 void add_laws(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "laws", "Count how often a lane's verdict changes although the question is the same: swapped, mirrored, moved, …");
+      "laws",
+      "Count how often a lane's verdict changes although the question is the same: swapped, mirrored, moved, …");
   command->footer("Example: graze laws --lanes '*/f32/cpu' --strata 'near_*' --pairs 2000");
   const auto options = std::make_shared<LawsOptions>();
   add_lane_options(*command, options->lanes, Executors::twins);

@@ -43,9 +43,8 @@ std::string trimmed(const std::string& text) {
   return first == text.npos ? "" : text.substr(first, last - first + 1);
 }
 
-// NAME=WHAT a line; an indented `version: …`, `source: …` or `convention: …` below it says what the code itself does not;
-// # begins a comment.   Throws: std::runtime_error with file and line.
-// `pairs: N`: it is slow, and takes no more.
+// NAME=WHAT a line; an indented `version: …`, `source: …` or `convention: …` below it says what the code itself does
+// not; # begins a comment.   Throws: std::runtime_error with file and line. `pairs: N`: it is slow, and takes no more.
 std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::MostPairs& most) {
   std::vector<reports::LeagueSubject> subjects;
   std::istringstream in(fuzz::read_whole(file));
@@ -54,7 +53,8 @@ std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::Mo
     const std::string text = trimmed(line);
     if (text.empty() || text[0] == '#') continue;
     const auto refuse = [&](const char* expected) {
-      return std::runtime_error(fmt::format("{}:{}: expected {}, found {}", file.string(), number, expected, shown(text)));
+      return std::runtime_error(
+          fmt::format("{}:{}: expected {}, found {}", file.string(), number, expected, shown(text)));
     };
     if (line[0] != ' ' && line[0] != '\t') {
       const std::size_t equals = text.find('=');
@@ -122,9 +122,8 @@ int league(const LeagueOptions& options) {
     fmt::print(stderr, "graze: interrupted; wrote nothing\n");
     return kInterrupted;
   }
-  const fuzz::Json json =
-      reports::league_json(found, subjects, fuzz::league_costs(found), fuzz::machine_name(),
-                           fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
+  const fuzz::Json json = reports::league_json(found, subjects, fuzz::league_costs(found), fuzz::machine_name(),
+                                               fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
   std::string command = fmt::format("graze league --subjects {} --pairs {} --seed {}", shell_word(options.subjects),
                                     options.pairs, options.seed);
   if (!options.scene.empty()) command += " --scene " + shell_word(options.scene);
@@ -148,8 +147,9 @@ void add_league(CLI::App& app, int& status) {
   command->footer("Example: graze league --subjects build-league/subjects.txt --pairs 1000000 --out league");
   auto options = std::make_shared<LeagueOptions>();
   command
-      ->add_option("--subjects", options->subjects,
-                   "A file of subjects, NAME=WHAT a line as --subject takes them; scripts/league writes one of libraries")
+      ->add_option(
+          "--subjects", options->subjects,
+          "A file of subjects, NAME=WHAT a line as --subject takes them; scripts/league writes one of libraries")
       ->required()
       ->check(not_empty());
   command->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata")

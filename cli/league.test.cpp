@@ -11,11 +11,13 @@ namespace {
 class LeagueCommand : public CommandTest {
  protected:
   LeagueCommand() {
-    std::ofstream(shell.folder / "planted.c") << "#include <stdlib.h>\n"
-                                                 "int no(const float a[9], const float b[9]) { return 0; }\n"
-                                                 "int dies(const float a[9], const float b[9]) { if (a[0] == b[0]) abort(); return 0; }\n";
-    std::ofstream(shell.folder / "subjects.txt") << "# planted\nno=planted.so:no\n  version: 7|8\n  convention: says \"no\"\n  pairs: 200\n"
-                                                    "dies=planted.so:dies\nspoken=cmd:python3 spoken.py\n";
+    std::ofstream(shell.folder / "planted.c")
+        << "#include <stdlib.h>\n"
+           "int no(const float a[9], const float b[9]) { return 0; }\n"
+           "int dies(const float a[9], const float b[9]) { if (a[0] == b[0]) abort(); return 0; }\n";
+    std::ofstream(shell.folder / "subjects.txt")
+        << "# planted\nno=planted.so:no\n  version: 7|8\n  convention: says \"no\"\n  pairs: 200\n"
+           "dies=planted.so:dies\nspoken=cmd:python3 spoken.py\n";
     std::ofstream(shell.folder / "spoken.py") << "import sys\nfor line in sys.stdin: print(1, flush=True)\n";
     expect_done("cc -shared -fPIC -O2 planted.c -o planted.so");
   }
@@ -90,7 +92,8 @@ TEST_F(LeagueCommand, ThePagesCommandsShowItsFailures) {
     EXPECT_NE(ran.out.find("truth: " + failure["truth"].get<std::string>()), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find(says + " !"), std::string::npos) << again << '\n' << ran.out;
   }
-  for (const char* subject : {"no", "dies", "spoken", "moller_1997"}) EXPECT_TRUE(subjects.contains(subject)) << subject;
+  for (const char* subject : {"no", "dies", "spoken", "moller_1997"})
+    EXPECT_TRUE(subjects.contains(subject)) << subject;
 }
 
 TEST_F(LeagueCommand, TheSameRunHasTheSameResultsButForTimings) {

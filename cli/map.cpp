@@ -81,7 +81,8 @@ void print_counts(const analysis::UlpMap& map) {
     std::vector<reports::Cell> row{panel.name()};
     for (const Cell cell : shown) {
       const auto count = static_cast<std::uint64_t>(counts[static_cast<std::size_t>(cell)]);
-      const bool wrong = count > 0 && cell >= Cell::false_positive && cell != Cell::declined && cell != Cell::not_finite;
+      const bool wrong =
+          count > 0 && cell >= Cell::false_positive && cell != Cell::declined && cell != Cell::not_finite;
       row.emplace_back(reports::grouped(count), wrong);
     }
     table.add(std::move(row));

@@ -69,10 +69,9 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
       found.result.one_minimal
           ? fmt::format("1-minimal: none of the {} single moves to a simpler pair keeps the failure and its cause",
                         reports::grouped(found.result.single_moves))
-      : fuzz::can_shrink(found.failure)
-          ? fmt::format("perhaps not 1-minimal: stopped after {} moves",
-                        reports::grouped(fuzz::most_moved(found.failure)))
-          : "not shrunk: a lane takes all of its time, or changes its verdict";
+      : fuzz::can_shrink(found.failure) ? fmt::format("perhaps not 1-minimal: stopped after {} moves",
+                                                      reports::grouped(fuzz::most_moved(found.failure)))
+                                        : "not shrunk: a lane takes all of its time, or changes its verdict";
   std::cout << fmt::format(
       "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
       "  cause: {}, as before\n"
@@ -200,7 +199,8 @@ int minimize_directory(MinimizeOptions options) {
   const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
-  const fuzz::FolderLock held(directory, whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
+  const fuzz::FolderLock held(directory,
+                              whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
   if (fuzz::read_whole(directory / "summary.json") != text)
     throw std::runtime_error(options.name + ": expected to be alone, found that another process changed it");
   std::vector<fs::path> files;
@@ -231,8 +231,9 @@ int minimize_directory(MinimizeOptions options) {
     if (const auto line = progress.line(count, seconds_since(start), left)) fmt::print(stderr, "{}", *line);
   });
   fmt::print(stderr, "{}", progress.end());
-  const Json kinds =
-      interrupted || !whole ? Json() : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
+  const Json kinds = interrupted || !whole
+                         ? Json()
+                         : fuzz::find_kinds(under_test, directory, summary, [&] { return interrupted.load(); });
   const auto mapping = Clock::now();
   std::atomic<std::size_t> maps = 0;
   tbb::parallel_for(std::size_t{0}, std::min(kinds.size(), fuzz::kMostShown), [&](std::size_t i) {
@@ -296,8 +297,9 @@ void add_minimize(CLI::App& app, int& status) {
   command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
       ->transform(whole_number(0, 4096))
       ->capture_default_str();
-  add_shard_option(*command, options->shard,
-                   "Of a directory, only the K-th of N parts of its signatures; without it, what is left, and the kinds");
+  add_shard_option(
+      *command, options->shard,
+      "Of a directory, only the K-th of N parts of its signatures; without it, what is left, and the kinds");
   add_lane_options(*command, options->lanes);
   command->callback([options, &status] {
     if (!fs::is_directory(options->name)) {

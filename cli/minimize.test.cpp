@@ -73,7 +73,8 @@ TEST_F(Minimize, CtrlCSaysWhatWasDoneAndTheSameCommandGoesOn) {
   for (const char* signal : {"INT", "TERM"}) {
     Ran ran{};
     for (double seconds = 0.3; ran.err.empty() && seconds < 60; seconds *= 2) {  // on a busy machine it begins late
-      ran = shell("timeout --preserve-status -s " + std::string(signal) + " " + std::to_string(seconds) + " graze minimize parts");
+      ran = shell("timeout --preserve-status -s " + std::string(signal) + " " + std::to_string(seconds) +
+                  " graze minimize parts");
     }
     ASSERT_EQ(ran.status, 130) << ran.out << ran.err;
     EXPECT_TRUE(std::regex_search(ran.err, std::regex("graze: interrupted; minimised [0-9]+ of [0-9]+ signatures; "
@@ -86,9 +87,10 @@ TEST_F(Minimize, CtrlCSaysWhatWasDoneAndTheSameCommandGoesOn) {
 }
 
 TEST_F(Minimize, ACaseThatIsInterruptedIsNotWritten) {
-  expect_done("graze fuzz --seed 2 --pairs 1000 --strata near_edge_edge --lanes '*/cpu' --out one > /dev/null && "
-              "cat one/cases/*.pairs | grep -v '^#' > all && (head -n 1 $(ls one/cases/*.pairs | head -n 1); cat all) > "
-              "many.pairs");
+  expect_done(
+      "graze fuzz --seed 2 --pairs 1000 --strata near_edge_edge --lanes '*/cpu' --out one > /dev/null && "
+      "cat one/cases/*.pairs | grep -v '^#' > all && (head -n 1 $(ls one/cases/*.pairs | head -n 1); cat all) > "
+      "many.pairs");
   const Ran ran = shell("timeout --preserve-status -s INT 0.1 graze minimize many.pairs --out small.pairs");
   EXPECT_EQ(ran.status, 130) << ran.out << ran.err;
   EXPECT_TRUE(std::regex_search(
@@ -102,8 +104,8 @@ TEST_F(Minimize, SaysTheCauseAndWhetherItEnded) {
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_TRUE(std::regex_search(ran.out, std::regex("\n  cause: [a-z ]+, as before\n"))) << ran.out;
   const std::string file = contents(shell.folder / "small.pairs");
-  EXPECT_TRUE(std::regex_search(
-      file, std::regex("kind=minimised .* cause=[a-z_]+ one_minimal=yes moves_in_vain=[0-9]+\n")))
+  EXPECT_TRUE(
+      std::regex_search(file, std::regex("kind=minimised .* cause=[a-z_]+ one_minimal=yes moves_in_vain=[0-9]+\n")))
       << file;
 }
 

@@ -75,8 +75,9 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
 
 void add_shard_option(CLI::App& command, fuzz::Shard& shard, const char* description) {
   const auto check = [](const std::string& text) {
-    return fuzz::parse_shard(text) ? "" : fmt::format("expected K/N, 1 to N of at most {}, found '{}'", fuzz::kMostShards,
-                                                      printable(text));
+    return fuzz::parse_shard(text)
+               ? ""
+               : fmt::format("expected K/N, 1 to N of at most {}, found '{}'", fuzz::kMostShards, printable(text));
   };
   command
       .add_option_function<std::string>(

@@ -115,17 +115,21 @@ TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
 // A CUDA source: the test asks graze, which has the replay where there is no device.
 TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
   const auto write = [&](const char* answer) {
-    shell("printf '__device__ bool answer(const float*) { return %s; }\\nnamespace my { __device__ bool meet(const double "
-          "a[9], const double b[9]) { return %s && a != b; } }' false " +
-          std::string(answer) + " > own.cu");
+    shell(
+        "printf '__device__ bool answer(const float*) { return %s; }\\nnamespace my { __device__ bool meet(const "
+        "double "
+        "a[9], const double b[9]) { return %s && a != b; } }' false " +
+        std::string(answer) + " > own.cu");
   };
   write("false");
   const std::string again = "export XDG_CACHE_HOME=$PWD/cache; ", subject = " --subject own=./own.cu:my::meet ";
-  if (const Ran lanes = shell(again + "graze lanes" + subject); lanes.status != 0 && lanes.err.find("NVRTC") != std::string::npos)
+  if (const Ran lanes = shell(again + "graze lanes" + subject);
+      lanes.status != 0 && lanes.err.find("NVRTC") != std::string::npos)
     GTEST_SKIP() << lanes.err;
   shell("echo '" + std::string(kPair) + "' > p");
   const auto emit = [&](const std::string& kind, const std::string& file) {
-    const Ran emitted = shell(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit " + kind + " > " + file);
+    const Ran emitted =
+        shell(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit " + kind + " > " + file);
     ASSERT_EQ(emitted.status, 0) << emitted.err;
     ASSERT_NE(contents(shell.folder / file).find("own/f64/cuda-fma"), std::string::npos);
     shell("head -n 1 " + file + " | cut -c 4- > run.sh; rm -f case");
@@ -142,7 +146,8 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
   const Ran alone = shell("PATH=/nowhere ./case");
   EXPECT_EQ(alone.out.find("PASSED"), std::string::npos);
   EXPECT_NE(alone.out.find("graze, which has to be on the PATH"), std::string::npos) << alone.out << alone.err;
-  expect_error(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit cuda", 1, "one of the CUDA lanes is wrong");
+  expect_error(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit cuda", 1,
+               "one of the CUDA lanes is wrong");
 #ifdef GRAZE_NVCC_DIR
   write("false");
   emit("cuda", "case.cu");
@@ -160,22 +165,25 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
 // The products whose fusing matters are looked for in a process of its own: with only some of them fused, this code
 // counts for seconds.
 TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
-  shell("cat > own.cu <<'EOF'\n"
-        "__device__ float product(const float* t) {\n"
-        "  return t[0] * t[1] - t[3] * t[4];\n"
-        "}\n"
-        "__device__ bool one(const float* a, const float* b) {\n"
-        "  return product(a) != 0;\n"
-        "}\n"
-        "__device__ bool both(const float* a, const float* b) {\n"
-        "  unsigned n = 1;\n"
-        "  if (a[2] == 1 && b[2] == 9 && a[0] < a[3] && b[0] < b[3] && (product(a) != 0) != (product(b) != 0))\n"
-        "    for (unsigned i = 0; i != 4000000000u; ++i) n = n * n + i;\n"
-        "  return product(a) != 0 && n != 0;\n"
-        "}\nEOF\n"
-        // Each with two products that are equal once they are rounded.
-        "echo '0x1.000002p+0 0x1.000002p+0 1 0x1.000004p+0 1 1 3 3 1  0x1.000006p+0 0x1.000006p+0 9 0x1.00000cp+0 1 9 0 2 9' > p");
-  const std::string explain = "export XDG_CACHE_HOME=$PWD/cache; graze explain p --subject-timeout 0.5 --lanes 'own/*/cuda-*fma' ";
+  shell(
+      "cat > own.cu <<'EOF'\n"
+      "__device__ float product(const float* t) {\n"
+      "  return t[0] * t[1] - t[3] * t[4];\n"
+      "}\n"
+      "__device__ bool one(const float* a, const float* b) {\n"
+      "  return product(a) != 0;\n"
+      "}\n"
+      "__device__ bool both(const float* a, const float* b) {\n"
+      "  unsigned n = 1;\n"
+      "  if (a[2] == 1 && b[2] == 9 && a[0] < a[3] && b[0] < b[3] && (product(a) != 0) != (product(b) != 0))\n"
+      "    for (unsigned i = 0; i != 4000000000u; ++i) n = n * n + i;\n"
+      "  return product(a) != 0 && n != 0;\n"
+      "}\nEOF\n"
+      // Each with two products that are equal once they are rounded.
+      "echo '0x1.000002p+0 0x1.000002p+0 1 0x1.000004p+0 1 1 3 3 1  0x1.000006p+0 0x1.000006p+0 9 0x1.00000cp+0 1 9 0 "
+      "2 9' > p");
+  const std::string explain =
+      "export XDG_CACHE_HOME=$PWD/cache; graze explain p --subject-timeout 0.5 --lanes 'own/*/cuda-*fma' ";
   const Ran named = shell(explain + "--subject own=./own.cu:one | tr -s ' \\n' ' '");
   if (shell(explain + "--subject own=./own.cu:one").err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
   EXPECT_NE(named.out.find("nvcc fuses the product into the addition at own.cu:2 (inlined at own.cu:5) (built without "
@@ -196,26 +204,31 @@ TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
   const Ran ran = shell("graze fuzz --executor twin --pairs 200 --strata uniform --out c" + lanes);
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.err, "graze: left out (no twin): moller_1997/f32/cuda-fast\n");
-  EXPECT_NE(contents(shell.folder / "c/summary.json").find(R"("moller_1997/f32/cuda-fast": "no twin")"), std::string::npos);
+  EXPECT_NE(contents(shell.folder / "c/summary.json").find(R"("moller_1997/f32/cuda-fast": "no twin")"),
+            std::string::npos);
   expect_done("graze report c");
   for (const char* file : {"c/report.json", "c/report.html"})
     EXPECT_NE(contents(shell.folder / file).find("did not run: left out (no twin): moller_1997/f32/cuda-fast."),
-              std::string::npos) << file;
+              std::string::npos)
+        << file;
   shell("echo '" + std::string(kPair) + "' > p");
   for (const char* verb : {"check p --executor twin", "explain p", "laws --pairs 19 --out l", "plan --executor twin",
                            "corpus verify --executor twin"})
     EXPECT_TRUE(shell(std::string("graze ") + verb + lanes).err.starts_with(ran.err)) << verb;
   // Of those that run nothing is said, and nothing is recorded.
-  const Ran all = shell("graze fuzz --pairs 200 --strata uniform --out d --executor twin --lanes 'moller_1997/f32/c*fma'");
+  const Ran all =
+      shell("graze fuzz --pairs 200 --strata uniform --out d --executor twin --lanes 'moller_1997/f32/c*fma'");
   EXPECT_EQ(all.err, "");
   EXPECT_EQ(contents(shell.folder / "d/summary.json").find("left_out"), std::string::npos);
   // A user's own code is asked for without a pattern as well.
   std::ofstream(shell.folder / "own.cu") << "__device__ bool meet(const float a[9], const float b[9]) "
                                             "{ return expf(a[0]) > b[0]; }\n";
-  const Ran own = shell("export XDG_CACHE_HOME=$PWD/cache; graze fuzz --pairs 20 --subject own=./own.cu:meet --executor twin --out e");
+  const Ran own = shell(
+      "export XDG_CACHE_HOME=$PWD/cache; graze fuzz --pairs 20 --subject own=./own.cu:meet --executor twin --out e");
   if (own.err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
   EXPECT_EQ(own.status, 2);
-  EXPECT_TRUE(own.err.starts_with("graze: 'own/*': expected a lane that runs here, found only some left out (no twin: "))
+  EXPECT_TRUE(
+      own.err.starts_with("graze: 'own/*': expected a lane that runs here, found only some left out (no twin: "))
       << own.err;
   EXPECT_EQ(std::count(own.err.begin(), own.err.end(), '\n'), 1) << own.err;
 }
@@ -237,7 +250,8 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   const auto pairs_of = [&](const std::string& command) {
     shell(command + " > some.pairs");
     std::vector<fuzz::Simplicity> found;
-    for (const corpus::Entry& entry : corpus::read_pairs(shell.folder / "some.pairs")) found.push_back(fuzz::simplicity(entry.pair));
+    for (const corpus::Entry& entry : corpus::read_pairs(shell.folder / "some.pairs"))
+      found.push_back(fuzz::simplicity(entry.pair));
     return found;
   };
   const std::size_t begin = ran.err.find("smallest is ") + 12;

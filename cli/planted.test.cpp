@@ -38,7 +38,9 @@ extern "C" int flips(const float a[9], const float b[9]) {
     }
   }
   ASSERT_GE(planted.size(), 2u);
-  expect_done("graze fuzz --subject flips=flips.so:flips --lanes 'flips/*' --strata uniform,shared_edge --pairs 400k --seed 4 --out c");
+  expect_done(
+      "graze fuzz --subject flips=flips.so:flips --lanes 'flips/*' --strata uniform,shared_edge --pairs 400k --seed 4 "
+      "--out c");
   const auto summary = nlohmann::json::parse(contents(shell.folder / "c/summary.json"));
   EXPECT_EQ(summary["disagreements"], planted.size());
   std::vector<std::string> found;

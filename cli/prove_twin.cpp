@@ -66,7 +66,8 @@ void add_prove_twin(CLI::App& app, int& status) {
       ->capture_default_str();
   add_lane_options(*command, *lanes, Executors::twins);
   command->add_flag("--wrong-rule", options->wrong_rule, "Contract the wrong product first: the proof must then fail");
-  command->add_option("--out", *out, "File of the record: proof.json, or FILE.cu.proof.json of a subject, where it counts")
+  command
+      ->add_option("--out", *out, "File of the record: proof.json, or FILE.cu.proof.json of a subject, where it counts")
       ->check(not_empty());
   command->callback([options, lanes, out, &status] {
     options->lanes = lanes->globs;

@@ -80,7 +80,9 @@ TEST_F(QueryCommand, JsonIsOneObject) {
 TEST_F(QueryCommand, WritesHits) {
   expect_done("graze query mesh.obj#3 mesh.obj --obj hits.obj --pairs hits.pairs");
   const std::string obj = contents(shell.folder / "hits.obj");
-  EXPECT_TRUE(obj.starts_with("# Written by graze query\ng reference\nv 3 2 0\nv 1 2 5\nv 2 1 5\nf 1 2 3\ng hits\nv 0 0 0\n")) << obj;
+  EXPECT_TRUE(
+      obj.starts_with("# Written by graze query\ng reference\nv 3 2 0\nv 1 2 5\nv 2 1 5\nf 1 2 3\ng hits\nv 0 0 0\n"))
+      << obj;
   EXPECT_EQ(json("graze query mesh.obj#3 hits.obj --json")["hits"], 3);  // the reference is there too
   const Ran checked = shell("graze check hits.pairs --truth-only | grep -c 'truth: intersects'");
   EXPECT_EQ(checked.out, "2\n");

@@ -24,17 +24,22 @@ class Report : public CommandTest {
 TEST_F(Report, CountsThatCannotBeAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && graze report c");
   const nlohmann::ordered_json summary = nlohmann::ordered_json::parse(contents(shell.folder / "c/summary.json"));
-  const auto write = [&](const char* file, const nlohmann::ordered_json& json) { std::ofstream(shell.folder / file) << json.dump(1) << '\n'; };
-  const std::string readers[] = {"report c", "report --compare c c", "kinds c", "minimize c", "corpus add c --corpus r", "dump c"};
-  for (const char* place : {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", "/strata/thesis/pairs", "/disagreements",
-                            "/signatures/0/count", "/spec/seed", "/build/version"}) {
+  const auto write = [&](const char* file, const nlohmann::ordered_json& json) {
+    std::ofstream(shell.folder / file) << json.dump(1) << '\n';
+  };
+  const std::string readers[] = {"report c",   "report --compare c c",    "kinds c",
+                                 "minimize c", "corpus add c --corpus r", "dump c"};
+  for (const char* place : {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", "/strata/thesis/pairs",
+                            "/disagreements", "/signatures/0/count", "/spec/seed", "/build/version"}) {
     nlohmann::ordered_json other = summary;
     const nlohmann::ordered_json::json_pointer at(place);
-    other[at] = other[at].is_string() ? nlohmann::ordered_json("x") : nlohmann::ordered_json(other[at].get<std::uint64_t>() + 1200);
+    other[at] = other[at].is_string() ? nlohmann::ordered_json("x")
+                                      : nlohmann::ordered_json(other[at].get<std::uint64_t>() + 1200);
     write("c/summary.json", other);
     for (const std::string& reader : readers) {
       if (&reader != &readers[0] && place != std::string("/disagreements")) continue;
-      expect_error("graze " + reader, 1, "c/summary.json: expected what campaign.sqlite says: " + std::string(place).substr(1, 4));
+      expect_error("graze " + reader, 1,
+                   "c/summary.json: expected what campaign.sqlite says: " + std::string(place).substr(1, 4));
     }
   }
   write("c/summary.json", summary);
@@ -59,8 +64,10 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   std::filesystem::remove(shell.folder / "c/campaign.sqlite");
   expect_done("graze report c | grep 'checked only against each other'");
   for (const auto& [place, value, said] :
-       {std::tuple("/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", 1230, "degenerate: expected at most "),
-        {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/declined", 3, "wrong of moller_1997/f32/cpu by margin, found "},
+       {std::tuple("/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", 1230,
+                   "degenerate: expected at most "),
+        {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/declined", 3,
+         "wrong of moller_1997/f32/cpu by margin, found "},
         {"/strata/degenerate/intersects", 1001, "degenerate: expected at most 1000 pairs that intersect, found 1001"},
         {"/strata/degenerate/pairs", 1001, "degenerate: expected 1001 pairs by margin, found 1000"},
         {"/spec/pairs", 2999, "expected exactly 2999 pairs in all strata, found 3000"},

@@ -17,8 +17,9 @@ namespace {
 namespace fs = std::filesystem;
 
 void refuse_folder(const fs::path& out, const std::string& own) {
-  throw UsageError(fmt::format("{}: expected a new or an empty folder, or {}, found other things; choose another --out, or --force",
-                               out.string(), own));
+  throw UsageError(
+      fmt::format("{}: expected a new or an empty folder, or {}, found other things; choose another --out, or --force",
+                  out.string(), own));
 }
 
 fs::path made(const fs::path& out, const char* own) {
@@ -27,7 +28,8 @@ fs::path made(const fs::path& out, const char* own) {
   std::error_code error;
   fs::create_directories(out, error);
   if (!error && access(out.c_str(), W_OK | X_OK) != 0) error = {errno, std::generic_category()};
-  if (error) throw std::runtime_error(out.string() + ": expected a folder that can be written, found: " + error.message());
+  if (error)
+    throw std::runtime_error(out.string() + ": expected a folder that can be written, found: " + error.message());
   return out;
 }
 
@@ -36,8 +38,10 @@ fs::path made(const fs::path& out, const char* own) {
 void add_force(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands([](const CLI::App* v) { return v->get_name() != "merge"; })) {
     const char* const places[] = {"--out", "--plot", "--obj", "--prometheus"};
-    if (std::any_of(std::begin(places), std::end(places), [&](const char* name) { return verb->get_option_no_throw(name); }))
-      verb->add_flag("--force", fuzz::may_replace_foreign, "Replace files that graze did not write, and use folders with other things");
+    if (std::any_of(std::begin(places), std::end(places),
+                    [&](const char* name) { return verb->get_option_no_throw(name); }))
+      verb->add_flag("--force", fuzz::may_replace_foreign,
+                     "Replace files that graze did not write, and use folders with other things");
   }
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where results go, by one rule for all verbs: they replace only what Graze wrote (fuzz/own_files.h), or --force is given.
+// Where results go, by one rule for all verbs: they replace only what Graze wrote (fuzz/own_files.h), or --force is
+// given.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -30,8 +31,8 @@ void expect_campaign_folder(const std::filesystem::path& out);
 // A folder for a verb's results: made where it is missing, and locked, so that two runs at once do not mix theirs.
 struct ResultFolder {
   // own: the file by which the folder is known as this verb's; a campaign's folder will do as well.
-  // Throws: UsageError for another folder that is not empty; std::runtime_error for one that cannot be made or written to,
-  // or in which another process is at work.
+  // Throws: UsageError for another folder that is not empty; std::runtime_error for one that cannot be made or written
+  // to, or in which another process is at work.
   ResultFolder(const std::string& out, const char* own);
 
   std::filesystem::path path;

@@ -38,16 +38,18 @@ TEST_F(SceneVerb, AMeshBecomesAPageThatIsRead) {
   EXPECT_TRUE(ran.out.starts_with("Wrote hills.toml: 162 triangles, ")) << ran.out;
   EXPECT_TRUE(ran.out.ends_with("Next: graze fuzz --scene hills.toml\n")) << ran.out;
   const std::string text = contents(shell.folder / "hills.toml");
-  for (const char* line : {"\nunits = \"mm\"\n", "\nextent = [[50, 61.25], [0, 13.5], [200, 201.125]]\n",
-                           "\ngrid = { power_of_two = -3 }\n", "\n[mix]\n", "\n[margins]\n", "\nfiles = [\"hills.off\"]\n"})
+  for (const char* line :
+       {"\nunits = \"mm\"\n", "\nextent = [[50, 61.25], [0, 13.5], [200, 201.125]]\n",
+        "\ngrid = { power_of_two = -3 }\n", "\n[mix]\n", "\n[margins]\n", "\nfiles = [\"hills.off\"]\n"})
     EXPECT_NE(text.find(line), std::string::npos) << line << text;
   EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 100);
   expect_done("graze scene hills.off --units mm > again.toml && cmp hills.toml again.toml");
   expect_done("mkdir sub && graze scene hills.off --out sub/s.toml && grep -q '\"../hills.off\"' sub/s.toml");
   expect_done("graze fuzz --scene sub/s.toml --pairs 300 --strata mesh --lanes 'moller*/f32/cpu' --out sub/c");
   // Its pairs as a file, measured, have the same sizes.
-  expect_done("graze fuzz --scene hills.toml --pairs 1000 --strata mesh --lanes 'moller*/f32/cpu' --out m && "
-              "graze dump m --format pairs > m.pairs && graze scene m.pairs --out m.toml && grep -q '^edges' m.toml");
+  expect_done(
+      "graze fuzz --scene hills.toml --pairs 1000 --strata mesh --lanes 'moller*/f32/cpu' --out m && "
+      "graze dump m --format pairs > m.pairs && graze scene m.pairs --out m.toml && grep -q '^edges' m.toml");
 }
 
 TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
@@ -56,9 +58,13 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   const Ran ran = shell(fuzz + "--threads 1 --out one");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.out.find("\nLeft out, as the scene has none such:\n  thesis: its triangles are fixed numbers"),
-            std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("\n  extreme_scale: your coordinates stay within 0 … 201.125 units, your triangles' longest edges within "),
-            std::string::npos) << ran.out;
+            std::string::npos)
+      << ran.out;
+  EXPECT_NE(
+      ran.out.find(
+          "\n  extreme_scale: your coordinates stay within 0 … 201.125 units, your triangles' longest edges within "),
+      std::string::npos)
+      << ran.out;
   expect_done(fuzz + "--threads 2 --out two && diff one/summary.json two/summary.json && diff -r one/cases two/cases");
   const Json summary = json("one/summary.json");
   EXPECT_EQ(summary["spec"]["scene"]["left_out"]["far_from_origin"], "your coordinates stay within 0 … 201.125 units");
@@ -67,7 +73,8 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   // A case's name draws the same pair again, by the file and by the campaign.
   const std::string text = contents(shell.folder / "one" / summary["signatures"][0]["case"].get<std::string>());
   std::smatch found;
-  ASSERT_TRUE(std::regex_search(text, found, std::regex("stratum=(\\w+) seed=(\\d+) index=(\\d+) scene=(\\S+) "))) << text;
+  ASSERT_TRUE(std::regex_search(text, found, std::regex("stratum=(\\w+) seed=(\\d+) index=(\\d+) scene=(\\S+) ")))
+      << text;
   const std::string numbers = ":" + found[2].str() + ":" + found[3].str(), id = found[1].str(), of = found[4].str();
   EXPECT_TRUE(of.starts_with("hills.toml#")) << of;
   const auto vertices_of = [&](const std::string& name) {
@@ -89,22 +96,27 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   expect_done("sed -i '1i # mine' hills.toml && " + fuzz + "--out one");
   expect_done("sed -i 's/^units.*/units = \"m\"/' hills.toml");
   expect_error(fuzz + "--out one", 2, "one");
-  expect_error("graze explain '" + id + "@" + of + numbers + "'", 1, "hills.toml: expected the scene " + of + ", found hills.toml#");
+  expect_error("graze explain '" + id + "@" + of + numbers + "'", 1,
+               "hills.toml: expected the scene " + of + ", found hills.toml#");
   EXPECT_EQ(vertices_of(id + "@one" + numbers), vertices);
 }
 
 TEST_F(SceneVerb, ThreeLinesAreACampaign) {
-  const Ran ran = shell("graze fuzz --scene mm.toml --pairs 2000 --strata 'near_*,extreme_scale' --lanes '*/f32/cpu' --out c");
+  const Ran ran =
+      shell("graze fuzz --scene mm.toml --pairs 2000 --strata 'near_*,extreme_scale' --lanes '*/f32/cpu' --out c");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("  extreme_scale: your coordinates stay within -5400 … 120800 mm, your triangles' longest edges within 0.5 … 40\n"),
-            std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("  extreme_scale: your coordinates stay within -5400 … 120800 mm, your triangles' longest "
+                         "edges within 0.5 … 40\n"),
+            std::string::npos)
+      << ran.out;
   EXPECT_EQ(json("c/summary.json")["spec"]["strata"].size(), 4u);
 }
 
 TEST_F(SceneVerb, TheExamplesAreDrawnFrom) {
   const std::string root = GRAZE_SOURCE_DIR;
   expect_done("graze fuzz --scene " + root + "/docs/scenes/millimetres.toml --pairs 2000 --lanes '*/f32/cpu' --out mm");
-  expect_done("python3 " + root + "/scripts/terrain_mesh 16 > terrain.off && graze scene terrain.off --units m --out t.toml");
+  expect_done("python3 " + root +
+              "/scripts/terrain_mesh 16 > terrain.off && graze scene terrain.off --units m --out t.toml");
   const std::string text = contents(shell.folder / "t.toml");
   EXPECT_NE(text.find("\nextent = [[0, 400], [0, 400], [128.58, 155.46]]\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\ngrid = { decimals = 2 }\n"), std::string::npos) << text;
@@ -115,17 +127,21 @@ TEST_F(SceneVerb, PosesAndSeveralMeshes) {
   expect_done("printf '1,0,0,0,0,1,0,0,0,0,1,0\\n1,0,0,0.5,0,1,0,0.25,0,0,1,0.125\\n' > p.csv");
   expect_done("graze scene hills.off --poses p.csv --out p.toml && grep -q '^poses = \"p.csv\"' p.toml");
   expect_done("graze fuzz --scene p.toml --pairs 500 --strata 'mesh*' --lanes 'moller*/f32/cpu' --out p");
-  expect_done("cp hills.off b.off && graze scene hills.off b.off --out two.toml && grep -q '\"hills.off\", \"b.off\"' two.toml");
+  expect_done(
+      "cp hills.off b.off && graze scene hills.off b.off --out two.toml && grep -q '\"hills.off\", \"b.off\"' "
+      "two.toml");
   expect_error("graze scene hills.off b.off --poses p.csv", 2, "--poses: expected one mesh, found 2 files");
 }
 
 TEST_F(SceneVerb, WrongUseIsOneLine) {
   expect_error("graze scene missing.off", 1, "missing.off: expected a mesh file");
   expect_error("cp hills.off $'\\xff.off'; graze scene $'\\xff.off'", 2, "expected a file name in UTF-8");
-  expect_error("printf '1 0 0 0 0 1 0 0 0 0 1 0\\n1 0 0 9e37 0 1 0 0 0 0 1 0\\n' > p.csv; graze scene hills.off --poses p.csv", 1,
-               "hills.off: expected");
+  expect_error(
+      "printf '1 0 0 0 0 1 0 0 0 0 1 0\\n1 0 0 9e37 0 1 0 0 0 0 1 0\\n' > p.csv; graze scene hills.off --poses p.csv",
+      1, "hills.off: expected");
   expect_error("graze scene mm.toml", 1, "expected a file of extension .off, .obj, .stl or .ply, found .toml");
-  expect_error("graze fuzz --scene missing.toml", 1, "missing.toml: expected a scene's file, found none that can be opened");
+  expect_error("graze fuzz --scene missing.toml", 1,
+               "missing.toml: expected a scene's file, found none that can be opened");
   expect_error("graze fuzz --scene .", 1, ".: expected a scene's file");
   expect_error("printf 'extent = [0, 1]\\nedges = [1, nan]\\n' > bad.toml; graze fuzz --scene bad.toml", 1,
                "bad.toml:2: expected a number from ");
@@ -134,8 +150,11 @@ TEST_F(SceneVerb, WrongUseIsOneLine) {
   expect_error("graze fuzz --scene mm.toml --strata thesis", 2,
                "expected a stratum that the scene can contain, found thesis: its triangles are fixed numbers");
   expect_error("graze fuzz --scene mm.toml --mesh hills.off", 2, "--scene");
-  expect_error("graze scene hills.off --out hills.toml > /dev/null; sed -i '$d' hills.off; echo 3 0 1 3 >> hills.off; graze fuzz "
-               "--scene hills.toml", 1, "hills.off: expected the content ");
+  expect_error(
+      "graze scene hills.off --out hills.toml > /dev/null; sed -i '$d' hills.off; echo 3 0 1 3 >> hills.off; graze "
+      "fuzz "
+      "--scene hills.toml",
+      1, "hills.off: expected the content ");
   expect_error("graze explain near_edge_edge@mm.toml:x:1", 2, "expected a whole number");
 }
 

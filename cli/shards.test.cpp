@@ -139,7 +139,8 @@ TEST_F(Shards, OfAHuntMergeByKind) {
   EXPECT_EQ(shards[0]["done"], 1500);
   EXPECT_GT(shards[0]["new"], 3);
   EXPECT_LT(shards[1]["new"], shards[0]["new"]);  // most of them the first has as well
-  const Ran merged = shell("graze merge shard-2 p-1 --out all && graze kinds all && graze report all && graze minimize all");
+  const Ran merged =
+      shell("graze merge shard-2 p-1 --out all && graze kinds all && graze report all && graze minimize all");
   EXPECT_EQ(merged.status, 0) << merged.err;
   EXPECT_NE(merged.out.find("\n3,000 pairs: some lane is wrong on "), std::string::npos) << merged.out;
   expect_error(hunt + "--out all", 2, "merged of shards");
@@ -185,12 +186,13 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
       "4 ";
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
   // Rank 2 is stopped within a block, until the others have done all the rest; then it is killed.
-  const Ran killed = shell(
-      mpirun + fuzz +
-      "--out ranks & for i in $(seq 600); do [ -s ranks/rank-2/status.json ] && break; sleep 0.02; done; "
-      "rank=$(grep -h '\"process\"' ranks/rank-2/status.json | grep -o '[0-9]*'); kill -STOP $rank; "
-      "for i in $(seq 1200); do [ $(grep -ls stopped ranks/rank-*/status.json | wc -l) -eq 3 ] && break; sleep 0.1; done; "
-      "graze status ranks | tail -n 1; kill -KILL $rank; wait $!; echo $?; ls -d ranks/rank-*");
+  const Ran killed =
+      shell(mpirun + fuzz +
+            "--out ranks & for i in $(seq 600); do [ -s ranks/rank-2/status.json ] && break; sleep 0.02; done; "
+            "rank=$(grep -h '\"process\"' ranks/rank-2/status.json | grep -o '[0-9]*'); kill -STOP $rank; "
+            "for i in $(seq 1200); do [ $(grep -ls stopped ranks/rank-*/status.json | wc -l) -eq 3 ] && break; sleep "
+            "0.1; done; "
+            "graze status ranks | tail -n 1; kill -KILL $rank; wait $!; echo $?; ls -d ranks/rank-*");
   EXPECT_NE(killed.out.find("3 stopped, 1 running\n"), std::string::npos) << killed.out << killed.err;
   EXPECT_EQ(killed.out.find("\n0\n"), std::string::npos) << killed.out << killed.err;
   EXPECT_NE(killed.out.find("ranks/rank-3"), std::string::npos) << killed.out;

@@ -63,9 +63,9 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
     for (const char* count : {"pairs", "done", "disagreements", "signatures"})
       row[count] = status.at(count).get<std::uint64_t>();
     if (row["done"] > row["pairs"] || row["disagreements"] > row["done"])
-      throw std::runtime_error(fmt::format("{}: expected at most {} pairs done and as many disagreements, found {} and {}",
-                                           (directory / "status.json").string(), row["pairs"].dump(), row["done"].dump(),
-                                           row["disagreements"].dump()));
+      throw std::runtime_error(fmt::format(
+          "{}: expected at most {} pairs done and as many disagreements, found {} and {}",
+          (directory / "status.json").string(), row["pairs"].dump(), row["done"].dump(), row["disagreements"].dump()));
     std::size_t fresh = 0;
     for (const std::string way : status.value("ways", Json::array())) fresh += known.insert(way).second;
     row["new"] = fresh;
@@ -82,7 +82,8 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
   }
 }
 
-// In the order of the directories. {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements", "states": {state: shards}}
+// In the order of the directories. {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements",
+// "states": {state: shards}}
 Json status_of(const StatusOptions& options) {
   Json all = {{"shards", Json::array()},
               {"pairs", 0},
@@ -124,13 +125,13 @@ std::string table(const Json& all) {
                                  "state", "pairs done", "pairs/s", "left", "disagreements", "signatures", "new");
   for (const Json& row : all["shards"]) {
     const std::uint64_t pairs = row["pairs"], done = row["done"];
-    text += fmt::format("{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10} {:>6}\n", row["directory"].get<std::string>(),
-                        row["shard"].is_null() ? "-" : row["shard"].get<std::string>(), row["state"].get<std::string>(),
-                        fmt::format("{} ({}%)", reports::grouped(done), pairs == 0 ? 0 : 100 * done / pairs),
-                        reports::grouped(static_cast<std::uint64_t>(row["rate"].get<double>())),
-                        row["seconds_left"].is_null() ? "-" : duration(row["seconds_left"].get<double>()),
-                        reports::grouped(row["disagreements"]), reports::grouped(row["signatures"]),
-                        reports::grouped(row["new"]));
+    text += fmt::format(
+        "{:<24} {:>12} {:<9} {:>22} {:>11} {:>9} {:>13} {:>10} {:>6}\n", row["directory"].get<std::string>(),
+        row["shard"].is_null() ? "-" : row["shard"].get<std::string>(), row["state"].get<std::string>(),
+        fmt::format("{} ({}%)", reports::grouped(done), pairs == 0 ? 0 : 100 * done / pairs),
+        reports::grouped(static_cast<std::uint64_t>(row["rate"].get<double>())),
+        row["seconds_left"].is_null() ? "-" : duration(row["seconds_left"].get<double>()),
+        reports::grouped(row["disagreements"]), reports::grouped(row["signatures"]), reports::grouped(row["new"]));
     if (row.contains("why")) text += "  " + row["why"].get<std::string>() + '\n';
   }
   std::vector<std::string> states;

@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kPairsInCache = 256, kPairsFromMemory = std::size_t{1} << 19;  // 18 kB, 38 MB
-constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;  // 302 MB
+constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;                         // 302 MB
 
 struct TradeOptions {
   LaneOptions lanes;
@@ -132,10 +132,11 @@ int trade(TradeOptions options) {
   const reports::Screen screen = output_screen();
   fmt::print("{}", reports::trade_table(trade, screen));
   if (options.device) {
-    fmt::print("{}", reports::wrapped(fmt::format("Registers and bytes of local memory of one thread, and threads that a "
-                                                  "multiprocessor of {} holds at once, of {}.",
-                                                  trade.machine, trade.threads_at_once),
-                                      screen.columns));
+    fmt::print("{}",
+               reports::wrapped(fmt::format("Registers and bytes of local memory of one thread, and threads that a "
+                                            "multiprocessor of {} holds at once, of {}.",
+                                            trade.machine, trade.threads_at_once),
+                                screen.columns));
   }
   for (const std::string& sentence : reports::extreme_sentences(trade.curves))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));

@@ -32,7 +32,8 @@ constexpr std::size_t kMostOfAMesh = 500;         // that are shown
 
 std::string name_of(const std::string& file, const corpus::Entry& entry) {
   if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
-  const std::string *label = corpus::field(entry, "name"), *kind = corpus::field(entry, "kind"), *from = corpus::field(entry, "from");
+  const std::string *label = corpus::field(entry, "name"), *kind = corpus::field(entry, "kind"),
+                    *from = corpus::field(entry, "from");
   if (kind && from) return printable(fmt::format("{} from {}", *kind, *from));  // minimised from mesh:1:597
   return printable(label ? *label : entry.line > 0 ? fmt::format("{}:{}", file, entry.line) : file);
 }
@@ -52,7 +53,8 @@ void add_folder(const fs::path& folder, Viewed& viewed) {
     if (entry.path().extension() == ".pairs") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
-  if (files.empty()) throw std::runtime_error(folder.string() + ": expected *.pairs in it, or in its cases/, found none");
+  if (files.empty())
+    throw std::runtime_error(folder.string() + ": expected *.pairs in it, or in its cases/, found none");
   for (const fs::path& file : files) add_cases(file.string(), viewed, campaign ? 1 : reports::kMostViewedPairs);
 }
 
@@ -78,7 +80,8 @@ void add_mesh(const fs::path& file, Viewed& viewed) {
   std::vector<reports::ViewedPair> others;
   for (std::size_t i = 0; i < std::min(mesh.size(), kMostCandidates) && viewed.pairs.size() < kMostOfAMesh; ++i) {
     const auto [first, second] = mesh.candidates[i];
-    reports::ViewedPair one{fmt::format("{}, triangles {} and {}", file.filename().string(), first, second), mesh.pair(i)};
+    reports::ViewedPair one{fmt::format("{}, triangles {} and {}", file.filename().string(), first, second),
+                            mesh.pair(i)};
     if (some_lane_is_wrong(one.pair)) {
       viewed.pairs.push_back(std::move(one));
     } else if (others.size() < kMostOfAMesh) {
@@ -86,7 +89,8 @@ void add_mesh(const fs::path& file, Viewed& viewed) {
     }
   }
   const std::size_t room = kMostOfAMesh - viewed.pairs.size();
-  std::move(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())), std::back_inserter(viewed.pairs));
+  std::move(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())),
+            std::back_inserter(viewed.pairs));
 }
 
 using Triangle = std::array<Vec3<float>, 3>;
@@ -99,7 +103,8 @@ void show_against_the_first(Viewed& viewed) {
     return one.name.starts_with("reference_") && first_of(one.pair) == first_of(viewed.pairs[0].pair);
   };
   if (viewed.pairs.empty() || !std::all_of(viewed.pairs.begin(), viewed.pairs.end(), of_it)) return;
-  for (const reports::ViewedPair& one : viewed.pairs) viewed.triangles.push_back({one.pair.b[0], one.pair.b[1], one.pair.b[2]});
+  for (const reports::ViewedPair& one : viewed.pairs)
+    viewed.triangles.push_back({one.pair.b[0], one.pair.b[1], one.pair.b[2]});
   viewed.opens_with_triangles = true;
 }
 
@@ -107,7 +112,8 @@ void show_against_the_first(Viewed& viewed) {
 void add_query(const std::string& reference, const std::string& file, Viewed& viewed) {
   const std::vector<query::Triangle> references = read_references(reference);
   if (references.size() != 1)
-    throw std::runtime_error(fmt::format("{}: expected one reference, found {}", printable(reference), references.size()));
+    throw std::runtime_error(
+        fmt::format("{}: expected one reference, found {}", printable(reference), references.size()));
   const Lane* exact = find_lane("exact/f32/cpu");
   const std::vector<query::Triangle> mesh = read_mesh(file);
   std::vector<Triangle> others;
@@ -121,7 +127,8 @@ void add_query(const std::string& reference, const std::string& file, Viewed& vi
     if (of.size() < reports::kMostViewedTriangles) of.push_back({pair.b[0], pair.b[1], pair.b[2]});
   }
   const std::size_t room = reports::kMostViewedTriangles - viewed.triangles.size();
-  viewed.triangles.insert(viewed.triangles.end(), others.begin(), others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())));
+  viewed.triangles.insert(viewed.triangles.end(), others.begin(),
+                          others.begin() + static_cast<std::ptrdiff_t>(std::min(room, others.size())));
   viewed.title = fmt::format("hits of {} in {}", printable(reference), printable(fs::path(file).filename().string()));
   viewed.opens_with_triangles = true;
 }
@@ -179,13 +186,15 @@ void add_view(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
       "view", "Write one page that shows a pair in 3-D and decides every verdict anew while you drag, and open it");
   command->footer("Example: graze view thesis:1:0");
-  auto what = std::make_shared<std::string>(), mesh = std::make_shared<std::string>(), out = std::make_shared<std::string>("view.html");
+  auto what = std::make_shared<std::string>(), mesh = std::make_shared<std::string>(),
+       out = std::make_shared<std::string>("view.html");
   command->add_option("what", *what,
                       "A file of pairs, a campaign's or any folder of them, a mesh (OFF, OBJ, STL, PLY), or "
                       "STRATUM:SEED:INDEX; without it the special cases of 2012");
-  command->add_option("mesh", *mesh,
-                      "A mesh, all of whose triangles are shown against the first argument, a reference as graze query "
-                      "takes it: a file with nine numbers, or MESH#FACE")
+  command
+      ->add_option("mesh", *mesh,
+                   "A mesh, all of whose triangles are shown against the first argument, a reference as graze query "
+                   "takes it: a file with nine numbers, or MESH#FACE")
       ->check(not_empty());
   command->add_option("--out", *out, "The page")->check(not_empty())->capture_default_str()->option_text("FILE");
   command->callback([what, mesh, out] { view(*what, *mesh, *out); });

@@ -13,7 +13,8 @@ namespace {
 class ViewCommand : public CommandTest {
  protected:
   void SetUp() override {
-    if (!reports::has_viewer()) GTEST_SKIP() << "this build has no viewer: it takes Node and a compiler for WebAssembly";
+    if (!reports::has_viewer())
+      GTEST_SKIP() << "this build has no viewer: it takes Node and a compiler for WebAssembly";
   }
 
   // What the page holds.
@@ -44,7 +45,8 @@ TEST_F(ViewCommand, StoredVerdictsOfAllLanesCanariesAmongThem) {
   int differ = 0;
   for (const nlohmann::json& pair : replay["pairs"]) {
     EXPECT_EQ(pair["verdicts"].get<std::string>().size(), replay["lanes"].size());
-    differ += pair["verdicts"].get<std::string>().find_first_not_of(pair["verdicts"].get<std::string>()[0]) != std::string::npos;
+    differ += pair["verdicts"].get<std::string>().find_first_not_of(pair["verdicts"].get<std::string>()[0]) !=
+              std::string::npos;
   }
   EXPECT_GT(differ, 30);
 }
@@ -52,22 +54,27 @@ TEST_F(ViewCommand, StoredVerdictsOfAllLanesCanariesAmongThem) {
 TEST_F(ViewCommand, FilesFoldersAndMeshes) {
   std::ofstream(shell.folder / "two.pairs") << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1\n"
                                                "0 0 0 1 1 0 1 0 0  .75 .75 1 .75 .75 2 .5 .75 2 | name=above\n";
-  std::ofstream(shell.folder / "mesh.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.3 0.3 -1\nv 0.3 0.3 1\nv 2 2 0.5\nf 1 2 3\nf 4 5 6\n";
+  std::ofstream(shell.folder / "mesh.obj")
+      << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.3 0.3 -1\nv 0.3 0.3 1\nv 2 2 0.5\nf 1 2 3\nf 4 5 6\n";
   EXPECT_EQ(shell("graze view two.pairs").out, "Wrote view.html: 2 pairs\n");
   EXPECT_EQ(data("view.html")["pairs"][1]["name"], "above");
   expect_done("mkdir -p some && cp two.pairs some/a.pairs && cp two.pairs some/b.pairs");
   EXPECT_EQ(shell("graze view some").out, "Wrote view.html: 4 pairs\n");
   EXPECT_EQ(shell("graze view mesh.obj --out mesh.html").out, "Wrote mesh.html: 1 pair, 2 triangles\n");
-  expect_done("graze fuzz --pairs 200 --strata thesis,near_edge_edge --lanes '*/f32/cpu' --out run && graze view run --out run.html");
+  expect_done(
+      "graze fuzz --pairs 200 --strata thesis,near_edge_edge --lanes '*/f32/cpu' --out run && graze view run --out "
+      "run.html");
   EXPECT_GT(data("run.html")["pairs"].size(), 3u);
-  std::ofstream(shell.folder / "small.pairs") << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1 | kind=minimised from=mesh:1:597\n";
+  std::ofstream(shell.folder / "small.pairs")
+      << "0 0 0 1 1 0 1 0 0  .75 .75 0 .75 .75 1 .5 .75 1 | kind=minimised from=mesh:1:597\n";
   expect_done("graze view small.pairs --out small.html");
   EXPECT_EQ(data("small.html")["pairs"][0]["name"], "minimised from mesh:1:597");
 }
 
 // What `graze query` answers, all triangles at once: by its own two words, or of the hits that it wrote.
 TEST_F(ViewCommand, QueriesAndTheirResults) {
-  std::ofstream(shell.folder / "tent.obj") << "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 3 1 -1\nv 3 1 1\nv 4 2 1\nf 1 3 4\nf 1 2 3\nf 5 6 7\n";
+  std::ofstream(shell.folder / "tent.obj")
+      << "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 3 1 -1\nv 3 1 1\nv 4 2 1\nf 1 3 4\nf 1 2 3\nf 5 6 7\n";
   std::ofstream(shell.folder / "ref.txt") << "3 1 0  3 2 2  4 1 2\n";
   EXPECT_EQ(shell("graze view ref.txt tent.obj").out, "Wrote view.html: 2 pairs, 3 triangles\n");
   nlohmann::json held = data("view.html");
@@ -80,8 +87,10 @@ TEST_F(ViewCommand, QueriesAndTheirResults) {
   EXPECT_EQ(shell("graze view hits.pairs").out, "Wrote view.html: 2 pairs, 2 triangles\n");
   EXPECT_EQ(data("view.html")["opens"], "triangles");
   EXPECT_EQ(shell("graze view hits.obj#0 hits.obj").out, "Wrote view.html: 3 pairs, 3 triangles\n");
-  EXPECT_EQ(shell("echo 9 9 9 9 8 9 8 9 9 > far.txt; graze view far.txt tent.obj").out, "Wrote view.html: 1 pair, 3 triangles\n");
-  expect_error("echo 9 9 9 9 8 9 8 9 9 >> ref.txt; graze view ref.txt tent.obj", 1, "ref.txt: expected one reference, found 2");
+  EXPECT_EQ(shell("echo 9 9 9 9 8 9 8 9 9 > far.txt; graze view far.txt tent.obj").out,
+            "Wrote view.html: 1 pair, 3 triangles\n");
+  expect_error("echo 9 9 9 9 8 9 8 9 9 >> ref.txt; graze view ref.txt tent.obj", 1,
+               "ref.txt: expected one reference, found 2");
   expect_error("graze view far.txt no.obj", 1, "no.obj: expected a mesh file");
   expect_done("graze view thesis:1:0");
   EXPECT_EQ(data("view.html")["opens"], "pair");

@@ -22,7 +22,8 @@ inline Pair pair_of(std::string_view bytes) {
   std::memcpy(&pair, all + 1, sizeof pair);
   if (all[0] % 2 == 0) return pair;
   for (int i = 0; i < kCoordinates; ++i)
-    coordinates(pair)[i] = std::ldexp(static_cast<float>(static_cast<signed char>(all[i + 2])), static_cast<signed char>(all[1]));
+    coordinates(pair)[i] =
+        std::ldexp(static_cast<float>(static_cast<signed char>(all[i + 2])), static_cast<signed char>(all[1]));
   return pair;
 }
 

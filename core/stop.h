@@ -8,8 +8,8 @@ namespace graze {
 
 inline std::atomic<bool> stop_requested{false};
 
-// Thrown out of what cannot come to its end in time; a verb then ends as if it had been asked between two steps. It is no
-// std::exception: nobody who expects something to fail takes it for that failure.
+// Thrown out of what cannot come to its end in time; a verb then ends as if it had been asked between two steps. It is
+// no std::exception: nobody who expects something to fail takes it for that failure.
 struct Stopped {};
 
 }  // namespace graze

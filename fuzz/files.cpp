@@ -74,7 +74,8 @@ int opened_alone(const std::string& file) {
   while (true) {
     const int number = open(file.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
     if (number < 0) return number;
-    struct stat opened {}, named {};
+    struct stat opened {
+    }, named{};
     if (fstat(number, &opened) != 0 || !S_ISREG(opened.st_mode)) return number;
     const bool locked = flock(number, LOCK_EX) == 0;
     if (!locked && errno != EINTR) return number;  // a file system without locks
@@ -89,8 +90,8 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
   struct stat state {};
   if (part.number < 0) fail(asked, "to write it", std::strerror(errno));
   if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode)) fail(beside, "no such file", "a device or a pipe");
-  bool done = ftruncate(part.number, 0) == 0 && write_all(part.number, text) &&
-              (mode == 0 || fchmod(part.number, mode) == 0);
+  bool done =
+      ftruncate(part.number, 0) == 0 && write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
   // A full disk may show only on closing; the file itself stays open, and so locked, until it is in its place.
   done = done && close(dup(part.number)) == 0;
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
@@ -129,7 +130,8 @@ FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
   if (handle_ < 0) fail(folder, "a folder", std::strerror(errno));
   if (flock(handle_, when_taken == WhenTaken::wait     ? LOCK_EX
                      : when_taken == WhenTaken::refuse ? LOCK_EX | LOCK_NB
-                                                       : LOCK_SH | LOCK_NB) == 0) return;
+                                                       : LOCK_SH | LOCK_NB) == 0)
+    return;
   const int error = errno;
   close(handle_);
   fail(folder, "to be alone", error == EWOULDBLOCK ? "another process at work in it" : std::strerror(error));

@@ -16,8 +16,8 @@ std::string read_whole(const std::filesystem::path& file);
 // Throws: std::runtime_error for a folder, and when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
-// Held as long as it lives: no other process, and no other part of this one, holds the folder's lock; where it is shared,
-// only others that share it.
+// Held as long as it lives: no other process, and no other part of this one, holds the folder's lock; where it is
+// shared, only others that share it.
 class FolderLock {
  public:
   enum class WhenTaken { wait, refuse, share };  // share: refuses where one holds it alone

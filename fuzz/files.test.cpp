@@ -165,8 +165,10 @@ TEST_F(Files, GrazeKnowsItsOwn) {
   EXPECT_TRUE(replaces(R"({"pairs": 1, "seed": 2})", R"({"pairs": 3, "seed": 4, "laws": []})"));
   for (const char* other : {R"({"seed": 1, "pairs": 2})", R"({"pairs": 1})", "[1]", "{", "{}"})
     EXPECT_FALSE(replaces(other, R"({"pairs": 3, "seed": 4, "laws": []})")) << other;
-  EXPECT_TRUE(replaces("<!doctype html>\n<title>Graze: viewer</title>", "<!DOCTYPE html>\n<title>Graze: discrepancy report</title>"));
-  EXPECT_FALSE(replaces("<!DOCTYPE html>\n<title>My thesis</title>", "<!DOCTYPE html>\n<title>Graze: discrepancy report</title>"));
+  EXPECT_TRUE(replaces("<!doctype html>\n<title>Graze: viewer</title>",
+                       "<!DOCTYPE html>\n<title>Graze: discrepancy report</title>"));
+  EXPECT_FALSE(replaces("<!DOCTYPE html>\n<title>My thesis</title>",
+                        "<!DOCTYPE html>\n<title>Graze: discrepancy report</title>"));
   EXPECT_TRUE(replaces("<svg width=\"1\" fill=\"#777\"><g/></svg>", "<svg width=\"1\" fill=\"#777\"><text/></svg>"));
   EXPECT_FALSE(replaces("<svg width=\"2\"></svg>", "<svg width=\"1\" fill=\"#777\"><text/></svg>"));
   const std::string picture = std::string("\x89PNG....") + "PLTE" + std::string(24, 'c');

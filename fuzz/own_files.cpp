@@ -30,7 +30,8 @@ std::vector<std::string> first_keys(const std::string& text) {
 std::string mark_of(const std::string& text) {
   constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
   constexpr std::size_t kColours = 24;  // bytes: the first eight, which all ulp maps have
-  if (text.starts_with("\x89PNG")) return text.substr(std::min(text.find(kPalette), text.size()), kPalette.size() + kColours);
+  if (text.starts_with("\x89PNG"))
+    return text.substr(std::min(text.find(kPalette), text.size()), kPalette.size() + kColours);
   if (text.find(kTitle) != text.npos) return std::string(kTitle);
   return text.substr(0, text.find_first_of(">\n"));
 }
@@ -38,7 +39,8 @@ std::string mark_of(const std::string& text) {
 bool is_nothing(const fs::path& entry) {
   if (entry.string().ends_with(".part")) return true;
   return fs::is_directory(fs::symlink_status(entry)) &&
-         std::all_of(fs::directory_iterator(entry), fs::directory_iterator(), [](const auto& e) { return is_nothing(e.path()); });
+         std::all_of(fs::directory_iterator(entry), fs::directory_iterator(),
+                     [](const auto& e) { return is_nothing(e.path()); });
 }
 
 }  // namespace
@@ -55,13 +57,16 @@ bool may_replace(const fs::path& file, const std::string& text) {
 }
 
 void expect_own(const fs::path& file, const std::string& text) {
-  constexpr std::string_view kResults[] = {"summary.json", "status.json", "timings.json", "kinds.json", "hunt.json", "margins.svg"};
+  constexpr std::string_view kResults[] = {"summary.json", "status.json", "timings.json",
+                                           "kinds.json",   "hunt.json",   "margins.svg"};
   std::error_code none;
-  const bool in_question = fs::is_symlink(fs::symlink_status(file, none)) ||
-                           std::find(std::begin(kResults), std::end(kResults), file.filename().string()) != std::end(kResults);
+  const bool in_question =
+      fs::is_symlink(fs::symlink_status(file, none)) ||
+      std::find(std::begin(kResults), std::end(kResults), file.filename().string()) != std::end(kResults);
   if (may_replace_foreign || !in_question || !fs::is_regular_file(file, none) || fs::file_size(file, none) == 0) return;
   const std::size_t key = text.find('"');  // of a JSON object, up to its first key's end
-  const std::string mark = text.starts_with('{') && key != text.npos ? text.substr(0, text.find('"', key + 1) + 1) : mark_of(text);
+  const std::string mark =
+      text.starts_with('{') && key != text.npos ? text.substr(0, text.find('"', key + 1) + 1) : mark_of(text);
   if (read_whole(file).find(mark) != 0 && !may_replace(file, text))
     throw UsageError(file.string() + ": expected no file, or one that graze wrote, found another; --force replaces it");
 }
@@ -70,13 +75,14 @@ bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   std::error_code none;
   if (!fs::is_directory(folder, none)) return true;  // who makes it finds out what is wrong
   return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); }) ||
-         std::all_of(fs::directory_iterator(folder), fs::directory_iterator(), [](const auto& e) { return is_nothing(e.path()); });
+         std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                     [](const auto& e) { return is_nothing(e.path()); });
 }
 
 bool may_hold_campaign(const fs::path& folder) {
   const auto begins = [&](const char* name, const char* with) { return read_whole(folder / name).starts_with(with); };
-  return may_fill(folder, {kDatabase}) || begins("summary.json", "{\n \"spec\"") || begins("status.json", "{\n \"state\"") ||
-         !rank_directories(folder).empty();
+  return may_fill(folder, {kDatabase}) || begins("summary.json", "{\n \"spec\"") ||
+         begins("status.json", "{\n \"state\"") || !rank_directories(folder).empty();
 }
 
 }  // namespace graze::fuzz

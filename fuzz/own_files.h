@@ -8,10 +8,10 @@
 
 namespace graze::fuzz {
 
-// Whether a result with this text may replace the file, seen through symbolic links: it is missing or empty, a device or
-// a pipe, or Graze wrote it. Graze knows its files by what all of their kind have: the same first line, or first tag;
-// of a JSON object the first two keys; of a page its title; of a picture of points its colours.
-// Throws: std::runtime_error for a file that cannot be read.
+// Whether a result with this text may replace the file, seen through symbolic links: it is missing or empty, a device
+// or a pipe, or Graze wrote it. Graze knows its files by what all of their kind have: the same first line, or first
+// tag; of a JSON object the first two keys; of a page its title; of a picture of points its colours. Throws:
+// std::runtime_error for a file that cannot be read.
 bool may_replace(const std::filesystem::path& file, const std::string& text);
 
 // --force, for all of this process: foreign files may be replaced.

@@ -69,7 +69,8 @@ Plan plan(const Campaign& campaign, const Sample& sample, const Workers& workers
   const double of_row = workers.devices ? static_cast<double>(campaign.engine_batch) : kRowPairs;
   result.shard_bytes = result.merged_bytes = kDatabaseBytes;
   for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
-    const double here = static_cast<double>(campaign.sources[s].pairs), part = here / static_cast<double>(result.shards);
+    const double here = static_cast<double>(campaign.sources[s].pairs),
+                 part = here / static_cast<double>(result.shards);
     result.shard_bytes += std::ceil(part / of_row) * row_bytes(sample, s, std::min(part, of_row));
     result.merged_bytes += row_bytes(sample, s, here);
   }

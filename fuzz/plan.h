@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a campaign takes, and how much disk: from what its pairs cost here, stratum by stratum, or from a given rate.
+// How long a campaign takes, and how much disk: from what its pairs cost here, stratum by stratum, or from a given
+// rate.
 #pragma once
 
 #include <optional>

@@ -191,11 +191,15 @@ struct Planar {
 
 // A coordinate that can be left out of the plane with this normal.
 template <class Number>
-int droppable(const Point<Number>& normal) { return normal.c[0].sign() ? 0 : normal.c[1].sign() ? 1 : 2; }
+int droppable(const Point<Number>& normal) {
+  return normal.c[0].sign() ? 0 : normal.c[1].sign() ? 1 : 2;
+}
 
 // A coordinate that can be left out of a line with this direction (any, if it is zero).
 template <class Number>
-int droppable_of_line(const Point<Number>& direction) { return direction.c[0].sign() ? 2 : 0; }
+int droppable_of_line(const Point<Number>& direction) {
+  return direction.c[0].sign() ? 2 : 0;
+}
 
 // b is a triangle with normal nb, and a is flat.
 template <class Number>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of GMP integers in registers that are never freed, and the simplices that gmp_contact.cpp compares. A register
-// is of any size, or of two limbs.
+// Vectors of GMP integers in registers that are never freed, and the simplices that gmp_contact.cpp compares. A
+// register is of any size, or of two limbs.
 #pragma once
 
 #include <gmp.h>
@@ -86,7 +86,9 @@ void dot(Number& out, const Point<Number>& u, const Point<Number>& v) {
 }
 
 template <class Number>
-bool is_zero(const Point<Number>& v) { return v.c[0].sign() == 0 && v.c[1].sign() == 0 && v.c[2].sign() == 0; }
+bool is_zero(const Point<Number>& v) {
+  return v.c[0].sign() == 0 && v.c[1].sign() == 0 && v.c[2].sign() == 0;
+}
 
 // Lexicographic order: -1, 0 or 1.
 template <class Number>

@@ -71,7 +71,8 @@ TEST(MarginBucket, IsTheExactMarginsBucket) {
 TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   std::mt19937_64 random(7);
   const auto value = [&](int spread) {
-    const double hi = std::ldexp(1.0 + static_cast<double>(random() >> 12) * 0x1p-52, static_cast<int>(random() % 64) / spread);
+    const double hi =
+        std::ldexp(1.0 + static_cast<double>(random() >> 12) * 0x1p-52, static_cast<int>(random() % 64) / spread);
     const double lo = std::ldexp(static_cast<double>(random() >> 11) * 0x1p-53 - 0.5, std::ilogb(hi) - 53);
     return random() % 2 ? DoubleDouble{hi, lo} : DoubleDouble{-hi, -lo};
   };
@@ -221,7 +222,8 @@ TEST(ExactSeparation, IsAlongTheDirectionsOfTheBounds) {
       const Vec3<mpz_class> exact = integer_direction(large.a, large.b, d);
       const Vec3<double> expected = direction(frame, d);
       const double scale = std::ldexp(1.0, (d < kFromEdgeA ? 2 : d < kFromVertex ? 3 : 1) * grid.exponent);
-      ASSERT_EQ((Vec3<double>{exact.x.get_d() * scale, exact.y.get_d() * scale, exact.z.get_d() * scale}), expected) << d << hex(pair);
+      ASSERT_EQ((Vec3<double>{exact.x.get_d() * scale, exact.y.get_d() * scale, exact.z.get_d() * scale}), expected)
+          << d << hex(pair);
       const SquaredMargin separation = exact_separation(large, grid.exponent, d);
       ASSERT_LE(rounded(separation), distance) << d << hex(pair);
       is_distance = is_distance || (disjoint && rounded(separation) == distance);
@@ -307,7 +309,8 @@ TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
     b[shared] = a[0];
     const Vec3<float> axis = cross(a[1] - a[0], edges ? b[1] - b[0] : a[2] - a[0]);
     const auto side = [&](const Vec3<float>& v) { return dot(axis, v - a[0]) > 0; };
-    const bool on_one_side = edges ? side(a[2]) != side(b[2 - shared]) : side(b[(shared + 1) % 3]) == side(b[(shared + 2) % 3]);
+    const bool on_one_side =
+        edges ? side(a[2]) != side(b[2 - shared]) : side(b[(shared + 1) % 3]) == side(b[(shared + 2) % 3]);
     if (!on_one_side) continue;
     ++touching;
     ASSERT_EQ(first_attempt::overlap_along(a, b, edges).along, 0) << n;

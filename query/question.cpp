@@ -39,8 +39,7 @@ void expect_aligned(const void* at, const std::string& name, std::size_t alignme
 // Whether `count` elements of `size` bytes, `stride` bytes apart, fit into an object at this address: into PTRDIFF_MAX
 // bytes, and before the end of the address space.
 bool fits(const void* at, std::uint64_t count, std::size_t stride, std::size_t size) {
-  const std::uintptr_t room =
-      std::min<std::uintptr_t>(PTRDIFF_MAX, UINTPTR_MAX - reinterpret_cast<std::uintptr_t>(at));
+  const std::uintptr_t room = std::min<std::uintptr_t>(PTRDIFF_MAX, UINTPTR_MAX - reinterpret_cast<std::uintptr_t>(at));
   return count == 0 || (size <= room && (count - 1) <= (room - size) / stride);
 }
 
@@ -197,8 +196,7 @@ Question question_of(const graze_query& query) {
   expect_fits(query.references, query.reference_count, 36, 36, "references");
   question.references = {query.references, query.reference_count * 9};
   expect(query.part_count >= 1 && query.parts, "parts: expected at least one, found none");
-  expect(query.part_count <= kMostParts,
-         "parts: expected at most 65536, found " + std::to_string(query.part_count));
+  expect(query.part_count <= kMostParts, "parts: expected at most 65536, found " + std::to_string(query.part_count));
   expect_aligned(query.parts, "parts", alignof(graze_triangles));
   expect_fits(query.parts, query.part_count, sizeof *query.parts, sizeof *query.parts, "parts");
   for (std::uint64_t p = 0; p < query.part_count; ++p) {

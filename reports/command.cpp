@@ -23,7 +23,8 @@ std::string quoted(const std::string& word) {
 // The lanes that ran; where others were asked for as well, the patterns that asked. Empty for all that run here.
 std::string lane_option(const Json& spec, const std::vector<std::string>& ids) {
   if (spec.contains("lanes_left_out"))
-    return fmt::format(" --lanes '{}'", fmt::join(spec["lanes_left_out"].at("patterns").get<std::vector<std::string>>(), ","));
+    return fmt::format(" --lanes '{}'",
+                       fmt::join(spec["lanes_left_out"].at("patterns").get<std::vector<std::string>>(), ","));
   return ids.size() == lanes().size() ? "" : fmt::format(" --lanes '{}'", fmt::join(ids, ","));
 }
 
@@ -32,7 +33,8 @@ std::string hunt_command(const Json& spec, const std::vector<std::string>& ids) 
   const std::vector<std::string> strata = spec.at("hunt").at("strata");
   std::string command = fmt::format("graze hunt --runs {} --seed {}", spec.at("pairs").dump(), spec.at("seed").dump());
   if (spec.contains("scene")) command += " --scene " + quoted(spec.at("scene").at("file").get<std::string>());
-  if (spec.contains("scene") || strata.size() != strata::kStrataCount) command += fmt::format(" --strata {}", fmt::join(strata, ","));
+  if (spec.contains("scene") || strata.size() != strata::kStrataCount)
+    command += fmt::format(" --strata {}", fmt::join(strata, ","));
   command += lane_option(spec, ids);
   return command + " --out hunt";
 }

@@ -32,8 +32,8 @@ std::vector<std::pair<Name, Json>> wrong_by_name(const Json& report) {
   return rates;
 }
 
-// Of all errors of both, or of all right verdicts where these are fewer, each is the first campaign's with a chance of its
-// share of the pairs, if the rates are the same: a binomial distribution, a little wider than the true one.
+// Of all errors of both, or of all right verdicts where these are fewer, each is the first campaign's with a chance of
+// its share of the pairs, if the rates are the same: a binomial distribution, a little wider than the true one.
 // Reference: Przyborowski and Wilenski 1940, the conditional test of two rates.
 bool apart(const Json& l, const Json& r) {
   double count[2], of[2];

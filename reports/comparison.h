@@ -7,8 +7,8 @@
 namespace graze::reports {
 
 // A rate has changed when a difference as large comes about by chance in less than one of a million comparisons. A kind
-// of failure has come or gone when one campaign has none of it where at least kLeastSignatures of its signatures were to
-// be expected; that is as rare.
+// of failure has come or gone when one campaign has none of it where at least kLeastSignatures of its signatures were
+// to be expected; that is as rare.
 inline constexpr double kLeastChance = 1e-6;
 inline constexpr double kLeastSignatures = 14;
 

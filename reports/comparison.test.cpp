@@ -86,8 +86,9 @@ TEST(Comparison, HowTheyDifferIsSaid) {
   Json in_scene = report_of(1, 50'000, 10);
   in_scene["run"]["scene"] = "arm.toml#1";
   add_comparison(in_scene, before, Json::array(), Json::array());
-  EXPECT_EQ(in_scene["compare"]["differences"],
-            Json::array({"They differ in scene, in which a stratum draws other pairs: none before, arm.toml#1 after."}));
+  EXPECT_EQ(
+      in_scene["compare"]["differences"],
+      Json::array({"They differ in scene, in which a stratum draws other pairs: none before, arm.toml#1 after."}));
   Json same = before;
   add_comparison(same, before, Json::array(), Json::array());
   EXPECT_TRUE(same["compare"]["differences"].empty());

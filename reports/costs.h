@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lanes cost, from a campaign's timings.json (fuzz/campaign/lane_costs.h). Kept apart from the report's data, which
-// is the same whoever ran the campaign.
+// What lanes cost, from a campaign's timings.json (fuzz/campaign/lane_costs.h). Kept apart from the report's data,
+// which is the same whoever ran the campaign.
 #pragma once
 
 #include <filesystem>
@@ -32,8 +32,8 @@ std::optional<Costs> read_costs(const std::filesystem::path& directory, const Ca
 // Requires: what timings.json holds.
 std::optional<Costs> costs_of(const nlohmann::ordered_json& timings, const CampaignCounts& counts);
 
-// What costs.json holds: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}], "answer"},
-// as reports/web/src/report.ts describes it; group null: all strata together.
+// What costs.json holds: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],
+// "answer"}, as reports/web/src/report.ts describes it; group null: all strata together.
 nlohmann::ordered_json to_json(const Costs& costs, const CampaignCounts& counts);
 
 }  // namespace graze::reports

@@ -33,9 +33,7 @@ struct StratumCounts {
   std::map<Bucket, WrongCounts> margins;
   std::map<std::string, std::map<int, WrongCounts>> extremes;  // by axis ("scale", "offset") and exponent
 
-  std::uint64_t wrong(std::size_t lane) const {
-    return lanes[lane].wrong();
-  }
+  std::uint64_t wrong(std::size_t lane) const { return lanes[lane].wrong(); }
 };
 
 // Strata that are asked after together (strata/groups.h).

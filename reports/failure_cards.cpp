@@ -62,8 +62,8 @@ double number_in(const std::filesystem::path& file, const corpus::Entry& entry, 
 }
 
 Verdict verdict_of(std::string_view word) {
-  for (const Verdict verdict : {Verdict::disjoint, Verdict::intersects, Verdict::crashed, Verdict::timed_out,
-                                Verdict::unstable}) {
+  for (const Verdict verdict :
+       {Verdict::disjoint, Verdict::intersects, Verdict::crashed, Verdict::timed_out, Verdict::unstable}) {
     if (word == name(verdict)) return verdict;
   }
   return Verdict::declined;

@@ -159,7 +159,8 @@ ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view co
   }
   if (opened.kind == "command") {
     call.command = plain + end;
-    call.decide = fmt::format(R"(// The program is asked about this pair alone, by its line.
+    call.decide =
+        fmt::format(R"(// The program is asked about this pair alone, by its line.
 static int decide(const {}*, const {}*) {{
   FILE* program = popen({},
                         "r");
@@ -174,7 +175,7 @@ static int decide(const {}*, const {}*) {{
   return said == '?' ? -1 : said - '0';
 }}
 )",
-                              real, real, cpp_string("echo '" + hex_line(pair) + "' | (" + opened.wanted.what.substr(4) + ")"));
+                    real, real, cpp_string("echo '" + hex_line(pair) + "' | (" + opened.wanted.what.substr(4) + ")"));
     return call;
   }
   const std::string file = opened.file.string();
@@ -200,9 +201,8 @@ static int decide(const {}*, const {}*) {{
   if (describes_itself) flags += " -I" + shell_word((subjects::cache_folder() / "include").string());
   const std::string function = function_of(opened);
   if (opened.file.extension() == ".c") {
-    call.command =
-        fmt::format("cc -std=gnu11 -O2{} -c {} -o subject.o && {} -I{} subject.o{}", flags, shell_word(file), plain,
-                    shell_word((subjects::cache_folder() / "include").string()), end);
+    call.command = fmt::format("cc -std=gnu11 -O2{} -c {} -o subject.o && {} -I{} subject.o{}", flags, shell_word(file),
+                               plain, shell_word((subjects::cache_folder() / "include").string()), end);
     if (describes_itself) {
       call.decide = "#include <graze/subject.h>\nextern \"C\" const struct graze_subject graze_subject;\n" +
                     by_description(real, scalar, "&::graze_subject");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program needs that shows a failure of a person's own code: how to build it, and a function that calls the code.
+// What a program needs that shows a failure of a person's own code: how to build it, and a function that calls the
+// code.
 #pragma once
 
 #include <string>
@@ -22,7 +23,8 @@ struct ForeignCall {
 // In a program for a device, by nvcc.   Requires: shows_foreign(lane), a CUDA lane.
 ForeignCall kernel_call(const Lane& lane);
 
-// On the host; a CUDA lane by the graze command, which asks a device or the lane's twin.   Requires: shows_foreign(lane).
+// On the host; a CUDA lane by the graze command, which asks a device or the lane's twin.   Requires:
+// shows_foreign(lane).
 ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view compiler, std::string_view libraries);
 
 }  // namespace graze::reports

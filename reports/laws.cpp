@@ -92,14 +92,16 @@ std::string laws_table(const analysis::LawSpec& spec, const analysis::Laws& laws
       cells.emplace_back(count.pairs == 0 ? "-" : bare_percent(count.changed, count.pairs), count.changed > 0);
       if (law.law != analysis::Law::scale) continue;
       const bool known = analysis::knows_range(*spec.lanes[l]) || count.changed == 0;
-      cells.emplace_back(count.pairs == 0 || !known ? "-" : bare_percent(count.in_range, count.pairs), count.in_range > 0);
+      cells.emplace_back(count.pairs == 0 || !known ? "-" : bare_percent(count.in_range, count.pairs),
+                         count.in_range > 0);
     }
     table.add(std::move(cells));
   }
-  return wrapped("In % of the pairs that have an image: those on which the lane's verdict on some image is another one, "
-                 "although the question is the same (part: intersects, of a part of a triangle, where the whole is "
-                 "disjoint; in range: where nothing over- or underflows).",
-                 screen.columns) +
+  return wrapped(
+             "In % of the pairs that have an image: those on which the lane's verdict on some image is another one, "
+             "although the question is the same (part: intersects, of a part of a triangle, where the whole is "
+             "disjoint; in range: where nothing over- or underflows).",
+             screen.columns) +
          table.text(screen) + scales_table(spec, laws, screen);
 }
 
@@ -118,8 +120,10 @@ std::vector<std::string> laws_sentences(const analysis::LawSpec& spec, const ana
     std::string text;
     for (const auto& [algorithm, names] : claimed)
       text += fmt::format("{}{} ({})", text.empty() ? "" : "; ", algorithm, names);
-    sentences.push_back("Claimed by algorithms, of lanes that round each operation as written, and kept by them on every "
-                        "pair on which nothing over- or underflows: " + text + ".");
+    sentences.push_back(
+        "Claimed by algorithms, of lanes that round each operation as written, and kept by them on every "
+        "pair on which nothing over- or underflows: " +
+        text + ".");
   }
   sentences.push_back(fmt::format(
       "exact breaks no law on {} pairs and their {} images; CGAL and GMP none on {} of the pairs and their {} images.",

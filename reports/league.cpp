@@ -176,7 +176,8 @@ constexpr Extra kExtras[] = {
        const Json& lawless = row.at("lawless");
        return count_text(lawless.at("count")) + " of " + count_text(lawless.at("of"));
      }},
-    {"flips", [](const Json&, const Json& row) { return row.at("flips").is_null() ? "-" : count_text(row.at("flips")); }},
+    {"flips",
+     [](const Json&, const Json& row) { return row.at("flips").is_null() ? "-" : count_text(row.at("flips")); }},
     {"ns a pair", nanoseconds_text},
 };
 
@@ -187,12 +188,16 @@ std::string md(std::string text) {
 
 std::string percent_text(const Json& share) {
   if (share.at("of") == 0) return "-";
-  const auto percent = [](double x) { return x == 0 ? "0" : x < 1e-4 ? fmt::format("{:.4f}", 100 * x) : fmt::format("{:.3g}", 100 * x); };
+  const auto percent = [](double x) {
+    return x == 0 ? "0" : x < 1e-4 ? fmt::format("{:.4f}", 100 * x) : fmt::format("{:.3g}", 100 * x);
+  };
   const double low = share.at("low"), high = share.at("high");
   return fmt::format("{} ({}…{})", percent(share.at("share")), rounded_down(100 * low, 3), rounded_up(100 * high, 3));
 }
 
-std::string table_line(const std::vector<std::string>& cells) { return fmt::format("| {} |\n", fmt::join(cells, " | ")); }
+std::string table_line(const std::vector<std::string>& cells) {
+  return fmt::format("| {} |\n", fmt::join(cells, " | "));
+}
 
 std::string page_counts(const Json& league) {
   std::vector<std::string> head{"lane"}, rule{"---"};
@@ -206,7 +211,8 @@ std::string page_counts(const Json& league) {
     for (const auto& [group, pairs] : league.at("groups").items()) {
       const Json& counts = row.at("groups").at(group);
       cells.push_back(misses_and_false_hits(counts));
-      if (counts.at("pairs") != pairs && counts.at("pairs") != 0) cells.back() += " of " + count_text(counts.at("pairs"));
+      if (counts.at("pairs") != pairs && counts.at("pairs") != 0)
+        cells.back() += " of " + count_text(counts.at("pairs"));
     }
     for (const Extra& extra : kExtras) cells.push_back(extra.text(league, row));
     text += table_line(cells);
@@ -231,15 +237,18 @@ std::string page_shares(const Json& league) {
 }
 
 std::string page_subjects(const Json& league) {
-  std::string text = "| subject | version | source | what its documentation states | left out of its contract |\n|---|---|---|---|---|\n";
+  std::string text =
+      "| subject | version | source | what its documentation states | left out of its contract "
+      "|\n|---|---|---|---|---|\n";
   for (const Json& subject : league.at("subjects")) {
     if (!subject.at("foreign")) continue;
     const auto field = [&](const char* key, const char* otherwise) {
       const std::string value = subject.at(key);
       return value.empty() ? otherwise : md(value);
     };
-    text += table_line({fmt::format("`{}`", subject.at("name").get<std::string>()), field("version", "not known"),
-                        field("source", "not known"), field("convention", "nothing stated"), field("outside", "nothing")});
+    text +=
+        table_line({fmt::format("`{}`", subject.at("name").get<std::string>()), field("version", "not known"),
+                    field("source", "not known"), field("convention", "nothing stated"), field("outside", "nothing")});
   }
   return text;
 }
@@ -251,12 +260,14 @@ std::string page_failures(const Json& league) {
       subject = failure.at("subject");
       text += fmt::format("\n### {}\n", subject);
     }
-    const std::string contact = failure.at("contact") == "none" ? "" : fmt::format(" (contact: {})", failure.at("contact").get<std::string>());
+    const std::string contact =
+        failure.at("contact") == "none" ? "" : fmt::format(" (contact: {})", failure.at("contact").get<std::string>());
     const double ulps = failure.at("margin_ulps");
-    text += fmt::format("\n**{}, {}**: `{}` says {}; the truth is {}{}, margin {:.4g}{}.{}\n", failure.at("shape").get<std::string>(),
-                        failure.at("by").get<std::string>(), failure.at("lane").get<std::string>(),
-                        failure.at("says").get<std::string>(), failure.at("truth").get<std::string>(), contact,
-                        failure.at("margin").get<double>(), ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
+    text += fmt::format("\n**{}, {}**: `{}` says {}; the truth is {}{}, margin {:.4g}{}.{}\n",
+                        failure.at("shape").get<std::string>(), failure.at("by").get<std::string>(),
+                        failure.at("lane").get<std::string>(), failure.at("says").get<std::string>(),
+                        failure.at("truth").get<std::string>(), contact, failure.at("margin").get<double>(),
+                        ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
                         failure.at("minimised") ? "" : " Not minimised.");
     text += fmt::format("\n```sh\n{}\n```\n", failure.at("again").get<std::string>());
     if (!failure.at("file").is_null())
@@ -297,14 +308,10 @@ Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& s
     }
   }
   choose_drawings(failures, rows);
-  return {{"seed", league.seed},
-          {"pairs", league.pairs},
-          {"strata", league.strata},
-          {"groups", groups},
-          {"subjects", own},
-          {"rows", rows},
-          {"failures", failures},
-          {"failures_not_again", league.failures_not_again},
+  return {{"seed", league.seed},     {"pairs", league.pairs},
+          {"strata", league.strata}, {"groups", groups},
+          {"subjects", own},         {"rows", rows},
+          {"failures", failures},    {"failures_not_again", league.failures_not_again},
           {"timings", timings}};
 }
 
@@ -377,7 +384,8 @@ The simplest pair found of each subject, shape ("clear": as above) and way to be
       fmt::arg("command", command), fmt::arg("pairs", count_text(league.at("pairs"))),
       fmt::arg("seed", league.at("seed").get<std::uint64_t>()), fmt::arg("counts", page_counts(league)),
       fmt::arg("exponent", fuzz::kClearExponent), fmt::arg("repetitions", fuzz::kLeagueRepetitions),
-      fmt::arg("timed", fuzz::kLeagueTimedPairs), fmt::arg("machine", league.at("timings").at("machine").get<std::string>()),
+      fmt::arg("timed", fuzz::kLeagueTimedPairs),
+      fmt::arg("machine", league.at("timings").at("machine").get<std::string>()),
       fmt::arg("date", league.at("timings").at("date").get<std::string>()), fmt::arg("shares", page_shares(league)),
       fmt::arg("subjects", page_subjects(league)), fmt::arg("not_again", count_text(league.at("failures_not_again"))),
       fmt::arg("failures", page_failures(league)));

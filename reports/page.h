@@ -10,8 +10,8 @@ namespace graze::reports {
 // Whether this build has the page of reports/web, which takes Node to build.
 bool has_interactive_page();
 
-// The report in the page of reports/web if this build has that, else in a plain one; with what the viewer takes. costs: what make_costs returns.
-// choices: what make_choices returns.
+// The report in the page of reports/web if this build has that, else in a plain one; with what the viewer takes. costs:
+// what make_costs returns. choices: what make_choices returns.
 std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                  const nlohmann::ordered_json& choices);
 

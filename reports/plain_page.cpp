@@ -105,9 +105,8 @@ std::string threshold_words(const Json& report, std::size_t lane, const char* si
     const Json& t = row.at(side);
     text += (text.empty() ? "" : "; ") +
             report.at("groups")[row.at("group").get<std::size_t>()].at("id").get<std::string>() + ": " +
-            (!t.at("exponent").is_null()
-                 ? fmt::format("from 2^{} ulps (rate below {})", t.at("exponent").dump(),
-                               rate_words(t.at("bound"), Bound::upper))
+            (!t.at("exponent").is_null() ? fmt::format("from 2^{} ulps (rate below {})", t.at("exponent").dump(),
+                                                       rate_words(t.at("bound"), Bound::upper))
              : t.at("largest").is_null() ? std::string("no pairs")
                                          : fmt::format("errors up to 2^{} ulps", t.at("largest").dump()));
   }
@@ -229,8 +228,7 @@ coplanar, margin, algorithm, and a mark for each of its lanes: + false positive,
 
 std::string plain_page(const Json& report, const Json& costs, const Json& choices) {
   return kHead + answer_section(report, costs) + compare_section(report.at("compare")) + choices_section(choices) +
-         league(report) +
-         margin_section(report) + extremes_section(report) + signature_section(report) + kDefinitions +
+         league(report) + margin_section(report) + extremes_section(report) + signature_section(report) + kDefinitions +
          run_section(report) + "</body>\n</html>\n";
 }
 

@@ -91,10 +91,9 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const Places
         "overlap{}.",
         which, with_spread(cost), ground.pair, id, with_spread(others), everywhere);
   }
-  return fmt::format(
-      ", {} {} ns {}. The fastest published lane, {}, takes {}{}; it is wrong on {} of all pairs.", which,
-      nanoseconds(cost.middle), ground.pair, id, nanoseconds(others.middle), everywhere,
-      rate_words(wrong_share(counts, other).share));
+  return fmt::format(", {} {} ns {}. The fastest published lane, {}, takes {}{}; it is wrong on {} of all pairs.",
+                     which, nanoseconds(cost.middle), ground.pair, id, nanoseconds(others.middle), everywhere,
+                     rate_words(wrong_share(counts, other).share));
 }
 
 // Of what a lane is part: variants of one algorithm in one precision are not told apart here.
@@ -143,9 +142,9 @@ Sentence lane_to_use(const CampaignCounts& counts, const Costs* costs) {
   if (exact.empty()) return {"No exact lane ran, so there is none to recommend for every pair.", false};
   for (const std::size_t l : exact) {
     if (counts.total.wrong(l) == 0) continue;
-    return {fmt::format(
-        "{} is wrong on {} of {} pairs, which must not be: trust no exact lane before that is explained.",
-        counts.lanes[l].id, grouped(counts.total.wrong(l)), grouped(counts.total.pairs))};
+    return {
+        fmt::format("{} is wrong on {} of {} pairs, which must not be: trust no exact lane before that is explained.",
+                    counts.lanes[l].id, grouped(counts.total.wrong(l)), grouped(counts.total.pairs))};
   }
   return {fmt::format("Use {}: right on all {} pairs{}", ids(counts, exact), grouped(counts.total.pairs),
                       price(counts, costs, exact))};
@@ -168,9 +167,9 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
     return {not_settled(counts, "worst", worst, static_cast<std::size_t>(next))};
   const Places equals = those_wrong(counts, lanes, wrong(worst));
   const analysis::LaneCounts& found = counts.total.lanes[worst];
-  std::string text = fmt::format("Avoid {}: wrong on {}, {} false positives and {} false negatives", ids(counts, equals),
-                                 with_interval(wrong_share(counts, worst), " pairs"), grouped(found.false_positive),
-                                 grouped(found.false_negative));
+  std::string text = fmt::format("Avoid {}: wrong on {}, {} false positives and {} false negatives",
+                                 ids(counts, equals), with_interval(wrong_share(counts, worst), " pairs"),
+                                 grouped(found.false_positive), grouped(found.false_negative));
   if (const GroupCounts* general = counts.group("general"); general && general->counts.pairs != counts.total.pairs) {
     text += fmt::format("; of general pairs on {}",
                         rate_words(share_of(general->counts.wrong(worst), general->counts.pairs).share));

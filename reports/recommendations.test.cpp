@@ -39,23 +39,26 @@ Costs costs_with(const std::vector<std::pair<double, double>>& of_lanes) {
   return costs;
 }
 
-const std::vector<MadeLane> kThree{{"exact/f32/cpu", 0}, {"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 100}};
+const std::vector<MadeLane> kThree{
+    {"exact/f32/cpu", 0}, {"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 100}};
 
 TEST(Recommendations, TheExactLaneIsCheaperOnlyWhereSpreadsAreApart) {
   const CampaignCounts counts = counts_with(kThree);
   const Costs cheaper = costs_with({{38, 300}, {60, 62}, {80, 82}});
-  EXPECT_EQ(lane_to_use(counts, &cheaper).text,
-            "Use exact/f32/cpu: right on all 20,000 pairs, at 38 ns a general pair against 60 for the fastest published "
-            "lane, moller_1997/f32/cpu; over all strata 169 ns against 61.");
+  EXPECT_EQ(
+      lane_to_use(counts, &cheaper).text,
+      "Use exact/f32/cpu: right on all 20,000 pairs, at 38 ns a general pair against 60 for the fastest published "
+      "lane, moller_1997/f32/cpu; over all strata 169 ns against 61.");
   const Costs dearer = costs_with({{100, 300}, {60, 62}, {80, 82}});
   EXPECT_EQ(lane_to_use(counts, &dearer).text,
             "Use exact/f32/cpu: right on all 20,000 pairs, at 100 ns a general pair. The fastest published lane, "
             "moller_1997/f32/cpu, takes 60; over all strata 200 ns against 61; it is wrong on 9 % of all pairs.");
   const Costs near = costs_with({{59, 300}, {60, 62}, {80, 82}});
-  EXPECT_EQ(lane_to_use(counts, &near).text,
-            "Use exact/f32/cpu: right on all 20,000 pairs, at 59 ns (58 to 60) a general pair. Whether the fastest "
-            "published lane, moller_1997/f32/cpu at 60 ns (59 to 61), is cheaper is not settled: their spreads overlap; "
-            "over all strata 180 ns against 61.");
+  EXPECT_EQ(
+      lane_to_use(counts, &near).text,
+      "Use exact/f32/cpu: right on all 20,000 pairs, at 59 ns (58 to 60) a general pair. Whether the fastest "
+      "published lane, moller_1997/f32/cpu at 60 ns (59 to 61), is cheaper is not settled: their spreads overlap; "
+      "over all strata 180 ns against 61.");
 }
 
 TEST(Recommendations, CostsThatAreNotMeasuredAreNotSettled) {
@@ -82,18 +85,21 @@ TEST(Recommendations, AnExactLaneThatErrsIsNotRecommended) {
 TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
   const CampaignCounts counts = counts_with(kThree);
   const std::string avoid =
-      "Avoid moller_1997/f32/cpu: wrong on 1,800 pairs (9 %, 95 % interval 8.61 % to 9.41 %), 0 false positives and 1,800 "
+      "Avoid moller_1997/f32/cpu: wrong on 1,800 pairs (9 %, 95 % interval 8.61 % to 9.41 %), 0 false positives and "
+      "1,800 "
       "false negatives; of general pairs on 9 %";
   EXPECT_EQ(lane_to_avoid(counts, nullptr).text, avoid + ".");
   const Costs dear = costs_with({{38, 300}, {90, 62}, {80, 82}});
   EXPECT_EQ(lane_to_avoid(counts, &dear).text,
-            avoid + ". Nothing is won by it: separating_axes/f64/cpu is less often wrong and cheaper, 80 ns a general "
-                    "pair against 90.");
+            avoid +
+                ". Nothing is won by it: separating_axes/f64/cpu is less often wrong and cheaper, 80 ns a general "
+                "pair against 90.");
   const Costs near = costs_with({{38, 300}, {81, 62}, {80, 82}});
   EXPECT_EQ(lane_to_avoid(counts, &near).text, avoid + ".");
-  EXPECT_EQ(lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 890}}), nullptr).text,
-            "Which published lane is worst is not settled: the 95 % intervals of moller_1997/f32/cpu, wrong on 8.61 % to "
-            "9.41 % of all pairs, and separating_axes/f64/cpu, on 8.51 % to 9.31 %, overlap.");
+  EXPECT_EQ(
+      lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900}, {"separating_axes/f64/cpu", 890}}), nullptr).text,
+      "Which published lane is worst is not settled: the 95 % intervals of moller_1997/f32/cpu, wrong on 8.61 % to "
+      "9.41 % of all pairs, and separating_axes/f64/cpu, on 8.51 % to 9.31 %, overlap.");
   // Variants of one lane need not be told apart.
   EXPECT_TRUE(lane_to_avoid(counts_with({{"moller_1997/f32/cpu", 900},
                                          {"moller_1997/f32/cpu-fma", 899},
@@ -105,11 +111,14 @@ TEST(Recommendations, TheWorstLaneIsAvoidedWhereIntervalsAreApart) {
 TEST(Recommendations, TheLeastWrongLaneIsNamedWithItsCost) {
   const CampaignCounts counts = counts_with(kThree);
   const Costs costs = costs_with({{38, 300}, {60, 62}, {80, 82}});
-  EXPECT_EQ(least_wrong_lane(counts, &costs).text,
-            "Of the 2 published lanes the least wrong is separating_axes/f64/cpu: on 200 (1 %, 95 % interval 0.871 % to "
-            "1.15 %) of 20,000 pairs, at 80 ns a general pair.");
-  EXPECT_TRUE(least_wrong_lane(counts_with({{"moller_1997/f32/cpu", 110}, {"separating_axes/f64/cpu", 100}}), nullptr)
-                  .text.starts_with("Which published lane is least wrong is not settled: the 95 % intervals of separating_axes/f64/cpu"));
+  EXPECT_EQ(
+      least_wrong_lane(counts, &costs).text,
+      "Of the 2 published lanes the least wrong is separating_axes/f64/cpu: on 200 (1 %, 95 % interval 0.871 % to "
+      "1.15 %) of 20,000 pairs, at 80 ns a general pair.");
+  EXPECT_TRUE(
+      least_wrong_lane(counts_with({{"moller_1997/f32/cpu", 110}, {"separating_axes/f64/cpu", 100}}), nullptr)
+          .text.starts_with(
+              "Which published lane is least wrong is not settled: the 95 % intervals of separating_axes/f64/cpu"));
 }
 
 TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {

@@ -84,7 +84,9 @@ Json lanes_of(const Json& summary, const CampaignCounts& counts) {
 Json missing_of(const CampaignCounts& counts, const Json& summary, const std::filesystem::path& directory) {
   Json missing = Json::array();
   if (!fuzz::has_database(directory))
-    missing.push_back("The counts are those of summary.json, checked only against each other: the campaign's database is not beside it.");
+    missing.push_back(
+        "The counts are those of summary.json, checked only against each other: the campaign's database is not beside "
+        "it.");
   if (const Json& spec = summary.at("spec"); spec.contains("lanes_left_out")) {
     for (const std::string& line : fuzz::left_out_in_words(fuzz::left_out_of(spec["lanes_left_out"])))
       missing.push_back(fmt::format("Lanes that were asked for did not run: {}.", line));
@@ -107,8 +109,10 @@ Json missing_of(const CampaignCounts& counts, const Json& summary, const std::fi
 void expect_shares(const Json& part) {
   if (part.is_object() && part.contains("count") && part.contains("of") && part.contains("share")) {
     const std::uint64_t count = part["count"], of = part["of"];
-    if (!part["count"].is_number_unsigned() || !part["of"].is_number_unsigned() || count > of || part != to_json(share_of(count, of)))
-      throw std::runtime_error(fmt::format("expected a share of at most {} pairs, found {}", part["of"].dump(), part.dump()));
+    if (!part["count"].is_number_unsigned() || !part["of"].is_number_unsigned() || count > of ||
+        part != to_json(share_of(count, of)))
+      throw std::runtime_error(
+          fmt::format("expected a share of at most {} pairs, found {}", part["of"].dump(), part.dump()));
     return;
   }
   if (part.is_structured()) {
@@ -132,13 +136,17 @@ void expect_possible(const Json& report) {
     const Json of = total ? Json{{"pairs", pairs}, {"intersects", intersects}}
                           : report["strata"].at(row["stratum"].get<std::size_t>());
     std::uint64_t wrong = 0;
-    for (const char* field : {"declined", "crashed", "timed_out", "unstable"}) wrong += row.value(field, std::uint64_t{0});
-    for (const char* field : {"false_positive", "false_negative"}) wrong += row.at(field).at("count").get<std::uint64_t>();
+    for (const char* field : {"declined", "crashed", "timed_out", "unstable"})
+      wrong += row.value(field, std::uint64_t{0});
+    for (const char* field : {"false_positive", "false_negative"})
+      wrong += row.at(field).at("count").get<std::uint64_t>();
     const bool fits = row.at("wrong").at("count") == wrong && row["wrong"].at("of") == of.at("pairs") &&
                       row["false_negative"].at("of") == of.at("intersects") &&
-                      row["false_positive"].at("of").get<std::uint64_t>() + of.at("intersects").get<std::uint64_t>() == of.at("pairs");
+                      row["false_positive"].at("of").get<std::uint64_t>() + of.at("intersects").get<std::uint64_t>() ==
+                          of.at("pairs");
     if (!fits)
-      throw std::runtime_error(fmt::format("expected rates of {} pairs that add up, found {}", of["pairs"].dump(), row.dump()));
+      throw std::runtime_error(
+          fmt::format("expected rates of {} pairs that add up, found {}", of["pairs"].dump(), row.dump()));
   }
 }
 

@@ -38,7 +38,7 @@ TEST(Terminal, SummarySaysWhatEachExactDecisionSaw) {
       << cpu.str();
   print_summary(exact, example(), {{"cgal", 1500}, {"gmp", 1200}, {"exact", 1233567}, {"apart", 0}}, {200, false});
   EXPECT_NE(exact.str().find("\nThe exact lane decided 1,233,567 pairs; CGAL decided 1,500, all cases kept among them, "
-                           "and GMP 1,200 of these once more: they agree on all.\n"),
+                             "and GMP 1,200 of these once more: they agree on all.\n"),
             std::string::npos)
       << exact.str();
 }

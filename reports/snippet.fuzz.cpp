@@ -26,7 +26,9 @@ void read_numbers(std::string_view line, std::string_view begins, std::vector<fl
   }
 }
 
-bool is_vertex(std::string_view line) { return line.find("f,  // a[") != line.npos || line.find("f,  // b[") != line.npos; }
+bool is_vertex(std::string_view line) {
+  return line.find("f,  // a[") != line.npos || line.find("f,  // b[") != line.npos;
+}
 
 std::vector<float> numbers_in(SnippetKind kind, std::string_view text) {
   std::vector<float> numbers;

@@ -104,7 +104,8 @@ std::string decided_by(std::uint64_t disagreements, const Json& oracle) {
   const std::uint64_t exact = oracle["exact"], gmp = oracle["gmp"];
   if (exact > 0) {
     return fmt::format(
-        "The exact lane decided {} pairs; CGAL decided {}, all cases kept among them, and GMP {} of these once more: they "
+        "The exact lane decided {} pairs; CGAL decided {}, all cases kept among them, and GMP {} of these once more: "
+        "they "
         "agree on all.",
         grouped(exact), grouped(oracle["cgal"]), grouped(gmp));
   }
@@ -144,10 +145,10 @@ void print_summary(std::ostream& out, const Json& summary, const Json& oracle, c
 
 namespace {
 
-// One row for each subject, scalar and policy, one column for each variant among the lanes; '-' where a lane did not run, '!'
-// where it is wrong. The exact CUDA lane stands in the columns of all device variants: it is the same in each.
-void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& true_of_pair, std::span<const Lane* const> lanes,
-                    std::span<const Verdict> verdicts, const Screen& screen) {
+// One row for each subject, scalar and policy, one column for each variant among the lanes; '-' where a lane did not
+// run, '!' where it is wrong. The exact CUDA lane stands in the columns of all device variants: it is the same in each.
+void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& true_of_pair,
+                    std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
   const Verdict truth = true_of_pair.verdict;
   const auto belongs = [](const Lane& lane, const VariantInfo& column) {
     return lane.exact && lane.is_cuda() ? column.runs_on == RunsOn::device : lane.variant == column.variant;
@@ -169,15 +170,18 @@ void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& tr
     for (end = first; end < lanes.size() && lanes[end]->info == lane.info && lanes[end]->scalar == lane.scalar &&
                       lanes[end]->policy == lane.policy;)
       ++end;
-    std::vector<Cell> cells{fmt::format("{}/{}{}{}", lane.info->id, name(lane.scalar), lane.policy.empty() ? "" : " ",
-                                        lane.policy)};
+    std::vector<Cell> cells{
+        fmt::format("{}/{}{}{}", lane.info->id, name(lane.scalar), lane.policy.empty() ? "" : " ", lane.policy)};
     for (const VariantInfo* variant : variants) {
       Cell& cell = cells.emplace_back("-");
       for (std::size_t l = first; l < end && cell.text == "-"; ++l) {
         if (!belongs(*lanes[l], *variant)) continue;
         const bool wrong = truth != Verdict::declined && verdicts[l] != truth;
         const bool convention = wrong && analysis::by_convention(*lanes[l], verdicts[l], pair, true_of_pair);
-        cell = {fmt::format("{}{}", name(verdicts[l]), convention ? " (convention)" : wrong ? " !" : ""),
+        cell = {fmt::format("{}{}", name(verdicts[l]),
+                            convention ? " (convention)"
+                            : wrong    ? " !"
+                                       : ""),
                 wrong && !convention};
       }
     }

@@ -53,9 +53,10 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
     case TuneResult::not_satisfiable:
       break;
   }
-  return fmt::format("No policy of {} keeps {} under {} here. None had fewer on the pairs of the choice than {}; the exact "
-                     "lane has none of either.",
-                     q.lane, words(q.forbid), q.max_rate, of);
+  return fmt::format(
+      "No policy of {} keeps {} under {} here. None had fewer on the pairs of the choice than {}; the exact "
+      "lane has none of either.",
+      q.lane, words(q.forbid), q.max_rate, of);
 }
 
 std::string power(int k) { return k > 0 ? fmt::format("grow by 2^{}", k) : fmt::format("shrink by 2^{}", -k); }

@@ -15,8 +15,8 @@
 namespace graze::reports {
 namespace {
 
-// One colour for each kind of cell, in its order, but ink and paper before those of foreign code that fails. Right verdicts are greys, wrong ones vermilion
-// and blue of Okabe and Ito's palette, which differ in lightness as well.
+// One colour for each kind of cell, in its order, but ink and paper before those of foreign code that fails. Right
+// verdicts are greys, wrong ones vermilion and blue of Okabe and Ito's palette, which differ in lightness as well.
 constexpr std::uint8_t kPalette[][3] = {{0xee, 0xee, 0xee}, {0xaa, 0xaa, 0xaa}, {0xd5, 0x5e, 0x00}, {0x00, 0x72, 0xb2},
                                         {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}, {0x00, 0x00, 0x00}, {0xff, 0xff, 0xff},
                                         {0x00, 0x9e, 0x73}, {0x56, 0xb4, 0xe9}, {0xe6, 0x9f, 0x00}};

@@ -65,7 +65,8 @@ Json replay() {
   for (const Pair& pair : replayed_pairs()) {
     const oracle::Truth truth = oracle::truth(pair);
     std::string verdicts;
-    for (const Lane* lane : of) verdicts += static_cast<char>('0' + static_cast<int>(decide_one(cuda::block_on_host(*lane), pair)));
+    for (const Lane* lane : of)
+      verdicts += static_cast<char>('0' + static_cast<int>(decide_one(cuda::block_on_host(*lane), pair)));
     pairs.push_back({{"bits", bits_of(coordinates(pair), kCoordinates)},
                      {"truth", name(truth.verdict)},
                      {"contact", name(truth.contact)},
@@ -87,16 +88,18 @@ std::string evidence() {
 
 bool has_viewer() { return !kTemplate.empty(); }
 
-Json viewer_checks() {
-  return has_viewer() ? Json({{"evidence", evidence()}, {"replay", replay()}}) : Json();
-}
+Json viewer_checks() { return has_viewer() ? Json({{"evidence", evidence()}, {"replay", replay()}}) : Json(); }
 
 std::string viewer_page(const Viewed& viewed) {
   Json pairs = Json::array(), triangles = Json::array();
   for (const ViewedPair& one : viewed.pairs)
     pairs.push_back({{"name", one.name}, {"bits", bits_of(coordinates(one.pair), kCoordinates)}});
   for (const auto& triangle : viewed.triangles) triangles.push_back(bits_of(&triangle[0].x, 9));
-  Json data = {{"format", 1}, {"title", viewed.title}, {"pairs", pairs}, {"triangles", triangles}, {"opens", viewed.opens_with_triangles ? "triangles" : "pair"}};
+  Json data = {{"format", 1},
+               {"title", viewed.title},
+               {"pairs", pairs},
+               {"triangles", triangles},
+               {"opens", viewed.opens_with_triangles ? "triangles" : "pair"}};
   data.update(viewer_checks());
   return with_data(kTemplate, "view", data);
 }

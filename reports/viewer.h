@@ -19,7 +19,8 @@ struct ViewedPair {
 struct Viewed {
   std::string title;              // of the pairs' list
   std::vector<ViewedPair> pairs;  // none: the special cases of 2012
-  std::vector<std::array<Vec3<float>, 3>> triangles;  // of a mesh or a query, to be seen against the first triangle of a pair
+  std::vector<std::array<Vec3<float>, 3>>
+      triangles;                      // of a mesh or a query, to be seen against the first triangle of a pair
   bool opens_with_triangles = false;  // all of them at once, rather than a pair
 };
 
@@ -29,8 +30,9 @@ inline constexpr std::size_t kMostViewedPairs = 5000, kMostViewedTriangles = 500
 // Whether this build has the page of reports/web, which takes Node and a compiler for WebAssembly.
 bool has_viewer();
 
-// What the viewer takes beside what it shows: the stored verdicts of some hundred pairs by which it checks itself when it
-// opens, of every stratum and the canaries (cuda/twin/canaries.pairs), and the evidence of the twins. Null without it.
+// What the viewer takes beside what it shows: the stored verdicts of some hundred pairs by which it checks itself when
+// it opens, of every stratum and the canaries (cuda/twin/canaries.pairs), and the evidence of the twins. Null without
+// it.
 nlohmann::ordered_json viewer_checks();
 
 // The page.   Requires: has_viewer(); no more pairs and triangles than the most.

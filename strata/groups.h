@@ -58,7 +58,8 @@ constexpr Group group_of(Stratum stratum) {
   return Group::general;
 }
 
-// The group of the source of that name: a stratum, or a mesh, as it is or moved. Nothing for a stratum that this build does not know.
+// The group of the source of that name: a stratum, or a mesh, as it is or moved. Nothing for a stratum that this build
+// does not know.
 constexpr std::optional<Group> group_of_name(std::string_view id) {
   for (const StratumInfo& row : kStrata) {
     if (row.id == id) return group_of(row.stratum);

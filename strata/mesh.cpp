@@ -130,7 +130,8 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
       pairs.triangles.push_back({moved(pose, t[0]), moved(pose, t[1]), moved(pose, t[2])});
       for (const Vec3<float>& v : pairs.triangles.back()) {
         if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-          fail(file.string(), "poses that keep coordinates finite in float32", "pose " + std::to_string(ends.size() + 1));
+          fail(file.string(), "poses that keep coordinates finite in float32",
+               "pose " + std::to_string(ends.size() + 1));
       }
     }
     ends.push_back(pairs.triangles.size());

@@ -23,13 +23,13 @@ struct Grid {
 
 // Made by resolved() of strata/scene/envelope.h from what a scene's file says.
 struct Scene {
-  Vec3<double> low, high;       // the least and the greatest coordinate by axis; float32 numbers, on the grid
-  Quantiles edges;              // longest edge of a triangle
-  Quantiles aspect;             // longest edge over the height on it, from 2 / sqrt(3)
-  bool on_grid = false;         // whether all coordinates are on `grid`
+  Vec3<double> low, high;  // the least and the greatest coordinate by axis; float32 numbers, on the grid
+  Quantiles edges;         // longest edge of a triangle
+  Quantiles aspect;        // longest edge over the height on it, from 2 / sqrt(3)
+  bool on_grid = false;    // whether all coordinates are on `grid`
   Grid grid;
-  Grid exact;                   // grid of the exact constructions: `grid`, or ulps of the largest coordinate
-  Vec3<double> first, last;     // its first and last number in the extent, by axis
+  Grid exact;                // grid of the exact constructions: `grid`, or ulps of the largest coordinate
+  Vec3<double> first, last;  // its first and last number in the extent, by axis
 };
 
 inline namespace GRAZE_FP {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What passes between graze, the supervisor of a subject, and the worker in which foreign code runs. Whatever the worker
-// sends or writes may be forged: the supervisor reads it once, copies it and checks it.
+// What passes between graze, the supervisor of a subject, and the worker in which foreign code runs. Whatever the
+// worker sends or writes may be forged: the supervisor reads it once, copies it and checks it.
 #pragma once
 
 #include <array>
@@ -12,7 +12,14 @@ namespace graze::subjects {
 inline constexpr std::size_t kMostAsked = 1024;  // pairs in a block
 
 // A pair's answer; those after kIntersects are not for the worker to give.
-enum Answer : signed char { kDeclined = -1, kDisjoint = 0, kIntersects = 1, kCrashed = 2, kTimedOut = 3, kUnstable = 4 };
+enum Answer : signed char {
+  kDeclined = -1,
+  kDisjoint = 0,
+  kIntersects = 1,
+  kCrashed = 2,
+  kTimedOut = 3,
+  kUnstable = 4
+};
 
 using Chosen = std::array<std::uint64_t, kMostAsked / 64>;  // a bit for each pair of a block
 
@@ -73,8 +80,10 @@ static_assert(kMostAsked << 3 <= 1 << 16);
 inline constexpr std::size_t kWords = 2 * kMostAsked;  // of both passes
 
 // In the worker: writes an answer to the question where the supervisor looks for it.
-inline void put_answer(std::uint64_t* words, const Question& question, bool second, std::size_t pair, signed char answer) {
-  __atomic_store_n(&words[(second ? kMostAsked : 0) + pair], word_of(question.nonce, second, pair, answer), __ATOMIC_RELEASE);
+inline void put_answer(std::uint64_t* words, const Question& question, bool second, std::size_t pair,
+                       signed char answer) {
+  __atomic_store_n(&words[(second ? kMostAsked : 0) + pair], word_of(question.nonce, second, pair, answer),
+                   __ATOMIC_RELEASE);
 }
 
 inline constexpr std::size_t kPairsBytes = kMostAsked * 18 * sizeof(double);

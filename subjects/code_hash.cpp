@@ -75,7 +75,9 @@ std::uint64_t hash_of_file(const fs::path& file) {
   std::ostringstream text;
   if (!regular || !(text << in.rdbuf())) {
     throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
-                                         why ? why.message() : regular ? std::strerror(errno) : "not a file"));
+                                         why       ? why.message()
+                                         : regular ? std::strerror(errno)
+                                                   : "not a file"));
   }
   return fnv1a(text.str());
 }
@@ -109,7 +111,8 @@ CodeHash hash_of_builds(const std::vector<fs::path>& built, const std::vector<st
   CodeHash code{fnv1a(""), ""};
   for (const fs::path& file : built) code.hash = fnv1a(file.stem().string(), code.hash);
   for (const std::string& flag : flags) {
-    if (flag.starts_with("-l") || flag.starts_with("-Wl,") || is_file(flag)) code.not_covered = "the libraries that its flags link";
+    if (flag.starts_with("-l") || flag.starts_with("-Wl,") || is_file(flag))
+      code.not_covered = "the libraries that its flags link";
   }
   return code;
 }

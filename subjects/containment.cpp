@@ -62,8 +62,8 @@ bool limit_shared_memory(std::uint64_t bytes) {
 // Tasks, threads among them: for what starts more of them between two looks than the machine has room for.
 constexpr int kMostTasks = 1024;
 
-// Since Linux 6.14 a namespace of processes has a largest number of its own; before, this is the whole machine's. Root has
-// no other limit. A user has one for all tasks in a namespace of users.
+// Since Linux 6.14 a namespace of processes has a largest number of its own; before, this is the whole machine's. Root
+// has no other limit. A user has one for all tasks in a namespace of users.
 void limit_tasks() {
   utsname system{};
   int major = 0, minor = 0;
@@ -194,8 +194,8 @@ bool end_children(pid_t except) {
 }
 
 void forbid_calls() {
-  // prlimit64 with a process id, and memfd_create, in each of the processor's tables of system calls: i386 has them under
-  // other numbers, and x32 with another bit.
+  // prlimit64 with a process id, and memfd_create, in each of the processor's tables of system calls: i386 has them
+  // under other numbers, and x32 with another bit.
   constexpr std::uint32_t kI386Prlimit = 340, kI386MemfdCreate = 356, kX32 = 0x40000000;
   constexpr std::uint32_t kArch = offsetof(seccomp_data, arch), kNumber = offsetof(seccomp_data, nr);
   constexpr std::uint32_t kProcess = offsetof(seccomp_data, args);
@@ -220,7 +220,8 @@ void forbid_calls() {
 }
 
 void drop_rights() {
-  for (const int right : {CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_RESOURCE, CAP_SYS_BOOT, CAP_SYS_MODULE, CAP_SYS_RAWIO, CAP_NET_ADMIN})
+  for (const int right :
+       {CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_RESOURCE, CAP_SYS_BOOT, CAP_SYS_MODULE, CAP_SYS_RAWIO, CAP_NET_ADMIN})
     prctl(PR_CAPBSET_DROP, right, 0, 0, 0);
 }
 

@@ -9,11 +9,11 @@
 
 namespace graze::subjects {
 
-// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Returns in
-// the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own processes,
-// and has only shared memory of its own, and which the system ends with it. Where no namespace can be had, returns in the
-// calling process, as a subreaper.
-// namespaces: whether to try. shared_bytes: of memory that is shared by name.   Requires: one thread.
+// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Returns
+// in the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own
+// processes, and has only shared memory of its own, and which the system ends with it. Where no namespace can be had,
+// returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of memory that is shared by
+// name.   Requires: one thread.
 void enter_containment(bool namespaces, std::uint64_t shared_bytes);
 
 // The descriptor that becomes readable when the process ends; -1 where there is no such process.

@@ -6,8 +6,8 @@
 // KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object, and what it exports; see graze/subject.h
 //                         command TEXT "" f32             a program; see subjects/README.md
 //                         device FILE "" f32|f64          PTX of cuda/subject; by graze-subject-device, with CUDA
-// MEMORY: MiB that the code may take; a device's driver takes what it wants. SECONDS: for a pair or a block. DESCRIBE: 1
-// asks a program to describe itself. NAMESPACES: 0 does without a process namespace.
+// MEMORY: MiB that the code may take; a device's driver takes what it wants. SECONDS: for a pair or a block. DESCRIBE:
+// 1 asks a program to describe itself. NAMESPACES: 0 does without a process namespace.
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
@@ -262,10 +262,12 @@ void set_limits(const char* mib) {
   set_limit(RLIMIT_NOFILE, 1024);  // each of a socket holds memory of the system, which is not the process's
 }
 
-// Addresses are the same in every process, where that may be had: code whose answers depend on them says the same again.
+// Addresses are the same in every process, where that may be had: code whose answers depend on them says the same
+// again.
 void fix_addresses(char** argv) {
   const int now = personality(0xffffffff);
-  if (now < 0 || now & ADDR_NO_RANDOMIZE || personality(static_cast<unsigned long>(now) | ADDR_NO_RANDOMIZE) < 0) return;
+  if (now < 0 || now & ADDR_NO_RANDOMIZE || personality(static_cast<unsigned long>(now) | ADDR_NO_RANDOMIZE) < 0)
+    return;
   if (personality(0xffffffff) & ADDR_NO_RANDOMIZE) execv("/proc/self/exe", argv);
 }
 
@@ -299,7 +301,8 @@ constexpr int kNotReady = 99;  // exit status of a worker without its program or
 // Loads the code, then forks a worker, and another whenever one ends.
 int load_and_fork(const std::string& kind, const std::string& what, const std::string& name, const std::string& scalar,
                   const char* memory, bool describe) {
-  words = static_cast<std::uint64_t*>(mmap(nullptr, kWords * sizeof *words, PROT_READ | PROT_WRITE, MAP_SHARED, kWordsFd, 0));
+  words = static_cast<std::uint64_t*>(
+      mmap(nullptr, kWords * sizeof *words, PROT_READ | PROT_WRITE, MAP_SHARED, kWordsFd, 0));
   pairs = mmap(nullptr, kPairsBytes, PROT_READ, MAP_SHARED, kPairsFd, 0);
   if (words == MAP_FAILED || pairs == MAP_FAILED) return 2;
   close(kPairsFd);

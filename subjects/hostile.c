@@ -21,7 +21,13 @@
 
 static int bad(const float a[9]) { return a[0] > 0.9f; }
 static int good(const float a[9], const float b[9]) { return a[0] < b[0]; }
-#define ATTACK(name, ...) int name(const float a[9], const float b[9]) { if (bad(a)) { __VA_ARGS__; } return good(a, b); }
+#define ATTACK(name, ...)                        \
+  int name(const float a[9], const float b[9]) { \
+    if (bad(a)) {                                \
+      __VA_ARGS__;                               \
+    }                                            \
+    return good(a, b);                           \
+  }
 
 // Whether only its own processes are in reach.
 static int alone(void) {
@@ -41,9 +47,14 @@ static void mappings(const char* name, void (*act)(char* from, size_t bytes)) {
 }
 static void zeros(char* from, size_t bytes) { memset(from, 0, bytes); }
 static void ones(char* from, size_t bytes) { memset(from, 255, bytes); }
-static void noise(char* from, size_t bytes) { for (size_t i = 0; i < bytes; ++i) from[i] = (char)rand(); }
+static void noise(char* from, size_t bytes) {
+  for (size_t i = 0; i < bytes; ++i) from[i] = (char)rand();
+}
 static void writable(char* from, size_t bytes) {
-  if (mprotect(from, bytes, PROT_READ | PROT_WRITE) == 0) memset(from, 0, bytes); else abort();
+  if (mprotect(from, bytes, PROT_READ | PROT_WRITE) == 0)
+    memset(from, 0, bytes);
+  else
+    abort();
 }
 static void unmapped(char* from, size_t bytes) { munmap(from, bytes); }
 static void shorter(char* from, size_t bytes) {
@@ -61,7 +72,13 @@ ATTACK(unmaps, all_memory(unmapped))
 ATTACK(truncates, all_memory(shorter))
 ATTACK(writes_pairs, mappings("graze-pairs", writable))
 
-static void* scribble(void* unused) { for (;;) { all_memory(noise); usleep(100); } return unused; }
+static void* scribble(void* unused) {
+  for (;;) {
+    all_memory(noise);
+    usleep(100);
+  }
+  return unused;
+}
 static void start(void* (*what)(void*)) {
   static int started;
   pthread_t thread;
@@ -75,10 +92,19 @@ static void* babble(void* unused) {
   return unused;
 }
 ATTACK(babbles, start(babble); usleep(2000); abort())
-static void* steal(void* unused) { char bytes[4096]; for (;;) recv(5, bytes, sizeof bytes, 0); return unused; }
+static void* steal(void* unused) {
+  char bytes[4096];
+  for (;;) recv(5, bytes, sizeof bytes, 0);
+  return unused;
+}
 ATTACK(steals_questions, start(steal); usleep(2000); abort())
-ATTACK(says_it_is_ready, for (int i = 0; i < 100; ++i) { uint32_t ready = 2; send(5, &ready, 4, MSG_NOSIGNAL); } abort())
-ATTACK(says_it_has_answered, uint64_t said[3] = {3, 1, 1}; for (int i = 0; i < 100; ++i, ++said[1]) send(5, said, 24, MSG_NOSIGNAL); pause())
+ATTACK(
+    says_it_is_ready, for (int i = 0; i < 100; ++i) {
+      uint32_t ready = 2;
+      send(5, &ready, 4, MSG_NOSIGNAL);
+    } abort())
+ATTACK(says_it_has_answered, uint64_t said[3] = {3, 1, 1};
+       for (int i = 0; i < 100; ++i, ++said[1]) send(5, said, 24, MSG_NOSIGNAL); pause())
 
 ATTACK(kills_parent, kill(getppid(), SIGKILL); abort())
 ATTACK(stops_parent, kill(getppid(), SIGSTOP); usleep(2000); abort())
@@ -87,7 +113,8 @@ ATTACK(kills_group, kill(0, SIGKILL))
 ATTACK(stops_itself, raise(SIGSTOP))
 ATTACK(ends_itself_quietly, _exit(0))
 ATTACK(pretends_not_ready, _exit(99))
-ATTACK(traces_parent, if (ptrace(PTRACE_ATTACH, getppid(), 0, 0) == 0) { waitpid(getppid(), 0, 0); } abort())
+ATTACK(
+    traces_parent, if (ptrace(PTRACE_ATTACH, getppid(), 0, 0) == 0) { waitpid(getppid(), 0, 0); } abort())
 ATTACK(becomes_another_program, execl("/bin/sleep", "sleep", "1000", (char*)0))
 ATTACK(closes_everything, for (int i = 0; i < 1024; ++i) close(i); abort())
 
@@ -96,12 +123,16 @@ static void leave_a_child(void) {
     setsid();
     prctl(PR_SET_PDEATHSIG, 0);
     for (int s = 1; s < 65; ++s) signal(s, SIG_IGN);
-    if (fork() == 0) for (;;) pause();
+    if (fork() == 0)
+      for (;;) pause();
     _exit(0);
   }
 }
 ATTACK(leaves_children, leave_a_child(); abort())
-int leaves_children_silently(const float a[9], const float b[9]) { if (bad(a)) leave_a_child(); return good(a, b); }
+int leaves_children_silently(const float a[9], const float b[9]) {
+  if (bad(a)) leave_a_child();
+  return good(a, b);
+}
 ATTACK(forks_without_end, for (int i = 0; i < 2000; ++i) if (fork() == 0) for (;;) pause(); for (;;) pause())
 static void child_eats(void) {
   if (fork() == 0) {
@@ -111,13 +142,30 @@ static void child_eats(void) {
   }
 }
 ATTACK(children_eat, for (int i = 0; i < 4; ++i) child_eats(); for (;;) pause())
-ATTACK(eats_shared, char* p = mmap(0, 300 << 20, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0); if (p != MAP_FAILED) memset(p, 1, 300 << 20); for (;;) pause())
+ATTACK(eats_shared, char* p = mmap(0, 300 << 20, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+       if (p != MAP_FAILED) memset(p, 1, 300 << 20); for (;;) pause())
 ATTACK(waits_uninterruptibly, if (vfork() == 0) for (;;) pause())
-ATTACK(eats_system_v, for (;;) { int id = shmget(IPC_PRIVATE, 100 << 20, 0600 | IPC_CREAT); if (id < 0) abort(); char* p = shmat(id, 0, 0); memset(p, 1, 100 << 20); shmdt(p); })
-ATTACK(eats_memfd, for (;;) { int fd = memfd_create("x", 0); if (fd < 0) abort(); static char page[1 << 20]; for (int i = 0; i < 100; ++i) write(fd, page, sizeof page); })
-ATTACK(eats_dev_shm, int fd = open("/dev/shm/graze-hostile", O_CREAT | O_RDWR, 0600); static char page[1 << 20]; for (int i = 0; i < 1000; ++i) if (write(fd, page, sizeof page) < 0) abort())
-ATTACK(lifts_limits, struct rlimit no = {RLIM_INFINITY, RLIM_INFINITY}; if (setrlimit(RLIMIT_DATA, &no) == 0) for (;;) pause(); abort())
-ATTACK(writes_a_large_file, char name[] = "/tmp/graze-hostile-XXXXXX"; int fd = mkstemp(name); unlink(name); if (ftruncate(fd, (off_t)8 << 30) == 0) for (;;) pause(); abort())
+ATTACK(
+    eats_system_v, for (;;) {
+      int id = shmget(IPC_PRIVATE, 100 << 20, 0600 | IPC_CREAT);
+      if (id < 0) abort();
+      char* p = shmat(id, 0, 0);
+      memset(p, 1, 100 << 20);
+      shmdt(p);
+    })
+ATTACK(
+    eats_memfd, for (;;) {
+      int fd = memfd_create("x", 0);
+      if (fd < 0) abort();
+      static char page[1 << 20];
+      for (int i = 0; i < 100; ++i) write(fd, page, sizeof page);
+    })
+ATTACK(eats_dev_shm, int fd = open("/dev/shm/graze-hostile", O_CREAT | O_RDWR, 0600); static char page[1 << 20];
+       for (int i = 0; i < 1000; ++i) if (write(fd, page, sizeof page) < 0) abort())
+ATTACK(lifts_limits, struct rlimit no = {RLIM_INFINITY, RLIM_INFINITY};
+       if (setrlimit(RLIMIT_DATA, &no) == 0) for (;;) pause(); abort())
+ATTACK(writes_a_large_file, char name[] = "/tmp/graze-hostile-XXXXXX"; int fd = mkstemp(name); unlink(name);
+       if (ftruncate(fd, (off_t)8 << 30) == 0) for (;;) pause(); abort())
 static void limit_others(void) {
   const struct rlimit none = {0, 0};
   for (int i = 0; i < 16; ++i) {

@@ -92,7 +92,8 @@ struct Hostile : testing::Test {
   }
   static void expect_nothing_left() {
     for (int times = 0; times < 500 && !left_over().empty(); ++times) usleep(10'000);
-    EXPECT_TRUE(left_over().empty()) << "of " << left_over().size() << " processes the first is " << *left_over().begin();
+    EXPECT_TRUE(left_over().empty()) << "of " << left_over().size() << " processes the first is "
+                                     << *left_over().begin();
     EXPECT_FALSE(fs::exists("/dev/shm/graze-hostile"));
     EXPECT_EQ(waitpid(bystander, nullptr, WNOHANG), 0) << "an unrelated process was ended";
   }
@@ -136,14 +137,38 @@ TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
   EXPECT_EQ(count_in("/proc/self/fd"), files);
 }
 
-constexpr Attack kAttacks[] = {
-    {"writes_zeros"}, {"writes_ones"}, {"unmaps"}, {"truncates"}, {"writes_pairs"},
-    {"scribbles_always", true, true}, {"babbles", true, true}, {"steals_questions", true, true},
-    {"says_it_is_ready"}, {"says_it_has_answered"}, {"kills_parent"}, {"stops_parent"},
-    {"kills_grandparent", false}, {"kills_group"}, {"stops_itself"}, {"ends_itself_quietly"}, {"pretends_not_ready"},
-    {"traces_parent"}, {"becomes_another_program"}, {"closes_everything"}, {"leaves_children"},
-    {"forks_without_end"}, {"children_eat"}, {"waits_uninterruptibly"}, {"eats_shared"}, {"eats_system_v", false}, {"eats_memfd"}, {"eats_dev_shm", false}, {"lifts_limits"}, {"writes_a_large_file"}, {"limits_others"},
-    {"kills_all", false}};
+constexpr Attack kAttacks[] = {{"writes_zeros"},
+                               {"writes_ones"},
+                               {"unmaps"},
+                               {"truncates"},
+                               {"writes_pairs"},
+                               {"scribbles_always", true, true},
+                               {"babbles", true, true},
+                               {"steals_questions", true, true},
+                               {"says_it_is_ready"},
+                               {"says_it_has_answered"},
+                               {"kills_parent"},
+                               {"stops_parent"},
+                               {"kills_grandparent", false},
+                               {"kills_group"},
+                               {"stops_itself"},
+                               {"ends_itself_quietly"},
+                               {"pretends_not_ready"},
+                               {"traces_parent"},
+                               {"becomes_another_program"},
+                               {"closes_everything"},
+                               {"leaves_children"},
+                               {"forks_without_end"},
+                               {"children_eat"},
+                               {"waits_uninterruptibly"},
+                               {"eats_shared"},
+                               {"eats_system_v", false},
+                               {"eats_memfd"},
+                               {"eats_dev_shm", false},
+                               {"lifts_limits"},
+                               {"writes_a_large_file"},
+                               {"limits_others"},
+                               {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {
                            return std::string(std::get<0>(of.param).name) +
@@ -167,18 +192,25 @@ TEST_F(Hostile, ConstructorsThatAttackAreOneLine) {
   const struct {
     const char* name;
     const char* does;
-  } kCases[] = {{"sends", "char b[10008]; memset(b, 7, sizeof b); for (int i = 0; i < 50; ++i) send(5, b, sizeof b, MSG_DONTWAIT); abort();"},
-                {"lies", "char b[10008] = {0}; send(5, b, sizeof b, 0); abort();"},
-                {"refuses", "char b[10008]; memset(b, 255, sizeof b); b[0] = 1; b[1] = b[2] = b[3] = 0; send(5, b, sizeof b, 0); pause();"},
-                {"kills", "kill(getppid(), SIGKILL); abort();"},
-                {"stops", "kill(getppid(), SIGSTOP); abort();"},
-                {"forks", "if (fork() == 0) for (;;) pause(); abort();"},
-                {"exits", "_exit(0);"}};
+  } kCases[] = {
+      {"sends",
+       "char b[10008]; memset(b, 7, sizeof b); for (int i = 0; i < 50; ++i) send(5, b, sizeof b, MSG_DONTWAIT); "
+       "abort();"},
+      {"lies", "char b[10008] = {0}; send(5, b, sizeof b, 0); abort();"},
+      {"refuses",
+       "char b[10008]; memset(b, 255, sizeof b); b[0] = 1; b[1] = b[2] = b[3] = 0; send(5, b, sizeof b, 0); pause();"},
+      {"kills", "kill(getppid(), SIGKILL); abort();"},
+      {"stops", "kill(getppid(), SIGSTOP); abort();"},
+      {"forks", "if (fork() == 0) for (;;) pause(); abort();"},
+      {"exits", "_exit(0);"}};
   for (const auto& c : kCases) {
-    const fs::path file = built_from(c.name, std::string("#include <signal.h>\n#include <stdlib.h>\n#include <string.h>\n"
-                                                         "#include <sys/socket.h>\n#include <unistd.h>\n"
-                                                         "__attribute__((constructor)) static void f(void) { ") + c.does + " }\n"
-                                                         "int intersects(const float a[9], const float b[9]) { return 0; }");
+    const fs::path file =
+        built_from(c.name, std::string("#include <signal.h>\n#include <stdlib.h>\n#include <string.h>\n"
+                                       "#include <sys/socket.h>\n#include <unistd.h>\n"
+                                       "__attribute__((constructor)) static void f(void) { ") +
+                               c.does +
+                               " }\n"
+                               "int intersects(const float a[9], const float b[9]) { return 0; }");
     for (const bool namespaces : {true, false}) {
       SCOPED_TRACE(c.name);
       Code code{"library", file.string(), ""};
@@ -196,10 +228,12 @@ TEST_F(Hostile, ConstructorsThatAttackAreOneLine) {
 }
 
 TEST_F(Hostile, CodeThatIsGoneAfterItWasLoadedIsAVerdict) {
-  const fs::path file = built_from("removes", "#include <signal.h>\n#include <unistd.h>\n"
-                                              "int intersects(const float a[9], const float b[9]) {\n"
-                                              "  if (a[0] > 0.9f) { unlink(\"" + (folder / "removes.so").string() +
-                                                  "\"); kill(getppid(), SIGKILL); _exit(1); }\n  return a[0] < b[0]; }");
+  const fs::path file = built_from("removes",
+                                   "#include <signal.h>\n#include <unistd.h>\n"
+                                   "int intersects(const float a[9], const float b[9]) {\n"
+                                   "  if (a[0] > 0.9f) { unlink(\"" +
+                                       (folder / "removes.so").string() +
+                                       "\"); kill(getppid(), SIGKILL); _exit(1); }\n  return a[0] < b[0]; }");
   ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
   const std::vector<Verdict> found = verdicts(subject);
   for (std::size_t i = 0; i < pairs.size(); ++i) {  // asked the second time, the others have no code any more
@@ -211,8 +245,9 @@ TEST_F(Hostile, CodeThatIsGoneAfterItWasLoadedIsAVerdict) {
 }
 
 TEST_F(Hostile, ProgramsThatFloodOrHangOrLeaveChildrenAreVerdicts) {
-  for (const std::string program : {"yes", "cat /dev/zero", "sleep 1000 & read l; trap '' TERM; sleep 1000", "exec sleep 1000",
-                                    "while read l; do echo 7; done", "exit 3", "setsid sleep 1000 & setsid sleep 1001; wait"}) {
+  for (const std::string program :
+       {"yes", "cat /dev/zero", "sleep 1000 & read l; trap '' TERM; sleep 1000", "exec sleep 1000",
+        "while read l; do echo 7; done", "exit 3", "setsid sleep 1000 & setsid sleep 1001; wait"}) {
     SCOPED_TRACE(program);
     for (const bool namespaces : {true, false}) {
       const std::vector<Pair> all = pairs;
@@ -258,7 +293,8 @@ TEST_F(Hostile, ARequestToStopEndsEveryWait) {
     stop_requested = false;
     expect_nothing_left();
   }
-  const fs::path slow = built_from("slow", "#include <unistd.h>\n__attribute__((constructor)) static void f(void) { for (;;) pause(); }");
+  const fs::path slow =
+      built_from("slow", "#include <unistd.h>\n__attribute__((constructor)) static void f(void) { for (;;) pause(); }");
   std::jthread request([] {
     usleep(200'000);
     stop_requested = true;
@@ -270,9 +306,10 @@ TEST_F(Hostile, ARequestToStopEndsEveryWait) {
 
 // What a fork leaves is one process for each pair, and no worker beside the worker.
 TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
-  const fs::path file = built_from("forks_twice", "#include <signal.h>\n#include <unistd.h>\n"
-                                                  "int intersects(const float a[9], const float b[9]) {\n"
-                                                  "  signal(SIGCHLD, SIG_IGN); fork(); return a[0] < b[0]; }");
+  const fs::path file = built_from("forks_twice",
+                                   "#include <signal.h>\n#include <unistd.h>\n"
+                                   "int intersects(const float a[9], const float b[9]) {\n"
+                                   "  signal(SIGCHLD, SIG_IGN); fork(); return a[0] < b[0]; }");
   {
     ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
     const std::vector<Verdict> found = verdicts(subject);

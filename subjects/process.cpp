@@ -44,8 +44,7 @@ int pairs_memory(void*& at) {
   at = MAP_FAILED;
   if (fd >= 0 && ftruncate(fd, kPairsBytes) == 0)
     at = mmap(nullptr, kPairsBytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-  if (at == MAP_FAILED ||
-      fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) != 0)
+  if (at == MAP_FAILED || fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_FUTURE_WRITE | F_SEAL_SEAL) != 0)
     throw std::system_error(errno, std::generic_category(), "cannot share memory with a subject");
   return fd;
 }
@@ -161,9 +160,9 @@ class HostProcess {
     posix_spawnattr_setsigmask(&attributes, &signals);
     const std::string program = host_program(code), memory = std::to_string(code.memory),
                       seconds = fmt::format("{}", code.timeout);
-    const char* words[] = {program.c_str(),     code.kind.c_str(), code.what.c_str(), code.name.c_str(),
-                           code.scalar.c_str(), memory.c_str(),    seconds.c_str(),   describe ? "1" : "0",
-                           code.namespaces ? "1" : "0", nullptr};
+    const char* words[] = {
+        program.c_str(), code.kind.c_str(), code.what.c_str(),    code.name.c_str(),           code.scalar.c_str(),
+        memory.c_str(),  seconds.c_str(),   describe ? "1" : "0", code.namespaces ? "1" : "0", nullptr};
     const int error =
         posix_spawn(&process_, program.c_str(), &actions, &attributes, const_cast<char**>(words), environ);
     posix_spawn_file_actions_destroy(&actions);
@@ -206,7 +205,7 @@ class HostProcess {
 Description describe(const Code& code) {
   const HostProcess process(code, true);
   const Loaded& c = process.loaded();
-  return {c.has_f32 != 0,  c.has_f64 != 0,          c.outside,     fit(c.version), fit(c.source),
+  return {c.has_f32 != 0,    c.has_f64 != 0,          c.outside,     fit(c.version), fit(c.source),
           fit(c.convention), c.describes_itself != 0, fit(c.symbol), c.text};
 }
 
@@ -261,8 +260,8 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
         answers->answers[i] = of_pair ? of_pair->answers[0] : static_cast<signed char>(kCrashed);
       }
     }
-    nanoseconds = nanoseconds && answers->nanoseconds > 0 ? std::optional(*nanoseconds + answers->nanoseconds)
-                                                          : std::nullopt;
+    nanoseconds =
+        nanoseconds && answers->nanoseconds > 0 ? std::optional(*nanoseconds + answers->nanoseconds) : std::nullopt;
     for (std::size_t i = 0; i < size; ++i) {
       const Verdict verdict = verdict_of(answers->answers[i]);
       const std::size_t at = begin + i;

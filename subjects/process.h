@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foreign code in processes of its own, as a lane's block function. It may crash, hang, scribble, lie or attack: each is
-// a verdict on the pair on which it happens, and the next pair is asked in a new process. What this process believes comes
-// from a supervisor (supervisor.h) over a socket that foreign code does not have.
+// Foreign code in processes of its own, as a lane's block function. It may crash, hang, scribble, lie or attack: each
+// is a verdict on the pair on which it happens, and the next pair is asked in a new process. What this process believes
+// comes from a supervisor (supervisor.h) over a socket that foreign code does not have.
 #pragma once
 
 #include <map>
@@ -17,12 +17,12 @@ namespace graze::subjects {
 
 // What graze-subject-host loads; see its first lines.
 struct Code {
-  std::string kind;              // "library", "command" or "device"
-  std::string what, name;        // file and export, or the command, or a file of PTX
-  std::string scalar = "any";    // of a function without description
-  double timeout = 1;            // seconds for a pair, or for a block of a subject that takes blocks
-  std::uint64_t memory = 1024;   // MiB, of all its processes together
-  bool namespaces = true;        // in a process namespace of its own, where the system allows one
+  std::string kind;             // "library", "command" or "device"
+  std::string what, name;       // file and export, or the command, or a file of PTX
+  std::string scalar = "any";   // of a function without description
+  double timeout = 1;           // seconds for a pair, or for a block of a subject that takes blocks
+  std::uint64_t memory = 1024;  // MiB, of all its processes together
+  bool namespaces = true;       // in a process namespace of its own, where the system allows one
 };
 
 // What a subject says of itself.

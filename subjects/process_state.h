@@ -8,8 +8,8 @@
 
 namespace graze::subjects {
 
-// What the system says a process is at: 'R' running, 'D' waiting for a device, 'S' sleeping, 'T' or 't' stopped, 'Z' ended;
-// 0 where there is none.
+// What the system says a process is at: 'R' running, 'D' waiting for a device, 'S' sleeping, 'T' or 't' stopped, 'Z'
+// ended; 0 where there is none.
 inline char process_state(pid_t process) {
   std::ifstream in("/proc/" + std::to_string(process) + "/stat");
   std::string line;

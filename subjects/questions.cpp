@@ -95,8 +95,7 @@ bool read_loaded(std::span<const char> bytes, Loaded& loaded) {
   if (loaded.says != Says::loaded && loaded.says != Says::refused) return false;
   for (std::uint32_t* flag : {&loaded.has_f32, &loaded.has_f64, &loaded.of_blocks, &loaded.describes_itself})
     *flag = *flag != 0;
-  loaded.outside &=
-      GRAZE_OUTSIDE_TOUCHING | GRAZE_OUTSIDE_COPLANAR | GRAZE_OUTSIDE_DEGENERATE | GRAZE_OUTSIDE_SHARED;
+  loaded.outside &= GRAZE_OUTSIDE_TOUCHING | GRAZE_OUTSIDE_COPLANAR | GRAZE_OUTSIDE_DEGENERATE | GRAZE_OUTSIDE_SHARED;
   end_text(loaded.version);
   end_text(loaded.source);
   end_text(loaded.convention);

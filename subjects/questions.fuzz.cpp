@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subject's side of the protocol: forged, early, late and destroyed answers in shared memory, messages of any bytes,
-// and lines of any program. Whatever comes, the questions come to an end, and what counts once counts for good.
+// The subject's side of the protocol: forged, early, late and destroyed answers in shared memory, messages of any
+// bytes, and lines of any program. Whatever comes, the questions come to an end, and what counts once counts for good.
 #include "subjects/questions.h"
 
 #include <algorithm>
@@ -53,7 +53,8 @@ void ask_hostile(std::string_view bytes) {
     switch (what % 8) {
       case 0:
       case 1: {  // as an honest worker would: all of a pass
-        for (std::size_t i = 0; i < count; ++i) words[(second ? kMostAsked : 0) + i] = word_of(nonce, second, i, answer);
+        for (std::size_t i = 0; i < count; ++i)
+          words[(second ? kMostAsked : 0) + i] = word_of(nonce, second, i, answer);
         break;
       }
       case 2:
@@ -117,7 +118,8 @@ void read_lines(std::string_view bytes) {
       }
     }
   }
-  must_hold(taken == static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), '\n')), "every line is taken once");
+  must_hold(taken == static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), '\n')),
+            "every line is taken once");
 }
 
 const RegisterFuzzTarget kQuestions("questions", [](std::string_view bytes) {

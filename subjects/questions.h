@@ -42,8 +42,8 @@ class Questions {
 
   std::size_t count_;
   bool singly_;
-  std::size_t most_ = 2 * kMostAsked;          // answers that the next question asks for
-  std::size_t asked_ = 0, taken_ = 0;          // answers, of the last question
+  std::size_t most_ = 2 * kMostAsked;  // answers that the next question asks for
+  std::size_t asked_ = 0, taken_ = 0;  // answers, of the last question
   bool second_ = false;
   std::size_t at_ = 0;  // forward: the pair without an answer; backward: the one after it
   std::uint64_t nonce_ = 0;

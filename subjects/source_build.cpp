@@ -104,7 +104,9 @@ void write_atomically(const fs::path& file, std::string_view text) {
   fs::rename(part, file);
 }
 
-bool source_describes_itself(const fs::path& source) { return text_of(source).find("GRAZE_SUBJECT(") != std::string::npos; }
+bool source_describes_itself(const fs::path& source) {
+  return text_of(source).find("GRAZE_SUBJECT(") != std::string::npos;
+}
 
 fs::path build_source(const fs::path& source, const std::string& function, const VariantInfo& variant,
                       const std::vector<std::string>& flags) {
@@ -119,12 +121,15 @@ fs::path build_source(const fs::path& source, const std::string& function, const
   const std::string version = output_of(compiler + " --version 2>&1", status);
   const std::string identity = version.substr(0, version.find('\n'));  // below it are paths
   if (status != 0) throw std::runtime_error("expected a compiler " + compiler + " for " + name + ", found none");
-  std::string command = fmt::format("{} {} -O2 -fPIC -shared {}", compiler, c ? "-std=gnu11" : "-std=c++20", variant.flags);
+  std::string command =
+      fmt::format("{} {} -O2 -fPIC -shared {}", compiler, c ? "-std=gnu11" : "-std=c++20", variant.flags);
   for (const std::string& flag : flags) command += ' ' + shell_word(flag);
-  const std::string wrapped = fmt::format(
-      "{}", describes_itself ? std::string("#include SOURCE\n") : std::string(c ? kC : kCpp));
-  const std::string expected = fmt::format("expected a function {} of two triangles, const float[9] or const double[9] each, "
-                                           "that returns int or bool", function);
+  const std::string wrapped =
+      fmt::format("{}", describes_itself ? std::string("#include SOURCE\n") : std::string(c ? kC : kCpp));
+  const std::string expected = fmt::format(
+      "expected a function {} of two triangles, const float[9] or const double[9] each, "
+      "that returns int or bool",
+      function);
   const std::string defines =
       fmt::format("#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n", name, function, expected);
   // All that is included could change too: the preprocessor's output is what the result depends on.
@@ -141,12 +146,14 @@ fs::path build_source(const fs::path& source, const std::string& function, const
   command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(part.string()));
   const std::string preprocessed = output_of(command + " -E -P 2>/dev/null", status);
   const fs::path kept =
-      folder / fmt::format("{:016x}.so", fnv1a(preprocessed, fnv1a(fmt::format("{}\n{}\n{}", identity, variant.flags, fmt::join(flags, "\n")))));
+      folder / fmt::format("{:016x}.so", fnv1a(preprocessed, fnv1a(fmt::format("{}\n{}\n{}", identity, variant.flags,
+                                                                               fmt::join(flags, "\n")))));
   if (status == 0 && fs::exists(kept)) {
     clean();
     return kept;
   }
-  const std::string said = output_of(fmt::format("{} -o {} -Wl,-z,defs 2>&1", command, shell_word(object.string())), status);
+  const std::string said =
+      output_of(fmt::format("{} -o {} -Wl,-z,defs 2>&1", command, shell_word(object.string())), status);
   if (status != 0) {
     clean();
     std::string error = first_error(said);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared objects from a user's C or C++ source, one for each host variant, kept by the hash of all that they are made of.
+// Shared objects from a user's C or C++ source, one for each host variant, kept by the hash of all that they are made
+// of.
 #pragma once
 
 #include <filesystem>
@@ -20,10 +21,10 @@ void write_atomically(const std::filesystem::path& file, std::string_view text);
 // Whether the source has a struct graze_subject of its own.
 bool source_describes_itself(const std::filesystem::path& source);
 
-// Returns: the shared object's file, named by the hash of the preprocessed source, the flags and the compiler's first line
-// of --version, built if it is not there yet: `function` of the source, or the descriptions that
-// the source makes itself (see graze/subject.h), with the variant's flags and then `flags`.
-// Throws: std::runtime_error with the compiler's first error.
+// Returns: the shared object's file, named by the hash of the preprocessed source, the flags and the compiler's first
+// line of --version, built if it is not there yet: `function` of the source, or the descriptions that the source makes
+// itself (see graze/subject.h), with the variant's flags and then `flags`. Throws: std::runtime_error with the
+// compiler's first error.
 std::filesystem::path build_source(const std::filesystem::path& source, const std::string& function,
                                    const VariantInfo& variant, const std::vector<std::string>& flags);
 

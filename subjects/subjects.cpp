@@ -65,7 +65,8 @@ Opened parsed(const Wanted& wanted) {
   }
   const std::string_view what = wanted.what;
   std::size_t end = what.size();  // of the file; a colon and a function may follow
-  while (end != what.npos && kind_of(what.substr(0, end)).empty()) end = end == 0 ? what.npos : what.rfind(':', end - 1);
+  while (end != what.npos && kind_of(what.substr(0, end)).empty())
+    end = end == 0 ? what.npos : what.rfind(':', end - 1);
   if (end == what.npos || end + 1 == what.size()) {
     throw UsageError(fmt::format("--subject {}: expected FILE.so, FILE.cpp, FILE.c, FILE.cu or cmd:COMMAND, found {}",
                                  wanted.name, shown(what)));
@@ -95,8 +96,8 @@ void describe_info(Entry& entry, const Description& description) {
 }
 
 // What a program says of itself when its first line is `describe`: a JSON object, {"version": "1.2", "source": "…",
-// "convention": "…", "outside": ["touching", …]}, all of it optional. Of anything else, and of nothing, nothing is taken:
-// a program need not know the question.
+// "convention": "…", "outside": ["touching", …]}, all of it optional. Of anything else, and of nothing, nothing is
+// taken: a program need not know the question.
 void add_description(Description& description, const std::string& subject) {
   const std::string& said = description.said;
   const Json json = Json::parse(said, nullptr, false);
@@ -110,15 +111,20 @@ void add_description(Description& description, const std::string& subject) {
     description.source = json.value("source", "");
     description.convention = json.value("convention", "");
     for (const std::string word : json.value("outside", Json::array())) {
-      const auto found = std::find_if(std::begin(kOutside), std::end(kOutside), [&](auto& o) { return o.first == word; });
+      const auto found =
+          std::find_if(std::begin(kOutside), std::end(kOutside), [&](auto& o) { return o.first == word; });
       if (found == std::end(kOutside))
-        throw std::runtime_error(fmt::format("--subject {}: expected touching, coplanar, degenerate or shared in \"outside\", "
-                                             "found '{}'", subject, printable(word)));
+        throw std::runtime_error(
+            fmt::format("--subject {}: expected touching, coplanar, degenerate or shared in \"outside\", "
+                        "found '{}'",
+                        subject, printable(word)));
       description.outside |= found->second;
     }
   } catch (const Json::exception&) {
-    throw std::runtime_error(fmt::format("--subject {}: expected texts in its description, and a list of them in \"outside\", "
-                                         "found {}", subject, printable(said)));
+    throw std::runtime_error(
+        fmt::format("--subject {}: expected texts in its description, and a list of them in \"outside\", "
+                    "found {}",
+                    subject, printable(said)));
   }
 }
 
@@ -142,9 +148,9 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
       if (lane.at("hash") != build.hash || build.twin.empty() || count("twin_pairs") == 0 || count("differences") > 0 ||
           count("twin_differences") > 0)
         continue;
-      return cuda::evidence(cuda::TwinProof{record.at("device").get_ref<const std::string&>(),
-                                            record.at("toolkit").get_ref<const std::string&>(),
-                                            static_cast<double>(count("pairs")), static_cast<double>(count("twin_pairs"))});
+      return cuda::evidence(cuda::TwinProof{
+          record.at("device").get_ref<const std::string&>(), record.at("toolkit").get_ref<const std::string&>(),
+          static_cast<double>(count("pairs")), static_cast<double>(count("twin_pairs"))});
     }
   } catch (const Json::exception&) {  // no record, or a damaged one, verifies nothing
   }
@@ -154,9 +160,10 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
 // recorded: the hash of the code that a campaign ran; empty where any will do.
 void expect_code(const Opened& subject, const std::string& recorded) {
   if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
-    throw std::runtime_error(fmt::format("{}: expected the code that the campaign ran ({}), found that it has changed ({}); "
-                                         "--subject {}=… takes it as it is now",
-                                         subject.wanted.what, recorded, found, subject.wanted.name));
+    throw std::runtime_error(
+        fmt::format("{}: expected the code that the campaign ran ({}), found that it has changed ({}); "
+                    "--subject {}=… takes it as it is now",
+                    subject.wanted.what, recorded, found, subject.wanted.name));
 }
 
 // The device's build where there is a device, else its twin. A build with neither is a lane that says why.
@@ -164,8 +171,8 @@ void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   const fs::path cache = cache_folder();
   std::vector<Lane> made;
-  for (cuda::CudaBuild& build : cuda::build_cuda_subject(o.file, o.function.empty() ? "intersects" : o.function,
-                                                         o.wanted.flags, cache)) {
+  for (cuda::CudaBuild& build :
+       cuda::build_cuda_subject(o.file, o.function.empty() ? "intersects" : o.function, o.wanted.flags, cache)) {
     Code code{"library", build.twin.string(), "", std::string(name(build.scalar)), o.wanted.timeout, o.wanted.memory};
     if (on_device) {
       code.kind = "device";
@@ -199,8 +206,11 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded);
 Wanted parse_subject(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
-  const auto fits = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.'; };
-  if (equals == text.npos || name.empty() || !std::all_of(name.begin(), name.end(), fits) || equals + 1 == text.size()) {
+  const auto fits = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-' || c == '.';
+  };
+  if (equals == text.npos || name.empty() || !std::all_of(name.begin(), name.end(), fits) ||
+      equals + 1 == text.size()) {
     throw UsageError("--subject: expected NAME=WHAT with a name of letters, digits, '_', '-' and '.', found '" +
                      printable(text) + "'");
   }
@@ -221,15 +231,18 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
   }
   for (const Lane& lane : lanes()) {
     if (lane.info->id == wanted.name)
-      throw UsageError(fmt::format("--subject {}: expected a name of its own, found that of a published algorithm",
-                                   wanted.name));
+      throw UsageError(
+          fmt::format("--subject {}: expected a name of its own, found that of a published algorithm", wanted.name));
   }
   entries().push_back({wish, "", "", "", "", {}, {}, {}});
   Entry& entry = entries().back();
   try {
-    Code code{wish.kind == "command" ? "command" : "library", wish.kind == "command" ? wanted.what.substr(kCommand.size())
-                                                                                      : wish.file.string(),
-              wish.function, "any", wanted.timeout, wanted.memory};
+    Code code{wish.kind == "command" ? "command" : "library",
+              wish.kind == "command" ? wanted.what.substr(kCommand.size()) : wish.file.string(),
+              wish.function,
+              "any",
+              wanted.timeout,
+              wanted.memory};
     const std::size_t slash = wish.function.find('/');
     if (wish.kind == "library" && slash != std::string::npos) {
       code.name = wish.function.substr(0, slash);
@@ -324,7 +337,8 @@ Json record(const std::vector<std::string>& lanes) {
   Json rows;
   for (const Entry& entry : entries()) {
     const Opened& o = entry.opened;
-    if (std::none_of(lanes.begin(), lanes.end(), [&](const std::string& id) { return id.starts_with(o.wanted.name + '/'); }))
+    if (std::none_of(lanes.begin(), lanes.end(),
+                     [&](const std::string& id) { return id.starts_with(o.wanted.name + '/'); }))
       continue;
     rows.push_back({{"name", o.wanted.name},
                     {"what", o.wanted.what},

@@ -48,9 +48,9 @@ std::vector<std::string> open_recorded(const nlohmann::ordered_json& spec, bool 
 // How a lane's subject is had, for a person or a program that shows a case again; empty for our own.
 struct Opened {
   Wanted wanted;
-  std::string kind;      // "library", "source", "cuda", "command"
+  std::string kind;  // "library", "source", "cuda", "command"
   std::filesystem::path file;
-  std::string function;  // empty: none named
+  std::string function;     // empty: none named
   std::uint64_t hash = 0;   // of the file, or of the command
   CodeHash code;            // of all that is compiled or run
   Description description;  // of its first build

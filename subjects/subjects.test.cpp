@@ -75,9 +75,12 @@ struct Subjects : testing::Test {
     setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
     const std::string include = "-I" GRAZE_SOURCE_DIR "/subjects/include ";
     const fs::path c = write("bad.c", kMisbehaving), cpp = write("described.cpp", kDescribed);
-    ASSERT_EQ(std::system(("cc -O2 -shared -fPIC " + c.string() + " -o " + (folder / "libbad.so").string()).c_str()), 0);
+    ASSERT_EQ(std::system(("cc -O2 -shared -fPIC " + c.string() + " -o " + (folder / "libbad.so").string()).c_str()),
+              0);
     ASSERT_EQ(std::system(("c++ -std=c++20 -O2 -shared -fPIC " + include + cpp.string() + " -o " +
-                           (folder / "libdescribed.so").string()).c_str()), 0);
+                           (folder / "libdescribed.so").string())
+                              .c_str()),
+              0);
     for (std::uint64_t i = 0; i < 3000; ++i) pairs.push_back(strata::generate(1, strata::Stratum::uniform, i));
   }
   static void TearDownTestSuite() { fs::remove_all(folder); }
@@ -118,8 +121,13 @@ struct Subjects : testing::Test {
 };
 
 TEST_F(Subjects, WhatTheCodeItselfTakesIsKnown) {
-  write("slow.c", "int slow(const float a[9], const float b[9]) { volatile int i = 20000; while (i > 0) --i; return a[0] < b[0]; }");
-  ASSERT_EQ(std::system(("cc -O2 -shared -fPIC " + (folder / "slow.c").string() + " -o " + (folder / "libslow.so").string()).c_str()), 0);
+  write("slow.c",
+        "int slow(const float a[9], const float b[9]) { volatile int i = 20000; while (i > 0) --i; return a[0] < b[0]; "
+        "}");
+  ASSERT_EQ(
+      std::system(
+          ("cc -O2 -shared -fPIC " + (folder / "slow.c").string() + " -o " + (folder / "libslow.so").string()).c_str()),
+      0);
   const auto nanoseconds = [&](const char* library, const char* function) {
     ForeignProcesses subject({"library", (folder / library).string(), function, "f32"}, Scalar::f32);
     EXPECT_FALSE(subject.nanoseconds());
@@ -139,8 +147,11 @@ TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
     const char* name;
     Verdict verdict;
     double timeout = 5;
-  } kCases[] = {{"declines", Verdict::declined}, {"aborts", Verdict::crashed},   {"exits", Verdict::crashed},
-                {"scribbles", Verdict::crashed}, {"wavers", Verdict::unstable}};
+  } kCases[] = {{"declines", Verdict::declined},
+                {"aborts", Verdict::crashed},
+                {"exits", Verdict::crashed},
+                {"scribbles", Verdict::crashed},
+                {"wavers", Verdict::unstable}};
   for (const auto& c : kCases) {
     SCOPED_TRACE(c.name);
     ForeignProcesses subject({"library", (folder / "libbad.so").string(), c.name, "f32", c.timeout}, Scalar::f32);
@@ -213,10 +224,12 @@ for line in sys.stdin:
   const std::vector<Pair> all = pairs;
   pairs.resize(300);
   const auto run = [](const std::string& how) {
-    ForeignProcesses subject({"command", "python3 " + (folder / "program.py").string() + " " + how, "", "f32", 20}, Scalar::f32);
+    ForeignProcesses subject({"command", "python3 " + (folder / "program.py").string() + " " + how, "", "f32", 20},
+                             Scalar::f32);
     return verdicts(subject);
   };
-  for (const auto& [how, verdict] : {std::pair{"declines", Verdict::declined}, {"dies", Verdict::crashed}, {"babbles", Verdict::crashed}}) {
+  for (const auto& [how, verdict] :
+       {std::pair{"declines", Verdict::declined}, {"dies", Verdict::crashed}, {"babbles", Verdict::crashed}}) {
     const std::vector<Verdict> found = run(how);
     for (std::size_t i = 0; i < pairs.size(); ++i)
       EXPECT_EQ(found[i], is_bad(pairs[i]) ? verdict : left_of(pairs[i])) << how << ' ' << i;
@@ -231,21 +244,26 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
     open_one(name + "=cmd:" + describes + answers);
     return find_lane(name + "/f32/cpu");
   };
-  const Lane* lane = open_program("told", "read line; echo '{\"version\": \"1.2\", \"outside\": [\"touching\", \"shared\"], "
-                                          "\"convention\": \"its manual\"}'");
+  const Lane* lane = open_program("told",
+                                  "read line; echo '{\"version\": \"1.2\", \"outside\": [\"touching\", \"shared\"], "
+                                  "\"convention\": \"its manual\"}'");
   ASSERT_TRUE(lane);
   EXPECT_EQ(lane->outside, unsigned{kOutsideTouching | kOutsideShared});
   EXPECT_EQ(opened("told")->description.version, "1.2");
   EXPECT_NE(lane->info->paper.find("version 1.2"), std::string_view::npos) << lane->info->paper;
-  for (const auto& [name, says] : {std::pair{"answers", "true"}, {"silent", "exec cat > /dev/null"}, {"ends", "exit 3"},
-                                   {"babbles", "read line; echo '{'"}, {"other", "read line; echo '[1]'"}}) {
+  for (const auto& [name, says] : {std::pair{"answers", "true"},
+                                   {"silent", "exec cat > /dev/null"},
+                                   {"ends", "exit 3"},
+                                   {"babbles", "read line; echo '{'"},
+                                   {"other", "read line; echo '[1]'"}}) {
     lane = open_program(name, says);
     ASSERT_TRUE(lane) << name;
     EXPECT_EQ(lane->outside, 0u) << name;
     EXPECT_EQ(opened(name)->description.version, "") << name;
   }
-  EXPECT_NE(error_of([&] { open_program("odd", "read line; echo '{\"outside\": [\"nearly\"]}'"); })
-                .find("expected touching, coplanar, degenerate or shared in \"outside\", found 'nearly'"),
+  EXPECT_NE(error_of([&] {
+              open_program("odd", "read line; echo '{\"outside\": [\"nearly\"]}'");
+            }).find("expected touching, coplanar, degenerate or shared in \"outside\", found 'nearly'"),
             std::string::npos);
   EXPECT_NE(error_of([&] { open_program("odd", "read line; echo '{\"version\": 12}'"); }).find("expected texts"),
             std::string::npos);
@@ -255,8 +273,9 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
 class OurOwn : public Subjects, public testing::WithParamInterface<int> {};
 
 TEST_P(OurOwn, AsForeignCodeAreTheirLanes) {
-  const std::vector<const AlgorithmInfo*> infos = std::apply(
-      [](auto... algorithm) { return std::vector<const AlgorithmInfo*>{&decltype(algorithm)::kInfo...}; }, Algorithms{});
+  const std::vector<const AlgorithmInfo*> infos =
+      std::apply([](auto... algorithm) { return std::vector<const AlgorithmInfo*>{&decltype(algorithm)::kInfo...}; },
+                 Algorithms{});
   const std::string id(infos.at(static_cast<std::size_t>(GetParam()))->id), name = "own_" + id;
   const fs::path source = write(name + ".cpp", R"(
 #define GRAZE_FP stranger
@@ -268,7 +287,8 @@ int decide(const Real a[9], const Real b[9]) {
     (&pair.a[0].x)[i] = static_cast<float>(a[i]);
     (&pair.b[0].x)[i] = static_cast<float>(b[i]);
   }
-  using Algorithm = std::tuple_element_t<)" + std::to_string(GetParam()) + R"(, graze::Algorithms>;
+  using Algorithm = std::tuple_element_t<)" + std::to_string(GetParam()) +
+                                                   R"(, graze::Algorithms>;
   const graze::Verdict verdict = graze::decide_widened<Algorithm, Real>(pair);
   return verdict == graze::Verdict::declined ? -1 : verdict == graze::Verdict::intersects;
 }
@@ -298,13 +318,13 @@ int decide(const Real a[9], const Real b[9]) {
   }
   EXPECT_GE(compared, 2u * 2000 * std::size(strata::kStrata));
 }
-INSTANTIATE_TEST_SUITE_P(Subjects, OurOwn, testing::Range(0, kAlgorithmCount), [](const auto& of) {
-  return std::to_string(of.param);
-});
+INSTANTIATE_TEST_SUITE_P(Subjects, OurOwn, testing::Range(0, kAlgorithmCount),
+                         [](const auto& of) { return std::to_string(of.param); });
 
 TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
-  write("both.cpp", "#include \"part.h\"\nnamespace geo { bool meets(const float a[9], const float b[9]) { return LESS(a, b); }\n"
-                    "bool meets(const double a[9], const double b[9]) { return LESS(a, b); } }");
+  write("both.cpp",
+        "#include \"part.h\"\nnamespace geo { bool meets(const float a[9], const float b[9]) { return LESS(a, b); }\n"
+        "bool meets(const double a[9], const double b[9]) { return LESS(a, b); } }");
   write("part.h", "#define LESS(a, b) (a)[0] < (b)[0]");
   open_one("both=" + (folder / "both.cpp").string() + ":geo::meets");
   open_one("in_double=" + (folder / "bad.c").string() + ":in_double");
@@ -321,7 +341,8 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
   // What is included counts: another header is another build.
   write("part.h", "#define LESS(a, b) (a)[0] >= (b)[0]");
   open_one("changed=" + (folder / "both.cpp").string() + ":geo::meets");
-  EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0], left_of(pairs[0]) == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint);
+  EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0],
+            left_of(pairs[0]) == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint);
 }
 
 // Without a device a CUDA source is replayed by its twin; where a product is fused into a sum that shows.
@@ -359,7 +380,8 @@ __device__ bool intersects(const float a[9], const float b[9]) { return area(a) 
   const std::vector<Verdict> by_fma = verdicts(fused->decide), by_rounding = verdicts(rounded->decide);
   std::size_t differ = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::vector<std::uint64_t> none(1 + cuda::contraction_sites(*fused).size() / 64), all(none.size(), ~std::uint64_t{0});
+    const std::vector<std::uint64_t> none(1 + cuda::contraction_sites(*fused).size() / 64),
+        all(none.size(), ~std::uint64_t{0});
     EXPECT_EQ(cuda::decide_fusing(*fused, pairs[i], none), by_rounding[i]);
     EXPECT_EQ(cuda::decide_fusing(*fused, pairs[i], all), by_fma[i]);
     differ += by_fma[i] != by_rounding[i];
@@ -369,12 +391,21 @@ __device__ bool intersects(const float a[9], const float b[9]) { return area(a) 
 
   // A record counts for the very build that it names.
   const std::vector<cuda::NamedBuild> builds = cuda_builds();
-  const auto build = std::find_if(builds.begin(), builds.end(), [](const auto& b) { return b.lane == "gpu/f32/cuda-fma"; });
+  const auto build =
+      std::find_if(builds.begin(), builds.end(), [](const auto& b) { return b.lane == "gpu/f32/cuda-fma"; });
   ASSERT_NE(build, builds.end());
-  nlohmann::ordered_json record{{"device", "a device"}, {"toolkit", "13.0"}, {"lanes", {{{"hash", build->build->hash}, {"pairs", 0}, {"twin_pairs", 100}, {"differences", 0}, {"twin_differences", 0}}}}};
+  nlohmann::ordered_json record{{"device", "a device"},
+                                {"toolkit", "13.0"},
+                                {"lanes",
+                                 {{{"hash", build->build->hash},
+                                   {"pairs", 0},
+                                   {"twin_pairs", 100},
+                                   {"differences", 0},
+                                   {"twin_differences", 0}}}}};
   std::ofstream(proof_file(source)) << record;
   open_one("proven=" + source.string());
-  EXPECT_EQ(find_lane("proven/f32/cuda-fma")->evidence, "twin, verified on a device, nvcc 13.0: GPU and twin agree on 100 pairs");
+  EXPECT_EQ(find_lane("proven/f32/cuda-fma")->evidence,
+            "twin, verified on a device, nvcc 13.0: GPU and twin agree on 100 pairs");
   EXPECT_EQ(find_lane("proven/f32/cuda-nofma")->evidence, rounded->evidence);
   record["lanes"][0]["twin_differences"] = 1;
   std::ofstream(proof_file(source)) << record;
@@ -387,7 +418,10 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   write("broken.cpp", "bool intersects(const float a[9], const float b[9]) { return a[0] < ; }");
   write("other.cpp", "int intersects(int a) { return a; }");
   write("loads.c", "__attribute__((constructor)) static void f(void) { __builtin_trap(); }");
-  ASSERT_EQ(std::system(("cc -shared -fPIC " + (folder / "loads.c").string() + " -o " + (folder / "loads.so").string()).c_str()), 0);
+  ASSERT_EQ(
+      std::system(
+          ("cc -shared -fPIC " + (folder / "loads.c").string() + " -o " + (folder / "loads.so").string()).c_str()),
+      0);
   const auto expect_error = [&](const std::string& text, const std::string& pattern) {
     const std::string error = error_of([&] { open_one(text); });
     EXPECT_TRUE(std::regex_search(error, std::regex(pattern))) << text << ": " << error;
@@ -414,13 +448,14 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
 }
 
 TEST_F(Subjects, ACampaignsRecordOpensThemAgainUnlessTheyChanged) {
-  const fs::path source = write("recorded.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  const fs::path source =
+      write("recorded.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
   open_one("recorded=" + source.string());
   EXPECT_TRUE(record({"moller_1997/f32/cpu", "recorded2/f32/cpu"}).is_null());
   nlohmann::ordered_json spec{{"subjects", record({"moller_1997/f32/cpu", "recorded/f32/cpu"})}};
   ASSERT_EQ(spec["subjects"].size(), 1u);
-  open_recorded(spec);                         // open already
-  open_one("recorded=" + source.string());     // the same again
+  open_recorded(spec);                      // open already
+  open_one("recorded=" + source.string());  // the same again
   spec["subjects"][0]["name"] = "again";
   open_recorded(spec);
   EXPECT_TRUE(find_lane("again/f32/cpu"));
@@ -431,12 +466,16 @@ TEST_F(Subjects, ACampaignsRecordOpensThemAgainUnlessTheyChanged) {
 }
 
 TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
-  const fs::path header = write("part.h", "#define LESS <\n"), script = write("answers.sh", "while read line; do echo 1; done\n");
-  const fs::path source = write("whole.c", "#include \"part.h\"\nint intersects(const float a[9], const float b[9]) { return a[0] LESS b[0]; }");
+  const fs::path header = write("part.h", "#define LESS <\n"),
+                 script = write("answers.sh", "while read line; do echo 1; done\n");
+  const fs::path source = write(
+      "whole.c", "#include \"part.h\"\nint intersects(const float a[9], const float b[9]) { return a[0] LESS b[0]; }");
   for (const auto& [name, what, lane, part, other] :
        {std::tuple(std::string("includes"), source.string(), "includes/f32/cpu", header, "#define LESS >\n"),
-        std::tuple(std::string("script"), "cmd:sh '" + script.string() + "'", "script/f32/cpu", script, "while read line; do echo 0; done\n"),
-        std::tuple(std::string("says"), "cmd:sh " + script.string() + " ", "says/f32/cpu", script, "echo '{\"version\": \"2\"}'; while read line; do echo 0; done\n")}) {
+        std::tuple(std::string("script"), "cmd:sh '" + script.string() + "'", "script/f32/cpu", script,
+                   "while read line; do echo 0; done\n"),
+        std::tuple(std::string("says"), "cmd:sh " + script.string() + " ", "says/f32/cpu", script,
+                   "echo '{\"version\": \"2\"}'; while read line; do echo 0; done\n")}) {
     open_one(name + "=" + what);
     nlohmann::ordered_json spec{{"subjects", record({lane})}};
     ASSERT_EQ(spec["subjects"].size(), 1u);
@@ -447,8 +486,10 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
     std::ofstream(part) << other;
     spec["subjects"][0]["name"] = name + "_changed";
     const std::string error = error_of([&] { open_recorded(spec); });
-    EXPECT_NE(error.find("expected the code that the campaign ran (" + spec["subjects"][0]["hash"].get<std::string>() + "), found that it has changed"),
-              std::string::npos) << error;
+    EXPECT_NE(error.find("expected the code that the campaign ran (" + spec["subjects"][0]["hash"].get<std::string>() +
+                         "), found that it has changed"),
+              std::string::npos)
+        << error;
     EXPECT_FALSE(opened(name + "_changed"));
     open_one(name + "_changed=" + what);  // as a person asks for it
     EXPECT_EQ(open_recorded(spec).size(), 1u);
@@ -458,7 +499,8 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
 TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
   const fs::path file = write("with space.txt", "one");
   const auto hash = [&](const std::string& command) { return hash_of_command(command).hash; };
-  const std::string quoted = "sh -c 'x' \"" + file.string() + "\"", escaped = "sh " + (folder / "with\\ space.txt").string();
+  const std::string quoted = "sh -c 'x' \"" + file.string() + "\"",
+                    escaped = "sh " + (folder / "with\\ space.txt").string();
   const std::uint64_t before = hash(quoted), of_escaped = hash(escaped);
   EXPECT_NE(hash("sh a"), hash("sh b"));
   write("with space.txt", "two");

@@ -78,12 +78,14 @@ class Supervisor {
     return found;
   }
 
-  // Waits for what graze asks next, and meanwhile for what the processes take.   Returns: whether there is more to come.
+  // Waits for what graze asks next, and meanwhile for what the processes take.   Returns: whether there is more to
+  // come.
   bool next_block(Block& block) {
     for (;;) {
       pollfd control{kControlFd, POLLIN, 0};
       if (wait_for(&control, 1, 1000) > 0)
-        return recv(kControlFd, &block, sizeof block, 0) == sizeof block && block.count > 0 && block.count <= kMostAsked;
+        return recv(kControlFd, &block, sizeof block, 0) == sizeof block && block.count > 0 &&
+               block.count <= kMostAsked;
       reap();
       if (!within_limits()) end_all();
     }
@@ -109,7 +111,8 @@ class Supervisor {
       const signed char how = sent ? watch(questions) : static_cast<signed char>(kCrashed);
       if (how == kDeclined) {
         const auto wall = std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
-        if (first && questions.done() && nanoseconds_ <= static_cast<std::uint64_t>(wall)) answers.nanoseconds = nanoseconds_;
+        if (first && questions.done() && nanoseconds_ <= static_cast<std::uint64_t>(wall))
+          answers.nanoseconds = nanoseconds_;
         continue;
       }
       end_worker();
@@ -213,7 +216,8 @@ class Supervisor {
 
   [[noreturn]] void become_loader(int talk) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    const int from[] = {fcntl(kSupervisorPairsFd, F_DUPFD, 16), fcntl(words_fd_, F_DUPFD, 16), fcntl(talk, F_DUPFD, 16)};
+    const int from[] = {fcntl(kSupervisorPairsFd, F_DUPFD, 16), fcntl(words_fd_, F_DUPFD, 16),
+                        fcntl(talk, F_DUPFD, 16)};
     const int to[] = {kPairsFd, kWordsFd, kTalkFd};
     for (int i = 0; i < 3; ++i) dup2(from[i], to[i]);
     close_range(kTalkFd + 1, ~0u, 0);
@@ -228,7 +232,8 @@ class Supervisor {
   // Returns: whether there is a message; otherwise the process ended, time is up, or it takes too much: why_ says so.
   bool wait_for_message(Time until, int process_fd) {
     while (Clock::now() < until) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
+      const auto left =
+          std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
       pollfd news[] = {{talk_, POLLIN, 0}, {process_fd, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
       wait_for(news, 3, static_cast<int>(std::max<long>(0, left)));
       if (news[2].revents & (POLLHUP | POLLERR | POLLRDHUP)) leave();
@@ -242,7 +247,8 @@ class Supervisor {
                          limits_.processes);
       return false;
     }
-    why_ = is_stopped(loader_) ? "stopped while it was loaded" : fmt::format("is not loaded after {} s", limits_.load_seconds);
+    why_ = is_stopped(loader_) ? "stopped while it was loaded"
+                               : fmt::format("is not loaded after {} s", limits_.load_seconds);
     return false;
   }
 

@@ -8,9 +8,9 @@
 namespace graze::subjects {
 
 struct Limits {
-  double seconds = 1;            // of processor time for a pair, or for a block of a subject that takes blocks
-  double load_seconds = 60;      // to load the code, and to have a worker ready
-  std::uint64_t bytes = 0;       // of memory, of all its processes together; 0: unlimited
+  double seconds = 1;        // of processor time for a pair, or for a block of a subject that takes blocks
+  double load_seconds = 60;  // to load the code, and to have a worker ready
+  std::uint64_t bytes = 0;   // of memory, of all its processes together; 0: unlimited
   std::uint64_t processes = 64;
 };
 

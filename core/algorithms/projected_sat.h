@@ -16,7 +16,8 @@ struct ProjectedSat {
                                        "the projections' 2D test decides",
                                        "says nothing; a zero normal divides by zero",
                                        "depends: projects onto the first triangle's plane",
-                                       false, false};
+                                       false,
+                                       false};
 
   template <class Real, class Policy = ExactZero>
   GRAZE_HD static Verdict decide(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Policy& policy = {}) {

@@ -33,8 +33,8 @@ GRAZE_HD Flat<D> flatten(const Vec<D>& v, unsigned axis) {
   return {component(v, axis == 2 ? 0 : axis + 1), component(v, axis == 0 ? 2 : axis - 1)};
 }
 
-// Whether an edge of p, which turns left or right, has all of q strictly on its other side. The edges of a segment run both
-// ways, so of them either will do.
+// Whether an edge of p, which turns left or right, has all of q strictly on its other side. The edges of a segment run
+// both ways, so of them either will do.
 template <class Numbers, class D>
 GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]) {
   bool parts = false;
@@ -51,8 +51,8 @@ GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]
   return parts;
 }
 
-// Requires: all vertices lie in a plane with normal n; two segments are not parallel. of_a and of_b are the normals of a and
-// b, of a segment any.
+// Requires: all vertices lie in a plane with normal n; two segments are not parallel. of_a and of_b are the normals of
+// a and b, of a segment any.
 template <class Numbers>
 GRAZE_HD bool meet_in_plane(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, const NormalOf<Numbers>& of_a,
                             const NormalOf<Numbers>& of_b) {
@@ -63,15 +63,20 @@ GRAZE_HD bool meet_in_plane(const Triangles<Numbers>& t, const NormalOf<Numbers>
     b[i] = flatten(t.b[i], axis);
   }
   const typename Numbers::M zero(0);
-  return !edge_parts<Numbers>(a, component(of_a, axis) > zero, b) && !edge_parts<Numbers>(b, component(of_b, axis) > zero, a);
+  return !edge_parts<Numbers>(a, component(of_a, axis) > zero, b) &&
+         !edge_parts<Numbers>(b, component(of_b, axis) > zero, a);
 }
 
 // Requires: two segments or points.
 template <class Numbers>
 GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   using M = typename Numbers::M;
-  const auto same = [](const VecOf<Numbers>& u, const VecOf<Numbers>& v) { return u.x == v.x && u.y == v.y && u.z == v.z; };
-  const auto along = [&](const VecOf<Numbers>(&v)[3]) { return same(v[1], v[0]) ? v[2] - v[0] : v[1] - v[0]; };  // zero of a point
+  const auto same = [](const VecOf<Numbers>& u, const VecOf<Numbers>& v) {
+    return u.x == v.x && u.y == v.y && u.z == v.z;
+  };
+  const auto along = [&](const VecOf<Numbers>(&v)[3]) {
+    return same(v[1], v[0]) ? v[2] - v[0] : v[1] - v[0];
+  };  // zero of a point
   const VecOf<Numbers> of_a = along(t.a), of_b = along(t.b), between = t.b[0] - t.a[0];
   const NormalOf<Numbers> n = cross<M>(of_a, of_b);
   if (!is_zero(n)) return dot<typename Numbers::T>(n, between) == typename Numbers::T(0) && meet_in_plane(t, n, n, n);
@@ -130,11 +135,13 @@ GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int expone
 
   const Turn turn = lone_vertices(of_a, of_b);
   for (unsigned k = 1; k < 3; ++k) {  // whether an edge of each parts them
-    const unsigned o = k == 1 ? turn.a[1] : turn.a[0], r = k == 1 ? turn.a[0] : turn.a[2], s = k == 1 ? turn.b[1] : turn.b[2];
+    const unsigned o = k == 1 ? turn.a[1] : turn.a[0], r = k == 1 ? turn.a[0] : turn.a[2],
+                   s = k == 1 ? turn.b[1] : turn.b[2];
     const auto nearly = determinant<Near>(pick(near.a, o), pick(near.b, turn.b[0]), pick(near.a, r), pick(near.b, s));
     if (bounded.positive(nearly)) return Finding::disjoint;
     if (bounded.negative(nearly) || bounded.zero(nearly)) continue;
-    if (exact.positive(exactly(vertex(a, o), vertex(b, turn.b[0]), vertex(a, r), vertex(b, s)))) return Finding::disjoint;
+    if (exact.positive(exactly(vertex(a, o), vertex(b, turn.b[0]), vertex(a, r), vertex(b, s))))
+      return Finding::disjoint;
   }
   return Finding::intersects;
 }
@@ -150,8 +157,9 @@ GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage)
     return decide<Numbers>(a, b, grid.exponent);
   };
   if (MachineNumbers::hold(grid)) return MachineNumbers::visit(grid, decide_in);
-  const Finding found = MultiwordNumbers::visit(
-      grid, [&](auto numbers) { return by_planes_one_by_one<BoundedNumbers, decltype(numbers)>(a, b, grid.exponent, stage); });
+  const Finding found = MultiwordNumbers::visit(grid, [&](auto numbers) {
+    return by_planes_one_by_one<BoundedNumbers, decltype(numbers)>(a, b, grid.exponent, stage);
+  });
   return found == Finding::unsure ? MultiwordNumbers::visit(grid, decide_in) : found != Finding::disjoint;
 }
 

@@ -170,8 +170,11 @@ TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
     float c[18];
     for (int v = 0; v < 6; ++v) {
       const bool in_b = v > 2;
-      const int along_d = in_b && i % 3 == 1 ? 0 : small(3), along_e = in_b && i % 3 != 0 ? small(3) : i % 5 == 0 && in_b ? 1 : 0;
-      for (int k = 0; k < 3; ++k) c[3 * v + k] = factor * static_cast<float>(along_d * d[k] + along_e * e[k] + (in_b ? up[k] : 0));
+      const int along_d = in_b && i % 3 == 1 ? 0 : small(3), along_e = in_b && i % 3 != 0   ? small(3)
+                                                                       : i % 5 == 0 && in_b ? 1
+                                                                                            : 0;
+      for (int k = 0; k < 3; ++k)
+        c[3 * v + k] = factor * static_cast<float>(along_d * d[k] + along_e * e[k] + (in_b ? up[k] : 0));
     }
     if (random() & 1) std::swap_ranges(c, c + 9, c + 9);
     const Grid grid = grid_of(c, c + 9);
@@ -196,7 +199,8 @@ TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
 TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   std::mt19937_64 random(13);
   const auto coordinate = [&] {
-    return std::ldexp(static_cast<float>(static_cast<int>(random() % 4001) - 2000), static_cast<int>(random() % 200) - 120);
+    return std::ldexp(static_cast<float>(static_cast<int>(random() % 4001) - 2000),
+                      static_cast<int>(random() % 200) - 120);
   };
   long by_contact[4] = {}, wide = 0;
   for (int i = 0; i < 20'000; ++i) {
@@ -205,9 +209,10 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
     if (i % 3 == 0) {  // on one plane's coordinate, so that they meet more often
       for (int k = i % 2; k < 18; k += 3) c[k] = 0;
     }
-    if (i % 2 == 0) std::copy_n(c + 3 * (i / 2 % 2), 3, c + 6);           // a is a segment
-    if (i % 5 == 0) std::copy_n(c + 9, 3, c + 15);                        // b is one
-    for (int k = 0; i % 7 == 0 && k < 3; ++k) c[9 + k] = 2 * c[k];      // and begins on the line through a's first and the origin
+    if (i % 2 == 0) std::copy_n(c + 3 * (i / 2 % 2), 3, c + 6);  // a is a segment
+    if (i % 5 == 0) std::copy_n(c + 9, 3, c + 15);               // b is one
+    for (int k = 0; i % 7 == 0 && k < 3; ++k)
+      c[9 + k] = 2 * c[k];  // and begins on the line through a's first and the origin
     if (random() & 1) std::swap_ranges(c, c + 9, c + 9);
     Stage stage;
     const Relation r = detail::by_axes(detail::triangles<detail::WideNumbers>(c, c + 9));
@@ -224,14 +229,17 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
 TEST(Exact, ResiduesKnowTheSignsOfMinors) {
   using detail::Whole;
   std::mt19937_64 random(12);
-  const auto difference = [&] { return static_cast<double>(static_cast<std::int64_t>(random() >> 29) - (std::int64_t{1} << 34)); };
+  const auto difference = [&] {
+    return static_cast<double>(static_cast<std::int64_t>(random() >> 29) - (std::int64_t{1} << 34));
+  };
   long small = 0;
   for (int i = 0; i < 200'000; ++i) {
     double p = difference(), q = difference(), r = q, s = p;
     if (i % 4 == 1) r += static_cast<double>(i % 3 - 1), s -= static_cast<double>(i % 5 - 2);
     if (i % 4 == 2) p = 0x1p34 - i % 7, q = 0x1p34 + i % 5, r = s = 0x1p34 - i % 3;
     if (i % 4 == 3) r = difference(), s = difference();
-    const __int128 exact = static_cast<__int128>(p) * static_cast<__int128>(q) - static_cast<__int128>(r) * static_cast<__int128>(s);
+    const __int128 exact =
+        static_cast<__int128>(p) * static_cast<__int128>(q) - static_cast<__int128>(r) * static_cast<__int128>(s);
     small += exact != 0 && -0x200000 < exact && exact < 0x200000;
     ASSERT_EQ(sign_of_difference(Whole{p}, Whole{q}, Whole{r}, Whole{s}), (exact > 0) - (exact < 0)) << i;
   }

@@ -51,8 +51,7 @@ struct Waiting {
   template <class Step>
   void take(const Step& step) {
     for (std::size_t i = 0; i < kAtOnce && count > 0; ++i) pair[count + i] = pair[count - 1];
-    for (std::size_t i = 0; i < count; i += kAtOnce)
-      step(pair + i, (1u << std::min(kAtOnce, count - i)) - 1);
+    for (std::size_t i = 0; i < count; i += kAtOnce) step(pair + i, (1u << std::min(kAtOnce, count - i)) - 1);
   }
 };
 
@@ -126,7 +125,8 @@ HWY_ATTR void decide_all(const float* pairs, std::size_t count, std::uint64_t* i
   std::fill_n(intersects, (count + 63) / 64, 0);
   std::fill_n(declined, (count + 63) / 64, 0);
   for (std::size_t first = 0; first < count; first += kChunk)
-    decide_chunk({pairs + first * kFloats, intersects + first / 64, declined + first / 64}, std::min(kChunk, count - first));
+    decide_chunk({pairs + first * kFloats, intersects + first / 64, declined + first / 64},
+                 std::min(kChunk, count - first));
 }
 
 const char* target() { return hwy::TargetName(HWY_TARGET); }

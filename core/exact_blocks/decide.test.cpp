@@ -65,8 +65,8 @@ std::vector<float> drawn(std::size_t pairs, auto coordinate) {
   return all;
 }
 
-// A vertex over a face, an edge over an edge and triangles in one plane, by less and less, by nothing, and below: on grids
-// of all sizes, the next contact at less than what a coarser one shows.
+// A vertex over a face, an edge over an edge and triangles in one plane, by less and less, by nothing, and below: on
+// grids of all sizes, the next contact at less than what a coarser one shows.
 std::vector<float> near_contacts() {
   std::vector<float> all;
   for (int exponent = 0; exponent >= -90; --exponent) {
@@ -90,7 +90,9 @@ std::vector<float> contacts(int exponent) {
 
 TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   std::mt19937_64 random(7);
-  const auto whole = [&](int bits) { return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits)); };
+  const auto whole = [&](int bits) {
+    return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits));
+  };
   const auto vertices_again = [&](std::vector<float> all) {  // of b, some are a's: contacts and coplanar pairs
     for (std::size_t pair = 0; pair < all.size(); pair += 18) {
       for (std::size_t v = 9; v < 18; v += 3) {
@@ -108,7 +110,8 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
       {"small lattice", drawn(20000, [&] { return whole(2); })},
       {"lattice that doubles hold", vertices_again(drawn(5000, [&] { return whole(13); }))},
       {"24 bits", vertices_again(drawn(5000, [&] { return whole(23); }))},
-      {"about 34 bits", vertices_again(drawn(5000, [&] { return std::ldexp(whole(23), static_cast<int>(random() % 12)); }))},
+      {"about 34 bits",
+       vertices_again(drawn(5000, [&] { return std::ldexp(whole(23), static_cast<int>(random() % 12)); }))},
       {"wider", vertices_again(drawn(2000, [&] { return std::ldexp(whole(23), static_cast<int>(random() % 60)); }))},
       {"near the smallest", vertices_again(drawn(2000, [&] { return std::ldexp(whole(5), -149); }))},
       {"near the largest", vertices_again(drawn(2000, [&] { return std::ldexp(whole(20), 106); }))},
@@ -116,12 +119,13 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
       {"contacts alone, in few bits", contacts(0)},
       {"contacts alone, in 31 bits", contacts(-30)},
       {"contacts alone, in 61 bits", contacts(-60)},
-      {"any bits", drawn(5000, [&] {
-         const auto bits = static_cast<std::uint32_t>(random());
-         float x;
-         std::memcpy(&x, &bits, sizeof x);
-         return x;
-       })},
+      {"any bits", drawn(5000,
+                         [&] {
+                           const auto bits = static_cast<std::uint32_t>(random());
+                           float x;
+                           std::memcpy(&x, &bits, sizeof x);
+                           return x;
+                         })},
   };
   const std::set<std::string> names = on_every_target([&](const std::string& target) {
     for (const auto& [kind, pairs] : kinds) expect_as_each_alone(pairs, target + ", " + kind);

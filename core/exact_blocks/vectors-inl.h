@@ -5,8 +5,9 @@
 //   screen_all    the decision by planes with one error bound for each pair, as core/exact/screen.h
 //   share_vertex  as core/exact/shared_vertex.h
 //   separated     the decision by axes, as core/exact/by_axes.h, on numbers of which signs are exact:
-//                 Doubles where nothing rounds, and DoublesAndIntegers, each number as a double, which is near, and as a
-//                 64-bit integer, which is the number modulo 2^64: where the double is small the integer is the number.
+//                 Doubles where nothing rounds, and DoublesAndIntegers, each number as a double, which is near, and as
+//                 a 64-bit integer, which is the number modulo 2^64: where the double is small the integer is the
+//                 number.
 
 constexpr std::size_t kFloats = 18;
 using Tag = hn::CappedTag<double, 8>;
@@ -81,7 +82,9 @@ HWY_INLINE Three<T> cross(const Three<T>& u, const Three<T>& v) {
 }
 
 HWY_INLINE Three<Double> chosen(M mask, const Three<Double>& yes, const Three<Double>& no) {
-  return {{hn::IfThenElse(mask, yes.x.v, no.x.v)}, {hn::IfThenElse(mask, yes.y.v, no.y.v)}, {hn::IfThenElse(mask, yes.z.v, no.z.v)}};
+  return {{hn::IfThenElse(mask, yes.x.v, no.x.v)},
+          {hn::IfThenElse(mask, yes.y.v, no.y.v)},
+          {hn::IfThenElse(mask, yes.z.v, no.z.v)}};
 }
 
 // The coordinates of kAtOnce pairs, which may lie anywhere.
@@ -172,8 +175,10 @@ HWY_INLINE Screened screen_all(const Coordinates& pairs) {
   const auto most = [](const V(&v)[3]) HWY_ATTR { return hn::Max(hn::Max(v[0], v[1]), v[2]); };
   const V nearest = hn::Min(hn::Min(hn::Min(hn::Abs(of_a[0]), hn::Abs(of_a[1])), hn::Abs(of_a[2])),
                             hn::Min(hn::Min(hn::Abs(of_b[0]), hn::Abs(of_b[1])), hn::Abs(of_b[2])));
-  const unsigned parted = ~declined & bits(hn::Gt(hn::Max(hn::Max(least(of_a), least(of_b)),
-                                                          hn::Max(hn::Neg(most(of_a)), hn::Neg(most(of_b)))), bound));
+  const unsigned parted =
+      ~declined &
+      bits(
+          hn::Gt(hn::Max(hn::Max(least(of_a), least(of_b)), hn::Max(hn::Neg(most(of_a)), hn::Neg(most(of_b)))), bound));
   const unsigned on_sides = ~(parted | declined) & bits(hn::Gt(nearest, bound));
   if (on_sides == 0) return {0, parted, declined};
 
@@ -184,14 +189,16 @@ HWY_INLINE Screened screen_all(const Coordinates& pairs) {
   const V first = Double::dot(cross(u.first - t.second, t.first - t.second), u.second - t.second).v;
   const V second = Double::dot(cross(u.first - t.first, t.third - t.first), u.third - t.first).v;
   const V between = hn::Max(first, second);
-  return {on_sides & bits(hn::Lt(between, hn::Neg(bound))), parted | (on_sides & bits(hn::Gt(between, bound))), declined};
+  return {on_sides & bits(hn::Lt(between, hn::Neg(bound))), parted | (on_sides & bits(hn::Gt(between, bound))),
+          declined};
 }
 
 HWY_INLINE unsigned share_vertex(const Coordinates& pairs) {
   auto shared = hn::Gt(hn::Zero(df), hn::Zero(df));
   for (std::size_t i = 0; i < 9; i += 3) {
     for (std::size_t j = 9; j < kFloats; j += 3) {
-      const auto same = hn::And(hn::Eq(pairs.x[i], pairs.x[j]), hn::And(hn::Eq(pairs.x[i + 1], pairs.x[j + 1]), hn::Eq(pairs.x[i + 2], pairs.x[j + 2])));
+      const auto same = hn::And(hn::Eq(pairs.x[i], pairs.x[j]), hn::And(hn::Eq(pairs.x[i + 1], pairs.x[j + 1]),
+                                                                        hn::Eq(pairs.x[i + 2], pairs.x[j + 2])));
       shared = hn::Or(shared, same);
     }
   }
@@ -208,7 +215,8 @@ struct OnGrid {
   HWY_INLINE OnGrid(const Coordinates& pairs, int bits_of_grid) {
     VF largest = hn::Set(df, 0x1p-126f);  // grids of subnormals alone are taken for finer ones
     for (const VF& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
-    // Below 2^bits_of_grid, and no more is needed than that the largest is at least half of it: 2^(bits_of_grid - 1 - e).
+    // Below 2^bits_of_grid, and no more is needed than that the largest is at least half of it: 2^(bits_of_grid - 1 -
+    // e).
     const VI exponent = hn::And(hn::BitCast(di, hn::PromoteTo(d, largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
     const V scale = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023 + bits_of_grid - 1} << 52), exponent));
     M whole = hn::Eq(scale, scale);
@@ -291,15 +299,19 @@ HWY_INLINE unsigned separated(const OnGrid& pair) {
   const auto& [p, q, of_a, of_b] = seen;
   Axes axes;
   seen.for_each_axis([&](const Three<T>&, const auto&... difference) HWY_ATTR { axes.look_at(difference...); });
-  const auto all_zero = [&]() HWY_ATTR { return hn::And(hn::Eq(axes.least, hn::Zero(d)), hn::Eq(axes.most, hn::Zero(d))); };
+  const auto all_zero = [&]() HWY_ATTR {
+    return hn::And(hn::Eq(axes.least, hn::Zero(d)), hn::Eq(axes.most, hn::Zero(d)));
+  };
   if (hn::AllFalse(d, all_zero())) return bits(axes.separated);
 
   // Those that lie in a plane with the origin: the difference of a and b is flat.
   using Part = T Three<T>::*;
-  constexpr Part kPlanes[3][2] = {{&Three<T>::x, &Three<T>::y}, {&Three<T>::y, &Three<T>::z}, {&Three<T>::z, &Three<T>::x}};
+  constexpr Part kPlanes[3][2] = {
+      {&Three<T>::x, &Three<T>::y}, {&Three<T>::y, &Three<T>::z}, {&Three<T>::z, &Three<T>::x}};
   for (const auto& [x, y] : kPlanes) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto beside = [&](const Three<T>& e, const Three<T>& v) HWY_ATTR { return T::minor_of(e.*x, v.*y, e.*y, v.*x); };
+      const auto beside = [&](const Three<T>& e, const Three<T>& v)
+                              HWY_ATTR { return T::minor_of(e.*x, v.*y, e.*y, v.*x); };
       const Three<T>&e = of_a[i], &f = of_b[i];
       const T s = beside(e, p[i == 0 ? 2 : 1]), u0 = beside(e, q[0]), u1 = beside(e, q[1]), u2 = beside(e, q[2]);
       axes.look_at(u0, u1, u2, u0 - s, u1 - s, u2 - s);

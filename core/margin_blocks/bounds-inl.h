@@ -12,7 +12,8 @@ HWY_INLINE V dot(const Vector& u, const Vector& v) {
   return hn::MulAdd(u.z, v.z, hn::MulAdd(u.y, v.y, hn::Mul(u.x, v.x)));
 }
 HWY_INLINE V dot_of_magnitudes(const Vector& u, const Vector& v) {
-  return hn::MulAdd(hn::Abs(u.z), hn::Abs(v.z), hn::MulAdd(hn::Abs(u.y), hn::Abs(v.y), hn::Mul(hn::Abs(u.x), hn::Abs(v.x))));
+  return hn::MulAdd(hn::Abs(u.z), hn::Abs(v.z),
+                    hn::MulAdd(hn::Abs(u.y), hn::Abs(v.y), hn::Mul(hn::Abs(u.x), hn::Abs(v.x))));
 }
 HWY_INLINE Vector less(const Vector& u, const Vector& v) {
   return {hn::Sub(u.x, v.x), hn::Sub(u.y, v.y), hn::Sub(u.z, v.z)};
@@ -125,7 +126,8 @@ HWY_INLINE Guess nearest_features(const Frame& f) {
         best.consider(hn::Mul(hn::Mul(height, height), per_normal_a), inside(s, t, n2_a), kFaceA, 0, of_b);
       }
       if (j == 0) {  // a vertex of a over b; w points away from it
-        const V s = hn::Neg(dot(quick_cross(f.edge_b[2], w), normal_b)), t = hn::Neg(dot(quick_cross(f.edge_b[0], w), normal_b));
+        const V s = hn::Neg(dot(quick_cross(f.edge_b[2], w), normal_b)),
+                t = hn::Neg(dot(quick_cross(f.edge_b[0], w), normal_b));
         const V height = dot(w, normal_b);
         best.consider(hn::Mul(hn::Mul(height, height), per_normal_b), inside(s, t, n2_b), kFaceB, of_a, 0);
       }
@@ -160,7 +162,8 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const V n2 = dot(normal, normal), u2 = dot(u, u);
 
   // from + s u + t v, s and t in [-1, 0], or t in [0, 1] for two edges.
-  const V along = hn::IfThenElse(edge, dot(from, u), dot(quick_cross(from, v), normal)), whole = hn::IfThenElse(edge, u2, n2);
+  const V along = hn::IfThenElse(edge, dot(from, u), dot(quick_cross(from, v), normal)),
+          whole = hn::IfThenElse(edge, u2, n2);
   const V beside = hn::IfThenElse(edges, dot(quick_cross(from, u), normal), dot(quick_cross(u, from), normal));
   const M valid = hn::Or(hn::Or(vertices, hn::And(edge, within(along, whole))),
                          hn::Or(hn::And(edges, hn::And(within(along, whole), within(beside, whole))),
@@ -171,7 +174,8 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const Vector connection = added(added(from, number(1), su), number(1), tv);
   const auto sum = [&](const Vector& x) HWY_ATTR { return hn::Add(hn::Add(hn::Abs(x.x), hn::Abs(x.y)), hn::Abs(x.z)); };
   const V terms = hn::Add(hn::Add(sum(from), sum(su)), sum(tv));
-  const V hi = hn::MulAdd(hn::Sqrt(dot(connection, connection)), number(1 + 8 * kHalf), hn::Mul(terms, number(8 * kHalf)));
+  const V hi =
+      hn::MulAdd(hn::Sqrt(dot(connection, connection)), number(1 + 8 * kHalf), hn::Mul(terms, number(8 * kHalf)));
 
   // A perpendicular is of degree three, and nothing here of more than six: see MarginFrame in core/margin/frame.h.
   const Vector n = chosen(vertices, w, chosen(edge, perpendicular, normal));
@@ -208,8 +212,10 @@ struct Depth {
     };
     (include(other), ...);
     const V own_low = hn::Sub(own, own_error), own_high = hn::Add(own, own_error);
-    const V over = hn::Max(hn::Min(hn::Sub(hn::Max(zero, own_low), least_hi), hn::Sub(most_lo, hn::Min(zero, own_high))), zero);
-    const V under = hn::Max(hn::Min(hn::Sub(hn::Max(zero, own_high), least_lo), hn::Sub(most_hi, hn::Min(zero, own_low))), zero);
+    const V over =
+        hn::Max(hn::Min(hn::Sub(hn::Max(zero, own_low), least_hi), hn::Sub(most_lo, hn::Min(zero, own_high))), zero);
+    const V under =
+        hn::Max(hn::Min(hn::Sub(hn::Max(zero, own_high), least_lo), hn::Sub(most_hi, hn::Min(zero, own_low))), zero);
     const V n2 = dot(n, n), per_n2 = hn::Div(number(1), n2);
     const M axis = hn::Gt(n2, zero);  // else two edges are parallel, or a triangle is flat
     lo = hn::IfThenElse(axis, hn::Min(lo, hn::Mul(hn::Mul(over, over), per_n2)), lo);
@@ -223,12 +229,14 @@ HWY_INLINE Bounds squared_depth_bounds(const Frame& f) {
   const auto& w = f.between;
   depth.look(accurate_cross(f.edge_a[0], f.edge_a[1]), none, none, w[0][0], w[0][1], w[0][2]);
   const auto reversed = [&](const Vector& x) HWY_ATTR { return Vector{hn::Neg(x.x), hn::Neg(x.y), hn::Neg(x.z)}; };
-  depth.look(accurate_cross(f.edge_b[0], f.edge_b[1]), none, none, reversed(w[0][0]), reversed(w[1][0]), reversed(w[2][0]));
+  depth.look(accurate_cross(f.edge_b[0], f.edge_b[1]), none, none, reversed(w[0][0]), reversed(w[1][0]),
+             reversed(w[2][0]));
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector third = reversed(f.edge_a[(i + 2) % 3]);  // a[i + 2] seen from a[i]
     for (std::size_t j = 0; j < 3; ++j) {
       const Vector n = accurate_cross(f.edge_a[i], f.edge_b[j]);
-      depth.look(n, dot(n, third), hn::Mul(dot_of_magnitudes(n, third), number(12 * kHalf)), w[i][j], w[i][(j + 2) % 3]);
+      depth.look(n, dot(n, third), hn::Mul(dot_of_magnitudes(n, third), number(12 * kHalf)), w[i][j],
+                 w[i][(j + 2) % 3]);
     }
   }
   // 2 * 5 for n, 3 for its square, 5 for what follows, and slack.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds of margins are as far apart as the errors that their comments derive, alone and in vectors of every instruction
-// set: one that left out a rounding would be right on all pairs that a test can draw, and one too many shows nowhere.
+// Bounds of margins are as far apart as the errors that their comments derive, alone and in vectors of every
+// instruction set: one that left out a rounding would be right on all pairs that a test can draw, and one too many
+// shows nowhere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -116,11 +117,13 @@ TEST(MarginBounds, AreAsFarApartAsTheErrorsDerived) {
 
 // A depth of 3 along (1, 2, 2), by a vertex of b under a's face. The error is that of a's first vertex and b's lowest.
 TEST(MarginBounds, OfADepthAreSeenFromTheFirstVertexOfAFace) {
-  const Vec3<float> face[3] = {{0, 0, 0}, {18, 9, -18}, {18, -18, 9}}, over[3] = {{7, -4, -4}, {49, 80, -10}, {48, -12, 78}};
+  const Vec3<float> face[3] = {{0, 0, 0}, {18, 9, -18}, {18, -18, 9}},
+                    over[3] = {{7, -4, -4}, {49, 80, -10}, {48, -12, 78}};
   const double terms = (7 * 1 + 4 * 2 + 4 * 2) / 3.0 / 3;
   for (int first = 0; first < 3; ++first) {
     Pair pair, exchanged;
-    for (int i = 0; i < 3; ++i) exchanged.b[i] = pair.a[i] = face[i], exchanged.a[i] = pair.b[i] = over[(first + i) % 3];
+    for (int i = 0; i < 3; ++i)
+      exchanged.b[i] = pair.a[i] = face[i], exchanged.a[i] = pair.b[i] = over[(first + i) % 3];
     for (const Pair& either : {pair, exchanged}) {
       SCOPED_TRACE(first);
       EXPECT_NEAR((1 - margin_bounds(either, kMeet).lo / 3) / kHalfUlp, 12 * terms + 12 + 8, 3);
@@ -144,7 +147,8 @@ TEST(MarginBounds, OfADepthCountTheErrorOfTheThirdVertex) {
 TEST(MarginBounds, InVectorsKnowWhichDifferencesAreExact) {
   const auto expect_exact = [](float largest, float least, bool expected) {
     const Pair pair{{{0, 0, 0}, {largest, 0, 0}, {0, least, 0}}, {{0, 0, least}, {least, 0, least}, {0, least, least}}};
-    on_every_target(pair, kApart, [&](const MarginBounds&, bool exact) { EXPECT_EQ(exact, expected) << largest << least; });
+    on_every_target(pair, kApart,
+                    [&](const MarginBounds&, bool exact) { EXPECT_EQ(exact, expected) << largest << least; });
   };
   expect_exact(0x1p27f, 1, true);
   expect_exact(0x1.000002p27f, 1, false);

@@ -30,7 +30,8 @@ HWY_INLINE VI floor_log2_of(V x) { return hn::Sub(hn::ShiftRight<52>(hn::BitCast
 // See make_bucket: without the sign.
 HWY_INLINE VI size_of_bucket(VI log2_margin, VI log2_ulp) {
   const VI k = hn::Sub(log2_margin, log2_ulp);
-  return hn::Add(hn::Min(hn::Max(k, hn::Set(di, kBucketLowest)), hn::Set(di, kBucketHighest)), hn::Set(di, 1 - kBucketLowest));
+  return hn::Add(hn::Min(hn::Max(k, hn::Set(di, kBucketLowest)), hn::Set(di, kBucketHighest)),
+                 hn::Set(di, 1 - kBucketLowest));
 }
 
 constexpr unsigned kAll = (1u << kAtOnce) - 1;

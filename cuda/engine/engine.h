@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The on-device engine as the host sees it: pairs are drawn (those of a stratum, with a scene or without) or brought,
-// decided by lanes, judged exactly, measured and counted on a device; only counts and chosen cases come back. No CUDA header is needed here, nor nvcc to build.
+// decided by lanes, judged exactly, measured and counted on a device; only counts and chosen cases come back. No CUDA
+// header is needed here, nor nvcc to build.
 #pragma once
 
 #include <cstdint>

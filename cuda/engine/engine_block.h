@@ -35,8 +35,8 @@ struct IndexList {
 
 // Pairs whose bucket single precision left open, disjoint ones and intersecting ones; disjoint ones that double left
 // open as well, and those of which bounds along all directions did; those that need their relation; of these the ones
-// of large grids, and those that need all axes, by the numbers that hold them; and intersecting ones that double left open although their margin
-// is not zero, and those of which bounds along all axes did.
+// of large grids, and those that need all axes, by the numbers that hold them; and intersecting ones that double left
+// open although their margin is not zero, and those of which bounds along all axes did.
 enum EngineList {
   kOpenGaps,
   kOpenDepths,
@@ -134,8 +134,8 @@ GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& g
   return result;
 }
 
-// The key of pair i's signature for one group of lanes, some of them wrong. Marks beyond the first word are read whenever they are asked for: no
-// number of lanes needs more registers.
+// The key of pair i's signature for one group of lanes, some of them wrong. Marks beyond the first word are read
+// whenever they are asked for: no number of lanes needs more registers.
 struct SignatureKey {
   const EngineBlock& block;
   LaneGroup group;

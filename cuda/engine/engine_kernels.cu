@@ -159,9 +159,7 @@ struct DeviceRun {
   void listed(Step, EngineList list) const {
     for_listed<Step><<<kBlocks, kThreads, 0, stream>>>(block, list);
   }
-  void add_signatures(EngineList list) const {
-    cuda::add_signatures<<<kBlocks, kThreads, 0, stream>>>(block, list);
-  }
+  void add_signatures(EngineList list) const { cuda::add_signatures<<<kBlocks, kThreads, 0, stream>>>(block, list); }
   void tally(bool by_extreme) const {
     const std::uint32_t chunks = (block.lanes.count + kLanesAtOnce - 1) / kLanesAtOnce;
     const std::size_t shared = engine_counters((block.lanes.count + chunks - 1) / chunks) * sizeof(std::uint32_t);

@@ -75,8 +75,7 @@ GRAZE_HD Bucket bucket_by_bounds(const float* c, Verdict verdict) {
   const int ulp = log2_ulp(pair), upper = floor_log2(bounds.hi);
   Bucket bucket;
   if (bucket_from_bounds(bounds, verdict, ulp, bucket)) return bucket;
-  if (verdict == Verdict::intersects)
-    return upper - ulp <= kBucketLowest ? make_bucket(-1, kBucketLowest) : kUndecided;
+  if (verdict == Verdict::intersects) return upper - ulp <= kBucketLowest ? make_bucket(-1, kBucketLowest) : kUndecided;
   return are_apart_by(c, c + 9, bounds.direction, upper) ? make_bucket(1, upper - ulp) : kUndecided;
 }
 
@@ -183,8 +182,9 @@ GRAZE_HD void count_word(const EngineBlock& block, std::uint32_t word, std::uint
 }
 
 // All steps in their order. Run: words(step) takes the block's words; pairs(step) its pairs, pairs_by_verdict(step) the
-// same, best with like verdicts side by side; listed(step, list) the pairs that earlier steps listed; add_signatures(list)
-// adds the signatures of listed pairs that have them; tally(by_extreme) counts all pairs by bucket, or by extreme.
+// same, best with like verdicts side by side; listed(step, list) the pairs that earlier steps listed;
+// add_signatures(list) adds the signatures of listed pairs that have them; tally(by_extreme) counts all pairs by
+// bucket, or by extreme.
 template <class Run>
 void run_steps(const EngineBlock& block, const Run& run) {
   using namespace exact::detail;

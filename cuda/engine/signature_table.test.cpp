@@ -103,8 +103,10 @@ TEST_F(SignatureTableTest, KeysThatDifferInTheirLastWordOnlyAreApart) {
 TEST(SignatureShape, EveryShapeComesBackFromItsWord) {
   for (int bucket = -kBucketMost; bucket <= kBucketMost; ++bucket) {
     for (int rest = 0; rest < 4 * 3 * 3 * 2; ++rest) {
-      const exact::Relation r{
-          .contact = rest % 4 - 1, .dimension_a = rest / 4 % 3, .dimension_b = rest / 12 % 3, .coplanar = rest / 36 != 0};
+      const exact::Relation r{.contact = rest % 4 - 1,
+                              .dimension_a = rest / 4 % 3,
+                              .dimension_b = rest / 12 % 3,
+                              .coplanar = rest / 36 != 0};
       const std::uint32_t group = static_cast<std::uint32_t>(rest) * 0x1234567u;
       const SignatureShape back = unpacked(packed(group, packed(r), static_cast<Bucket>(bucket)));
       EXPECT_EQ(back.group, group);

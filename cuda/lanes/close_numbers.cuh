@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Determinants in twice a double's precision, with a bound of their error: for pairs whose grid no machine number holds.
+// Determinants in twice a double's precision, with a bound of their error: for pairs whose grid no machine number
+// holds.
 //
 // Differences are exact: the sum of two floats and its error are doubles. Of each of a determinant's six products the
 // relative error is that of two multiplications and three sums, 2 * 5 u^2 + 3 * 3 u^2 and terms of u^3, u = 2^-53; see

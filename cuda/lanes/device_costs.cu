@@ -113,7 +113,9 @@ DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const std::vec
   std::uint32_t* intersects = bits.at_least(2 * words);
   const DevicePairs block{to, static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count)};
   const auto bring = [&] { check(cudaMemcpyAsync(to, columns.as<float>(), bytes, cudaMemcpyHostToDevice, stream)); };
-  const auto decide = [&](const Lane& lane) { launch_lane(lane, exact, block, intersects, intersects + words, stream); };
+  const auto decide = [&](const Lane& lane) {
+    launch_lane(lane, exact, block, intersects, intersects + words, stream);
+  };
   bring();
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     decide(*lanes[l]);  // allocates

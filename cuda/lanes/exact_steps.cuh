@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps of the exact decision after the screen: the pairs that it left, where floats or doubles hold all
-// determinants; then those that this left, on residues; then on 128-bit integers, or by closer bounds; then on wide integers. Hard pairs are
-// listed, so that a warp does not wait for one of them in 32. Pairs: anything with a load(pairs, i, coordinates).
-// Device code only.
+// determinants; then those that this left, on residues; then on 128-bit integers, or by closer bounds; then on wide
+// integers. Hard pairs are listed, so that a warp does not wait for one of them in 32. Pairs: anything with a
+// load(pairs, i, coordinates). Device code only.
 #pragma once
 
 #include "core/exact/exact.h"
@@ -53,8 +53,8 @@ __device__ bool floats_hold(const float* c) {
 // To which list of launch_exact_steps a pair goes.
 __device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
 
-// Calls decide(coordinates, yes) for each pair of a list: it returns the stage that decided, and in `yes` whether the pair
-// intersects; or kLeft, and the pair goes to another list.
+// Calls decide(coordinates, yes) for each pair of a list: it returns the stage that decided, and in `yes` whether the
+// pair intersects; or kLeft, and the pair goes to another list.
 constexpr int kLeft = exact::kStages;
 
 template <class Pairs, class Decide>
@@ -90,8 +90,8 @@ __global__ void __launch_bounds__(kThreads, 3)
   });
 }
 
-// By the smallest of the kinds that holds a pair's grid. kThreadBlocks: how many blocks of threads a multiprocessor should
-// hold at once, which limits the registers.
+// By the smallest of the kinds that holds a pair's grid. kThreadBlocks: how many blocks of threads a multiprocessor
+// should hold at once, which limits the registers.
 template <class Kinds, int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
     decide_by(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -151,8 +151,8 @@ constexpr int kBlocksForLeft = 1024;
 // Of pairs that no small grid holds: the first of four lists; the others are for what one step leaves to the next, and
 // empty.
 template <class Pairs>
-void launch_large_steps(const Pairs& pairs, const Places* left, std::uint32_t* intersects,
-                        unsigned long long* stages, cudaStream_t stream) {
+void launch_large_steps(const Pairs& pairs, const Places* left, std::uint32_t* intersects, unsigned long long* stages,
+                        cudaStream_t stream) {
   decide_on_int128<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);
   decide_closely<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);
   decide_one_by_one<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[2], left[3], intersects, stages);
@@ -161,8 +161,8 @@ void launch_large_steps(const Pairs& pairs, const Places* left, std::uint32_t* i
   check(cudaGetLastError());
 }
 
-// Decides the pairs of the first two lists, the first those that floats hold; the other ones are for what the steps leave
-// to each other, and empty.
+// Decides the pairs of the first two lists, the first those that floats hold; the other ones are for what the steps
+// leave to each other, and empty.
 template <class Pairs>
 void launch_exact_steps(const Pairs& pairs, const Places (&left)[kExactLists], std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {

@@ -231,9 +231,8 @@ void add_all(Resident& resident) {
   });
   for (const char* form : {"abs", "rel"}) {
     for (const char* id : {"moller_1997/f32/cuda-fma", "guigue_devillers_2003/f32/cuda-fma"}) {
-      add(std::string("sweep of 64 tolerances/") + id + '/' + form, [=](benchmark::State& state) {
-        measure_sweep(state, *find_lane(id), form);
-      });
+      add(std::string("sweep of 64 tolerances/") + id + '/' + form,
+          [=](benchmark::State& state) { measure_sweep(state, *find_lane(id), form); });
     }
   }
   for (int stratum = 0; stratum < strata::kStrataCount; ++stratum) {

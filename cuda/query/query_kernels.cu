@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows the slabs: small grids, the screen in doubles, the steps of the exact decision, counts, and pairs for other lanes.
+// What follows the slabs: small grids, the screen in doubles, the steps of the exact decision, counts, and pairs for
+// other lanes.
 #include "cuda/query/query_kernels.cuh"
 
 #include "cuda/lanes/exact_steps.cuh"

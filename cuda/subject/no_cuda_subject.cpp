@@ -7,8 +7,8 @@ namespace graze::cuda {
 
 std::string evidence(const CudaBuild&) { return "no twin: not in this build"; }
 
-std::vector<CudaBuild> build_cuda_subject(const std::filesystem::path&, const std::string&, const std::vector<std::string>&,
-                                          const std::filesystem::path&) {
+std::vector<CudaBuild> build_cuda_subject(const std::filesystem::path&, const std::string&,
+                                          const std::vector<std::string>&, const std::filesystem::path&) {
   throw std::runtime_error(not_in_a_campaigns_build("a subject in CUDA"));
 }
 

@@ -21,7 +21,8 @@ const RegisterFuzzTarget kTwin("twin", [](std::string_view bytes) {
   for (const Lane& lane : lanes()) {
     if (lane.variant != Variant::cuda_nofma || !twin_block(lane)) continue;
     const int twin = code(twin_block(lane), pair);
-    must_hold(twin == code(counterpart(lane, Variant::cpu)->decide, pair), "a twin without contraction decides as the host does");
+    must_hold(twin == code(counterpart(lane, Variant::cpu)->decide, pair),
+              "a twin without contraction decides as the host does");
     reached(4 * compared++ + static_cast<std::size_t>(twin));
   }
   must_hold(compared >= 10, "five algorithms in two precisions have a twin");

@@ -38,7 +38,8 @@ struct TwinProof {
   double pairs, twin_pairs;
 };
 
-// "twin, verified on H100, nvcc 13.0: GPU and twin agree on 1e+08 pairs, the GPU's default build and explicit PTX on 1e+10".
+// "twin, verified on H100, nvcc 13.0: GPU and twin agree on 1e+08 pairs, the GPU's default build and explicit PTX on
+// 1e+10".
 std::string evidence(const TwinProof& proof);
 
 // The words of `evidence` where a record in cuda/proofs holds for this very kernel, else "twin".

@@ -82,11 +82,13 @@ TEST_P(Twin, EveryCudaLaneHasOne) {
 
 // Its record, read anew: pairs that GPU and twin decided, and pairs that two builds decided, both on the GPU.
 TEST_P(Twin, EvidenceSaysWhatTheRecordSays) {
-  const auto record = nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h100_nvcc_13.0.88.json"));
+  const auto record =
+      nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h100_nvcc_13.0.88.json"));
   int told = 0;
   for (Variant variant : {Variant::cuda_fma, Variant::cuda_nofma}) {
     for (const auto& proven : record.at("lanes")) {
-      if (proven.at("hash") != twin_hash(sibling(variant)) || proven.at("trace_hash") != twin_trace_hash(sibling(variant)))
+      if (proven.at("hash") != twin_hash(sibling(variant)) ||
+          proven.at("trace_hash") != twin_trace_hash(sibling(variant)))
         continue;
       std::ostringstream words;
       words << "twin, verified on " << record.at("device").get<std::string>() << ", nvcc "
@@ -101,9 +103,11 @@ TEST_P(Twin, EvidenceSaysWhatTheRecordSays) {
 }
 
 TEST(TwinEvidence, IsOfWhatWasCompared) {
-  EXPECT_EQ(evidence(TwinProof{"GPU", "1.2", 0, 1500}), "twin, verified on GPU, nvcc 1.2: GPU and twin agree on 1.5e+03 pairs");
+  EXPECT_EQ(evidence(TwinProof{"GPU", "1.2", 0, 1500}),
+            "twin, verified on GPU, nvcc 1.2: GPU and twin agree on 1.5e+03 pairs");
   EXPECT_EQ(evidence(TwinProof{"GPU", "1.2", 4e9, 30}),
-            "twin, verified on GPU, nvcc 1.2: GPU and twin agree on 30 pairs, the GPU's default build and explicit PTX on 4e+09");
+            "twin, verified on GPU, nvcc 1.2: GPU and twin agree on 30 pairs, the GPU's default build and explicit PTX "
+            "on 4e+09");
 }
 
 TEST_P(Twin, WithoutContractionIsTheCpuLane) {

@@ -252,8 +252,9 @@ TEST(TwinOps, FlushedProductKeepsItsSign) {
 
 // The exact result lies 2^-197 beside the limit, on which double precision rounds it.
 TEST(TwinOps, FmaFlushesByWhatRoundingToDoubleLeavesOut) {
-  const f32 limit = 0x1p-126f, up = (1 + 0x1p-23f) * 0x1p-75f, down = (1 - 0x1p-23f) * 0x1p-76f;  // times: 2^-151 less 2^-197
-  const f32 large = 8384513 * 0x1p-98f, also = 8392705 * 0x1p-99f;                              // times: 2^-151 and 2^-197 more
+  const f32 limit = 0x1p-126f, up = (1 + 0x1p-23f) * 0x1p-75f,
+            down = (1 - 0x1p-23f) * 0x1p-76f;                       // times: 2^-151 less 2^-197
+  const f32 large = 8384513 * 0x1p-98f, also = 8392705 * 0x1p-99f;  // times: 2^-151 and 2^-197 more
   ASSERT_EQ(f64{large} * f64{also}, 0x1p-151 + 0x1p-197);
   for (const f32 sign : {1.0f, -1.0f}) {
     EXPECT_EQ(fma_ftz(sign * up, -down, sign * limit), sign * limit);

@@ -26,7 +26,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint64_t kBatchPairs = 65536;  // a transaction of the CPU engine
+constexpr std::uint64_t kBatchPairs = 65536;                  // a transaction of the CPU engine
 constexpr std::uint64_t kDrawnHere = std::uint64_t{1} << 25;  // at most, of pairs that a device cannot draw
 
 // The next batch: of the source of which the least is done, so that a campaign that is cut short has seen all of them.
@@ -96,7 +96,12 @@ Json build_info(const LanesUnderTest& under_test) {
 }
 
 StoreSpec store_spec(const Campaign& campaign) {
-  StoreSpec spec{campaign.scratch.empty() ? campaign.directory : campaign.scratch, campaign.spec, campaign.build, campaign.sources, {}, campaign.shard};
+  StoreSpec spec{campaign.scratch.empty() ? campaign.directory : campaign.scratch,
+                 campaign.spec,
+                 campaign.build,
+                 campaign.sources,
+                 {},
+                 campaign.shard};
   for (const Lane* lane : campaign.under_test->lanes) spec.lanes.push_back(lane->id);
   return spec;
 }
@@ -190,7 +195,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
               {"engine", campaign.engines.empty() ? "cpu" : "gpu"}};
   try {
     if (complete && campaign.shard.number == 1) run["costs"] = measure_costs(campaign);  // once is enough
-  } catch (const Stopped&) {  // then they are not known
+  } catch (const Stopped&) {                                                             // then they are not known
   }
   append_timing(campaign.directory, run, outcome.oracle);
   return outcome;

@@ -25,14 +25,14 @@ struct Campaign {
   const LanesUnderTest* under_test = nullptr;  // the lanes, and what runs them
   int threads = 0;                             // 0: one on each core
   std::vector<std::unique_ptr<cuda::DeviceEngine>>
-      engines;  // the devices' engines, which share it; none: the CPU engine
+      engines;        // the devices' engines, which share it; none: the CPU engine
   DecideBlock exact;  // decides what is true for the CPU engine, confirmed by the oracle; null: the oracle does
   std::uint64_t engine_batch = std::uint64_t{1}
                                << 32;  // pairs of an engine in a transaction: a second or so on a device
   std::filesystem::path directory;
   std::filesystem::path scratch;  // where the store lives while it runs, where not in the directory; see scratch.h
-  Shard shard;  // what of it is run
-  Json spec;    // what makes this campaign another one; see campaign_spec
+  Shard shard;                    // what of it is run
+  Json spec;                      // what makes this campaign another one; see campaign_spec
   Json build;
   // Where set, the batches to take, one after the other, from what several processes share; nothing at the end.
   std::function<std::optional<PairRange>()> take;
@@ -70,12 +70,12 @@ StoreSpec store_spec(const Campaign& campaign);
 struct Outcome {
   bool complete;  // all that was to be done here is done
   Json summary;   // of a whole campaign; of a shard {"shard", "complete", "pairs", "disagreements", "signatures"}
-  Json oracle;  // {"cgal", "gmp", "exact", "apart"}: pairs that each exact decision saw; depends on the engine
+  Json oracle;    // {"cgal", "gmp", "exact", "apart"}: pairs that each exact decision saw; depends on the engine
 };
 
-// Runs or goes on with the campaign until done or `stop`, then writes timings.json and, of a whole one, summary.json and
-// cases/; status.json meanwhile.
-// Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any case.
+// Runs or goes on with the campaign until done or `stop`, then writes timings.json and, of a whole one, summary.json
+// and cases/; status.json meanwhile. Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any
+// case.
 Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& report);
 

@@ -175,9 +175,8 @@ TEST_F(CampaignTest, ReportsEachDifferenceOfDeviceAndTwin) {
   EXPECT_EQ(apart["lane"], "moller_1997/f32/cuda-fma");
   EXPECT_EQ(apart["count"], 3);  // one in each stratum
   const auto cases = corpus::read_pairs(root_ / "apart" / apart["case"].get<std::string>());
-  EXPECT_TRUE(std::any_of(flipped.begin(), flipped.end(), [&](const Pair& pair) {
-    return std::memcmp(&pair, &cases.at(0).pair, sizeof pair) == 0;
-  }));
+  EXPECT_TRUE(std::any_of(flipped.begin(), flipped.end(),
+                          [&](const Pair& pair) { return std::memcmp(&pair, &cases.at(0).pair, sizeof pair) == 0; }));
   EXPECT_EQ(under_test_.evidence(0).substr(0, 15), "device and twin");
 }
 

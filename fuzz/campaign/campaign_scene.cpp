@@ -26,9 +26,7 @@ NamedScene scene_of_campaign(const fs::path& directory) {
 
 }  // namespace
 
-NamedScene open_scene(const std::string& file) {
-  return {file, strata::read_scene(file)};
-}
+NamedScene open_scene(const std::string& file) { return {file, strata::read_scene(file)}; }
 
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                 const std::vector<std::string>& globs) {
@@ -56,8 +54,9 @@ Pair draw_again(const SceneCase& named) {
   const std::string file = whole ? named.scene : named.scene.substr(0, hash);
   const NamedScene scene = fs::is_directory(file) ? scene_of_campaign(file) : open_scene(file);
   if (!whole && scene.name().substr(scene.name().rfind('#')) != named.scene.substr(hash))
-    throw std::runtime_error(fmt::format("{}: expected the scene {}, found {}; a campaign's directory has its own: {}@DIR:{}:{}",
-                                         file, named.scene, scene.name(), named.id, named.seed, named.index));
+    throw std::runtime_error(
+        fmt::format("{}: expected the scene {}, found {}; a campaign's directory has its own: {}@DIR:{}:{}", file,
+                    named.scene, scene.name(), named.id, named.seed, named.index));
   const strata::SceneSources drawn = sources_of(scene, named.seed, 1, {named.id});
   if (drawn.sources.size() != 1)
     throw UsageError(named.id + ": expected one stratum of the scene, found a pattern of several");

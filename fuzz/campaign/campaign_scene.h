@@ -25,7 +25,8 @@ NamedScene open_scene(const std::string& file);
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                 const std::vector<std::string>& globs);
 
-// What a campaign's spec records under "scene": {"file", "name", "pairs" asked for, "text", "left_out": {stratum: why}}.
+// What a campaign's spec records under "scene": {"file", "name", "pairs" asked for, "text", "left_out": {stratum:
+// why}}.
 nlohmann::ordered_json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn);
 
 // Of what scene_spec recorded.   Throws: std::runtime_error, or nlohmann's for another shape.

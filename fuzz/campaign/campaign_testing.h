@@ -29,13 +29,14 @@ inline std::map<std::string, std::string> lasting_files(const std::filesystem::p
 // Strata in scenes of several kinds, and pairs that no device can draw.
 inline std::vector<strata::PairSource> sources_in_scenes(std::uint64_t seed, std::uint64_t pairs) {
   std::vector<strata::PairSource> sources;
-  for (const char* text : {"extent = [[120000, 120800], [-5400, -5000], [300, 900.5]]\nedges = [0.5, 40]\n"
-                           "aspect = [1.2, 4, 3000]\ngrid = { decimals = 3 }",
-                           "extent = [-20, 20]\nedges = [1, 9]\ngrid = { power_of_two = -1 }",
-                           "extent = [[0, 10], [0, 10], [2.5, 2.5]]\nedges = [0.01, 3]",
-                           "extent = [-1e-40, 3e-40]\nedges = [1e-41, 1e-40]",
-                           "extent = [-8e37, 8e37]\nedges = [1e30, 6e37]"}) {
-    for (strata::PairSource& source : strata::scene_sources(strata::parse_scene("s", text), "", seed, pairs / 6, {}).sources) {
+  for (const char* text :
+       {"extent = [[120000, 120800], [-5400, -5000], [300, 900.5]]\nedges = [0.5, 40]\n"
+        "aspect = [1.2, 4, 3000]\ngrid = { decimals = 3 }",
+        "extent = [-20, 20]\nedges = [1, 9]\ngrid = { power_of_two = -1 }",
+        "extent = [[0, 10], [0, 10], [2.5, 2.5]]\nedges = [0.01, 3]",
+        "extent = [-1e-40, 3e-40]\nedges = [1e-41, 1e-40]", "extent = [-8e37, 8e37]\nedges = [1e30, 6e37]"}) {
+    for (strata::PairSource& source :
+         strata::scene_sources(strata::parse_scene("s", text), "", seed, pairs / 6, {}).sources) {
       source.id += std::to_string(sources.size());
       sources.push_back(std::move(source));
     }

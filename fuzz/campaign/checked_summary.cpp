@@ -26,7 +26,8 @@ void expect(bool possible, const std::string& expected, std::uint64_t found) {
 
 std::uint64_t count(const Json& row, const char* field) {
   const Json& value = row.at(field);
-  if (!value.is_number_unsigned()) throw Impossible(fmt::format("expected a count as {}, found {}", field, value.dump()));
+  if (!value.is_number_unsigned())
+    throw Impossible(fmt::format("expected a count as {}, found {}", field, value.dump()));
   return value.get<std::uint64_t>();
 }
 
@@ -45,7 +46,8 @@ void expect_split(const std::string& where, const Json& rows, const Json& stratu
     pairs += count(row, "pairs");
     for (const auto& [lane, unused] : row.at("wrong").items()) {
       const std::uint64_t of_lane = count(row["wrong"], lane.c_str());
-      expect(of_lane <= count(row, "pairs"), fmt::format("at most {} wrong of {} at {} {}", count(row, "pairs"), lane, where, name), of_lane);
+      expect(of_lane <= count(row, "pairs"),
+             fmt::format("at most {} wrong of {} at {} {}", count(row, "pairs"), lane, where, name), of_lane);
       wrong[lane] += of_lane;
     }
   }
@@ -85,10 +87,12 @@ void expect_possible_summary(const Json& summary) {
   }
   const std::uint64_t all = count(summary.at("spec"), "pairs"), disagreements = count(summary, "disagreements");
   const bool complete = summary.at("complete");
-  expect(complete ? pairs == all : pairs <= all, fmt::format("{} {} pairs in all strata", complete ? "exactly" : "at most", all), pairs);
+  expect(complete ? pairs == all : pairs <= all,
+         fmt::format("{} {} pairs in all strata", complete ? "exactly" : "at most", all), pairs);
   expect(disagreements <= pairs, fmt::format("at most {} disagreements", pairs), disagreements);
   for (const Json& row : summary.at("signatures"))
-    expect(count(row, "count") <= pairs, fmt::format("at most {} pairs of the signature {}", pairs, row.at("key").dump()), count(row, "count"));
+    expect(count(row, "count") <= pairs,
+           fmt::format("at most {} pairs of the signature {}", pairs, row.at("key").dump()), count(row, "count"));
 }
 
 // What the store's rows add up to, as the summary says it.
@@ -96,7 +100,8 @@ Json summary_of_database(const fs::path& directory) {
   StoreSpec store = recorded_store(directory);
   std::vector<StoredCounts> of_source;
   for (const std::string id : store.spec.at("strata")) {
-    const auto row = std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata), [&](auto& s) { return s.id == id; });
+    const auto row =
+        std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata), [&](auto& s) { return s.id == id; });
     // How many pairs a mesh has is known from the mesh alone; no source has more than all.
     strata::PairSource source{id, store.spec.at("pairs"), nullptr};
     if (row != std::end(strata::kStrata) && !store.spec.contains("scene")) source.axis = row->axis;
@@ -124,12 +129,13 @@ Json checked_summary(const fs::path& directory) {
     throw std::runtime_error(directory.string() + ": expected a campaign's directory with summary.json, found none");
   const Json summary = Json::parse(text, nullptr, false);
   try {
-    if (!summary.is_object()) throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
+    if (!summary.is_object())
+      throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
     if (has_database(directory)) {
       const Json expected = summary_of_database(directory);
       if (summary != expected)
-        throw Impossible(fmt::format("expected what {} says: {}; the command that began the campaign writes it again", kDatabase,
-                                     first_difference(expected, summary)));
+        throw Impossible(fmt::format("expected what {} says: {}; the command that began the campaign writes it again",
+                                     kDatabase, first_difference(expected, summary)));
     } else {
       expect_possible_summary(summary);
     }

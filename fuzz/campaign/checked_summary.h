@@ -9,8 +9,8 @@
 namespace graze::fuzz {
 
 // summary.json of a campaign's directory: what its database says, or, where that is not beside it, counts that can be.
-// Throws: std::runtime_error, in one line, without a summary, for one that disagrees with the database or cannot be, and
-// as recorded_store; FormatError for another shape.
+// Throws: std::runtime_error, in one line, without a summary, for one that disagrees with the database or cannot be,
+// and as recorded_store; FormatError for another shape.
 Json checked_summary(const std::filesystem::path& directory);
 
 // What the campaign recorded of itself under "spec": by its database, or by its summary where there is no database.

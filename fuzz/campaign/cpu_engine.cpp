@@ -139,9 +139,7 @@ class BlockJudge {
  private:
   const std::string& source_id() const { return campaign_.sources[static_cast<std::size_t>(source_)].id; }
 
-  Verdict truth(std::size_t i) const {
-    return analysis::test_bit(truth_, i) ? Verdict::intersects : Verdict::disjoint;
-  }
+  Verdict truth(std::size_t i) const { return analysis::test_bit(truth_, i) ? Verdict::intersects : Verdict::disjoint; }
 
   [[noreturn]] void apart(std::uint64_t index, const std::string& what) const {
     throw oracle::OracleApart(fmt::format("{} differ on {}:{}:{}", what, source_id(), campaign_.seed, index));
@@ -183,7 +181,8 @@ class BlockJudge {
     if (!sampled) return relation;
     ++result.cgal;
     if (oracle::cgal_verdict(pair) != truth(i) || relation_by_oracle(pair, index, i, result) != relation)
-      apart(index, fmt::format("the exact lane ({}, contact {}) and the oracle", name(truth(i)), name(relation.contact)));
+      apart(index,
+            fmt::format("the exact lane ({}, contact {}) and the oracle", name(truth(i)), name(relation.contact)));
     return relation;
   }
 
@@ -194,8 +193,8 @@ class BlockJudge {
       verdicts_[l] = views_[l].at(i);
       if (verdicts_[l] == truth(i)) continue;
       if (under_test_.lanes[l]->exact)
-        apart(key.index, fmt::format("{} ({}) and the truth ({})", under_test_.lanes[l]->id, name(verdicts_[l]),
-                                     name(truth(i))));
+        apart(key.index,
+              fmt::format("{} ({}) and the truth ({})", under_test_.lanes[l]->id, name(verdicts_[l]), name(truth(i))));
       if (analysis::by_convention(*under_test_.lanes[l], verdicts_[l], pair, relation.contact, relation.hulls,
                                   buckets_[i] == 0)) {
         result.tally.excuse(buckets_[i], static_cast<int>(l), verdicts_[l]);
@@ -211,9 +210,9 @@ class BlockJudge {
     signatures_.add(relation.contact, relation.hulls, buckets_[i], truth(i), verdicts_, key);
     if (!found) return;
     analysis::for_each_subject(under_test_.lanes, [&](std::size_t first, std::size_t count) {
-      analysis::Signature failure = analysis::signature(
-          relation.contact, relation.hulls, buckets_[i], truth(i),
-          std::span(under_test_.lanes).subspan(first, count), std::span(verdicts_).subspan(first, count));
+      analysis::Signature failure = analysis::signature(relation.contact, relation.hulls, buckets_[i], truth(i),
+                                                        std::span(under_test_.lanes).subspan(first, count),
+                                                        std::span(verdicts_).subspan(first, count));
       if (failure.wrong()) found->failures.push_back(std::move(failure));
     });
   }

@@ -27,7 +27,7 @@ class PairJudge {
   struct Found {
     Verdict truth;
     Bucket bucket;
-    std::vector<Verdict> verdicts;               // of each lane; of one that is right by its convention the truth
+    std::vector<Verdict> verdicts;              // of each lane; of one that is right by its convention the truth
     std::vector<analysis::Signature> failures;  // of each subject that is wrong
   };
   // Adds the pair's counts to `total`.   Throws: OracleApart.

@@ -80,9 +80,8 @@ TEST_F(DeviceTest, SweepsCountAsTheTwinsDo) {
   const std::vector<std::string> policies = {"", "abs:1e-6", "rel:1", "rel:64", "rel:1e9", "plane_distance=abs:1e-3"};
   for (const char* id : {"moller_1997/f32/cuda-fma", "guigue_devillers_2003/f64/cuda-nofma"}) {
     const Lane& lane = *find_lane(id);
-    const auto there = analysis::device_sweep([&](const std::string& policy) {
-      return policy.empty() ? lane : lane_under(lane, policy);
-    })(policies, sources);
+    const auto there = analysis::device_sweep(
+        [&](const std::string& policy) { return policy.empty() ? lane : lane_under(lane, policy); })(policies, sources);
     EXPECT_EQ(there, analysis::host_sweep(lane)(policies, sources)) << id;
     EXPECT_GT(there[1].mended + there[1].broken, 100u);
   }

@@ -41,8 +41,7 @@ std::vector<StoreSpec> read_records(const std::vector<fs::path>& parts) {
     stores.push_back(recorded_store(part));
     if (stores.back().spec == stores.front().spec) continue;
     throw std::runtime_error(fmt::format("{}: holds a part of another campaign: expected {}, as {}; leave one out",
-                                         part.string(),
-                                         first_difference(stores.front().spec, stores.back().spec),
+                                         part.string(), first_difference(stores.front().spec, stores.back().spec),
                                          stores.front().directory.string()));
   }
   return stores;
@@ -69,17 +68,19 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
     if (!store.shard.whole() && std::any_of(sources.begin(), sources.end(), is_undone)) undone.push_back(&store);
   }
   if (!undone.empty()) {
-    throw std::runtime_error(fmt::format(
-        "{}: expected all of its pairs, found {}; go on: {}", named(*undone.front()),
-        undone.size() == 1 ? "that it is not done" : fmt::format("that it and {} other shards are not done", undone.size() - 1),
-        command_of(spec, undone.front()->shard, undone.front()->directory)));
+    throw std::runtime_error(
+        fmt::format("{}: expected all of its pairs, found {}; go on: {}", named(*undone.front()),
+                    undone.size() == 1 ? "that it is not done"
+                                       : fmt::format("that it and {} other shards are not done", undone.size() - 1),
+                    command_of(spec, undone.front()->shard, undone.front()->directory)));
   }
   const std::uint64_t of = stores.front().shard.of;
-  const bool alike = of > 1 && std::all_of(stores.begin(), stores.end(), [&](auto& store) { return store.shard.of == of; });
+  const bool alike =
+      of > 1 && std::all_of(stores.begin(), stores.end(), [&](auto& store) { return store.shard.of == of; });
   if (!alike) {
-    throw std::runtime_error(fmt::format(
-        "expected all pairs, found {} of them in none of these; merge them --partial into {} and go on: {}", missing,
-        out.string(), command_of(spec, {}, out)));
+    throw std::runtime_error(
+        fmt::format("expected all pairs, found {} of them in none of these; merge them --partial into {} and go on: {}",
+                    missing, out.string(), command_of(spec, {}, out)));
   }
   std::set<std::uint64_t> lacking;
   for (std::uint64_t k = 1; k <= of; ++k) lacking.insert(k);
@@ -104,7 +105,8 @@ void expect_sealed(const StoreSpec& store) {
   if (status.is_null() || status.value("state", "") != "done" || !status.contains("hash")) return;
   if (const std::string found = file_hash(store.directory / kDatabase); found != status["hash"])
     throw DamagedStore(fmt::format("{}: expected the file that the run left, hash {}, found hash {}; copy it again, or",
-                                   (store.directory / kDatabase).string(), printable(status["hash"].get<std::string>()), found));
+                                   (store.directory / kDatabase).string(), printable(status["hash"].get<std::string>()),
+                                   found));
 }
 
 void expect_new(const fs::path& out) {
@@ -120,9 +122,11 @@ fs::path folder_beside(const fs::path& out) {
   if (!part.has_filename()) part = part.parent_path();
   part += ".part";
   fs::create_directories(part, error);
-  if (error) throw std::runtime_error(part.string() + ": expected a directory that can be written, found: " + error.message());
+  if (error)
+    throw std::runtime_error(part.string() + ": expected a directory that can be written, found: " + error.message());
   if (!may_fill(part, {}))
-    throw UsageError(part.string() + ": expected no folder, or what a merge that was killed left, found other things; remove it");
+    throw UsageError(part.string() +
+                     ": expected no folder, or what a merge that was killed left, found other things; remove it");
   return part;
 }
 
@@ -147,7 +151,8 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
 
 // What the parts of a hunt kept in their rounds, as the campaign's, which draws its cases from it.
 // held: pairs of each part.
-void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::uint64_t>& held, const Sums& sums, Campaign& campaign) {
+void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::uint64_t>& held, const Sums& sums,
+                 Campaign& campaign) {
   std::vector<KeptRound> rounds;
   for (std::size_t i = 0; i < stores.size(); ++i) {
     const StoreSpec& store = stores[i];
@@ -157,9 +162,10 @@ void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::ui
       rounds.push_back(std::move(round));
     }
     if (kept != held[i])
-      throw std::runtime_error(fmt::format("{}: expected the rounds of its {} pairs, found those of {}; copy it again, or: {}",
-                                           rounds_folder(store.directory).string(), held[i], kept,
-                                           command_of(store.spec, store.shard, store.directory)));
+      throw std::runtime_error(
+          fmt::format("{}: expected the rounds of its {} pairs, found those of {}; copy it again, or: {}",
+                      rounds_folder(store.directory).string(), held[i], kept,
+                      command_of(store.spec, store.shard, store.directory)));
   }
   std::sort(rounds.begin(), rounds.end(), [](const KeptRound& l, const KeptRound& r) { return l.first < r.first; });
   auto found = std::make_shared<HuntRounds>();
@@ -171,7 +177,8 @@ void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::ui
   std::erase_if(found->all.kept, [&](const auto& pair) { return !cases.contains(pair.first); });
   found->all.coarse.assign(found->coarse.begin(), found->coarse.end());
   fs::create_directories(rounds_folder(campaign.directory));
-  write_whole(merged_rounds_file(campaign.directory), round_bytes(found->all, hunt_checksum(campaign.spec, campaign.build)));
+  write_whole(merged_rounds_file(campaign.directory),
+              round_bytes(found->all, hunt_checksum(campaign.spec, campaign.build)));
   write_whole(campaign.directory / "hunt.json", found->told().dump(1) + "\n");
   campaign.sources[0].pair = [found](std::uint64_t index) { return found->all.kept.at(index).pair; };
 }
@@ -189,8 +196,8 @@ Json common_build(const Json& one, const Json& other, const fs::path& directory)
     build->erase("executors");
   }
   if (common != rest)
-    throw std::runtime_error(fmt::format("{}: was run by another build: expected {}; leave it out",
-                                         directory.string(), first_difference(common, rest)));
+    throw std::runtime_error(fmt::format("{}: was run by another build: expected {}; leave it out", directory.string(),
+                                         first_difference(common, rest)));
   common = one;
   const auto merge_words = [](Json& into, const Json& from) {
     if (from.is_null()) return;
@@ -218,7 +225,9 @@ Outcome merge(const MergeOptions& options) {
   campaign.seed = campaign.spec.at("seed");
   campaign.sources = recorded_sources(campaign.spec);
   const bool hunt = campaign.spec.contains("hunt");
-  if (hunt && options.partial) throw UsageError("--partial: expected parts of a campaign, found those of a hunt, which are merged when all are done");
+  if (hunt && options.partial)
+    throw UsageError(
+        "--partial: expected parts of a campaign, found those of a hunt, which are merged when all are done");
   campaign.build = stores.front().build;
   for (StoreSpec& store : stores) {
     campaign.build = common_build(campaign.build, store.build, store.directory);

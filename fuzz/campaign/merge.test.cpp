@@ -185,19 +185,22 @@ TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   };
   const std::string of_lanes = " --lanes exact/f32/cpu --shard 2/3 --out o";
   EXPECT_EQ(command(R"(["thesis"])", 50, false), "graze fuzz --pairs 50 --seed 3 --strata thesis" + of_lanes);
-  EXPECT_EQ(command(R"(["thesis", "mesh"])", 56, true), "graze fuzz --mesh " + file + " --pairs 50 --seed 3 --strata thesis" + of_lanes);
+  EXPECT_EQ(command(R"(["thesis", "mesh"])", 56, true),
+            "graze fuzz --mesh " + file + " --pairs 50 --seed 3 --strata thesis" + of_lanes);
   EXPECT_EQ(command(R"(["mesh"])", 6, true), "graze fuzz --mesh " + file + " --seed 3" + of_lanes);
 }
 
 // Lanes that were left out were asked for: by the patterns, of each of which some lane ran.
 TEST_F(MergeTest, CommandsAskForTheLanesThatWereLeftOutToo) {
   const LanesUnderTest some = select_lanes({"moller_1997/f32/cuda-*", "exact/f32/cpu"}, Executor::twin);
-  Json spec = {{"seed", 3}, {"pairs", 9}, {"strata", {"thesis"}}, {"lanes", {"moller_1997/f32/cuda-fma", "exact/f32/cpu"}}};
+  Json spec = {
+      {"seed", 3}, {"pairs", 9}, {"strata", {"thesis"}}, {"lanes", {"moller_1997/f32/cuda-fma", "exact/f32/cpu"}}};
   spec["lanes_left_out"] = left_out_json(some);
   EXPECT_EQ(spec["lanes_left_out"].dump(), R"({"patterns":["moller_1997/f32/cuda-*","exact/f32/cpu"],)"
                                            R"("why":{"moller_1997/f32/cuda-fast":"no twin"}})");
-  EXPECT_EQ(command_of(spec, {}, "o"), "graze fuzz --pairs 9 --seed 3 --strata thesis --lanes "
-                                       "'moller_1997/f32/cuda-*,exact/f32/cpu' --out o");
+  EXPECT_EQ(command_of(spec, {}, "o"),
+            "graze fuzz --pairs 9 --seed 3 --strata thesis --lanes "
+            "'moller_1997/f32/cuda-*,exact/f32/cpu' --out o");
   // All that run here, without a pattern: nobody asked for the others.
   EXPECT_TRUE(select_lanes({}, Executor::twin).left_out.empty());
   EXPECT_TRUE(left_out_json(select_lanes({"moller_1997/f32/cuda-*fma"}, Executor::twin)).is_null());

@@ -30,8 +30,10 @@ void take_in_ranks(const Campaign& campaign, Store& store) {
       of_rank.directory = directory;
       std::uint64_t pairs = 0;
       try {
-        if (const StoreSpec found = recorded_store(directory); found.spec != of_rank.spec || found.build != of_rank.build)
-          throw std::runtime_error(directory.string() + ": expected the store of a rank of this campaign, found another's");
+        if (const StoreSpec found = recorded_store(directory);
+            found.spec != of_rank.spec || found.build != of_rank.build)
+          throw std::runtime_error(directory.string() +
+                                   ": expected the store of a rank of this campaign, found another's");
         for_each_row(of_rank, [&](const PairRange& range, const StoredCounts& counts) {
           if (!store.holds(range)) store.commit(range, counts);  // else taken in by a run that was killed then
           pairs += range.pairs;

@@ -56,7 +56,8 @@ LanesUnderTest recorded_lanes(const Json& spec) {
 
 std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out) {
   const bool scene = spec.contains("scene"), mesh = spec.contains("mesh"), hunt = spec.contains("hunt");
-  std::vector<std::string> strata = (hunt ? spec["hunt"] : spec).at("strata"), lanes = spec.at("lanes"), all_strata, all_lanes;
+  std::vector<std::string> strata = (hunt ? spec["hunt"] : spec).at("strata"), lanes = spec.at("lanes"), all_strata,
+                           all_lanes;
   std::uint64_t pairs = scene ? spec["scene"].at("pairs") : spec.at("pairs");
   std::string command = hunt ? "graze hunt" : "graze fuzz";
   const auto add = [&](const char* name, const std::string& value) {

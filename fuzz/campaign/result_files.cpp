@@ -27,7 +27,8 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
     const Pair pair = source.pair(c.index);
     corpus::Entry entry{
         pair, {{"stratum", source.id}, {"seed", std::to_string(campaign.seed)}, {"index", std::to_string(c.index)}}, 0};
-    if (campaign.spec.contains("scene")) entry.fields.emplace_back("scene", campaign.spec["scene"]["name"].get<std::string>());
+    if (campaign.spec.contains("scene"))
+      entry.fields.emplace_back("scene", campaign.spec["scene"]["name"].get<std::string>());
     for (auto& part : truth_fields(oracle::truth(pair))) entry.fields.push_back(std::move(part));
     if (analysis::parse_signature(key)) entry.fields.push_back({"signature", key});
     corpus::write_entry(out, entry);

@@ -28,7 +28,8 @@ std::int64_t now() {
 std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signatures) {
   std::set<std::string> ways;
   for (const auto& [key, count] : signatures) {
-    if (const auto signature = analysis::parse_signature(key)) ways.insert(fmt::format("{:016x}", fnv1a(coarse_key(*signature))));
+    if (const auto signature = analysis::parse_signature(key))
+      ways.insert(fmt::format("{:016x}", fnv1a(coarse_key(*signature))));
   }
   return ways;
 }
@@ -38,9 +39,18 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
 RunStatus::RunStatus(const Campaign& campaign) : file_(campaign.directory / kFile) {
   char host[256] = {};
   gethostname(host, sizeof host - 1);
-  status_ = {{"state", "running"},   {"shard", campaign.shard.name()}, {"pairs", 0},   {"done", 0},
-             {"rate", 0},            {"seconds_left", nullptr},        {"disagreements", 0}, {"signatures", 0},
-             {"ways", Json::array()}, {"host", host},         {"process", getpid()},            {"updated", now()}};
+  status_ = {{"state", "running"},
+             {"shard", campaign.shard.name()},
+             {"pairs", 0},
+             {"done", 0},
+             {"rate", 0},
+             {"seconds_left", nullptr},
+             {"disagreements", 0},
+             {"signatures", 0},
+             {"ways", Json::array()},
+             {"host", host},
+             {"process", getpid()},
+             {"updated", now()}};
 }
 
 void RunStatus::write() {

@@ -34,7 +34,9 @@ void fetch_from_directory(const Campaign& campaign) {
   std::error_code error;
   for (const fs::path& folder : {campaign.scratch, campaign.directory}) {
     fs::create_directories(folder, error);
-    if (error) throw std::runtime_error(folder.string() + ": expected a directory that can be written, found: " + error.message());
+    if (error)
+      throw std::runtime_error(folder.string() +
+                               ": expected a directory that can be written, found: " + error.message());
   }
   const FolderLock alone(campaign.scratch, FolderLock::WhenTaken::refuse);
   if (fs::exists(campaign.scratch / kDatabase) || !fs::exists(campaign.directory / kDatabase)) return;

@@ -11,8 +11,13 @@ void SignatureCounts::add(Contact contact, const oracle::Shape& shape, Bucket bu
   analysis::for_each_subject(lanes_, [&](std::size_t first, std::size_t count) {
     const std::span<const Verdict> of_subject = verdicts.subspan(first, count);
     if (std::all_of(of_subject.begin(), of_subject.end(), [&](Verdict verdict) { return verdict == truth; })) return;
-    const Head head{contact, static_cast<std::int8_t>(shape.dimension_a), static_cast<std::int8_t>(shape.dimension_b),
-                    shape.coplanar, bucket, truth, static_cast<std::uint16_t>(first)};
+    const Head head{contact,
+                    static_cast<std::int8_t>(shape.dimension_a),
+                    static_cast<std::int8_t>(shape.dimension_b),
+                    shape.coplanar,
+                    bucket,
+                    truth,
+                    static_cast<std::uint16_t>(first)};
     key_.assign(reinterpret_cast<const char*>(&head), sizeof head);
     key_.append(reinterpret_cast<const char*>(of_subject.data()), count);
     auto found = counts_.find(std::string_view(key_));

@@ -19,8 +19,8 @@ class SignatureCounts {
   explicit SignatureCounts(std::vector<const Lane*> lanes) : lanes_(std::move(lanes)) {}
 
   // Counts the pair for each subject of which a lane's verdict is not the truth.
-  void add(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth,
-           std::span<const Verdict> verdicts, const CaseKey& pair);
+  void add(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth, std::span<const Verdict> verdicts,
+           const CaseKey& pair);
 
   // Adds all that was counted, and begins anew.
   void move_to(std::map<analysis::Signature, SignatureCount>& signatures);

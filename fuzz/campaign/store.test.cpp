@@ -157,10 +157,12 @@ TEST_F(StoreTest, RangesThatTheStoreDoesNotHoldAreFoundOut) {
     return refusal(c);
   };
   const Shard middle{2, 4};  // 100 to 200
-  for (const PairRange& range : {PairRange{0, 0, 400}, {0, 399, 1}, {1, 200, 200}}) EXPECT_EQ(refused({}, range), "") << range.first;
+  for (const PairRange& range : {PairRange{0, 0, 400}, {0, 399, 1}, {1, 200, 200}})
+    EXPECT_EQ(refused({}, range), "") << range.first;
   for (const PairRange& range : {PairRange{0, 0, 401}, {0, 399, 2}, {0, 400, 1}, {0, 500, 3}})
     EXPECT_NE(refused({}, range).find("do not agree; --discard-damaged"), std::string::npos) << range.first;
-  for (const PairRange& range : {PairRange{0, 100, 100}, {0, 199, 1}}) EXPECT_EQ(refused(middle, range), "") << range.first;
+  for (const PairRange& range : {PairRange{0, 100, 100}, {0, 199, 1}})
+    EXPECT_EQ(refused(middle, range), "") << range.first;
   for (const PairRange& range : {PairRange{0, 99, 2}, {0, 0, 50}, {0, 199, 2}, {0, 200, 1}, {0, 300, 10}})
     EXPECT_NE(refused(middle, range).find("do not agree; --discard-damaged"), std::string::npos) << range.first;
 }

@@ -210,7 +210,8 @@ struct OpenedToRead {
   static std::string as_uri(const fs::path& file) {
     std::string uri = "file:";
     for (const char c : fs::absolute(file).string()) {
-      const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' || c == '-' || c == '_';
+      const bool plain =
+          std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' || c == '-' || c == '_';
       uri += plain ? std::string(1, c) : fmt::format("%{:02x}", static_cast<unsigned char>(c));
     }
     return uri + "?immutable=1";

@@ -83,9 +83,14 @@ std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally&
       expect(l > last_lane, what);
       last_lane = l;
       const auto foreign = [&](std::size_t i) { return lane.size() == 9 ? whole(lane[i], here, what) : 0; };
-      const analysis::LaneCounts counts{whole(lane[1], here - intersects, what), whole(lane[2], intersects, what),
-                                        whole(lane[3], here, what), whole(lane[4], here, what),
-                                        foreign(5), foreign(6), foreign(7), foreign(8)};
+      const analysis::LaneCounts counts{whole(lane[1], here - intersects, what),
+                                        whole(lane[2], intersects, what),
+                                        whole(lane[3], here, what),
+                                        whole(lane[4], here, what),
+                                        foreign(5),
+                                        foreign(6),
+                                        foreign(7),
+                                        foreign(8)};
       expect(counts.wrong() + counts.by_convention <= here && (lane.size() == 5 || counts.any_foreign()), what);
       tally.add(bucket, l, counts);
     }
@@ -168,8 +173,7 @@ StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::u
   constexpr std::uint64_t kMost = ~std::uint64_t{0};
   list(all, 8, 8, "a batch's parts");
   StoredCounts counts(lanes);
-  expect(read_tally(all[0], pairs, counts.tally, "the margins") == pairs,
-         "the margins and the batch's pairs");
+  expect(read_tally(all[0], pairs, counts.tally, "the margins") == pairs, "the margins and the batch's pairs");
   expect(read_tally(all[1], pairs, counts.extremes, "the extremes") == (axis == Axis::none ? 0 : pairs),
          "the extremes and the batch's pairs");
   counts.signatures = read_signatures(

@@ -31,9 +31,9 @@ struct StoredCounts {
   void add(const StoredCounts& other);
 
   analysis::Tally tally, extremes;
-  std::map<std::string, SignatureCount> signatures;                // by key
-  std::map<std::string, SignatureCount> executors_apart;           // by lane: device and twin differ
-  std::uint64_t disagreements = 0, cgal = 0, gmp = 0, exact = 0;   // see BatchResult
+  std::map<std::string, SignatureCount> signatures;               // by key
+  std::map<std::string, SignatureCount> executors_apart;          // by lane: device and twin differ
+  std::uint64_t disagreements = 0, cgal = 0, gmp = 0, exact = 0;  // see BatchResult
 };
 
 std::string to_bytes(const StoredCounts& counts);

@@ -20,7 +20,10 @@ Json good() {
           Json::array(),
           {{kKey, 3, {101, 105, 109}}},
           {{"moller_1997/f32/cuda-fma", 1, {100}}},
-          5, 10, 5, 0};
+          5,
+          10,
+          5,
+          0};
 }
 
 // What reading says; empty when all agrees.
@@ -56,40 +59,40 @@ TEST(StoredCounts, ThatDoNotAgreeAreDamage) {
     std::string said;
   };
   for (const auto& [place, value, said] : {
-           Edit{"/0/0/0", 5, margins},                                        // a bucket twice
-           {"/0/1/0", -5, margins},                                           // not in their order
+           Edit{"/0/0/0", 5, margins},  // a bucket twice
+           {"/0/1/0", -5, margins},     // not in their order
            {"/0/1/0", kBucketMost, ""},
            {"/0/1/0", kBucketMost + 1, margins},
            {"/0/0/0", -kBucketMost, ""},
            {"/0/0/0", -kBucketMost - 1, margins},
-           {"/0/1/1", 5, all},                                                // fewer pairs than the range has
-           {"/0/1/1", 7, margins},                                            // more
-           {"/0/1/2", 7, margins},                                            // more of them intersect
-           {"/0/1/3/0/0", 1, margins},                                        // a lane twice
-           {"/0/1/3/1/0", 2, margins},                                        // no such lane
-           {"/0/1/3/0/1", 4, ""},                                             // all that are apart
+           {"/0/1/1", 5, all},          // fewer pairs than the range has
+           {"/0/1/1", 7, margins},      // more
+           {"/0/1/2", 7, margins},      // more of them intersect
+           {"/0/1/3/0/0", 1, margins},  // a lane twice
+           {"/0/1/3/1/0", 2, margins},  // no such lane
+           {"/0/1/3/0/1", 4, ""},       // all that are apart
            {"/0/1/3/0/1", 5, margins},
-           {"/0/1/3/0/2", 2, ""},                                             // all that intersect
+           {"/0/1/3/0/2", 2, ""},  // all that intersect
            {"/0/1/3/0/2", 3, margins},
-           {"/0/1/3/0/3", 3, ""},                                             // wrong on all six
+           {"/0/1/3/0/3", 3, ""},  // wrong on all six
            {"/0/1/3/0/3", 4, margins},
            {"/0/1/3/0/4", 7, margins},
            {"/0/1/3/0", Json{0, 2, 1, 0, 3, 0}, margins},
-           {"/0/1/3/0", Json{0, 2, 1, 0, 3, 0, 0, 0, 0}, margins},            // foreign counts, of nothing
-           {"/0/1/3/1/8", 4, ""},                                             // by convention, on all but two
+           {"/0/1/3/0", Json{0, 2, 1, 0, 3, 0, 0, 0, 0}, margins},  // foreign counts, of nothing
+           {"/0/1/3/1/8", 4, ""},                                   // by convention, on all but two
            {"/0/1/3/1/8", 5, margins},
            {"/1", Json{{0, 10, 0, Json::array()}}, "the extremes and the batch's pairs do not agree"},
            {"/2/0/0", "none/22", signatures},
            {"/2/0/0", "none/22/skew/+2^3/moller 1997:+f32/cpu", signatures},
            {"/2/0/1", 10, ""},
            {"/2/0/1", 11, signatures},
-           {"/2/0/1", 2, signatures},                                         // fewer than the cases kept
+           {"/2/0/1", 2, signatures},  // fewer than the cases kept
            {"/2/0/2", Json::array(), signatures},
            {"/2/0/2", Json{101, 101}, signatures},
            {"/2/0/2", Json{99}, signatures},
            {"/2/0/2", Json{110}, signatures},
            {"/2/0/2", Json{100, 101, 102, 103, 104}, signatures},
-           {"/2/1", Json{kKey, 1, {102}}, signatures},                        // the same key again
+           {"/2/1", Json{kKey, 1, {102}}, signatures},  // the same key again
            {"/3/0/0", "moller_1997", signatures},
            {"/4", 10, ""},
            {"/4", 11, "the disagreements and the batch's pairs do not agree"},

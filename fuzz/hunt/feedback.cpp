@@ -51,10 +51,13 @@ struct Meter {
   void note(Site site, Real value, Real error, const std::source_location& where) const {
     constexpr int kMost = 24, kNotFinite = 99;
     int octave = -kMost;  // of a zero
-    if (!std::isfinite(value) || !std::isfinite(error)) octave = kNotFinite;
-    else if (value != 0) octave = error == 0 ? kMost : std::clamp(std::ilogb(magnitude(value) / error), -8, kMost);
+    if (!std::isfinite(value) || !std::isfinite(error))
+      octave = kNotFinite;
+    else if (value != 0)
+      octave = error == 0 ? kMost : std::clamp(std::ilogb(magnitude(value) / error), -8, kMost);
     const int place = std::min((*asked)++, 31);
-    features->push_back(feature(Kind::site, algorithm, sizeof(Real), static_cast<int>(site), where.line(), place, octave + 128));
+    features->push_back(
+        feature(Kind::site, algorithm, sizeof(Real), static_cast<int>(site), where.line(), place, octave + 128));
   }
 };
 
@@ -62,9 +65,8 @@ template <class Real, std::size_t place>
 void measure_sites(const Pair& pair, Features& features) {
   int asked = 0;
   const Meter<Real> meter{static_cast<int>(place), &features, &asked};
-  decide_widened<Bounded<Real>>(pair, [&](const auto& a, const auto& b) {
-    return std::tuple_element_t<place, Algorithms>::decide(a, b, meter);
-  });
+  decide_widened<Bounded<Real>>(
+      pair, [&](const auto& a, const auto& b) { return std::tuple_element_t<place, Algorithms>::decide(a, b, meter); });
 }
 
 void measure_sites(int algorithm, const Pair& pair, Features& features) {
@@ -75,7 +77,8 @@ void measure_sites(int algorithm, const Pair& pair, Features& features) {
   };
   [&]<std::size_t... places>(std::index_sequence<places...>) {
     (one(std::integral_constant<std::size_t, places>()), ...);
-  }(std::make_index_sequence<kAlgorithmCount>());
+  }
+  (std::make_index_sequence<kAlgorithmCount>());
 }
 
 // Where the algorithm's runs in float32 and in float64 first take different ways; 0 where they do not.
@@ -112,7 +115,8 @@ Features Feedback::features(const Pair& pair, const PairJudge::Found& found) con
   for (const int algorithm : algorithms_) measure_sites(algorithm, pair, features);
   for (const analysis::Signature& failure : found.failures) {
     features.push_back(feature(Kind::failure, fnv1a(coarse_key(failure))));
-    const auto lane = std::find_if(lanes_.begin(), lanes_.end(), [&](const Lane* l) { return l->info->id == failure.subject; });
+    const auto lane =
+        std::find_if(lanes_.begin(), lanes_.end(), [&](const Lane* l) { return l->info->id == failure.subject; });
     if ((*lane)->algorithm >= 0)
       features.push_back(feature(Kind::parting, (*lane)->algorithm, line_of_parting((*lane)->algorithm, pair)));
   }

@@ -6,7 +6,8 @@
 //   sites        of each value or comparison that an algorithm asks its policy about: log2 of how many times its error
 //                bound (core/bounded.h) it is away from zero, in float32 and in float64
 //   parting      the line of the first comparison at which float32 and float64 part, of an algorithm that is wrong
-//   contractions the contraction sites without which, all others fused, the verdict of a cuda-fma lane is another; where
+//   contractions the contraction sites without which, all others fused, the verdict of a cuda-fma lane is another;
+//   where
 //                it is not that of the same source without contraction
 #pragma once
 

@@ -57,14 +57,20 @@ class Processes {
 class Hunter {
  public:
   Hunter(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report)
-      : hunt_(hunt), stop_(stop), report_(report), found_(std::make_shared<HuntRounds>()), status_(hunt.campaign),
-        share_(share_of(hunt.campaign.shard, 0, hunt.pairs)), per_round_(round_pairs(share_.pairs)) {
+      : hunt_(hunt),
+        stop_(stop),
+        report_(report),
+        found_(std::make_shared<HuntRounds>()),
+        status_(hunt.campaign),
+        share_(share_of(hunt.campaign.shard, 0, hunt.pairs)),
+        per_round_(round_pairs(share_.pairs)) {
     hunt.campaign.sources = {
         {"hunt", hunt.pairs, [found = found_](std::uint64_t index) { return found->all.kept.at(index).pair; }}};
     threads_ = hunt.campaign.threads > 0 ? hunt.campaign.threads : tbb::info::default_concurrency();
     store_.emplace(store_spec(hunt.campaign));
     if (fs::exists(merged_rounds_file(hunt.campaign.directory)))
-      throw UsageError(hunt.campaign.directory.string() + ": holds a hunt that was merged of shards, which is done; choose another --out");
+      throw UsageError(hunt.campaign.directory.string() +
+                       ": holds a hunt that was merged of shards, which is done; choose another --out");
     checksum_ = hunt_checksum(hunt.campaign.spec, hunt.campaign.build);
     fs::create_directories(folder());
     for (const auto& file : fs::directory_iterator(folder())) {  // of processes that were killed
@@ -143,7 +149,9 @@ class Hunter {
     return true;
   }
 
-  RoundTask task_of(const Wanted& round) const { return {&hunt_.campaign, &hunt_.drawn, round.range, &found_->all.units}; }
+  RoundTask task_of(const Wanted& round) const {
+    return {&hunt_.campaign, &hunt_.drawn, round.range, &found_->all.units};
+  }
 
   // Keeps the round, and what is new in it.
   void finish(Wanted& round) {
@@ -194,7 +202,8 @@ class Hunter {
     }
     tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {
       const Verdict truth = fresh[i].signature.contact == Contact::none ? Verdict::disjoint : Verdict::intersects;
-      fresh[i].reasons = reasons_of(*hunt_.campaign.under_test, fresh[i].signature.subject, result.kept.at(fresh[i].index).pair, truth);
+      fresh[i].reasons = reasons_of(*hunt_.campaign.under_test, fresh[i].signature.subject,
+                                    result.kept.at(fresh[i].index).pair, truth);
     });
     std::sort(fresh.begin(), fresh.end(), [](const New& l, const New& r) { return l.index < r.index; });
     std::set<std::string> known = found_->kinds;
@@ -217,8 +226,9 @@ class Hunter {
 
   void report_progress() {
     tell_status();
-    report_({found_->all.pairs, share_.pairs, done_here_, seconds(), found_->all.units.size(), store_->signatures().size(),
-             found_->kinds.size(), found_->kinds.size() - known_before_, seconds() - last_kind_});
+    report_({found_->all.pairs, share_.pairs, done_here_, seconds(), found_->all.units.size(),
+             store_->signatures().size(), found_->kinds.size(), found_->kinds.size() - known_before_,
+             seconds() - last_kind_});
   }
 
   void tell_status() {
@@ -228,7 +238,8 @@ class Hunter {
     progress.done_here = done_here_;
     progress.seconds = seconds();
     if (done_here_ > 0)
-      progress.seconds_left = progress.seconds / static_cast<double>(done_here_) * static_cast<double>(progress.total - progress.done);
+      progress.seconds_left =
+          progress.seconds / static_cast<double>(done_here_) * static_cast<double>(progress.total - progress.done);
     progress.all_disagreements = store_->disagreements();
     progress.signatures = store_->signatures().size();
     status_.tell(progress, store_->signatures());
@@ -245,7 +256,11 @@ class Hunter {
     }
     write_whole(hunt_.campaign.directory / "hunt.json", found_->told().dump(1) + "\n");
     append_timing(hunt_.campaign.directory,
-                  {{"pairs", done_here_}, {"seconds", seconds()}, {"threads", threads_}, {"machine", machine_name()}, {"engine", "cpu"}},
+                  {{"pairs", done_here_},
+                   {"seconds", seconds()},
+                   {"threads", threads_},
+                   {"machine", machine_name()},
+                   {"engine", "cpu"}},
                   outcome.oracle);
     return outcome;
   }
@@ -267,7 +282,9 @@ class Hunter {
 
 }  // namespace
 
-std::uint64_t round_pairs(std::uint64_t pairs) { return std::clamp(pairs / 32, std::uint64_t{256}, std::uint64_t{32768}); }
+std::uint64_t round_pairs(std::uint64_t pairs) {
+  return std::clamp(pairs / 32, std::uint64_t{256}, std::uint64_t{32768});
+}
 
 Json hunt_spec(const Hunt& hunt) {
   Json spec = {{"seed", hunt.campaign.seed}, {"pairs", hunt.pairs}, {"strata", {"hunt"}}, {"lanes", Json::array()}};

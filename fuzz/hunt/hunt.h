@@ -27,8 +27,8 @@ struct HuntProgress {
   std::uint64_t done_here = 0;        // by this process
   double seconds = 0;                 // of this process
   std::size_t units = 0, signatures = 0, kinds = 0;
-  std::size_t new_kinds = 0;       // by this process
-  double seconds_since_kind = 0;   // since the last one, or the start
+  std::size_t new_kinds = 0;      // by this process
+  double seconds_since_kind = 0;  // since the last one, or the start
 };
 
 // What the store records of a hunt: as campaign_spec, with the source `hunt`, and under "hunt" what it draws from.
@@ -37,11 +37,10 @@ Json hunt_spec(const Hunt& hunt);
 // The pairs of a round.
 std::uint64_t round_pairs(std::uint64_t pairs);
 
-// Runs or goes on with the hunt, or with a shard of it, until done, or its time is over, or `stop`; then writes hunt.json
-// and timings.json, and of a whole one summary.json and cases/; status.json meanwhile. A shard is a search of its own,
-// through its share of the pairs' numbers.
-// Requires: has_libfuzzer(); no lane runs on a device.
-// Throws: OracleApart, UsageError, std::runtime_error; committed rounds stay in any case.
+// Runs or goes on with the hunt, or with a shard of it, until done, or its time is over, or `stop`; then writes
+// hunt.json and timings.json, and of a whole one summary.json and cases/; status.json meanwhile. A shard is a search of
+// its own, through its share of the pairs' numbers. Requires: has_libfuzzer(); no lane runs on a device. Throws:
+// OracleApart, UsageError, std::runtime_error; committed rounds stay in any case.
 Outcome run_hunt(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report);
 
 }  // namespace graze::fuzz

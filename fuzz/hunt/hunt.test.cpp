@@ -47,7 +47,8 @@ int count_after(Mutation mutation, Holds holds, strata::Stratum stratum = strata
 
 TEST(Mutations, EachChangesThePairAndAFreshOneIsOfASource) {
   for (int m = 1; m < kMutationCount; ++m) {
-    const int changed = count_after(static_cast<Mutation>(m), [](const Pair& p, const Pair&, const Pair& r) { return !same(p, r); });
+    const int changed =
+        count_after(static_cast<Mutation>(m), [](const Pair& p, const Pair&, const Pair& r) { return !same(p, r); });
     EXPECT_GT(changed, 100) << kMutationIds[static_cast<std::size_t>(m)];
   }
   const Drawn drawn{strata::stratum_sources(1, 10, {"lattice"}), nullptr};
@@ -63,28 +64,39 @@ TEST(Mutations, DoWhatTheyAreNamedAfter) {
   EXPECT_EQ(count_after(Mutation::onto_vertex, shares(1)), 200);
   EXPECT_EQ(count_after(Mutation::shared_edge, shares(2)), 200);
   const auto flat = [](const Pair&, const Pair&, const Pair& r) { return oracle::shape(r).coplanar; };
-  EXPECT_EQ(count_after(Mutation::coplanar, [](const Pair&, const Pair&, const Pair& r) {
-              return oracle::cgal_verdict(r) == Verdict::intersects && oracle::margin_bucket(r, Verdict::intersects) < make_bucket(-1, 7);
-            }), 0) << "deeper than 2^8 ulps, they are far from a common plane";
+  EXPECT_EQ(count_after(Mutation::coplanar,
+                        [](const Pair&, const Pair&, const Pair& r) {
+                          return oracle::cgal_verdict(r) == Verdict::intersects &&
+                                 oracle::margin_bucket(r, Verdict::intersects) < make_bucket(-1, 7);
+                        }),
+            0)
+      << "deeper than 2^8 ulps, they are far from a common plane";
   EXPECT_GT(count_after(Mutation::coplanar, flat, strata::Stratum::lattice), 20);
   const auto degenerate = [](const Pair&, const Pair&, const Pair& r) {
     const oracle::Shape shape = oracle::shape(r);
     return std::min(shape.dimension_a, shape.dimension_b) < 2;
   };
   EXPECT_GT(count_after(Mutation::collinear, degenerate), 30);
-  EXPECT_EQ(count_after(Mutation::reordered, [](const Pair& p, const Pair&, const Pair& r) {
-              return oracle::cgal_verdict(p) == oracle::cgal_verdict(r);
-            }), 200);
-  EXPECT_EQ(count_after(Mutation::ulps, [](const Pair& p, const Pair&, const Pair& r) {
-              int changed = 0;
-              for (int i = 0; i < kCoordinates; ++i) changed += coordinates(p)[i] != coordinates(r)[i];
-              return changed >= 1 && changed <= 3;
-            }), 200);
+  EXPECT_EQ(count_after(Mutation::reordered,
+                        [](const Pair& p, const Pair&, const Pair& r) {
+                          return oracle::cgal_verdict(p) == oracle::cgal_verdict(r);
+                        }),
+            200);
+  EXPECT_EQ(count_after(Mutation::ulps,
+                        [](const Pair& p, const Pair&, const Pair& r) {
+                          int changed = 0;
+                          for (int i = 0; i < kCoordinates; ++i) changed += coordinates(p)[i] != coordinates(r)[i];
+                          return changed >= 1 && changed <= 3;
+                        }),
+            200);
 }
 
 TEST(Mutations, StayWithinAScene) {
-  const strata::Scene scene = strata::resolved(strata::parse_scene("scene.toml", "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\ngrid = { power_of_two = -6 }\n"));
-  Drawn drawn{{{"uniform", 10, [&scene](std::uint64_t i) { return strata::generate(1, strata::Stratum::uniform, scene, i); }}}, &scene};
+  const strata::Scene scene = strata::resolved(strata::parse_scene(
+      "scene.toml", "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\ngrid = { power_of_two = -6 }\n"));
+  Drawn drawn{
+      {{"uniform", 10, [&scene](std::uint64_t i) { return strata::generate(1, strata::Stratum::uniform, scene, i); }}},
+      &scene};
   int mutations = 0;
   strata::Draws first(1, 1000, 0);
   Pair pair = fresh_pair(drawn, first);
@@ -152,14 +164,18 @@ class HuntFiles : public CampaignFiles {
   Json run(const std::string& name, int threads, std::uint64_t rounds = ~0ull) const {
     Hunt hunt = hunt_of(name, threads);
     std::atomic<bool> stop{false};
-    return run_hunt(hunt, stop, [&](const HuntProgress& progress) { stop = progress.done_here >= rounds * round_pairs(hunt.pairs); }).summary;
+    return run_hunt(
+               hunt, stop,
+               [&](const HuntProgress& progress) { stop = progress.done_here >= rounds * round_pairs(hunt.pairs); })
+        .summary;
   }
 
   Json run_shard(const std::string& name, const Shard& shard, std::uint64_t rounds = ~0ull) const {
     Hunt hunt = hunt_of(name, 2);
     hunt.campaign.shard = shard;
     std::atomic<bool> stop{false};
-    return run_hunt(hunt, stop, [&](const HuntProgress& progress) { stop = progress.done_here >= rounds * 256; }).summary;
+    return run_hunt(hunt, stop, [&](const HuntProgress& progress) { stop = progress.done_here >= rounds * 256; })
+        .summary;
   }
 
   // Every pair of every case is wrong as its signature says.   Returns: how many there are.
@@ -173,7 +189,8 @@ class HuntFiles : public CampaignFiles {
     for (const Json& row : summary["signatures"]) {
       for (const corpus::Entry& entry : corpus::read_pairs(case_file(root_ / name, row))) {
         const auto failures = judge.judge(entry.pair, cases++, counts).failures;
-        EXPECT_TRUE(std::any_of(failures.begin(), failures.end(), [&](const auto& f) { return analysis::key(f) == row["key"]; }));
+        EXPECT_TRUE(std::any_of(failures.begin(), failures.end(),
+                                [&](const auto& f) { return analysis::key(f) == row["key"]; }));
         EXPECT_EQ(corpus::origin_of(entry).substr(0, 7), "hunt:3:");
       }
     }
@@ -185,7 +202,8 @@ class HuntFiles : public CampaignFiles {
     EXPECT_EQ(read_whole(root_ / one / "hunt.json"), read_whole(root_ / other / "hunt.json"));
   }
 
-  LanesUnderTest under_test_ = select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-*fma", "projected_sat/f32/cpu", "exact/*"}, Executor::twin);
+  LanesUnderTest under_test_ = select_lanes(
+      {"moller_1997/f32/cpu", "moller_1997/f32/cuda-*fma", "projected_sat/f32/cpu", "exact/*"}, Executor::twin);
 };
 
 TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
@@ -268,11 +286,14 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
     }
     return "";
   };
-  EXPECT_NE(refusal({{parts[0], parts[2]}, root_ / "none", false}).find("none that is 2/3; it is run by: graze hunt --runs 5000"), std::string::npos);
+  EXPECT_NE(refusal({{parts[0], parts[2]}, root_ / "none", false})
+                .find("none that is 2/3; it is run by: graze hunt --runs 5000"),
+            std::string::npos);
   EXPECT_NE(refusal({parts, root_ / "none", true}).find("merged when all are done"), std::string::npos);
   std::ofstream(parts[1] / "hunt/000001.round", std::ios::app) << "x";
   const std::string damaged = refusal({parts, root_ / "none", false});
-  EXPECT_NE(damaged.find("part-2/hunt: expected the rounds of its 1667 pairs, found those of 1411"), std::string::npos) << damaged;
+  EXPECT_NE(damaged.find("part-2/hunt: expected the rounds of its 1667 pairs, found those of 1411"), std::string::npos)
+      << damaged;
   EXPECT_NE(damaged.find("--shard 2/3"), std::string::npos) << damaged;
   run_shard("part-2", {2, 3});  // that round again
   merge({parts, root_ / "mended", false});

@@ -84,14 +84,16 @@ void scale(Pair& pair, Draws& draws) {
   const std::uint32_t what = draws.below(6);  // 0: both, 1: a, 2: b, from 3 on: an axis
   const float factor = static_cast<float>(strata::power_of_two(draws.coin() ? draws.integer(4) : draws.integer(60)));
   for (int i = 0; i < kCoordinates; ++i) {
-    const bool meant = what == 0 || (what == 1 && i < 9) || (what == 2 && i >= 9) || static_cast<int>(what) - 3 == i % 3;
+    const bool meant =
+        what == 0 || (what == 1 && i < 9) || (what == 2 && i >= 9) || static_cast<int>(what) - 3 == i % 3;
     if (meant) coordinates(pair)[i] *= factor;
   }
 }
 
 double largest_of(const Pair& pair) {
   double largest = 0;
-  for (int i = 0; i < kCoordinates; ++i) largest = std::max(largest, std::fabs(static_cast<double>(coordinates(pair)[i])));
+  for (int i = 0; i < kCoordinates; ++i)
+    largest = std::max(largest, std::fabs(static_cast<double>(coordinates(pair)[i])));
   return largest;
 }
 
@@ -185,7 +187,8 @@ Pair mutated(Mutation mutation, const Pair& pair, const Pair& other, Draws& draw
     case Mutation::coplanar: {
       const Sides sides = choose(result, draws);
       const bool along_axis = draws.coin();
-      for (int i = 0; i < 3; ++i) sides.own[i] = strata::rounded(onto_plane(wide(sides.own[i]), sides.other, along_axis));
+      for (int i = 0; i < 3; ++i)
+        sides.own[i] = strata::rounded(onto_plane(wide(sides.own[i]), sides.other, along_axis));
       break;
     }
     case Mutation::collinear: {

@@ -31,7 +31,7 @@ enum class Mutation : std::uint8_t {
   crossed,      // one triangle of each of two pairs
 };
 inline constexpr std::array<std::string_view, 14> kMutationIds{
-    "fresh",     "ulps",   "onto_vertex", "onto_edge", "onto_plane", "coplanar",  "collinear",
+    "fresh",       "ulps",   "onto_vertex", "onto_edge", "onto_plane", "coplanar",  "collinear",
     "shared_edge", "scaled", "moved",       "on_grid",   "mirrored",   "reordered", "crossed"};
 inline constexpr int kMutationCount = static_cast<int>(kMutationIds.size());
 

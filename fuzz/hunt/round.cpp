@@ -36,7 +36,10 @@ constexpr std::uint32_t kMutations = 0x301;  // where a stratum's number stands 
 class Round {
  public:
   Round(const RoundTask& task, std::filesystem::path file)
-      : task_(task), file_(std::move(file)), counts_(no_counts(*task.campaign)), feedback_(task.campaign->under_test->lanes) {
+      : task_(task),
+        file_(std::move(file)),
+        counts_(no_counts(*task.campaign)),
+        feedback_(task.campaign->under_test->lanes) {
     // Foreign code of the process that this is a copy of answers that one.
     under_test_.lanes = task.campaign->under_test->lanes;
     for (std::size_t l = 0; l < under_test_.lanes.size(); ++l) {
@@ -169,8 +172,10 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 
 // 0: not now. One mutation in fourteen is a crossing, as each other kind is.
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data, std::size_t size, const std::uint8_t* other,
-                                                 std::size_t other_size, std::uint8_t* out, std::size_t, unsigned seed) {
-  if (current->has_units_left() || size != sizeof(Pair) || other_size != sizeof(Pair) || seed % (kMutationCount - 1) != 0)
+                                                 std::size_t other_size, std::uint8_t* out, std::size_t,
+                                                 unsigned seed) {
+  if (current->has_units_left() || size != sizeof(Pair) || other_size != sizeof(Pair) ||
+      seed % (kMutationCount - 1) != 0)
     return 0;
   std::memcpy(out, data, size);
   return guarded([&] { return current->next(out, size, other, seed); });
@@ -180,7 +185,8 @@ bool has_libfuzzer() { return true; }
 
 pid_t start_round(const RoundTask& task, const std::filesystem::path& file) {
   const pid_t parent = getpid(), child = fork();
-  if (child < 0) throw std::runtime_error(fmt::format("expected a process for a round, found: {}", std::strerror(errno)));
+  if (child < 0)
+    throw std::runtime_error(fmt::format("expected a process for a round, found: {}", std::strerror(errno)));
   if (child > 0) return child;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) leave(1);
@@ -195,11 +201,31 @@ pid_t start_round(const RoundTask& task, const std::filesystem::path& file) {
   const std::uint64_t seed = fnv1a(fmt::format("{} {}", task.campaign->seed, task.range.first)) % 0xffffffffu + 1;
   const std::string length = fmt::format("-max_len={}", sizeof(Pair)), seeded = fmt::format("-seed={}", seed);
   // Without the entropic schedule, which costs more here than lanes and oracle together: a pair has a hundred features.
-  std::vector<const char*> words{"graze", length.c_str(), seeded.c_str(), "-runs=-1", "-len_control=0", "-timeout=0",
-                                 "-rss_limit_mb=0", "-malloc_limit_mb=0", "-detect_leaks=0", "-reload=0", "-verbosity=0",
-                                 "-print_final_stats=0", "-entropic=0", "-handle_segv=0", "-handle_bus=0", "-handle_abrt=0", "-handle_ill=0",
-                                 "-handle_fpe=0", "-handle_int=0", "-handle_term=0", "-handle_xfsz=0", "-handle_usr1=0",
-                                 "-handle_usr2=0", "-purge_allocator_interval=-1", nullptr};
+  std::vector<const char*> words{"graze",
+                                 length.c_str(),
+                                 seeded.c_str(),
+                                 "-runs=-1",
+                                 "-len_control=0",
+                                 "-timeout=0",
+                                 "-rss_limit_mb=0",
+                                 "-malloc_limit_mb=0",
+                                 "-detect_leaks=0",
+                                 "-reload=0",
+                                 "-verbosity=0",
+                                 "-print_final_stats=0",
+                                 "-entropic=0",
+                                 "-handle_segv=0",
+                                 "-handle_bus=0",
+                                 "-handle_abrt=0",
+                                 "-handle_ill=0",
+                                 "-handle_fpe=0",
+                                 "-handle_int=0",
+                                 "-handle_term=0",
+                                 "-handle_xfsz=0",
+                                 "-handle_usr1=0",
+                                 "-handle_usr2=0",
+                                 "-purge_allocator_interval=-1",
+                                 nullptr};
   int count = static_cast<int>(words.size()) - 1;
   char** arguments = const_cast<char**>(words.data());
   LLVMFuzzerRunDriver(&count, &arguments, [](const std::uint8_t* data, std::size_t size) {
@@ -221,7 +247,8 @@ pid_t start_round(const RoundTask&, const std::filesystem::path&) { throw std::l
 
 RoundResult round_result(const RoundTask& task, const std::filesystem::path& file) {
   const std::string bytes = read_whole(file);
-  if (bytes.empty()) throw std::runtime_error("expected the result of a round, found that its process ended without one");
+  if (bytes.empty())
+    throw std::runtime_error("expected the result of a round, found that its process ended without one");
   return parse_result(bytes, task);
 }
 

@@ -3,11 +3,11 @@
 // something new. What it finds is a function of the task alone.
 #pragma once
 
+#include <sys/types.h>
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <sys/types.h>
 #include <vector>
 
 #include "fuzz/campaign/stored_counts.h"
@@ -36,7 +36,7 @@ struct FoundPair {
 struct RoundTask {
   const Campaign* campaign;  // its lanes are of the host or foreign, or have twins
   const Drawn* drawn;
-  PairRange range;                   // the numbers of its pairs
+  PairRange range;  // the numbers of its pairs
   const std::vector<Unit>* corpus;
 };
 
@@ -44,7 +44,7 @@ struct RoundResult {
   explicit RoundResult(int lanes) : counts(lanes) {}
 
   StoredCounts counts;
-  std::vector<Unit> units;  // in the order in which they were found
+  std::vector<Unit> units;                  // in the order in which they were found
   std::map<std::uint64_t, FoundPair> kept;  // the cases of `counts`, by their numbers
   std::array<MutationCounts, kMutationCount> mutations{};
 };

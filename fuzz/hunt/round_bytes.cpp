@@ -44,7 +44,8 @@ std::vector<Unit> units_of(const Json& rows) {
 
 Json to_json(const std::map<std::uint64_t, FoundPair>& kept) {
   Json rows = Json::array();
-  for (const auto& [index, found] : kept) rows.push_back({index, to_json(found.pair), static_cast<unsigned>(found.mutation)});
+  for (const auto& [index, found] : kept)
+    rows.push_back({index, to_json(found.pair), static_cast<unsigned>(found.mutation)});
   return rows;
 }
 

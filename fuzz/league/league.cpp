@@ -26,8 +26,8 @@ namespace {
 
 constexpr std::size_t kBatchPairs = 1 << 16;  // a fresh process for each lane and batch that has failures
 constexpr std::size_t kBlockPairs = 1024;
-constexpr std::uint64_t kOrderSample = 950;   // pairs asked in all orders, shared evenly by the strata
-constexpr std::uint64_t kOrderShare = 20;     // at most one in so many of a lane's pairs
+constexpr std::uint64_t kOrderSample = 950;  // pairs asked in all orders, shared evenly by the strata
+constexpr std::uint64_t kOrderShare = 20;    // at most one in so many of a lane's pairs
 
 Judged true_of(const Pair& pair) {
   const Judged found = judged(pair);
@@ -205,8 +205,11 @@ League run_league(const LanesUnderTest& under_test, std::vector<strata::PairSour
     const auto limit = most.find(lane.info->id);
     const std::uint64_t of_source =
         limit == most.end() ? ~std::uint64_t{0} : std::max<std::uint64_t>(1, limit->second / sources.size());
-    all.push_back({{&lane, {}, 0, 0, 0, fused ? std::optional<std::uint64_t>(0) : std::nullopt}, fused,
-                   &under_test.on_host[l], of_source, {}});
+    all.push_back({{&lane, {}, 0, 0, 0, fused ? std::optional<std::uint64_t>(0) : std::nullopt},
+                   fused,
+                   &under_test.on_host[l],
+                   of_source,
+                   {}});
   }
   League league;
   league.seed = seed;
@@ -226,9 +229,9 @@ League run_league(const LanesUnderTest& under_test, std::vector<strata::PairSour
         };
         all[l].count(first(its - begin), truths, all[l].row.groups[group]);
         if (begin > 0) return;
-        all[l].count_orders(
-            first(std::clamp<std::uint64_t>(its / kOrderShare, 1, std::max<std::uint64_t>(1, kOrderSample / sources.size()))),
-            truths);
+        all[l].count_orders(first(std::clamp<std::uint64_t>(its / kOrderShare, 1,
+                                                            std::max<std::uint64_t>(1, kOrderSample / sources.size()))),
+                            truths);
       });
       league.pairs += pairs.size();
       stopped = stop(league.pairs);

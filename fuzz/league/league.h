@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The league: libraries' functions and our algorithms on the same pairs, counted side by side: what is wrong within each
-// one's contract, what its convention leaves open, crashes, what depends on the order, what an answer costs; and the
-// smallest failure of each kind.
+// The league: libraries' functions and our algorithms on the same pairs, counted side by side: what is wrong within
+// each one's contract, what its convention leaves open, crashes, what depends on the order, what an answer costs; and
+// the smallest failure of each kind.
 #pragma once
 
 #include <array>
@@ -39,8 +39,9 @@ struct LeagueCounts {
   std::uint64_t pairs = 0;  // within its contract
   std::array<std::uint64_t, kWrongByCount> wrong{};
   std::uint64_t clear = 0;  // wrong ones with both triangles proper, not coplanar, |margin| >= 2^kClearExponent ulps
-  std::uint64_t outside = 0, by_convention = 0;  // pairs that its convention leaves open; those of them not as the truth
-  std::uint64_t not_again = 0;                   // wrong at first, and not, or otherwise, in a fresh process
+  std::uint64_t outside = 0,
+                by_convention = 0;  // pairs that its convention leaves open; those of them not as the truth
+  std::uint64_t not_again = 0;      // wrong at first, and not, or otherwise, in a fresh process
 
   std::uint64_t all_wrong() const;
   LeagueCounts& operator+=(const LeagueCounts& other);
@@ -63,14 +64,14 @@ struct LeagueRow {
   std::array<LeagueCounts, kLeagueGroupCount> groups;
   std::uint64_t order_dependent = 0, order_sample = 0;  // of pairs within its contract, asked in their 72 orders
   std::uint64_t lawless = 0;  // of the same, asked as analysis::kLaws says but for orders: mirrored, moved and so on
-  std::optional<std::uint64_t> flips;                   // of all pairs; nothing without a `cpu-fma` lane that runs here
+  std::optional<std::uint64_t> flips;  // of all pairs; nothing without a `cpu-fma` lane that runs here
 };
 
 struct League {
   std::uint64_t seed = 1, pairs = 0;
   std::vector<std::string> strata;
   std::vector<LeagueRow> rows;
-  std::vector<LeagueFailure> failures;  // of subjects in the rows' order
+  std::vector<LeagueFailure> failures;   // of subjects in the rows' order
   std::uint64_t failures_not_again = 0;  // smallest failures that a fresh process did not show
 };
 
@@ -83,9 +84,10 @@ using MostPairs = std::map<std::string, std::uint64_t, std::less<>>;
 
 // Runs it; deterministic, whatever the threads. `stop` is asked now and then with how many pairs are done, and ends it
 // with what there is.   Throws: OracleApart when two exact decisions differ.
-League run_league(const LanesUnderTest& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
-                  const MostPairs& most = {},
-                  const std::function<bool(std::uint64_t done)>& stop = [](std::uint64_t) { return false; });
+League run_league(
+    const LanesUnderTest& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
+    const MostPairs& most = {},
+    const std::function<bool(std::uint64_t done)>& stop = [](std::uint64_t) { return false; });
 
 // Nanoseconds a pair of each row on the first pairs of `uniform`: the median of repetitions in turn. Of foreign code
 // what its own process took for it, without what the processes say to each other; nothing of a command.

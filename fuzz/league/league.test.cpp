@@ -46,7 +46,9 @@ PLANT(one_sided, 0);
 constexpr std::uint64_t kSeed = 3, kPairs = 3000, kOrders = 50;  // of each source's 1,000 pairs one in 20 in all orders
 constexpr const char* kNames[] = {"truth", "blind", "dies", "narrow", "one_sided"};
 
-std::vector<strata::PairSource> sources() { return strata::stratum_sources(kSeed, kPairs, {"uniform", "lattice", "coplanar_wide"}); }
+std::vector<strata::PairSource> sources() {
+  return strata::stratum_sources(kSeed, kPairs, {"uniform", "lattice", "coplanar_wide"});
+}
 
 struct Planted : testing::Test {
   static inline League league;
@@ -60,7 +62,8 @@ struct Planted : testing::Test {
                               " -I" GRAZE_SOURCE_DIR "/subjects/include ";
     const fs::path library = folder / "planted.so";
     ASSERT_EQ(std::system((build + (folder / "planted.cpp").string() + " -o " + library.string()).c_str()), 0);
-    for (const std::string name : kNames) subjects::open(subjects::parse_subject(name + '=' + library.string() + ':' + name + "_one"));
+    for (const std::string name : kNames)
+      subjects::open(subjects::parse_subject(name + '=' + library.string() + ':' + name + "_one"));
     lanes = league_lanes({"truth/*", "blind/*", "dies/*", "narrow/*", "one_sided/*", "moller_1997/*", "exact/*"});
     league = run_league(lanes, sources(), kSeed);
   }
@@ -112,12 +115,13 @@ TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) {
         lawless += std::any_of(std::begin(analysis::kLaws) + 2, std::end(analysis::kLaws), [&](const auto& law) {
           const std::vector<Pair> images = analysis::images(law.law, pair);
           return std::any_of(images.begin(), images.end(), [&](const Pair& other) {
-            const bool open = name == "narrow" && (oracle::shape(other).dimension_a < 2 || oracle::shape(other).dimension_b < 2);
+            const bool open =
+                name == "narrow" && (oracle::shape(other).dimension_a < 2 || oracle::shape(other).dimension_b < 2);
             return !open && analysis::breaks(law.law, says, planted(name, other));
           });
         });
-        order_dependent += std::any_of(orders.begin(), orders.end(),
-                                       [&](const Pair& other) { return planted(name, other) != says; });
+        order_dependent +=
+            std::any_of(orders.begin(), orders.end(), [&](const Pair& other) { return planted(name, other) != says; });
       }
     }
     for (std::size_t g = 0; g < kLeagueGroupCount; ++g) {
@@ -173,9 +177,10 @@ TEST_F(Planted, TheSmallestFailureOfEachKindIsOneAndIsSmall) {
     EXPECT_TRUE(failure.minimised);
     EXPECT_LE(nontrivial_magnitudes(failure.pair), 1) << subject << ' ' << pair_text(failure.pair);
   }
-  for (const char* kind : {"blind, coplanar, miss", "blind, degenerate, miss", "one_sided, clear, false hit", "dies, clear, crashed", "dies, general, crashed",
-                           "dies, coplanar, crashed", "dies, degenerate, crashed", "one_sided, general, false hit",
-                           "one_sided, coplanar, false hit", "one_sided, degenerate, false hit"}) {
+  for (const char* kind :
+       {"blind, coplanar, miss", "blind, degenerate, miss", "one_sided, clear, false hit", "dies, clear, crashed",
+        "dies, general, crashed", "dies, coplanar, crashed", "dies, degenerate, crashed",
+        "one_sided, general, false hit", "one_sided, coplanar, false hit", "one_sided, degenerate, false hit"}) {
     EXPECT_EQ(kinds[kind], 1) << kind;
     kinds.erase(kind);
   }

@@ -61,7 +61,8 @@ LeagueFailure minimised(const Candidate& candidate) {
 bool fails_so(const LeagueFailure& failure, const Pair& pair) {
   const Verdict verdict = decide_one(failure.lane->decide, pair);
   const oracle::Truth truth = oracle::truth(pair);
-  const bool shaped = failure.shape == kClear ? is_clear(pair, truth) : shape_name(oracle::shape(pair)) == failure.shape;
+  const bool shaped =
+      failure.shape == kClear ? is_clear(pair, truth) : shape_name(oracle::shape(pair)) == failure.shape;
   return shaped && verdict != truth.verdict && wrong_by(verdict) == failure.by &&
          !analysis::by_convention(*failure.lane, verdict, pair, truth);
 }
@@ -94,8 +95,7 @@ std::vector<Verdict> said_afresh(const Lane& lane, const std::vector<Pair>& pair
   decide(pairs.data(), pairs.size(), intersects.data(), declined.data());
   std::vector<Verdict> verdicts;
   for (std::size_t i = 0; i < pairs.size(); ++i)
-    verdicts.push_back(
-        decide.verdict_of(analysis::test_bit(intersects, i), analysis::test_bit(declined, i), pairs[i]));
+    verdicts.push_back(decide.verdict_of(analysis::test_bit(intersects, i), analysis::test_bit(declined, i), pairs[i]));
   return verdicts;
 }
 

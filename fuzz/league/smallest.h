@@ -38,10 +38,9 @@ class Smallest {
   std::map<std::pair<std::string, WrongBy>, std::pair<Simplicity, Pair>> pairs_;
 };
 
-// Minimises the first candidate of each subject, shape and way; where another subject's pair is simpler and fails alike,
-// that is the subject's too. Candidates are in the order of lanes.
-// Returns: those that a fresh process shows again; not_again: how many it does not.
-// Throws: OracleApart.
+// Minimises the first candidate of each subject, shape and way; where another subject's pair is simpler and fails
+// alike, that is the subject's too. Candidates are in the order of lanes. Returns: those that a fresh process shows
+// again; not_again: how many it does not. Throws: OracleApart.
 std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_again);
 
 }  // namespace graze::fuzz

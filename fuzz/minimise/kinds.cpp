@@ -19,8 +19,8 @@
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimised_cases.h"
-#include "subjects/subjects.h"
 #include "fuzz/minimise/simplicity.h"
+#include "subjects/subjects.h"
 
 namespace graze::fuzz {
 namespace {
@@ -230,7 +230,8 @@ void expect_counts(const Json& kind, const Json& signatures) {
     if (kept.get<std::uint64_t>() > pairs) throw std::runtime_error("");
   }
   const std::array<std::uint64_t, 2> settled = kind.at("settled");
-  if (kind.at("pairs") != pairs || by_margin != pairs || kind.at("signatures") != kind.at("places").size() || settled[0] > settled[1])
+  if (kind.at("pairs") != pairs || by_margin != pairs || kind.at("signatures") != kind.at("places").size() ||
+      settled[0] > settled[1])
     throw std::runtime_error("");
 }
 
@@ -249,7 +250,8 @@ std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string
   std::vector<LaneReason> result;
   for (const analysis::LaneExplanation& account : accounts) {
     const analysis::LaneExplanation* told = &account;
-    if (account.evidence == analysis::Evidence::none && !account.lane->foreign && account.cause != analysis::Cause::fast_math) {
+    if (account.evidence == analysis::Evidence::none && !account.lane->foreign &&
+        account.cause != analysis::Cause::fast_math) {
       const Lane* source = counterpart(*account.lane, rounded_variant(account.lane->variant));
       const auto found = std::find_if(accounts.begin(), accounts.end(), [&](const auto& other) {
         return other.lane == source && other.verdict == account.verdict;

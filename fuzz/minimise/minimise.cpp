@@ -139,8 +139,8 @@ std::size_t wrong_at(const Failure& failure, const Pair& pair) {
   const bool touches = truth.verdict == Verdict::intersects && truth.margin_sign == 0;
   std::size_t l = 0;
   while (l < failure.lanes.size() &&
-         (failure.verdicts[l] == truth.verdict || analysis::by_convention(*failure.lanes[l], failure.verdicts[l], pair,
-                                                                          truth.contact, truth.shape, touches)))
+         (failure.verdicts[l] == truth.verdict ||
+          analysis::by_convention(*failure.lanes[l], failure.verdicts[l], pair, truth.contact, truth.shape, touches)))
     ++l;
   return l;
 }
@@ -157,7 +157,10 @@ struct Walk {
   int late = 0;           // verdicts of foreign code that took all of their time
 
   Walk(const Failure& of, const Pair& pair, std::span<const Minimised> results, std::size_t limit)
-      : failure(of), known(results), most(limit), result{.pair = pair, .reason = reason_of(of, pair), .worst = pair},
+      : failure(of),
+        known(results),
+        most(limit),
+        result{.pair = pair, .reason = reason_of(of, pair), .worst = pair},
         way{pair} {
     result.worst_ulps = std::fabs(oracle::truth(pair).margin_ulps);
   }
@@ -193,7 +196,8 @@ struct Walk {
     const auto works = [&](std::int64_t times) {
       ++result.moved;
       const std::optional<Pair> candidate = repeated(before, once, times);
-      return candidate && is_simpler(*candidate) && !decided_alike(failure, {*candidate}, &late).empty() && take(*candidate);
+      return candidate && is_simpler(*candidate) && !decided_alike(failure, {*candidate}, &late).empty() &&
+             take(*candidate);
     };
     constexpr std::int64_t kMostTimes = std::int64_t{1} << 52;
     std::int64_t times = 1;
@@ -315,9 +319,8 @@ analysis::Signature signature_of(const Failure& failure, const Pair& pair) {
 }
 
 bool can_shrink(const Failure& failure) {
-  return std::none_of(failure.verdicts.begin(), failure.verdicts.end(), [](Verdict verdict) {
-    return verdict == Verdict::timed_out || verdict == Verdict::unstable;
-  });
+  return std::none_of(failure.verdicts.begin(), failure.verdicts.end(),
+                      [](Verdict verdict) { return verdict == Verdict::timed_out || verdict == Verdict::unstable; });
 }
 
 std::size_t most_moved(const Failure& failure) {

@@ -17,7 +17,8 @@ Pair drawn_or_given(std::string_view bytes) {
   if (bytes.size() != 5 || bytes[0] != '\xff') return finite_pair_of(bytes);
   std::uint64_t index = 0;
   for (const char c : bytes.substr(2)) index = index << 8 | static_cast<unsigned char>(c);
-  return strata::generate(1, strata::kStrata[static_cast<unsigned char>(bytes[1]) % strata::kStrataCount].stratum, index);
+  return strata::generate(1, strata::kStrata[static_cast<unsigned char>(bytes[1]) % strata::kStrataCount].stratum,
+                          index);
 }
 
 const RegisterFuzzTarget kMinimise("minimise", [](std::string_view bytes) {
@@ -32,8 +33,9 @@ const RegisterFuzzTarget kMinimise("minimise", [](std::string_view bytes) {
     must_hold(reason_of(failure, small.pair) == small.reason, "the reason is that of the pair it leaves");
     must_hold(small.reason.cause == reason_of(failure, pair).cause, "the cause is that of the first pair");
     must_hold(simplicity(small.pair) <= simplicity(pair), "what it leaves is no harder to read");
-    reached(static_cast<std::size_t>(small.reason.cause) * 64 + static_cast<std::size_t>(failure.lanes.front()->algorithm) * 4 +
-            small.reason.in_range * 2 + small.one_minimal);
+    reached(static_cast<std::size_t>(small.reason.cause) * 64 +
+            static_cast<std::size_t>(failure.lanes.front()->algorithm) * 4 + small.reason.in_range * 2 +
+            small.one_minimal);
   }
 });
 

@@ -74,8 +74,8 @@ inline constexpr std::size_t kLeastMoved = 40 * kMovedPerCause;  // kept back to
 // Each crash of foreign code costs a new process.
 inline constexpr std::size_t kMostMovedCrashing = 100'000;
 
-// Whether the failure can be shrunk. Not where a lane takes all of its time for each verdict, and not where its verdicts
-// change: such a pair stays as it is.
+// Whether the failure can be shrunk. Not where a lane takes all of its time for each verdict, and not where its
+// verdicts change: such a pair stays as it is.
 bool can_shrink(const Failure& failure);
 
 struct Minimised {

@@ -301,7 +301,8 @@ TEST(Minimise, TheCauseStays) {
 TEST(Minimise, TheFirstWrongLaneIsNotExcused) {
   const Pair touching = pair_of({0, 0, 0, 4, 0, 0, 0, 4, 0, 1, 1, 0, 1, 1, 1, 3, 3, 1});
   static const AlgorithmInfo info{"excused", "test", "", "", "", false};
-  Lane excused{"excused/f32/cpu", &info, Scalar::f32, Variant::cpu, "", {}, -1, nullptr, false, false, true, kOutsideTouching, ""};
+  Lane excused{"excused/f32/cpu", &info, Scalar::f32, Variant::cpu, "", {}, -1, nullptr, false, false, true,
+               kOutsideTouching,  ""};
   Lane crashes = excused;
   crashes.id = "excused/f64/cpu";
   const Failure failure{judged(touching), {&excused, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};

@@ -24,10 +24,10 @@ struct MinimisedCase {
 bool is_minimised(const corpus::Entry& entry);
 
 // One result for all cases with the same recorded signature, of its algorithm, and the first one's cause: the simplest
-// one, and the worst pair of all. Those with another cause stay as they are. Cases without a record have one for each algorithm that is wrong. What is minimised already counts as a case
-// only where there is no other. Each result is confirmed.
-// Returns: nothing of cases on which no lane of the under_test is wrong; nothing at all once `stop`, which is asked
-// before each case, says so.   Throws: OracleApart, std::runtime_error.
+// one, and the worst pair of all. Those with another cause stay as they are. Cases without a record have one for each
+// algorithm that is wrong. What is minimised already counts as a case only where there is no other. Each result is
+// confirmed. Returns: nothing of cases on which no lane of the under_test is wrong; nothing at all once `stop`, which
+// is asked before each case, says so.   Throws: OracleApart, std::runtime_error.
 std::vector<MinimisedCase> minimise_cases(
     const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries,
     const std::function<bool()>& stop = [] { return false; });

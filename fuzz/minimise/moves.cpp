@@ -55,7 +55,8 @@ void lattices(const Pair& pair, int origin, Pairs& moved) {
   if (origin >= 0) append_each(moved, [&](int i) { return seen[i]; });
   const int top = std::ilogb(largest) + 1;
   for (int bits = 1; bits <= 24; ++bits) {
-    const double to_whole = power_of_two(bits - top), back = power_of_two(top - bits), about_one = power_of_two(1 - bits);
+    const double to_whole = power_of_two(bits - top), back = power_of_two(top - bits),
+                 about_one = power_of_two(1 - bits);
     double whole[kCoordinates];
     for (int i = 0; i < kCoordinates; ++i) whole[i] = nearest_whole(seen[i] * to_whole);
     append_each(moved, [&](int i) { return whole[i]; });

@@ -5,9 +5,8 @@
 
 int main(void) {
   const float reference[9] = {0, 0, 0, 4, 0, 0, 0, 4, 0};
-  const float triangles[3][9] = {{1, 1, -1, 1, 1, 1, 2, 1, 1},
-                                 {1, 1, 0, 1, 2, 4, 2, 1, 4},
-                                 {1, 1, 1.4012984643e-45f, 1, 2, 4, 2, 1, 4}};
+  const float triangles[3][9] = {
+      {1, 1, -1, 1, 1, 1, 2, 1, 1}, {1, 1, 0, 1, 2, 4, 2, 1, 4}, {1, 1, 1.4012984643e-45f, 1, 2, 4, 2, 1, 4}};
   unsigned char meets[3];
 
   graze_triangles part = {0};

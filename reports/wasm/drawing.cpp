@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same construction as oracle/common_set.cpp, one polygon clipped by the half-spaces of the other's hull, on numbers
-// that round: what is nearly on a plane counts as on it, and the exact decision says what kind of set it is.
+// The same construction as oracle/common_set.cpp, one polygon clipped by the half-spaces of the other's hull, on
+// numbers that round: what is nearly on a plane counts as on it, and the exact decision says what kind of set it is.
 #include "reports/wasm/drawing.h"
 
 #include <algorithm>
@@ -196,7 +196,8 @@ Connection push(const Point (&a)[3], const Point (&b)[3]) {
   return best;
 }
 
-void add_witness(Drawing& result, const Connection& found, const Point& from, const Point (&a)[3], const Point (&b)[3]) {
+void add_witness(Drawing& result, const Connection& found, const Point& from, const Point (&a)[3],
+                 const Point (&b)[3]) {
   if (!(found.squared > 0) || !std::isfinite(found.squared)) return;
   const Point axis = (found.q - found.p) * (1 / std::sqrt(found.squared));
   Real low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};

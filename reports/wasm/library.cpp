@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the module does not take from elsewhere: correct fused multiply-adds, lanes that it cannot build, and the parts of twin.h that
-// know of users' libraries.
+// What the module does not take from elsewhere: correct fused multiply-adds, lanes that it cannot build, and the parts
+// of twin.h that know of users' libraries.
 #include <bit>
 #include <cmath>
 #include <cstddef>

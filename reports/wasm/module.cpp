@@ -91,8 +91,8 @@ void decide_into(const DecideBlock& decide, std::size_t count) {
   std::uint64_t intersects[kRoom / 64], declined[kRoom / 64];
   decide(pairs_in, count, intersects, declined);
   for (std::size_t i = 0; i < count; ++i) {
-    verdicts_out[i] = static_cast<std::uint8_t>(
-        verdict_of_bits(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
+    verdicts_out[i] =
+        static_cast<std::uint8_t>(verdict_of_bits(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1));
   }
 }
 
@@ -158,16 +158,18 @@ GRAZE_EXPORT(truth) const TruthOut* truth() {
   truth_out.verdict = static_cast<std::int32_t>(truth_of(pair));
   if (!is_finite(pair)) return &truth_out;
   const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-  const MarginBounds bounds = r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, static_cast<Verdict>(r.intersects));
-  truth_out = {r.intersects, r.contact + 1, r.margin_sign, r.dimension_a, r.dimension_b, r.coplanar, log2_ulp(pair), 0, bounds.lo, bounds.hi};
+  const MarginBounds bounds =
+      r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, static_cast<Verdict>(r.intersects));
+  truth_out = {r.intersects, r.contact + 1, r.margin_sign, r.dimension_a, r.dimension_b, r.coplanar, log2_ulp(pair), 0,
+               bounds.lo,    bounds.hi};
   return &truth_out;
 }
 
 // The coordinate of the first pair, so many ulps higher.
 GRAZE_EXPORT(nudge) void nudge(int coordinate, int ulps) { nudge_in(pairs_in[0], coordinate, ulps); }
 
-// The pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`, one in `step` columns: coordinate
-// x goes up by so many ulps from pair to pair, y is `up` ulps above the centre's.
+// The pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`, one in `step` columns:
+// coordinate x goes up by so many ulps from pair to pair, y is `up` ulps above the centre's.
 GRAZE_EXPORT(centre) Pair* centre() { return &map_centre; }
 GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) {
   for (int i = 0; i < columns; ++i) {
@@ -194,8 +196,8 @@ GRAZE_EXPORT(steps) int steps(int lane) {
     const bool alike = compare_numbers(right.left, right.right) == 0;
     steps_out.push_back({seen.where.file_name(), static_cast<std::int32_t>(seen.where.line()),
                          seen.site ? static_cast<std::int32_t>(*seen.site) : -1, seen.compared,
-                         static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left_result, seen.left, seen.right,
-                         shown(right.left), alike ? shown(right.left) : shown(right.right)});
+                         static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left_result, seen.left,
+                         seen.right, shown(right.left), alike ? shown(right.left) : shown(right.right)});
   }
   return static_cast<int>(steps_out.size());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compiler's long double as a number for the algorithms, with a bound of its error. In WebAssembly it has 113 bits and
-// exponents to 2^16383, in software. What the bounds cannot tell from equal counts as equal, as in oracle/multiprecision.h.
+// The compiler's long double as a number for the algorithms, with a bound of its error. In WebAssembly it has 113 bits
+// and exponents to 2^16383, in software. What the bounds cannot tell from equal counts as equal, as in
+// oracle/multiprecision.h.
 #pragma once
 
 #include <cmath>

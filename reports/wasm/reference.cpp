@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The native build's side of the comparison with graze.wasm: prints, for blocks of pairs of every stratum, hashes of what
-// every lane says. graze.test.mjs computes the same with the module.   reference PAIRS
+// The native build's side of the comparison with graze.wasm: prints, for blocks of pairs of every stratum, hashes of
+// what every lane says. graze.test.mjs computes the same with the module.   reference PAIRS
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -24,8 +24,7 @@ constexpr const char* kPolicies[] = {"abs:0.001", "rel:24", "bound", "filtered"}
 struct Hash {
   std::uint32_t value = 0x811c9dc5u;
   void add(const void* bytes, std::size_t count) {
-    for (std::size_t i = 0; i < count; ++i)
-      value = (value ^ static_cast<const unsigned char*>(bytes)[i]) * 0x01000193u;
+    for (std::size_t i = 0; i < count; ++i) value = (value ^ static_cast<const unsigned char*>(bytes)[i]) * 0x01000193u;
   }
   template <class Value>
   void add_value(Value value_of) {
@@ -51,8 +50,9 @@ Hash truths(const std::vector<Pair>& pairs) {
   Hash hash;
   for (const Pair& pair : pairs) {
     const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-    const MarginBounds bounds =
-        r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, r.intersects ? Verdict::intersects : Verdict::disjoint);
+    const MarginBounds bounds = r.margin_sign == 0
+                                    ? MarginBounds{}
+                                    : margin_bounds(pair, r.intersects ? Verdict::intersects : Verdict::disjoint);
     for (const std::int32_t x : {std::int32_t{r.intersects}, r.contact + 1, r.margin_sign, r.dimension_a, r.dimension_b,
                                  std::int32_t{r.coplanar}, log2_ulp(pair)})
       hash.add_value(x);
@@ -91,7 +91,8 @@ void print_block(const std::string& of, std::uint64_t block, const std::vector<P
   drawn.add(pairs.data(), pairs.size() * sizeof(Pair));
   print("pairs", of.c_str(), block, drawn);
   print("truth", of.c_str(), block, truths(pairs));
-  const std::vector<Pair> few(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, pairs.size())));
+  const std::vector<Pair> few(pairs.begin(),
+                              pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, pairs.size())));
   for (const Lane& lane : lanes()) {
     const DecideBlock decide = cuda::block_on_host(lane);
     if (!decide || lane.variant == Variant::cpu_fma || lane.variant == Variant::cpu_fast) continue;

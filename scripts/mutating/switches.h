@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// For scripts/mutate: many mutants of a source in one program, of which the environment variable GRAZE_MUTANT switches on
-// one, by its number. Switches stand beside a token so that what binds to it stays the same: a < b is
-// a < graze_mutant::Switch<7>{} < b. In constant expressions every mutant is off.
+// For scripts/mutate: many mutants of a source in one program, of which the environment variable GRAZE_MUTANT switches
+// on one, by its number. Switches stand beside a token so that what binds to it stays the same. `a < b` becomes
+// `a < graze_mutant::Switch<7>{} < b`. In constant expressions every mutant is off.
 #pragma once
 
 #include <algorithm>
@@ -42,21 +42,21 @@ struct Half {
   Left&& left;
 };
 
-#define GRAZE_BINARY(op, other)                                                               \
-  template <class Left, int id>                                                               \
-  GRAZE_INLINE constexpr Half<Left, id> operator op(Left&& left, Switch<id>) {                \
-    return {static_cast<Left&&>(left)};                                                       \
-  }                                                                                           \
-  template <class Left, int id, class Right>                                                  \
-  GRAZE_INLINE constexpr decltype(auto) operator op(Half<Left, id> half, Right&& right) {     \
-    using Result = decltype(half.left op right);                                              \
-    if (on(id)) {                                                                             \
-      if constexpr (requires { static_cast<Result>(half.left other right); })                 \
-        return static_cast<Result>(half.left other right);                                    \
-      else                                                                                    \
-        std::_Exit(kNotSwitched);                                                             \
-    }                                                                                         \
-    return static_cast<Result>(half.left op right);                                           \
+#define GRAZE_BINARY(op, other)                                                           \
+  template <class Left, int id>                                                           \
+  GRAZE_INLINE constexpr Half<Left, id> operator op(Left&& left, Switch<id>) {            \
+    return {static_cast<Left&&>(left)};                                                   \
+  }                                                                                       \
+  template <class Left, int id, class Right>                                              \
+  GRAZE_INLINE constexpr decltype(auto) operator op(Half<Left, id> half, Right&& right) { \
+    using Result = decltype(half.left op right);                                          \
+    if (on(id)) {                                                                         \
+      if constexpr (requires { static_cast<Result>(half.left other right); })             \
+        return static_cast<Result>(half.left other right);                                \
+      else                                                                                \
+        std::_Exit(kNotSwitched);                                                         \
+    }                                                                                     \
+    return static_cast<Result>(half.left op right);                                       \
   }
 GRAZE_BINARY(<, <=)
 GRAZE_BINARY(<=, <)
@@ -72,18 +72,18 @@ GRAZE_BINARY(|, &)
 GRAZE_BINARY(<<, >>)
 GRAZE_BINARY(>>, <<)
 
-#define GRAZE_ASSIGNMENT(op, other)                                                           \
-  template <class Right, int id>                                                              \
-  GRAZE_INLINE constexpr Half<Right, id> operator op(Switch<id>, Right&& right) {             \
-    return {static_cast<Right&&>(right)};                                                     \
-  }                                                                                           \
-  template <class Left, class Right, int id>                                                  \
-  GRAZE_INLINE constexpr Left& operator op(Left& left, Half<Right, id> right) {               \
-    if (!on(id)) return left op right.left, left;                                             \
-    if constexpr (requires { left other right.left; })                                        \
-      return left other right.left, left;                                                     \
-    else                                                                                      \
-      std::_Exit(kNotSwitched);                                                               \
+#define GRAZE_ASSIGNMENT(op, other)                                               \
+  template <class Right, int id>                                                  \
+  GRAZE_INLINE constexpr Half<Right, id> operator op(Switch<id>, Right&& right) { \
+    return {static_cast<Right&&>(right)};                                         \
+  }                                                                               \
+  template <class Left, class Right, int id>                                      \
+  GRAZE_INLINE constexpr Left& operator op(Left& left, Half<Right, id> right) {   \
+    if (!on(id)) return left op right.left, left;                                 \
+    if constexpr (requires { left other right.left; })                            \
+      return left other right.left, left;                                         \
+    else                                                                          \
+      std::_Exit(kNotSwitched);                                                   \
   }
 GRAZE_ASSIGNMENT(+=, -=)
 GRAZE_ASSIGNMENT(-=, +=)

@@ -54,7 +54,7 @@ GRAZE_HD inline Pair finished_on_grid(Draws& draws, const Scene& scene, const Dr
   return shuffled(draws, rounded(placed));
 }
 
-inline constexpr int kWeight = 8;        // multiples of a step
+inline constexpr int kWeight = 8;         // multiples of a step
 inline constexpr double kEdgeSteps = 42;  // an edge is at most so many times the reach of a step: 24 * sqrt(3)
 
 GRAZE_HD inline double draw_weight(Draws& draws) { return 1.0 + draws.below(kWeight); }

@@ -21,7 +21,8 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"
-// toml++ 3.3 calls unreachable what characters such as U+00E9 outside of quotes reach: they are neither spaces nor letters.
+// toml++ 3.3 calls unreachable what characters such as U+00E9 outside of quotes reach: they are neither spaces nor
+// letters.
 #include <toml++/impl/preprocessor.h>
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
@@ -36,7 +37,7 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 constexpr double kMostCoordinate = 0x1p126;
-constexpr double kLeastUlps = 8;  // so that float32 does not make points of all triangles
+constexpr double kLeastUlps = 8;         // so that float32 does not make points of all triangles
 constexpr double kLeastAspect = 1.1547;  // of an equilateral triangle, 2 / sqrt(3), to five digits
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
@@ -181,8 +182,10 @@ class Reader {
            fmt::format("{}", scene.edges.back()));
     const double ulp = std::ldexp(1.0, std::max(floor_log2(largest_) - 23, -149));
     if (scene.edges.back() < kLeastUlps * ulp)
-      fail(*edges, fmt::format("a longest edge of at least {}, {} ulps of the largest coordinate", kLeastUlps * ulp, kLeastUlps),
-           fmt::format("{}", scene.edges.back()));
+      fail(
+          *edges,
+          fmt::format("a longest edge of at least {}, {} ulps of the largest coordinate", kLeastUlps * ulp, kLeastUlps),
+          fmt::format("{}", scene.edges.back()));
     if (const toml::node* node = root_.get("aspect")) scene.aspect = quantiles(*node, kLeastAspect, 1e12);
   }
 
@@ -199,7 +202,8 @@ class Reader {
     for (const auto& [low, high] : scene.extent) {
       const double steps = std::max(std::fabs(low), std::fabs(high)) / step;
       if (steps > 0x1p48)
-        fail(node, "a grid of at most 2^48 steps from the origin to the ends of the extent", fmt::format("{:.3g}", steps));
+        fail(node, "a grid of at most 2^48 steps from the origin to the ends of the extent",
+             fmt::format("{:.3g}", steps));
     }
     const Scene numbers = resolved(scene);
     bool several = false;
@@ -252,7 +256,8 @@ class Reader {
       fail(node, "files = [\"NAME\", …]", files ? found_text(*files) : "no files");
     for (const toml::node& file : *files->as_array()) scene.meshes.files.push_back(text(file));
     if (const toml::node* poses = meshes.get("poses")) scene.meshes.poses = text(*poses);
-    if (!scene.meshes.poses.empty() && scene.meshes.files.size() != 1) fail(node, "one file beside poses", found_text(*files));
+    if (!scene.meshes.poses.empty() && scene.meshes.files.size() != 1)
+      fail(node, "one file beside poses", found_text(*files));
     const std::string hash = content ? text(*content) : "";
     if (hash.size() != 16 || hash.find_first_not_of("0123456789abcdef") != hash.npos)
       fail(content ? *content : node, "content: 16 hexadecimal digits, as `graze scene` writes them",
@@ -283,7 +288,8 @@ SceneFile parse_scene(const std::string& name, std::string_view text) {
 SceneFile read_scene(const std::filesystem::path& file) {
   std::error_code ignored;
   std::ifstream in(file, std::ios::binary);
-  if (!in || !std::filesystem::is_regular_file(file, ignored)) fail(file.string(), "a scene's file", "none that can be opened");
+  if (!in || !std::filesystem::is_regular_file(file, ignored))
+    fail(file.string(), "a scene's file", "none that can be opened");
   std::string text(static_cast<std::size_t>(kMostBytes) + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
@@ -291,7 +297,8 @@ SceneFile read_scene(const std::filesystem::path& file) {
 }
 
 std::string scene_text(const SceneFile& scene) {
-  std::string text = fmt::format("units = {}\n# Least and greatest coordinate of x, y and z.\nextent = [", toml_string(scene.units));
+  std::string text =
+      fmt::format("units = {}\n# Least and greatest coordinate of x, y and z.\nextent = [", toml_string(scene.units));
   for (std::size_t axis = 0; axis < 3; ++axis)
     text += fmt::format("{}[{}, {}]", axis > 0 ? ", " : "", scene.extent[axis][0], scene.extent[axis][1]);
   text += "]\n# Longest edge of a triangle, and that edge over the height on it: quantiles, from least to greatest.\n";
@@ -304,12 +311,16 @@ std::string scene_text(const SceneFile& scene) {
   text += "\n# Shares of the pairs whose boxes overlap; strata are drawn in these shares.\n[mix]\n";
   for (std::size_t kind = 0; kind < kKinds; ++kind) text += fmt::format("{} = {}\n", kKindIds[kind], scene.mix[kind]);
   if (!scene.margins.empty()) {
-    text += "\n# Their margins, in ulps of the pair's largest coordinate: + apart, - deep; told, not drawn from.\n[margins]\n";
+    text +=
+        "\n# Their margins, in ulps of the pair's largest coordinate: + apart, - deep; told, not drawn "
+        "from.\n[margins]\n";
     for (const auto& [bucket, share] : scene.margins)
       text += fmt::format("\"{}\" = {}\n", name_of_bucket(bucket), share);
   }
   if (!scene.meshes.files.empty()) {
-    text += "\n# Their own pairs are drawn too, moved by ulps and by rigid motions. Relative to this file's folder.\n[meshes]\nfiles = [";
+    text +=
+        "\n# Their own pairs are drawn too, moved by ulps and by rigid motions. Relative to this file's "
+        "folder.\n[meshes]\nfiles = [";
     for (std::size_t i = 0; i < scene.meshes.files.size(); ++i)
       text += (i > 0 ? ", " : "") + toml_string(scene.meshes.files[i]);
     text += "]\n";

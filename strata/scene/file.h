@@ -20,7 +20,7 @@ namespace graze::strata {
 enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
 inline constexpr int kKinds = 5;
 inline constexpr std::array<std::string_view, kKinds> kKindIds{"general", "shared_vertex", "shared_edge", "coplanar",
-                                                                "degenerate"};
+                                                               "degenerate"};
 
 // All coordinates are multiples of 2^places, or have so many decimals.
 struct GridSpec {

@@ -66,7 +66,8 @@ TEST(SceneFile, WhatIsWrittenIsRead) {
     EXPECT_EQ(parse_scene("s.toml", text), scene) << text;
     EXPECT_EQ(scene_text(parse_scene("s.toml", text)), text);
   }
-  EXPECT_EQ(scene_name("a/s.toml", scene), scene_name("a/s.toml", parse_scene("b", "# a comment\n" + scene_text(scene))));
+  EXPECT_EQ(scene_name("a/s.toml", scene),
+            scene_name("a/s.toml", parse_scene("b", "# a comment\n" + scene_text(scene))));
   const std::string before = scene_name("s.toml", scene);
   scene.edges[1] *= 2;
   EXPECT_NE(before, scene_name("s.toml", scene));
@@ -82,15 +83,17 @@ TEST(SceneFile, MistakesAreNamedByTheirLine) {
             "\"extend\"; did you mean 'extent'?");
   EXPECT_EQ(error_of("extent = [[0, 1], [3, 2], [0, 1]]\n" + edges),
             "s.toml:1: expected the least coordinate, then the greatest, found 3, then 2");
-  EXPECT_EQ(error_of("extent = [[0, 1], [0, 2]]\n" + edges),
-            "s.toml:1: expected three intervals [least, greatest], for x, y and z, or one for all, found an array of 2");
+  EXPECT_EQ(
+      error_of("extent = [[0, 1], [0, 2]]\n" + edges),
+      "s.toml:1: expected three intervals [least, greatest], for x, y and z, or one for all, found an array of 2");
   EXPECT_NE(error_of("extent = [nan, 1]\n" + edges).find("s.toml:1: expected a number from "), std::string::npos);
   EXPECT_NE(error_of("extent = [0, inf]\n" + edges).find("found inf"), std::string::npos);
   EXPECT_EQ(error_of("extent = [0, 0]\n" + edges), "s.toml:1: expected an extent of some size, found a point");
   EXPECT_EQ(error_of("extent = [0, 3]\n" + edges),
             "s.toml:2: expected edges of at most 5.19615, the diagonal of the extent, found 40");
-  EXPECT_EQ(error_of(extent + "edges = [1, 2, 3, 4]"),
-            "s.toml:2: expected a number, or 1, 2, 3, 5, 9, 17 or 33 of them, from least to greatest, found an array of 4");
+  EXPECT_EQ(
+      error_of(extent + "edges = [1, 2, 3, 4]"),
+      "s.toml:2: expected a number, or 1, 2, 3, 5, 9, 17 or 33 of them, from least to greatest, found an array of 4");
   EXPECT_EQ(error_of(extent + "edges = [1,\n 0.5]"), "s.toml:3: expected a number from 1 on, found 0.5");
   EXPECT_NE(error_of(extent + "edges = \"long\"").find("found \"long\""), std::string::npos);
   EXPECT_NE(error_of(extent + edges + "aspect = [0.5, 3]").find("s.toml:3: expected a number from 1.1547 to "),
@@ -128,8 +131,9 @@ TEST(SceneFile, HostileTextsAreOneLine) {
   EXPECT_EQ(error_of(keys).rfind("s.toml:4: expected a key of a scene", 0), 0u) << error_of(keys);
   keys.append(1 << 20, '#');
   EXPECT_EQ(error_of(keys), "s.toml: expected a scene of at most 1048576 bytes, found " + std::to_string(keys.size()));
-  for (const std::string& text : {std::string(100'000, '['), "a = " + std::string(100'000, '['), std::string("\0\0", 2),
-                                  std::string("\xff\xfe"), "a." + std::string(500'000, 'b'), std::string("units = \"\n")}) {
+  for (const std::string& text :
+       {std::string(100'000, '['), "a = " + std::string(100'000, '['), std::string("\0\0", 2), std::string("\xff\xfe"),
+        "a." + std::string(500'000, 'b'), std::string("units = \"\n")}) {
     const std::string error = error_of(text);
     EXPECT_EQ(error.rfind("s.toml:1: expected ", 0), 0u) << error.substr(0, 300);
     EXPECT_LT(error.size(), 400u);
@@ -140,10 +144,12 @@ TEST(SceneFile, HostileTextsAreOneLine) {
 // Found by fuzzing: outside of them toml++ went where its own code says that it cannot.
 TEST(SceneFile, CharactersBeyondAsciiStandInQuotesAndCommentsAlone) {
   const std::string rest = "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\n";
-  EXPECT_EQ(parse_scene("s", "\xef\xbb\xbfunits = \"\u00b5m \\\" \u00e9\" # \u00e9\n" + rest).units, "\u00b5m \" \u00e9");
+  EXPECT_EQ(parse_scene("s", "\xef\xbb\xbfunits = \"\u00b5m \\\" \u00e9\" # \u00e9\n" + rest).units,
+            "\u00b5m \" \u00e9");
   EXPECT_EQ(parse_scene("s", "units = '\u00b5m' # '\n" + rest).units, "\u00b5m");
   EXPECT_EQ(parse_scene("s", "units = \"\"\"\u00b5m\"\u00e9\"\"\"\n" + rest).units, "\u00b5m\"\u00e9");
-  for (const char* text : {"\n\u00e9 = 1\n", "#\nunits \ufe7d= 1\n", "\nunits = 1 \u00e9\n", "\nunits = 0[[\"\"\u01bf\n"}) {
+  for (const char* text :
+       {"\n\u00e9 = 1\n", "#\nunits \ufe7d= 1\n", "\nunits = 1 \u00e9\n", "\nunits = 0[[\"\"\u01bf\n"}) {
     try {
       parse_scene("s", text + rest);
       ADD_FAILURE() << text;

@@ -29,10 +29,12 @@ using testing::normal;
 
 // A scene in millimetres far from the origin, on thousandths; one on a coarse grid; a flat one; and one without a grid.
 const std::pair<const char*, const char*> kScenes[] = {
-    {"millimetres", "extent = [[120000, 120800], [-5400, -5000], [300, 900.5]]\nedges = [0.5, 40]\n"
-                    "aspect = [1.2, 4, 3000]\ngrid = { decimals = 3 }"},
+    {"millimetres",
+     "extent = [[120000, 120800], [-5400, -5000], [300, 900.5]]\nedges = [0.5, 40]\n"
+     "aspect = [1.2, 4, 3000]\ngrid = { decimals = 3 }"},
     {"coarse", "extent = [-20, 20]\nedges = [1, 9]\ngrid = { power_of_two = -1 }"},
-    {"eighths", "extent = [[-3000.1, 4000.7], [0.125, 9000], [5, 700]]\nedges = [2, 300]\ngrid = { power_of_two = -3 }"},
+    {"eighths",
+     "extent = [[-3000.1, 4000.7], [0.125, 9000], [5, 700]]\nedges = [2, 300]\ngrid = { power_of_two = -3 }"},
     {"terrain", "extent = [[0, 40000], [0, 40000], [180, 240]]\nedges = [20, 60]"},
     {"plane", "extent = [[0, 10], [0, 10], [2.5, 2.5]]\nedges = [0.01, 3]"},
     {"free", "extent = [-1, 1]\nedges = [0.001, 0.2]\naspect = [1.2, 3, 5000]"},
@@ -58,8 +60,10 @@ TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
     const Scene scene = resolved(file);
     double ulp = 0;
     for (const auto& [low, high] : file.extent)
-      ulp = std::max(ulp, std::ldexp(1.0, log2_ulp({{{static_cast<float>(low), static_cast<float>(high), 0}, {}, {}}, {}})));
-    const double step = std::max(ulp, scene.on_grid ? (scene.grid.decimal ? 1 / scene.grid.scale : scene.grid.scale) : 0);
+      ulp = std::max(ulp,
+                     std::ldexp(1.0, log2_ulp({{{static_cast<float>(low), static_cast<float>(high), 0}, {}, {}}, {}})));
+    const double step =
+        std::max(ulp, scene.on_grid ? (scene.grid.decimal ? 1 / scene.grid.scale : scene.grid.scale) : 0);
     const double most = scene.edges.at[kQuantiles - 1] * 1.00001 + 20 * step;  // rounding, and pushes by 8 steps
     int drawn = 0;
     for (const StratumInfo& row : kStrata) {
@@ -86,10 +90,11 @@ TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
 }
 
 TEST(Scene, SizesAreThoseOfTheQuantiles) {
-  const Scene scene = resolved(parse_scene("s", "extent = [-100, 100]\nedges = [0.1, 1, 2, 4, 9]\naspect = [1.2, 1.5, 40]"));
-  for (const Stratum stratum : {Stratum::uniform, Stratum::near_vertex_face, Stratum::near_edge_edge,
-                                Stratum::near_vertex_edge, Stratum::near_vertex_vertex, Stratum::coplanar_rounded,
-                                Stratum::shared_vertex, Stratum::shared_edge}) {
+  const Scene scene =
+      resolved(parse_scene("s", "extent = [-100, 100]\nedges = [0.1, 1, 2, 4, 9]\naspect = [1.2, 1.5, 40]"));
+  for (const Stratum stratum :
+       {Stratum::uniform, Stratum::near_vertex_face, Stratum::near_edge_edge, Stratum::near_vertex_edge,
+        Stratum::near_vertex_vertex, Stratum::coplanar_rounded, Stratum::shared_vertex, Stratum::shared_edge}) {
     std::vector<double> edges, aspects;
     for (std::uint64_t i = 0; i < 100'000; ++i) {
       const Pair pair = generate(1, stratum, scene, i);
@@ -102,8 +107,10 @@ TEST(Scene, SizesAreThoseOfTheQuantiles) {
     std::sort(edges.begin(), edges.end());
     std::sort(aspects.begin(), aspects.end());
     for (std::size_t q = 1; q < 8; ++q) {
-      EXPECT_NEAR(edges[edges.size() * q / 8] / scene.edges.at[4 * q], 1, 0.05) << static_cast<int>(stratum) << ' ' << q;
-      EXPECT_NEAR(aspects[aspects.size() * q / 8] / scene.aspect.at[4 * q], 1, 0.05) << static_cast<int>(stratum) << ' ' << q;
+      EXPECT_NEAR(edges[edges.size() * q / 8] / scene.edges.at[4 * q], 1, 0.05)
+          << static_cast<int>(stratum) << ' ' << q;
+      EXPECT_NEAR(aspects[aspects.size() * q / 8] / scene.aspect.at[4 * q], 1, 0.05)
+          << static_cast<int>(stratum) << ' ' << q;
     }
   }
 }
@@ -113,7 +120,8 @@ TEST(Scene, SliversAreSlivers) {
   for (std::uint64_t i = 0; i < 10'000; ++i) {
     const Pair pair = generate(1, Stratum::sliver, scene, i);
     double most = 0;
-    for (const auto* v : {&pair.a, &pair.b}) most = std::max(most, longest(*v) * longest(*v) / length(normal(converted<double>(*v))));
+    for (const auto* v : {&pair.a, &pair.b})
+      most = std::max(most, longest(*v) * longest(*v) / length(normal(converted<double>(*v))));
     ASSERT_GT(most, 950) << i;  // 1024, rounded to ulps of 100
   }
 }
@@ -124,7 +132,8 @@ TEST(Scene, ExactStrataAreExact) {
   const auto whole = [&](const Vec3<float>(&v)[3]) {
     testing::Triangle<testing::Int> t;
     for (std::size_t i = 0; i < 3; ++i)
-      t[i] = {static_cast<testing::Int>(v[i].x * 8), static_cast<testing::Int>(v[i].y * 8), static_cast<testing::Int>(v[i].z * 8)};
+      t[i] = {static_cast<testing::Int>(v[i].x * 8), static_cast<testing::Int>(v[i].y * 8),
+              static_cast<testing::Int>(v[i].z * 8)};
     return t;
   };
   int touching = 0, coplanar = 0, axis_plane = 0, tilted = 0;
@@ -133,9 +142,11 @@ TEST(Scene, ExactStrataAreExact) {
     touching += !testing::disjoint(whole(contact.a), whole(contact.b));
     const Pair wide = generate(1, Stratum::coplanar_wide, scene, i);
     coplanar += testing::is_coplanar(whole(wide.a), whole(wide.b));
-    tilted += testing::extent_along(wide, 0) > 0 && testing::extent_along(wide, 1) > 0 && testing::extent_along(wide, 2) > 0;
+    tilted +=
+        testing::extent_along(wide, 0) > 0 && testing::extent_along(wide, 1) > 0 && testing::extent_along(wide, 2) > 0;
     const Pair lattice = generate(1, Stratum::coplanar_lattice, scene, i);
-    axis_plane += testing::extent_along(lattice, 0) == 0 || testing::extent_along(lattice, 1) == 0 || testing::extent_along(lattice, 2) == 0;
+    axis_plane += testing::extent_along(lattice, 0) == 0 || testing::extent_along(lattice, 1) == 0 ||
+                  testing::extent_along(lattice, 2) == 0;
   }
   EXPECT_EQ(coplanar, 10'000);
   EXPECT_GT(tilted, 7'000);
@@ -168,7 +179,9 @@ TEST(Scene, SameBytesAsEver) {
   EXPECT_EQ(hash, 0x7f8ed81904122499u) << std::hex << hash;  // a change here changes what every case of a scene means
 }
 
-std::string why(const char* text, Stratum stratum) { return left_out(parse_scene("s", text), stratum).value_or("drawn"); }
+std::string why(const char* text, Stratum stratum) {
+  return left_out(parse_scene("s", text), stratum).value_or("drawn");
+}
 
 TEST(Scene, WhatItCannotContainIsLeftOutWithTheReason) {
   const char* mm = "extent = [[0.003, 410], [5, 80], [7, 9]]\nedges = [0.5, 4]\nunits = \"mm\"";
@@ -233,7 +246,8 @@ class SceneMesh : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / ("graze_scene_" + std::to_string(getpid()));
+  std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ("graze_scene_" + std::to_string(getpid()));
   SceneFile file_;
 };
 
@@ -261,7 +275,8 @@ TEST_F(SceneMesh, ItsPairsAreDrawnAsTheyAreByUlpsAndByMotions) {
         double d[2][3];
         for (std::size_t e = 0; e < 3; ++e) {
           d[0][e] = length(edge(converted<double>(pair.a), e));
-          d[1][e] = length(edge(testing::Triangle<double>{converted<double>(t[0]), converted<double>(t[1]), converted<double>(t[2])}, e));
+          d[1][e] = length(edge(
+              testing::Triangle<double>{converted<double>(t[0]), converted<double>(t[1]), converted<double>(t[2])}, e));
         }
         for (auto& lengths : d) std::sort(std::begin(lengths), std::end(lengths));
         return std::equal(d[0], d[0] + 3, d[1], [](double x, double y) { return std::fabs(x - y) < 1e-3; });
@@ -281,8 +296,10 @@ TEST_F(SceneMesh, AnotherMeshOrOneOutsideIsRefused) {
     scene_sources(file_, folder_, 1, 10, {});
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find("m.off: expected coordinates within the scene's extent, 0 to 4.5 in y, found 5"),
-              std::string::npos) << error.what();
+    EXPECT_NE(
+        std::string(error.what()).find("m.off: expected coordinates within the scene's extent, 0 to 4.5 in y, found 5"),
+        std::string::npos)
+        << error.what();
   }
 }
 
@@ -303,10 +320,14 @@ TEST_F(SceneMesh, PosesMakeBodies) {
     }
     return "none";
   };
-  EXPECT_EQ(error("1 0 0 0\n"), "p.csv:1: expected 12 numbers, the rows of a matrix (R | t), found the end of the line");
-  EXPECT_EQ(error("1 0 0 0 0 1 0 0 0 0 nan 0\n"), "p.csv:1: expected 12 numbers, the rows of a matrix (R | t), found \"nan\"");
-  EXPECT_EQ(error("1 0 0 0 0 1 0 0 0 0 1 0 9\n"), "p.csv:1: expected the end of the line after 12 numbers, found \"9\"");
-  EXPECT_EQ(error("1 0 0 1e39 0 1 0 0 0 0 1 0\n"), "p.csv: expected poses that keep coordinates finite in float32, found pose 1");
+  EXPECT_EQ(error("1 0 0 0\n"),
+            "p.csv:1: expected 12 numbers, the rows of a matrix (R | t), found the end of the line");
+  EXPECT_EQ(error("1 0 0 0 0 1 0 0 0 0 nan 0\n"),
+            "p.csv:1: expected 12 numbers, the rows of a matrix (R | t), found \"nan\"");
+  EXPECT_EQ(error("1 0 0 0 0 1 0 0 0 0 1 0 9\n"),
+            "p.csv:1: expected the end of the line after 12 numbers, found \"9\"");
+  EXPECT_EQ(error("1 0 0 1e39 0 1 0 0 0 0 1 0\n"),
+            "p.csv: expected poses that keep coordinates finite in float32, found pose 1");
   EXPECT_EQ(error("\n"), "p.csv: expected at least one pose, found none");
 }
 

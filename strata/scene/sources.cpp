@@ -22,8 +22,7 @@ struct MeshSourceInfo {
   MeshSource source;
   std::string_view id;
 };
-constexpr MeshSourceInfo kMeshSources[] = {
-    {as_it_is, "mesh"}, {by_ulps, "mesh_ulps"}, {by_motions, "mesh_moved"}};
+constexpr MeshSourceInfo kMeshSources[] = {{as_it_is, "mesh"}, {by_ulps, "mesh_ulps"}, {by_motions, "mesh_moved"}};
 
 struct Meshes {
   Scene scene;
@@ -107,8 +106,9 @@ std::shared_ptr<const Meshes> open_meshes(const SceneFile& scene, const std::fil
         const double x = static_cast<double>(component(v, axis));
         const auto& [low, high] = scene.extent[static_cast<std::size_t>(axis)];
         if (as_float32(low) <= x && x <= as_float32(high)) continue;
-        throw std::runtime_error(fmt::format("{}: expected coordinates within the scene's extent, {} to {} in {}, found {}",
-                                             files[0].string(), low, high, "xyz"[axis], x));
+        throw std::runtime_error(
+            fmt::format("{}: expected coordinates within the scene's extent, {} to {} in {}, found {}",
+                        files[0].string(), low, high, "xyz"[axis], x));
       }
     }
   }
@@ -166,11 +166,10 @@ SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& f
       result.left_out.push_back({std::string(row.id), std::move(*why)});
       continue;
     }
-    result.sources.push_back({std::string(row.id), 0,
-                              [seed, stratum = row.stratum, scene](std::uint64_t index) {
-                                return generate(seed, stratum, *scene, index);
-                              },
-                              static_cast<int>(row.stratum), Axis::none, seed, scene});
+    result.sources.push_back(
+        {std::string(row.id), 0,
+         [seed, stratum = row.stratum, scene](std::uint64_t index) { return generate(seed, stratum, *scene, index); },
+         static_cast<int>(row.stratum), Axis::none, seed, scene});
     ++of_kind[static_cast<std::size_t>(kind_of(row.stratum))];
     weights.push_back(static_cast<double>(static_cast<int>(kind_of(row.stratum))));
   }
@@ -198,8 +197,8 @@ SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& f
   for (std::size_t s = strata; s < weights.size(); ++s)
     weights[s] = (of_strata > 0 ? of_strata : 1) / static_cast<double>(weights.size() - strata);
   if (result.sources.empty())
-    throw UsageError(fmt::format("expected a stratum that the scene can contain, found {}: {}",
-                                 result.left_out[0].id, result.left_out[0].why));
+    throw UsageError(fmt::format("expected a stratum that the scene can contain, found {}: {}", result.left_out[0].id,
+                                 result.left_out[0].why));
   share(result.sources, weights, pairs);
   for (PairSource& source : result.sources) {
     if (source.id == "mesh") source.pairs = std::min<std::uint64_t>(source.pairs, meshes->pairs.size());

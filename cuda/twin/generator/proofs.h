@@ -8,9 +8,8 @@
 
 namespace graze::cuda::twin {
 
-// Writes a row {"hash", "trace hash", {"device", "toolkit", pairs, twin_pairs}} for each lane of the records that has no
-// difference.
-// Throws: PtxError for a file that is no record.
+// Writes a row {"hash", "trace hash", {"device", "toolkit", pairs, twin_pairs}} for each lane of the records that has
+// no difference. Throws: PtxError for a file that is no record.
 void write_proofs(std::ostream& out, const std::vector<std::string>& records);
 
 }  // namespace graze::cuda::twin

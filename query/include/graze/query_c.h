@@ -82,8 +82,8 @@ typedef struct graze_query {
   uint64_t* list;
   uint64_t list_room;
   int outputs_on_device; /* bytes and bits lie where the triangles do: in one part, on one device */
-  void* stream;          /* a cudaStream_t that orders the work on triangles in a device's memory; NULL: ours, after what
-                            the default stream was given */
+  void* stream; /* a cudaStream_t that orders the work on triangles in a device's memory; NULL: ours, after what
+                   the default stream was given */
   double launch_seconds; /* that kernels may run without a pause; 0: 0.5 */
   graze_progress progress;
   void* user;

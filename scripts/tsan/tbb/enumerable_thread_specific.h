@@ -16,7 +16,7 @@ class enumerable_thread_specific {
  public:
   explicit enumerable_thread_specific(const T& value) : make_([value] { return value; }) {}
   template <class Make>
-    requires std::is_invocable_r_v<T, Make>
+  requires std::is_invocable_r_v<T, Make>
   explicit enumerable_thread_specific(Make make) : make_(make) {}
 
   T& local() {

@@ -57,7 +57,9 @@ struct graze_subject {
 
 /* Begins the definition of such a variable, with C linkage in C and C++. */
 #ifdef __cplusplus
-#define GRAZE_SUBJECT(name) extern "C" const struct graze_subject name; const struct graze_subject name
+#define GRAZE_SUBJECT(name)                   \
+  extern "C" const struct graze_subject name; \
+  const struct graze_subject name
 #else
 #define GRAZE_SUBJECT(name) const struct graze_subject name
 #endif

@@ -71,7 +71,8 @@ std::uint64_t add_number(std::uint64_t number, std::uint64_t hash) {
 std::uint64_t hash_of_file(const fs::path& file) {
   std::error_code why;
   const bool regular = fs::is_regular_file(file, why);
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in;
+  if (regular) in.open(file, std::ios::binary);  // a pipe without a writer would wait
   std::ostringstream text;
   if (!regular || !(text << in.rdbuf())) {
     throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
@@ -107,13 +108,26 @@ CodeHash hash_of_command(const std::string& command) {
   return code;
 }
 
-CodeHash hash_of_builds(const std::vector<fs::path>& built, const std::vector<std::string>& flags) {
-  CodeHash code{fnv1a(""), ""};
-  for (const fs::path& file : built) code.hash = fnv1a(file.stem().string(), code.hash);
+std::uint64_t hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash) {
   for (const std::string& flag : flags) {
-    if (flag.starts_with("-l") || flag.starts_with("-Wl,") || is_file(flag))
-      code.not_covered = "the libraries that its flags link";
+    hash = fnv1a(flag + '\n', hash);
+    // Also within words: -Wl,FILE and -Wl,--script=FILE, @FILE.
+    std::set<std::string> files{flag};
+    for (std::size_t begin = 0; begin < flag.size();) {
+      const std::size_t end = std::min(flag.find_first_of(",=@", begin), flag.size());
+      files.insert(flag.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    for (const std::string& file : files) {
+      if (is_file(file)) hash = add_number(hash_of_file(file), hash);
+    }
   }
+  return hash;
+}
+
+CodeHash hash_of_builds(const std::vector<Built>& built) {
+  CodeHash code{fnv1a(""), built.empty() ? "" : built.front().not_covered};
+  for (const Built& build : built) code.hash = fnv1a(build.file.stem().string(), code.hash);
   return code;
 }
 

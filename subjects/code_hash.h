@@ -23,8 +23,16 @@ CodeHash hash_of_library(const std::filesystem::path& file);
 // Of the command's text, the program that it starts, and the files that it names.
 CodeHash hash_of_command(const std::string& command);
 
-// Of what was built of a C or C++ source in each variant: files that build_source named by what they were made of.
-CodeHash hash_of_builds(const std::vector<std::filesystem::path>& built, const std::vector<std::string>& flags);
+// Of a compiler's flags, and of the files that they name.
+std::uint64_t hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash);
+
+// What was built of a C or C++ source in a variant.
+struct Built {
+  std::filesystem::path file;  // named by the hash of what it was made of
+  std::string not_covered;     // what else it was made of, in words
+};
+
+CodeHash hash_of_builds(const std::vector<Built>& built);
 
 // Of the PTX of each variant, without the places of its lines in files.
 CodeHash hash_of_ptx(const std::vector<std::string_view>& variants);

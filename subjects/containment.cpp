@@ -5,6 +5,7 @@
 #include <linux/audit.h>
 #include <linux/capability.h>
 #include <linux/filter.h>
+#include <linux/magic.h>
 #include <linux/seccomp.h>
 #include <poll.h>
 #include <sched.h>
@@ -13,9 +14,11 @@
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/utsname.h>
+#include <sys/vfs.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -45,10 +48,41 @@ bool map_user(uid_t user, gid_t group) {
          write_to("/proc/self/gid_map", g + ' ' + g + " 1");
 }
 
+bool has_terminals() {
+  struct statfs at {};
+  return statfs("/dev/pts", &at) == 0 && at.f_type == DEVPTS_SUPER_MAGIC;
+}
+
 // In the new namespace: what is mounted there is not seen outside. In a chroot, "/" is no mount point, but these are.
 bool keep_mounts_private() {
   const auto keep = [](const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; };
-  return keep("/") || (keep("/proc") && (keep("/dev/shm") || errno == ENOENT));
+  return keep("/") ||
+         (keep("/proc") && (keep("/dev/shm") || errno == ENOENT) && (!has_terminals() || keep("/dev/pts")));
+}
+
+// The terminals of the process that started this one, which lie where no other file system hides them: a console.
+std::vector<std::string> terminals_of_parent() {
+  std::vector<std::string> found;
+  for (const char* name : {"0", "1", "2"}) {
+    std::error_code none;
+    const fs::path file = fs::read_symlink("/proc/" + std::to_string(getppid()) + "/fd/" + name, none);
+    if (!fs::is_character_file(file, none)) continue;
+    const int fd = open(file.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    if (fd >= 0 && isatty(fd) && !file.string().starts_with("/dev/pts/")) found.push_back(file);
+    close(fd);
+  }
+  return found;
+}
+
+// In the new namespace: a terminal that its output was stopped on, or its keys taken from, would stop graze.
+bool hide_terminals(const std::vector<std::string>& others) {
+  if (has_terminals() &&
+      mount("tmpfs", "/dev/pts", "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k") != 0)
+    return false;
+  return std::all_of(others.begin(), others.end(), [](const std::string& file) {
+    const bool is_private = mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;  // not so in a chroot
+    return is_private && mount("/dev/null", file.c_str(), nullptr, MS_BIND, nullptr) == 0;
+  });
 }
 
 // In the new namespace: its own /proc, without which nobody there could be found.
@@ -126,6 +160,7 @@ std::uint64_t bytes_of(pid_t process, std::uint64_t most) {
 void enter_containment(bool namespaces, std::uint64_t shared_bytes) {
   const uid_t user = geteuid();
   const gid_t group = getegid();
+  const std::vector<std::string> terminals = terminals_of_parent();
   int answer[2];
   if (namespaces && pipe2(answer, O_CLOEXEC) == 0) {
     const unsigned long flags = CLONE_NEWPID | CLONE_NEWNS | CLONE_NEWIPC | (user == 0 ? 0 : CLONE_NEWUSER) | SIGCHLD;
@@ -134,7 +169,7 @@ void enter_containment(bool namespaces, std::uint64_t shared_bytes) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       close(answer[0]);
       const bool ready = (user == 0 || map_user(user, group)) && keep_mounts_private() && mount_proc() &&
-                         limit_shared_memory(shared_bytes);
+                         limit_shared_memory(shared_bytes) && hide_terminals(terminals);
       if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
       limit_tasks();
       close(answer[1]);

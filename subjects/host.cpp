@@ -361,6 +361,7 @@ int host(int argc, char** argv) {
   close_range(kSupervisorPairsFd + 1, ~0u, 0);
   Limits limits;
   limits.seconds = std::strtod(argv[6], nullptr);
+  limits.program = std::strcmp(argv[1], "command") == 0;
   limits.bytes = on_device ? 0 : std::strtoull(argv[5], nullptr, 10) << 20;
   enter_containment(!on_device && *argv[8] == '1', limits.bytes);
   char worker[] = "--worker";

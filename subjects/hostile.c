@@ -175,4 +175,14 @@ static void limit_others(void) {
   }
 }
 ATTACK(limits_others, limit_others(); abort())
+static void open_terminals(void) {
+  for (int i = 0; i < 1024; ++i) {
+    char name[40];
+    snprintf(name, sizeof name, "/dev/pts/%d", i);
+    if (open(name, O_RDWR | O_NOCTTY) >= 0)
+      for (;;) pause();
+  }
+  abort();
+}
+ATTACK(opens_terminals, open_terminals())
 ATTACK(kills_all, if (alone()) kill(-1, SIGKILL); abort())

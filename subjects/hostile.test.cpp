@@ -38,6 +38,7 @@ struct Hostile : testing::Test {
   static inline fs::path folder;
   static inline std::string mark;  // in the environment of all processes that this one starts
   static inline pid_t bystander = -1;
+  static inline int terminal = -1;
   static inline std::vector<Pair> pairs;
 
   static void SetUpTestSuite() {
@@ -47,6 +48,8 @@ struct Hostile : testing::Test {
     setenv("GRAZE_HOSTILE_TEST", std::to_string(getpid()).c_str(), 1);
     for (std::uint64_t i = 0; i < 40; ++i) pairs.push_back(strata::generate(1, strata::Stratum::uniform, i));
     build("libhostile.so", GRAZE_SOURCE_DIR "/subjects/hostile.c -lpthread");
+    terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+    if (terminal >= 0 && (grantpt(terminal) != 0 || unlockpt(terminal) != 0)) terminal = -1;
     bystander = fork();
     if (bystander == 0) execlp("sleep", "sleep", "1000", nullptr);
   }
@@ -54,6 +57,7 @@ struct Hostile : testing::Test {
     unsetenv("GRAZE_HOSTILE_TEST");  // not of what other suites start
     kill(bystander, SIGKILL);
     waitpid(bystander, nullptr, 0);
+    if (terminal >= 0) close(terminal);
     fs::remove_all(folder);
   }
 
@@ -133,6 +137,7 @@ TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
   const auto& [attack, namespaces] = GetParam();
   if (!attack.without_namespaces && !(namespaces && has_namespaces()))
     GTEST_SKIP() << "contained by a process namespace alone";
+  if (attack.name == std::string_view("opens_terminals") && terminal < 0) GTEST_SKIP() << "no terminal can be had";
   const std::size_t maps = count_in("/proc/self/map_files"), files = count_in("/proc/self/fd");
   {
     Code code{"library", (folder / "libhostile.so").string(), attack.name, "f32", 0.1, 256};
@@ -190,6 +195,7 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"lifts_limits"},
                                {"writes_a_large_file"},
                                {"limits_others"},
+                               {"opens_terminals", false},
                                {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {
@@ -336,6 +342,49 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
     ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
     const std::vector<Verdict> found = verdicts(subject);
     for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+  }
+  expect_nothing_left();
+}
+
+// What it writes beyond its answers shifts all later ones; which pair it was on shows when pairs are asked alone.
+TEST_F(Hostile, LinesThatWereNotAskedForAreVerdictsOfTheirPairs) {
+  std::ofstream(folder / "extra.c") << R"(#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+int main(int count, char** words) {
+  static char line[4096], more[6001];
+  const int extra = atoi(words[1]), apart = words[2][0] == 'a', late = words[2][0] == 'l';
+  for (int i = 0; i < extra; ++i) strcat(more, "1
+");
+  if (words[2][0] == 'b') write(1, more, strlen(more));
+  while (fgets(line, sizeof line, stdin)) {
+    char *at = line, text[6010];
+    float a[18];
+    for (int i = 0; i < 18; ++i) a[i] = strtof(at, &at);
+    strcpy(text, a[0] < a[9] ? "1
+" : "0
+");
+    const int bad = a[0] > 0.9f && words[2][0] != 'b';
+    if (bad && !apart && !late) strcat(text, more);
+    write(1, text, strlen(text));
+    if (bad && late) usleep(2000);
+    if (bad && (apart || late)) write(1, more, strlen(more));
+  }
+})";
+  const fs::path program = folder / "extra";
+  ASSERT_EQ(std::system(("cc -O1 -w " + (folder / "extra.c").string() + " -o " + program.string()).c_str()), 0);
+  for (const std::string how :
+       {"1 together", "1 apart", "1 late", "3 together", "3000 apart", "1 before", "3 before"}) {
+    SCOPED_TRACE(how);
+    for (int times = 0; times < 2; ++times) {
+      ForeignProcesses subject({"command", program.string() + ' ' + how, "", "f32", 5}, Scalar::f32);
+      const std::vector<Verdict> found = verdicts(subject);
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const bool fails = is_bad(pairs[i]) || how.ends_with("before");
+        EXPECT_EQ(found[i], fails ? Verdict::crashed : left_of(pairs[i])) << i;
+      }
+    }
   }
   expect_nothing_left();
 }

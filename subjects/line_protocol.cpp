@@ -7,6 +7,7 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -19,6 +20,7 @@ namespace graze::subjects {
 namespace {
 
 constexpr double kDescribeSeconds = 10;  // to start, and to answer
+constexpr double kLeastSilence = 0.02;   // seconds
 
 std::string line_of(const float* pair) {
   std::string line;
@@ -101,12 +103,21 @@ void LineProtocol::send(const std::string& lines) {
 }
 
 std::string LineProtocol::line() {
+  const auto start = std::chrono::steady_clock::now();
   std::string line;
   while (!lines_.take(line)) read_some();
+  slowest_ = std::max(slowest_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return line;
 }
 
+void LineProtocol::expect_silence(double seconds) {
+  pollfd more{from_, POLLIN, 0};
+  if (!lines_.empty() || (poll(&more, 1, static_cast<int>(1000 * seconds)) > 0 && more.revents & POLLIN))
+    throw std::runtime_error("the program writes more than it was asked for");
+}
+
 void LineProtocol::ask(const Question& question, const float* pairs, std::uint64_t* words) {
+  slowest_ = 0;
   for (const bool second : {false, true}) {
     const Chosen& chosen = second ? question.second : question.first;
     std::string asked;
@@ -115,17 +126,20 @@ void LineProtocol::ask(const Question& question, const float* pairs, std::uint64
       if (!is_chosen(chosen, i)) continue;
       asked += line_of(pairs + 18 * i);
       if (!question.singly) continue;
+      expect_silence(0);
       send(asked);
       asked.clear();
       put_answer(words, question, second, i, answer_of_line(line()));
     }
     if (question.singly) continue;
+    expect_silence(0);
     send(asked);
     for (std::size_t k = 0; k < question.count; ++k) {
       const std::size_t i = second ? question.count - 1 - k : k;
       if (is_chosen(chosen, i)) put_answer(words, question, second, i, answer_of_line(line()));
     }
   }
+  expect_silence(std::clamp(2 * slowest_, kLeastSilence, kMostSilence));
 }
 
 std::string LineProtocol::first_line(const std::string& in_answer_to, double seconds) {

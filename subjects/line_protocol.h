@@ -21,6 +21,7 @@ class Lines {
   void add(const char* bytes, std::size_t count);
   // Returns: whether a whole line was there; without its end.
   bool take(std::string& line);
+  bool empty() const { return taken_ == bytes_.size(); }
 
  private:
   std::string bytes_;
@@ -36,7 +37,8 @@ class LineProtocol {
   explicit LineProtocol(const std::string& command);
 
   // Asks about the question's pairs, forward and then backward, and writes each answer into memory when it comes.
-  // Throws: std::runtime_error where the program ends, or answers something else.
+  // Then waits 20 ms, or twice as long as the slowest answer took, whether more comes.
+  // Throws: std::runtime_error where the program ends, answers something else, or writes what was not asked for.
   void ask(const Question& question, const float* pairs, std::uint64_t* words);
 
   // Returns: the first line that it writes in answer to this line, after which its input ends; empty where it ends
@@ -47,7 +49,10 @@ class LineProtocol {
   void send(const std::string& lines);
   void read_some();
   std::string line();  // waits for it
+  // Throws: std::runtime_error where there is output that was not asked for, or comes in this time.
+  void expect_silence(double seconds);
 
+  double slowest_ = 0;  // seconds until a line came, of the last question
   int to_ = -1, from_ = -1;
   Lines lines_;
 };

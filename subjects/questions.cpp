@@ -12,6 +12,9 @@ Question Questions::next(std::uint64_t nonce) {
   if (answered() && asked_ > 0) most_ = std::min(2 * most_, 2 * kMostAsked);
   nonce_ = nonce;
   asked_ = taken_ = 0;
+  second_before_ = second_;
+  at_before_ = at_;
+  answers_before_ = answers_;
   Question question{nonce, 0, static_cast<std::uint32_t>(count_), singly_, {}, {}};
   const auto choose = [&](Chosen& chosen, std::size_t i) {
     if (asked_ == most_) return;
@@ -58,14 +61,21 @@ std::size_t Questions::take(const std::uint64_t* words) {
 }
 
 void Questions::failed(signed char how) {
+  if (program_) {
+    second_ = second_before_;
+    at_ = at_before_;
+    answers_ = answers_before_;
+  }
   if (!singly_) {
     singly_ = true;
+  } else if (program_ && asked_ > 1) {
+    most_ = std::max<std::size_t>(1, std::min(taken_, asked_ / 2));
   } else if (taken_ == 0 && asked_ > 1) {
     most_ = 1;
   } else {
     answers_[second_ ? at_ - 1 : at_] = how;
     advance();
-    most_ = 2 * kMostAsked;
+    most_ = program_ ? 1 : 2 * kMostAsked;
   }
   asked_ = taken_ = 0;
 }

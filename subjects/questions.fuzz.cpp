@@ -25,7 +25,8 @@ void must_follow(std::span<const signed char> before, std::span<const signed cha
 
 void ask_hostile(std::string_view bytes) {
   const std::size_t count = 1 + static_cast<unsigned char>(bytes[0]) % 9;
-  Questions questions(count, bytes[0] & 64);
+  const bool program = bytes[0] & 128;
+  Questions questions(count, bytes[0] & 64, program);
   static std::uint64_t words[kWords];
   const auto set_words = [&](int byte) {
     for (std::uint64_t* pass : {words, words + kMostAsked}) std::memset(pass, byte, 16 * sizeof *pass);
@@ -34,9 +35,11 @@ void ask_hostile(std::string_view bytes) {
   std::uint64_t nonce = 1;
   std::size_t failures = 0;
   bool asked = false;
+  std::array<signed char, kMostAsked> before_question{};
   for (std::size_t at = 1; at + 1 < bytes.size() && !questions.done(); at += 2) {
     const auto what = static_cast<unsigned char>(bytes[at]), how = static_cast<unsigned char>(bytes[at + 1]);
     if (!asked || questions.answered()) {
+      std::copy(questions.answers().begin(), questions.answers().end(), before_question.begin());
       const Question question = questions.next(++nonce);
       std::uint64_t beyond = 0;
       for (std::size_t w = 0; w < question.first.size(); ++w)
@@ -76,10 +79,11 @@ void ask_hostile(std::string_view bytes) {
         break;
       }
       default:
-        if (questions.answered()) break;
+        if (questions.answered() && !program) break;
         questions.failed(how & 1 ? kCrashed : kTimedOut);
         asked = false;
-        must_hold(++failures <= 1 + 4 * count, "failures come to an end");
+        if (program) before = before_question;  // no answer to the question counts
+        must_hold(++failures <= (program ? 1 + 12 * count : 1 + 4 * count), "failures come to an end");
     }
     must_follow({before.data(), count}, questions.answers());
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -85,6 +86,19 @@ std::string first_error(const std::string& text) {
   return first.empty() ? "the compiler failed and said nothing" : first;
 }
 
+// What the build depends on beside the preprocessed source, the flags and the files that they name.
+std::string not_covered(const std::string& preprocessed, const std::vector<std::string>& flags) {
+  for (const std::string& flag : flags) {
+    if (flag.starts_with("-l") || flag.starts_with("-Wl,") || flag.starts_with("-Xlinker") || flag.starts_with("@"))
+      return "the libraries that its flags link";
+  }
+  std::string text = preprocessed;
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (text.find("incbin") != text.npos || text.find(".include") != text.npos)
+    return "the files that its assembler code includes";
+  return "";
+}
+
 }  // namespace
 
 fs::path cache_folder() {
@@ -108,8 +122,8 @@ bool source_describes_itself(const fs::path& source) {
   return text_of(source).find("GRAZE_SUBJECT(") != std::string::npos;
 }
 
-fs::path build_source(const fs::path& source, const std::string& function, const VariantInfo& variant,
-                      const std::vector<std::string>& flags) {
+Built build_source(const fs::path& source, const std::string& function, const VariantInfo& variant,
+                   const std::vector<std::string>& flags) {
   const bool c = source.extension() == ".c";
   const std::string text = text_of(source);
   // In the folder of the source its own includes are found.
@@ -145,10 +159,9 @@ fs::path build_source(const fs::path& source, const std::string& function, const
   write(part, defines + wrapped);
   command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(part.string()));
   const std::string preprocessed = output_of(command + " -E -P 2>/dev/null", status);
-  const fs::path kept =
-      folder / fmt::format("{:016x}.so", fnv1a(preprocessed, fnv1a(fmt::format("{}\n{}\n{}", identity, variant.flags,
-                                                                               fmt::join(flags, "\n")))));
-  if (status == 0 && fs::exists(kept)) {
+  const std::uint64_t of_flags = hash_of_flags(flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
+  const Built kept{folder / fmt::format("{:016x}.so", fnv1a(preprocessed, of_flags)), not_covered(preprocessed, flags)};
+  if (status == 0 && kept.not_covered.empty() && fs::exists(kept.file)) {
     clean();
     return kept;
   }
@@ -160,7 +173,7 @@ fs::path build_source(const fs::path& source, const std::string& function, const
     if (error.find(expected) != error.npos) error = name + ": " + expected;
     throw std::runtime_error(error);
   }
-  fs::rename(object, kept);
+  fs::rename(object, kept.file);
   clean();
   return kept;
 }

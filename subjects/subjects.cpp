@@ -253,12 +253,15 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
     }
     if (wish.kind == "cuda") return add_cuda_lanes(entry, on_device, recorded);
     std::vector<std::pair<Variant, Code>> builds;
+    std::vector<Built> built_files;
     if (wish.kind == "source") {
       for (const VariantInfo& row : kVariants) {
         if (row.runs_on != RunsOn::host || row.arithmetic == Arithmetic::exact) continue;
         Code built = code;
         built.name.clear();
-        built.what = build_source(wish.file, wish.function.empty() ? "intersects" : wish.function, row, wanted.flags);
+        built_files.push_back(
+            build_source(wish.file, wish.function.empty() ? "intersects" : wish.function, row, wanted.flags));
+        built.what = built_files.back().file;
         builds.emplace_back(row.variant, std::move(built));
       }
     } else {
@@ -282,11 +285,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
     if (made.empty())
       throw std::runtime_error(fmt::format("--subject {}: {} says that it has no function, of floats or of doubles",
                                            wanted.name, shown(wanted.what)));
-    if (wish.kind == "source") {
-      std::vector<fs::path> built;
-      for (const auto& [variant, of_variant] : builds) built.emplace_back(of_variant.what);
-      entry.opened.code = hash_of_builds(built, wanted.flags);
-    }
+    if (wish.kind == "source") entry.opened.code = hash_of_builds(built_files);
     if (wish.kind == "command") {
       entry.opened.code.hash = fnv1a(fmt::format("{}\n{}\n{}\n{}", description.version, description.source,
                                                  description.convention, description.outside),

@@ -2,6 +2,7 @@
 #include "subjects/subjects.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -443,6 +444,10 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
   expect_error("x=" + (folder / "broken.cpp").string(), "broken.cpp:1:[0-9]+: error: ");
   expect_error("x=" + (folder / "other.cpp").string(), "other.cpp: expected a function intersects of two triangles");
   expect_error("x=" + (folder / "loads.so").string(), "loads.so: crashed while it was loaded");
+  for (const char* name : {"pipe.so", "pipe.c"}) {
+    ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
+    expect_error("x=" + (folder / name).string() + ":f", "cannot read the code in .*: not a file");
+  }
   EXPECT_FALSE(opened("x"));
   for (const Lane& lane : lanes()) EXPECT_NE(lane.info->id, "x");
 }
@@ -494,6 +499,61 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
     open_one(name + "_changed=" + what);  // as a person asks for it
     EXPECT_EQ(open_recorded(spec).size(), 1u);
   }
+}
+
+// Whether the cached build may be run: never one of other files.
+TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
+  const fs::path object = folder / "helper.o", library = folder / "libhelper.a", data = folder / "data.bin";
+  const auto build = [&](bool less) {
+    write("helper.c", std::string("int helper(float a, float b) { return ") + (less ? "a < b" : "a >= b") + "; }");
+    ASSERT_EQ(std::system(("cd " + folder.string() +
+                           " && cc -c -fPIC helper.c -o helper.o && rm -f libhelper.a && ar rc libhelper.a helper.o")
+                              .c_str()),
+              0);
+    std::ofstream(data) << (less ? 'l' : 'g');
+  };
+  const fs::path calls = write("calls.c",
+                               "int helper(float, float);
+                               "
+                               "int intersects(const float a[9], const float b[9]) { return helper(a[0], b[0]); }"),
+                 reads = write("reads.c",
+                               "extern const char data[];
+                               "
+                               "__asm__(".data\ndata
+                               :.incbin \"" + data.string() + "\"\n.hidden data\n.text\n");
+"
+                                   "extern const char data[] __attribute__((visibility("hidden")));
+"
+                                   "int intersects(const float a[9], const float b[9]) {
+"
+                                   "  return data[0] == 'l' ? a[0] < b[0] : a[0] >= b[0]; }");
+struct Case {
+  std::string name;
+  fs::path source;
+  std::vector<std::string> flags;
+  bool covered;
+};
+for (const Case& c :
+     {Case{"object", calls, {object.string()}, true}, Case{"archive", calls, {library.string()}, true},
+      Case{"for_linker", calls, {"-Wl," + object.string()}, false},
+      Case{"by_name", calls, {"-L" + folder.string(), "-lhelper"}, false}, Case{"incbin", reads, {}, false}}) {
+  SCOPED_TRACE(c.name);
+  nlohmann::ordered_json rows[2];
+  for (const bool less : {true, false}) {
+    build(less);
+    const std::string name = c.name + (less ? "_less" : "_not_less");
+    Wanted wanted = parse_subject(name + "=" + c.source.string());
+    wanted.flags = c.flags;
+    open(wanted);
+    const std::vector<Verdict> found = verdicts(find_lane(name + "/f32/cpu")->decide);
+    for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(found[i] == left_of(pairs[i]), less) << i;
+    rows[less] = record({name + "/f32/cpu"}).at(0);
+    EXPECT_EQ(rows[less].contains("not_covered"), !c.covered);
+  }
+  if (c.covered) {
+    EXPECT_NE(rows[0]["hash"], rows[1]["hash"]);
+  }
+}
 }
 
 TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {

@@ -92,7 +92,7 @@ class Supervisor {
   }
 
   void answer(std::size_t count) {
-    Questions questions(count, of_blocks_);
+    Questions questions(count, of_blocks_, limits_.program);
     Answers answers{0, static_cast<std::uint32_t>(count), {}};
     int loads = 0;  // since a worker was ready
     for (bool first = true; !questions.done(); first = false) {
@@ -117,7 +117,7 @@ class Supervisor {
       }
       end_worker();
       questions.take(words_);  // what it answered in the last moment
-      if (!questions.answered()) questions.failed(how);
+      if (!questions.answered() || limits_.program) questions.failed(how);
     }
     std::copy(questions.answers().begin(), questions.answers().end(), answers.answers);
     if (send(kControlFd, &answers, sizeof answers, MSG_NOSIGNAL) != sizeof answers) leave();
@@ -133,7 +133,7 @@ class Supervisor {
       if (questions.take(words_) > 0) {
         before = worker_seconds();
         times = 0;
-        until = after(limits_.seconds);
+        until = after(limits_.seconds + (questions.answered() && limits_.program ? kMostSilence : 0));
       }
       if (told) return questions.answered() ? kDeclined : kCrashed;  // it says that it has answered all
       if (over_limits_) return kCrashed;

@@ -12,6 +12,7 @@ struct Limits {
   double load_seconds = 60;  // to load the code, and to have a worker ready
   std::uint64_t bytes = 0;   // of memory, of all its processes together; 0: unlimited
   std::uint64_t processes = 64;
+  bool program = false;  // it answers by lines
 };
 
 // Answers blocks on kControlFd until graze closes it, then ends all that it started.

@@ -179,8 +179,7 @@ static void open_terminals(void) {
   for (int i = 0; i < 1024; ++i) {
     char name[40];
     snprintf(name, sizeof name, "/dev/pts/%d", i);
-    if (open(name, O_RDWR | O_NOCTTY) >= 0)
-      for (;;) pause();
+    if (open(name, O_RDWR | O_NOCTTY) >= 0) return;  // then the pair has an answer, and the test fails
   }
   abort();
 }

@@ -355,16 +355,13 @@ TEST_F(Hostile, LinesThatWereNotAskedForAreVerdictsOfTheirPairs) {
 int main(int count, char** words) {
   static char line[4096], more[6001];
   const int extra = atoi(words[1]), apart = words[2][0] == 'a', late = words[2][0] == 'l';
-  for (int i = 0; i < extra; ++i) strcat(more, "1
-");
+  for (int i = 0; i < extra; ++i) strcat(more, "1\n");
   if (words[2][0] == 'b') write(1, more, strlen(more));
   while (fgets(line, sizeof line, stdin)) {
     char *at = line, text[6010];
     float a[18];
     for (int i = 0; i < 18; ++i) a[i] = strtof(at, &at);
-    strcpy(text, a[0] < a[9] ? "1
-" : "0
-");
+    strcpy(text, a[0] < a[9] ? "1\n" : "0\n");
     const int bad = a[0] > 0.9f && words[2][0] != 'b';
     if (bad && !apart && !late) strcat(text, more);
     write(1, text, strlen(text));

@@ -52,6 +52,7 @@ class LineProtocol {
   // Throws: std::runtime_error where there is output that was not asked for, or comes in this time.
   void expect_silence(double seconds);
 
+  bool has_answered_ = false;
   double slowest_ = 0;  // seconds until a line came, of the last question
   int to_ = -1, from_ = -1;
   Lines lines_;

@@ -179,7 +179,7 @@ TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
   for (const auto& file : fs::directory_iterator(kRoot / "docs/measurements"))
     if (file.path().extension() == ".toml") ids += named_in(file, std::regex("(?:commit|by|before) = \"([^\"]+)\""));
   EXPECT_GE(std::count(ids.begin(), ids.end(), ' '), 100);
-  const Ran missing = shell("for id in" + ids + "; do " + git +
+  const Ran missing = shell("for id in $(echo" + ids + " | tr ' ' '\\n' | sort -u); do " + git +
                             "merge-base --is-ancestor \"$id\" HEAD 2> /dev/null || echo \"$id\"; done");
   EXPECT_EQ(missing.out, "") << "not in the history";
 }

@@ -15,19 +15,17 @@ bool share_a_vertex(const Pair& pair) {
 
 }  // namespace
 
-bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, Contact contact, const oracle::Shape& shape,
-                   bool touches) {
-  if (lane.outside == 0 || is_failure(verdict)) return false;
-  return (lane.outside & kOutsideTouching && touches && contact != Contact::area) ||
-         (lane.outside & kOutsideCoplanar && shape.coplanar) ||
-         (lane.outside & kOutsideDegenerate && (shape.dimension_a < 2 || shape.dimension_b < 2)) ||
+bool is_outside(const Lane& lane, const Pair& pair, const Relation& truth) {
+  const Hulls& hulls = truth.hulls;
+  return (lane.outside & kOutsideTouching && truth.touches() && truth.contact != Contact::area) ||
+         (lane.outside & kOutsideCoplanar && hulls.coplanar) ||
+         (lane.outside & kOutsideDegenerate && (hulls.dimension_a < 2 || hulls.dimension_b < 2)) ||
          (lane.outside & kOutsideShared && share_a_vertex(pair));
 }
 
-bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, const oracle::Truth& truth) {
-  if (lane.outside == 0 || truth.verdict == Verdict::declined || verdict == truth.verdict) return false;
-  return by_convention(lane, verdict, pair, truth.contact, oracle::shape(pair),
-                       truth.verdict == Verdict::intersects && truth.margin == 0);
+bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, const Relation& truth) {
+  if (is_failure(verdict) || truth.verdict == Verdict::declined || verdict == truth.verdict) return false;
+  return is_outside(lane, pair, truth);
 }
 
 std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const Pair& pair,

@@ -14,10 +14,10 @@ namespace graze::analysis {
 
 // Whether a verdict that is not the truth is of a pair that the lane's convention leaves open. A crash, an endless
 // loop and a verdict that changes are never a convention.
-// touches: the pair intersects, with margin 0.
-bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, Contact contact, const oracle::Shape& shape,
-                   bool touches);
-bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, const oracle::Truth& truth);
+bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, const Relation& truth);
+
+// Whether the lane's convention leaves the pair open.   Requires: finite coordinates.
+bool is_outside(const Lane& lane, const Pair& pair, const Relation& truth);
 
 // The lanes' verdicts, with the truth in place of those that are by convention: what counts as wrong is left.
 std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const Pair& pair,

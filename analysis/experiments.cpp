@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "analysis/scales.h"
-#include "core/exact/exact.h"
+#include "core/relation_of.h"
 #include "cuda/twin/twin.h"
 
 namespace graze::analysis {
@@ -258,11 +258,9 @@ class Trial {
   }
 
   bool is_degenerate() const {
-    const exact::Relation shape = relation(pair_);
-    return shape.dimension_a < 2 || shape.dimension_b < 2;
+    const Hulls hulls = relation_of(pair_).hulls;
+    return hulls.dimension_a < 2 || hulls.dimension_b < 2;
   }
-
-  static exact::Relation relation(const Pair& pair) { return exact::relation(&pair.a[0].x, &pair.b[0].x); }
 
   // Sums and products do not round.
   Experiment without_rounding() const {
@@ -309,7 +307,7 @@ class Trial {
   // Rounded to fewer bits, where that leaves truth and shape as they are.
   std::vector<Pair> snapped() const {
     std::vector<Pair> result;
-    const exact::Relation own = relation(pair_);
+    const Relation own = relation_of(pair_);
     for (const int bits : {1, 2, 3, 4, 6, 8, 10, 12, 16, 20}) {
       if (bits >= size_.high - size_.low) break;
       Pair rounded = pair_;
@@ -317,10 +315,8 @@ class Trial {
       for (int i = 0; i < kCoordinates; ++i)
         coordinates(rounded)[i] = std::ldexp(std::nearbyint(std::ldexp(coordinates(pair_)[i], -unit)), unit);
       if (!is_finite(rounded)) continue;
-      const exact::Relation now = relation(rounded);
-      if (now.intersects == own.intersects && now.contact == own.contact && now.dimension_a == own.dimension_a &&
-          now.dimension_b == own.dimension_b && now.coplanar == own.coplanar)
-        result.push_back(rounded);
+      const Relation now = relation_of(rounded);
+      if (now.contact == own.contact && now.hulls == own.hulls) result.push_back(rounded);
     }
     return result;
   }

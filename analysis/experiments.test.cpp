@@ -15,6 +15,7 @@
 #include "analysis/neighbours.h"
 #include "core/algorithms/moller_1997.h"
 #include "core/exact/exact.h"
+#include "core/relation_of.h"
 #include "strata/strata.h"
 
 namespace graze::analysis {
@@ -85,8 +86,8 @@ std::size_t asked() {
 }
 
 bool is_degenerate(const Pair& pair) {
-  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-  return r.dimension_a < 2 || r.dimension_b < 2;
+  const Relation r = relation_of(pair);
+  return r.hulls.dimension_a < 2 || r.hulls.dimension_b < 2;
 }
 
 // What the settled steps call it, in the words of the experiments.

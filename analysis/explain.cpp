@@ -12,7 +12,7 @@
 #include "analysis/audit.h"
 #include "analysis/convention.h"
 #include "analysis/experiments.h"
-#include "core/exact/exact.h"
+#include "core/relation_of.h"
 
 namespace graze::analysis {
 namespace {
@@ -210,10 +210,7 @@ LaneExplanation account_of_policy(const Lane& lane, Verdict verdict, const Pair&
 
 // Requires: finite coordinates; the verdict is not the truth.
 bool is_by_convention(const Lane& lane, Verdict verdict, const Pair& pair) {
-  if (lane.outside == 0) return false;
-  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-  return by_convention(lane, verdict, pair, static_cast<Contact>(r.contact + 1),
-                       {r.dimension_a, r.dimension_b, r.coplanar}, r.intersects && r.margin_sign == 0);
+  return lane.outside != 0 && by_convention(lane, verdict, pair, relation_of(pair));
 }
 
 // Lanes with the same run: the same source, every operation rounded as written.

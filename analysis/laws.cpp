@@ -15,7 +15,7 @@
 #include "analysis/neighbours.h"
 #include "analysis/scales.h"
 #include "analysis/tally.h"
-#include "core/exact/exact.h"
+#include "core/relation_of.h"
 
 namespace graze::analysis {
 namespace {
@@ -95,10 +95,7 @@ struct Asked {
 };
 
 bool is_outside(const Lane& lane, const Pair& pair) {
-  if (lane.outside == 0) return false;
-  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-  return by_convention(lane, Verdict::declined, pair, static_cast<Contact>(r.contact + 1),
-                       oracle::Shape{r.dimension_a, r.dimension_b, r.coplanar}, r.intersects && r.margin_sign == 0);
+  return lane.outside != 0 && analysis::is_outside(lane, pair, relation_of(pair));
 }
 
 LawBroken broken(std::string_view who, Law law, const strata::PairSource& source, std::uint64_t index, Verdict pair,

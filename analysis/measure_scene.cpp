@@ -33,7 +33,7 @@ Vec3<double> wide(const Vec3<float>& v) {
 double length(const Vec3<double>& v) { return std::sqrt(dot(v, v)); }
 
 bool is_degenerate(const Triangle& t) {
-  return oracle::shape({{t[0], t[1], t[2]}, {t[0], t[1], t[2]}}).dimension_a < 2;
+  return oracle::hulls({{t[0], t[1], t[2]}, {t[0], t[1], t[2]}}).dimension_a < 2;
 }
 
 std::vector<double> quantiles_of(std::vector<double> values) {
@@ -104,14 +104,14 @@ std::optional<GridSpec> grid_of(const std::vector<float>& values) {
   return std::nullopt;
 }
 
-Kind kind_of(const Pair& pair, const oracle::Shape& shape) {
-  if (shape.dimension_a < 2 || shape.dimension_b < 2) return Kind::degenerate;
+Kind kind_of(const Pair& pair, const Hulls& hulls) {
+  if (hulls.dimension_a < 2 || hulls.dimension_b < 2) return Kind::degenerate;
   int shared = 0;
   for (const Vec3<float>& u : pair.a)
     shared += std::any_of(std::begin(pair.b), std::end(pair.b), [&](const Vec3<float>& v) { return u == v; });
   return shared == 2      ? Kind::shared_edge
          : shared == 1    ? Kind::shared_vertex
-         : shape.coplanar ? Kind::coplanar
+         : hulls.coplanar ? Kind::coplanar
                           : Kind::general;
 }
 
@@ -121,7 +121,7 @@ void measure_pairs(const SceneSample& sample, strata::SceneFile& scene) {
   std::map<Bucket, std::uint64_t> margins;
   for (std::uint64_t i = 0; i < count; ++i) {
     const Pair pair = sample.pair(i * (sample.pairs / count));
-    ++kinds[static_cast<std::size_t>(kind_of(pair, oracle::shape(pair)))];
+    ++kinds[static_cast<std::size_t>(kind_of(pair, oracle::hulls(pair)))];
     ++margins[oracle::margin_bucket(pair, oracle::cgal_verdict(pair))];
   }
   const auto share = [&](std::uint64_t n) { return six_digits(static_cast<double>(n) / static_cast<double>(count)); };

@@ -64,8 +64,8 @@ TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
 TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
   int asked = 0;
   for (const Pair& pair : drawn(GetParam().stratum, 300)) {
-    const oracle::Shape shape = oracle::shape(pair);
-    if (shape.dimension_a < 2 || shape.dimension_b < 2) continue;
+    const Hulls hulls = oracle::hulls(pair);
+    if (hulls.dimension_a < 2 || hulls.dimension_b < 2) continue;
     const Verdict truth = oracle::cgal_verdict(pair);
     for (const Lane& row : published_lanes()) {
       if (row.scalar != Scalar::f32 || row.variant != Variant::cpu || !row.info->right_without_rounding) continue;

@@ -61,19 +61,19 @@ char Signature::mark_of(std::string_view lane_within_subject) const {
   return '.';
 }
 
-Signature signature(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth,
-                    std::span<const Lane* const> lanes, std::span<const Verdict> verdicts) {
-  Signature s{contact, shape, bucket, std::string(lanes.front()->info->id), {}};
+Signature signature(const Relation& truth, Bucket bucket, std::span<const Lane* const> lanes,
+                    std::span<const Verdict> verdicts) {
+  Signature s{truth.contact, truth.hulls, bucket, std::string(lanes.front()->info->id), {}};
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    if (const char m = mark(verdicts[l], truth); m != '.')
+    if (const char m = mark(verdicts[l], truth.verdict); m != '.')
       s.wrong_lanes.push_back({lanes[l]->lane_name().within_subject(), m});
   }
   return s;
 }
 
 std::string key(const Signature& s) {
-  std::string text = fmt::format("{}/{}{}/{}/{}/{}:", name(s.contact), s.shape.dimension_a, s.shape.dimension_b,
-                                 s.shape.coplanar ? "coplanar" : "skew", name_of_bucket(s.bucket), s.subject);
+  std::string text = fmt::format("{}/{}{}/{}/{}/{}:", name(s.contact), s.hulls.dimension_a, s.hulls.dimension_b,
+                                 s.hulls.coplanar ? "coplanar" : "skew", name_of_bucket(s.bucket), s.subject);
   for (std::size_t l = 0; l < s.wrong_lanes.size(); ++l)
     text += fmt::format("{}{}{}", l > 0 ? ";" : "", s.wrong_lanes[l].mark, s.wrong_lanes[l].lane);
   return text;

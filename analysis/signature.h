@@ -31,7 +31,7 @@ struct WrongLane {
 // not in it.
 struct Signature {
   Contact contact = Contact::none;
-  oracle::Shape shape;
+  Hulls hulls;
   Bucket bucket = 0;
   std::string subject;
   std::vector<WrongLane> wrong_lanes;  // in the order of the lane table
@@ -43,8 +43,8 @@ struct Signature {
 };
 
 // Requires: lanes are of one subject, verdicts theirs.
-Signature signature(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth,
-                    std::span<const Lane* const> lanes, std::span<const Verdict> verdicts);
+Signature signature(const Relation& truth, Bucket bucket, std::span<const Lane* const> lanes,
+                    std::span<const Verdict> verdicts);
 
 // "point/22/skew/-2^-3/moller_1997:+f32/cpu;-f64/cuda-fma": contact, dimensions of the two hulls, coplanar or skew,
 // margin bucket, subject, and the wrong lanes, each after its mark.

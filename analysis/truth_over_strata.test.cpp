@@ -13,6 +13,7 @@
 #include "core/margin/single_precision.h"
 #include "core/margin/tie_proof.h"
 #include "core/margin_blocks/buckets.h"
+#include "core/relation_of.h"
 #include "oracle/truth.h"
 #include "strata/strata.h"
 
@@ -77,12 +78,12 @@ TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
     ASSERT_EQ(exact::intersects(a, b), verdict == Verdict::intersects) << index;
     ASSERT_EQ(side_by_side[index / 64] >> index % 64 & 1, verdict == Verdict::intersects) << index;
     ASSERT_EQ(declined[index / 64] >> index % 64 & 1, 0u) << index;
-    const exact::Relation r = exact::relation(a, b);
-    ASSERT_EQ(r.intersects, verdict == Verdict::intersects) << index;
-    ASSERT_EQ(r.contact, static_cast<int>(contact) - 1) << index;
-    ASSERT_EQ((oracle::Shape{r.dimension_a, r.dimension_b, r.coplanar}), oracle::shape(pair)) << index;
+    const Relation r = relation_of(pair);
+    ASSERT_EQ(r.verdict, verdict) << index;
+    ASSERT_EQ(r.contact, contact) << index;
+    ASSERT_EQ(r.hulls, oracle::hulls(pair)) << index;
     const Bucket bucket = oracle::margin_bucket(pair, verdict);
-    ASSERT_EQ(r.margin_sign, (bucket > 0) - (bucket < 0)) << index;
+    ASSERT_EQ(r.margin_sign, sign_of(bucket)) << index;
   }
 }
 
@@ -216,7 +217,7 @@ TEST(Lanes, OnTheLatticeDivisionFreeAlgorithmsFailOnDegeneratePairsOnly) {
   for (std::uint64_t index = 0; index < 200'000; ++index) {
     const Pair pair = strata::generate(kSeed, strata::Stratum::lattice, index);
     const Verdict verdict = oracle::cgal_verdict(pair);
-    const oracle::Shape hulls = oracle::shape(pair);
+    const Hulls hulls = oracle::hulls(pair);
     const bool degenerate = hulls.dimension_a < 2 || hulls.dimension_b < 2;
     proper += !degenerate;
     for (const Lane& row : lanes()) {

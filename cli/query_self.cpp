@@ -15,7 +15,7 @@
 
 #include "cli/query_input.h"
 #include "cli/results.h"
-#include "core/exact/exact.h"
+#include "core/relation_of.h"
 #include "corpus/pair_format.h"
 #include "fuzz/files.h"
 #include "reports/terminal.h"
@@ -40,12 +40,12 @@ int common_vertices(const Pair& pair) {
 }
 
 Kind kind_of(const Pair& pair) {
-  const exact::Relation relation = exact::relation(&pair.a[0].x, &pair.b[0].x);
-  if (!relation.intersects) return kApart;
+  const Relation relation = relation_of(pair);
+  if (!relation.intersects()) return kApart;
   const int common = common_vertices(pair);
-  if (common == 0) return relation.margin_sign == 0 && relation.contact < 2 ? kTouching : kPiercing;
-  if (common == 1 && relation.contact == 0) return kVertex;
-  return common == 2 && relation.contact == 1 ? kEdge : kPiercing;
+  if (common == 0) return relation.touches() && relation.contact != Contact::area ? kTouching : kPiercing;
+  if (common == 1 && relation.contact == Contact::point) return kVertex;
+  return common == 2 && relation.contact == Contact::segment ? kEdge : kPiercing;
 }
 
 }  // namespace

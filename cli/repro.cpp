@@ -44,12 +44,11 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
                         std::span<const Verdict> verdicts) {
   const std::string* text = corpus::field(entry, "signature");
   const std::optional<analysis::Signature> recorded = text ? analysis::parse_signature(*text) : std::nullopt;
-  const oracle::Shape hulls = oracle::shape(entry.pair);
   const Bucket bucket = oracle::margin_bucket(entry.pair, t.verdict);
   Compared compared = Compared::nothing;
   analysis::for_each_subject(run, [&](std::size_t first, std::size_t count) {
-    const analysis::Signature now = analysis::signature(t.contact, hulls, bucket, t.verdict, run.subspan(first, count),
-                                                        verdicts.subspan(first, count));
+    const analysis::Signature now =
+        analysis::signature(t, bucket, run.subspan(first, count), verdicts.subspan(first, count));
     const bool is_recorded = recorded && recorded->subject == now.subject;
     if (is_recorded) compared = compare(*recorded, now, run.subspan(first, count));
     if (now.wrong()) {

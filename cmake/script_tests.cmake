@@ -5,6 +5,11 @@ add_test(NAME scripts.IncludeDirection COMMAND ${Python3_EXECUTABLE} ${PROJECT_S
 foreach(script check_includes findings league measurements mutate same_results speed_table torture)
   add_test(NAME scripts.test.${script} COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/${script}.test.py)
 endforeach()
+# Formatters: clang-format, black and prettier. Both tests are skipped if one is missing; the message names it.
+add_test(NAME scripts.Format COMMAND ${PROJECT_SOURCE_DIR}/scripts/format --check --build ${CMAKE_BINARY_DIR})
+set_tests_properties(scripts.Format PROPERTIES SKIP_RETURN_CODE 77)
+add_test(NAME scripts.test.format COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/format.test.py ${CMAKE_BINARY_DIR})
+set_tests_properties(scripts.test.format PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 add_test(NAME scripts.AuditExplanations COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/audit_explanations.test.py $<TARGET_FILE:graze>)
 # A minute of it on an idle machine; an hour by hand: scripts/torture --minutes 60. Each commit has another seed, so
 # that ten commits kill campaigns and minimisations a hundred times, each at other moments.

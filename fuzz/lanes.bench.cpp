@@ -56,7 +56,7 @@ Block block_of(std::vector<Pair> pairs) {
 PairsToTime source_of(std::string id, std::vector<Pair> pairs) {
   std::vector<Pair> proper;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(proper), [](const Pair& pair) {
-    const oracle::Shape hulls = oracle::shape(pair);
+    const Hulls hulls = oracle::hulls(pair);
     return hulls.dimension_a == 2 && hulls.dimension_b == 2;
   });
   return {std::move(id), block_of(std::move(pairs)), block_of(std::move(proper))};

@@ -50,8 +50,9 @@ struct LargePair {
 // The pair's coordinates divided by 2^grid.exponent.
 LargePair large_integers(const Pair& pair, const Grid& grid);
 
-// The two decisions of truth.h on a pair of integers of any size.   Exact: always.
+// The two decisions of truth.h on a pair of integers of any size, and its hulls.   Exact: always.
 Verdict cgal_verdict(const LargePair& pair);
 Contact gmp_contact(const LargePair& pair);
+Hulls hulls(const LargePair& pair);
 
 }  // namespace graze::oracle

@@ -119,7 +119,7 @@ TEST(Precise, ExactlySettlesRootsAndQuotients) {
     PairSource source(kind, 13);
     for (int i = 0; i < 300; ++i) {
       const Pair pair = source.next();
-      if (shape(pair).dimension_a < 2 || shape(pair).dimension_b < 2) continue;
+      if (hulls(pair).dimension_a < 2 || hulls(pair).dimension_b < 2) continue;
       const Exactly exactly = decide_exactly(1, pair);
       EXPECT_TRUE(exactly.settled) << hex(pair);
       EXPECT_EQ(name(exactly.verdict), name(cgal_verdict(pair))) << hex(pair);

@@ -27,7 +27,7 @@ std::string hex_coordinates(const Pair& pair) {
 
 Truth truth(const Pair& pair) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  if (!is_finite(pair)) return {Verdict::declined, Contact::unknown, kNaN, kNaN};
+  if (!is_finite(pair)) return {{Verdict::declined, Contact::unknown, 0, {}}, kNaN, kNaN};
   const Verdict verdict = cgal_verdict(pair);
   const Contact contact = gmp_contact(pair);
   if ((verdict == Verdict::disjoint) != (contact == Contact::none)) {
@@ -40,7 +40,8 @@ Truth truth(const Pair& pair) {
   const double margin = verdict == Verdict::disjoint ? rounded(exact_distance(large, grid.exponent))
                                                      : -rounded(exact_depth(large, grid.exponent, kAllAxes));
   // Adding zero turns -0 into 0; the power of two is exact, for margins stay far from the ends of double.
-  return {verdict, contact, margin + 0.0, std::ldexp(margin, -log2_ulp(pair)) + 0.0};
+  const int sign = (margin > 0) - (margin < 0);
+  return {{verdict, contact, sign, hulls(pair)}, margin + 0.0, std::ldexp(margin, -log2_ulp(pair)) + 0.0};
 }
 
 }  // namespace graze::oracle

@@ -11,9 +11,7 @@
 
 namespace graze::oracle {
 
-struct Truth {
-  Verdict verdict = Verdict::declined;
-  Contact contact = Contact::unknown;
+struct Truth : Relation {
   double margin = 0;       // signed gap in the pair's units, correctly rounded; NaN when declined
   double margin_ulps = 0;  // the same in float32 ulps of the largest coordinate
 };
@@ -23,7 +21,7 @@ struct OracleApart : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Verdict, contact and margin; the verdict is CGAL's, confirmed by the decision on GMP integers.
+// Relation and margin; the verdict is CGAL's, confirmed by the decision on GMP integers.
 // Exact: always; the margin is a rational's square root, rounded once by MPFR.
 // Throws: OracleApart.   Returns: declined, unknown, NaN where a coordinate is not finite.
 Truth truth(const Pair& pair);
@@ -36,17 +34,8 @@ Verdict cgal_verdict(const Pair& pair);
 // Requires: finite coordinates.   Exact: always.   The pair intersects when this is not Contact::none.
 Contact gmp_contact(const Pair& pair);
 
-// What the two hulls are: their dimensions (0 point, 1 segment, 2 triangle), and whether one plane holds all six
-// points.
-struct Shape {
-  int dimension_a = 2;
-  int dimension_b = 2;
-  bool coplanar = false;
-  auto operator<=>(const Shape&) const = default;
-};
-
-// Requires: finite coordinates.   Exact: always.
-Shape shape(const Pair& pair);
+// By exact ranks of integer vectors.   Requires: finite coordinates.   Exact: always.
+Hulls hulls(const Pair& pair);
 
 // Bucket of the exact margin. A certified double-precision estimate decides nearly always, GMP otherwise.
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.

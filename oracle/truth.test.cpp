@@ -144,7 +144,7 @@ TEST(Shape, NamesDimensionsAndCommonPlane) {
     const Group* group = kGroups;
     while (name.rfind(group->prefix, 0) != 0) ++group;
     for (const Pair& pair : {example.pair, oracle_test::reordered(example.pair, 17)}) {
-      const Shape found = shape(pair);
+      const Hulls found = hulls(pair);
       EXPECT_EQ(found.dimension_a, group->dimension_a) << name;
       EXPECT_EQ(found.dimension_b, group->dimension_b) << name;
       EXPECT_EQ(found.coplanar, group->coplanar) << name;

@@ -87,7 +87,8 @@ std::optional<Truth> truth_as_written(std::span<const std::string> numbers, cons
   SquaredMargin squared = verdict == Verdict::disjoint ? exact_distance(large, 0) : exact_depth(large, 0, kAllAxes);
   squared.denominator *= denominator * denominator;
   const double margin = verdict == Verdict::disjoint ? rounded(squared) : -rounded(squared);
-  return Truth{verdict, contact, margin + 0.0, std::ldexp(margin, -log2_ulp(stored)) + 0.0};
+  const int sign = (margin > 0) - (margin < 0);
+  return Truth{{verdict, contact, sign, hulls(large)}, margin + 0.0, std::ldexp(margin, -log2_ulp(stored)) + 0.0};
 }
 
 }  // namespace graze::oracle

@@ -26,13 +26,25 @@ faces = array.array("I", range(3 * COUNT))
 
 def ask(part=(), **changes):
     """Returns: the status and the hits of ten triangles that all meet the reference, but for these changes."""
-    fields = dict(count=COUNT, device=-1, rows=example.address(rows), vertices=example.address(rows),
-                  faces=example.address(faces), vertex_count=3 * COUNT)
+    fields = dict(
+        count=COUNT,
+        device=-1,
+        rows=example.address(rows),
+        vertices=example.address(rows),
+        faces=example.address(faces),
+        vertex_count=3 * COUNT,
+    )
     fields.update(part)
     columns = [example.address(rows) + 4 * k for k in range(9)]
     triangles = example.Triangles(columns=(ctypes.c_void_p * 9)(*columns), **fields)
-    values = dict(size=ctypes.sizeof(example.Query), references=example.address(reference), reference_count=1,
-                  parts=ctypes.pointer(triangles), part_count=1, mode=example.ALL)
+    values = dict(
+        size=ctypes.sizeof(example.Query),
+        references=example.address(reference),
+        reference_count=1,
+        parts=ctypes.pointer(triangles),
+        part_count=1,
+        mode=example.ALL,
+    )
     values.update(changes)
     answer = example.Answer()
     status = library.graze_run(context, ctypes.byref(example.Query(**values)), ctypes.byref(answer))
@@ -65,10 +77,23 @@ for device in (-2, -(1 << 31)):
     refuse({"device": device})
 for layout in (-1, 3, (1 << 31) - 1):
     refuse({"layout": layout})
-for name, value in (("size", 0), ("size", SIZE_MAX), ("references", None), ("reference_count", 0),
-                    ("reference_count", SIZE_MAX), ("parts", None), ("part_count", 0), ("part_count", SIZE_MAX),
-                    ("mode", -1), ("mode", 2), ("executor", -1), ("executor", 5), ("list_room", 1),
-                    ("launch_seconds", float("nan")), ("launch_seconds", -1.0)):
+for name, value in (
+    ("size", 0),
+    ("size", SIZE_MAX),
+    ("references", None),
+    ("reference_count", 0),
+    ("reference_count", SIZE_MAX),
+    ("parts", None),
+    ("part_count", 0),
+    ("part_count", SIZE_MAX),
+    ("mode", -1),
+    ("mode", 2),
+    ("executor", -1),
+    ("executor", 5),
+    ("list_room", 1),
+    ("launch_seconds", float("nan")),
+    ("launch_seconds", -1.0),
+):
     refuse(**{name: value})
 library.graze_close(context)
 print(f"{refused} refused")

@@ -42,8 +42,8 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
           {"count", found.at("count")},
           {"share", std::stod(fmt::format("{:.5g}", share))},
           {"contact", name(signature.contact)},
-          {"dimensions", fmt::format("{}{}", signature.shape.dimension_a, signature.shape.dimension_b)},
-          {"coplanar", signature.shape.coplanar},
+          {"dimensions", fmt::format("{}{}", signature.hulls.dimension_a, signature.hulls.dimension_b)},
+          {"coplanar", signature.hulls.coplanar},
           {"margin", name_of_bucket(signature.bucket)},
           {"marks", marks},
           {"cards", Json::array()}};

@@ -46,7 +46,7 @@ class FailureCards : public CampaignTest {
     const Verdict truth = oracle::cgal_verdict(pair);
     std::set<std::string> found;
     for (const fuzz::LaneReason& reason : fuzz::reasons_of(under_test, subject, pair, truth)) {
-      if (fuzz::kind_key(subject, reason, oracle::shape(pair)) == kind["key"]) found.insert(reason.lane->id);
+      if (fuzz::kind_key(subject, reason, oracle::hulls(pair)) == kind["key"]) found.insert(reason.lane->id);
     }
     return found;
   }
@@ -77,7 +77,7 @@ TEST_F(FailureCards, DoNotContradictThemselves) {
     const std::string subject = kind["subject"], line = kind["line"], key = kind["key"];
     const Pair pair = shown_pair(card);
     const oracle::Truth truth = oracle::truth(pair);
-    EXPECT_EQ(kind["shape"], fuzz::shape_name(oracle::shape(pair))) << key;
+    EXPECT_EQ(kind["shape"], fuzz::shape_name(oracle::hulls(pair))) << key;
     EXPECT_EQ(card["truth"]["verdict"], name(truth.verdict)) << key;
     EXPECT_EQ(card["drawing"]["contact"].empty(), truth.verdict == Verdict::disjoint) << key;
 

@@ -17,11 +17,27 @@ except ImportError:  # numpy may be Debian's alone
     os.execv("/usr/bin/python3", ["/usr/bin/python3", "-B", *sys.argv])
 
 GRAZE = sys.argv.pop(1)
-PAIRS = ["mixed_scale:77:5496", "extreme_scale:77:475", "exact_contact:77:184", "extreme_scale:77:2932", "exact_contact:1:1",
-         "coplanar_rounded:1:3", "coplanar_rounded:1:10", "near_edge_edge:3:100", "extreme_scale:1:2280", "lattice:1:27", "coplanar_lattice:1:3167", "near_vertex_vertex:1:5",
-         "degenerate:1:4", "shared_edge:1:16", "shared_edge:21:21",
-         # numbers of 2^72, of which exact arithmetic needs more bits on the lane's path than on its own; a cause found by its numbers
-         "extreme_scale:1:105", "mixed_scale:1:57", "extreme_scale:1:46"]
+PAIRS = [
+    "mixed_scale:77:5496",
+    "extreme_scale:77:475",
+    "exact_contact:77:184",
+    "extreme_scale:77:2932",
+    "exact_contact:1:1",
+    "coplanar_rounded:1:3",
+    "coplanar_rounded:1:10",
+    "near_edge_edge:3:100",
+    "extreme_scale:1:2280",
+    "lattice:1:27",
+    "coplanar_lattice:1:3167",
+    "near_vertex_vertex:1:5",
+    "degenerate:1:4",
+    "shared_edge:1:16",
+    "shared_edge:21:21",
+    # numbers of 2^72, of which exact arithmetic needs more bits on the lane's path than on its own; a cause found by its numbers
+    "extreme_scale:1:105",
+    "mixed_scale:1:57",
+    "extreme_scale:1:46",
+]
 
 
 def explained(pair):
@@ -61,6 +77,7 @@ class Audit(unittest.TestCase):
             changed = [text.replace(old, new, 1) for text in one["sentences"]]
             differs, one["sentences"] = changed != one["sentences"], changed
             return differs
+
         self.planted(change)
 
     def test_another_line_does_not_hold(self):
@@ -79,7 +96,10 @@ class Audit(unittest.TestCase):
         self.in_sentences(" into -", " into ")
 
     def test_a_comparison_too_many_does_not_hold(self):
-        self.in_sentences(" goes the wrong way; ", " goes the wrong way and, were it right, a later one at core/algorithms/range.h:31; ")
+        self.in_sentences(
+            " goes the wrong way; ",
+            " goes the wrong way and, were it right, a later one at core/algorithms/range.h:31; ",
+        )
 
     def test_a_comparison_too_few_does_not_hold(self):
         def change(one):
@@ -89,6 +109,7 @@ class Audit(unittest.TestCase):
                     one["sentences"][i] = text[:begin] + text[end:]
                     return True
             return False
+
         self.planted(change)
 
     def test_fewer_bits_do_not_hold(self):
@@ -99,6 +120,7 @@ class Audit(unittest.TestCase):
                     one["sentences"][i] = text.replace(f"{bits} mantissa", f"{int(bits) - 1} mantissa")
                     return True
             return False
+
         self.planted(change)
 
     def test_a_later_comparison_that_mends_as_well_is_not_the_first(self):
@@ -108,6 +130,7 @@ class Audit(unittest.TestCase):
                     lane["deciding"][0] += 1
                     return True
             return False
+
         self.planted(change)
 
 

@@ -11,7 +11,13 @@ import re
 import sys
 
 SOURCES = {".h", ".cpp", ".cu", ".cuh", ".inl"}
-GENERATED = {"build_info.h", "embedded.inc", "page_template.inc", "viewer_template.inc", "canaries.inc"}  # by the build, on an include path of their own
+GENERATED = {
+    "build_info.h",
+    "embedded.inc",
+    "page_template.inc",
+    "viewer_template.inc",
+    "canaries.inc",
+}  # by the build, on an include path of their own
 
 LIBRARIES = [  # what an include names, which library that is, the folder that may see it
     (r"CGAL/|boost/multiprecision/(gmp|mpfr)|gmp(xx)?\.h|mpfr\.h", "CGAL, GMP and MPFR", "oracle"),
@@ -21,7 +27,10 @@ LIBRARIES = [  # what an include names, which library that is, the folder that m
 EXCEPTIONS = {  # files, the library that they see, and why
     "core/*.test.cpp": ("CGAL, GMP and MPFR", "runs the algorithms on MPFR numbers: they must compile for any scalar"),
     "strata/mesh*.cpp": ("CGAL, GMP and MPFR", "CGAL's mesh readers and box intersection, which decide nothing"),
-    "subjects/third_party/cgal.cpp": ("CGAL, GMP and MPFR", "the library that is tested; scripts/league alone builds it"),
+    "subjects/third_party/cgal.cpp": (
+        "CGAL, GMP and MPFR",
+        "the library that is tested; scripts/league alone builds it",
+    ),
     "fuzz/ranks/mpi.cpp": ("MPI", "the one file that does"),
     "fuzz/lanes.bench.cpp": ("CGAL, GMP and MPFR", "times CGAL's own predicates beside the lanes"),
 }
@@ -36,8 +45,11 @@ def includes(file):
 
 def algorithms(root):
     """The headers of published algorithms: those that say so by their kInfo."""
-    return {f"core/algorithms/{file.name}" for file in (root / "core/algorithms").glob("*.h")
-            if "AlgorithmInfo kInfo" in file.read_text(encoding="utf-8")}
+    return {
+        f"core/algorithms/{file.name}"
+        for file in (root / "core/algorithms").glob("*.h")
+        if "AlgorithmInfo kInfo" in file.read_text(encoding="utf-8")
+    }
 
 
 def check(root, exceptions):
@@ -45,7 +57,7 @@ def check(root, exceptions):
     order = re.findall(r"^add_subdirectory\((\w+)\)", (root / "CMakeLists.txt").read_text(encoding="utf-8"), re.M)
     said, used, count, of_algorithms = [], set(), 0, algorithms(root)
     for place, folder in enumerate(order):
-        allowed = order[:place + 1]
+        allowed = order[: place + 1]
         for file in sorted(path for path in (root / folder).rglob("*") if path.suffix in SOURCES):
             count += 1
             name = file.relative_to(root).as_posix()
@@ -60,12 +72,16 @@ def check(root, exceptions):
                 for pattern, library, home in LIBRARIES:
                     if folder == home or not re.match(pattern, included):
                         continue
-                    excepted = [glob for glob, row in exceptions.items() if row[0] == library and fnmatch.fnmatch(name, glob)]
+                    excepted = [
+                        glob for glob, row in exceptions.items() if row[0] == library and fnmatch.fnmatch(name, glob)
+                    ]
                     used.update(excepted)
                     if not excepted:
                         said.append(f"{name}:{line}: expected {library} below {home} only, found <{included}>")
     for glob in exceptions.keys() - used:
-        said.append(f"{glob}: expected an include of {exceptions[glob][0]}, which is listed as an exception, found none")
+        said.append(
+            f"{glob}: expected an include of {exceptions[glob][0]}, which is listed as an exception, found none"
+        )
     return count, said
 
 

@@ -19,7 +19,10 @@ class IncludeDirection(unittest.TestCase):
         self.write("CMakeLists.txt", "add_subdirectory(core)\nadd_subdirectory(oracle)\nadd_subdirectory(cuda)\n")
         self.write("core/pair.h", "#pragma once\n#include <cstdint>\n")
         self.write("oracle/truth.cpp", '#include "core/pair.h"\n#include <gmpxx.h>\n#include <CGAL/intersections.h>\n')
-        self.write("cuda/lanes/kernels.cu", '#include "cuda/lanes/kernels.cuh"\n#include "core/pair.h"\n#include <cub/cub.cuh>\n')
+        self.write(
+            "cuda/lanes/kernels.cu",
+            '#include "cuda/lanes/kernels.cuh"\n#include "core/pair.h"\n#include <cub/cub.cuh>\n',
+        )
         self.write("cuda/lanes/kernels.cuh", '#include <cuda_runtime.h>\n#include "build_info.h"\n')
 
     def write(self, name, text):
@@ -61,7 +64,9 @@ class IncludeDirection(unittest.TestCase):
         self.write("core/algorithms/list.h", '#include "core/algorithms/sat.h"\n')
         self.assertEqual(self.said(), [])
         self.write("core/algorithms/moller.h", '#include "core/algorithms/sat.h"\n' + info)
-        self.assertEqual(self.said(), ['core/algorithms/moller.h:1: expected no other algorithm, found "core/algorithms/sat.h"'])
+        self.assertEqual(
+            self.said(), ['core/algorithms/moller.h:1: expected no other algorithm, found "core/algorithms/sat.h"']
+        )
 
     def test_an_exception_is_for_its_library_and_must_be_used(self):
         reads = {"core/mesh*.cpp": ("CGAL, GMP and MPFR", "reads meshes")}

@@ -32,7 +32,10 @@ class Findings(unittest.TestCase):
 
     def test_a_page_is_held_to_what_it_says(self):
         right = self.checked(PAGE.format(prints="1", says="1"))
-        self.assertEqual((right.returncode, right.stdout), (0, "as said  stub, with g++\n1 of 1 programs print what their pages say\n"))
+        self.assertEqual(
+            (right.returncode, right.stdout),
+            (0, "as said  stub, with g++\n1 of 1 programs print what their pages say\n"),
+        )
         wrong = self.checked(PAGE.format(prints="1", says="2"))
         self.assertEqual(wrong.returncode, 1)
         self.assertIn("WRONG    stub, with g++\nexpected:\n2\nprinted:\n1\n", wrong.stdout)
@@ -51,7 +54,16 @@ class Findings(unittest.TestCase):
         self.assertTrue(pages)
         for page in pages:
             text = page.read_text(encoding="utf-8")
-            for part in ("Not sent anywhere", "**Smallest case**", "**Expected:**", "**Found:**", "**Version:**", "**Packages:** `g++ ", "**Cause:**", "```cpp\n// g++"):
+            for part in (
+                "Not sent anywhere",
+                "**Smallest case**",
+                "**Expected:**",
+                "**Found:**",
+                "**Version:**",
+                "**Packages:** `g++ ",
+                "**Cause:**",
+                "```cpp\n// g++",
+            ):
                 self.assertIn(part, text, page.name)
 
 

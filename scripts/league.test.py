@@ -24,7 +24,10 @@ class League(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             source = pathlib.Path(folder, "stub.c")
             source.write_text(SUBJECT % body, encoding="utf-8")
-            subprocess.run(["gcc", "-shared", "-fPIC", f"-I{league.ROOT}/subjects/include", source, "-o", f"{folder}/stub.so"], check=True)
+            subprocess.run(
+                ["gcc", "-shared", "-fPIC", f"-I{league.ROOT}/subjects/include", source, "-o", f"{folder}/stub.so"],
+                check=True,
+            )
             try:
                 return league.check(f"{folder}/stub.so:stub")
             except league.LeftOut as why:
@@ -35,7 +38,10 @@ class League(unittest.TestCase):
         self.assertEqual(self.what_is_said_of(f"return {right}"), "7  f64: touching yes, coplanar yes")
         self.assertEqual(self.what_is_said_of(f"return b[2] == 0 ? 0 : {right}"), "7  f64: touching no, coplanar no")
         self.assertEqual(self.what_is_said_of(f"return b[2] == 0 ? -1 : {right}"), "7  f64: touching ?, coplanar ?")
-        self.assertIn("left out: wrong use of the library, or unusable: f64 answers 1 to the pair that is apart", self.what_is_said_of("return 1"))
+        self.assertIn(
+            "left out: wrong use of the library, or unusable: f64 answers 1 to the pair that is apart",
+            self.what_is_said_of("return 1"),
+        )
         self.assertIn("f64 answers 0 to the pair that is crossing", self.what_is_said_of("return 0"))
         self.assertIn("left out: crashed", self.what_is_said_of("abort()"))
 

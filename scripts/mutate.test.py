@@ -80,7 +80,12 @@ class Mutate(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, cls.root)
         for folder in ["scripts", "part"]:
             (cls.root / folder).mkdir()
-        for name, text in [("CMakeLists.txt", CMAKE), ("part/small.h", HEADER), ("part/small.cpp", SOURCE), ("part/small.test.cpp", TEST)]:
+        for name, text in [
+            ("CMakeLists.txt", CMAKE),
+            ("part/small.h", HEADER),
+            ("part/small.cpp", SOURCE),
+            ("part/small.test.cpp", TEST),
+        ]:
             (cls.root / name).write_text(text)
         build = ["cmake", "-G", "Ninja", "-S", cls.root, "-B", cls.root / "build"]
         subprocess.run(build, check=True, capture_output=True)
@@ -106,7 +111,7 @@ class Mutate(unittest.TestCase):
         self.assertNotIn(("part/small.h", "+", "-", 1), states)
         self.assertEqual(ran.returncode, 1)
         self.assertIn("SURVIVED part/small.cpp:9:30 * -> +", ran.stdout)
-        total = ran.stdout[ran.stdout.index("| all |"):].split("\n")[0].split("|")
+        total = ran.stdout[ran.stdout.index("| all |") :].split("\n")[0].split("|")
         self.assertEqual(int(total[2]), sum(int(cell) for cell in total[3:8]))
         self.assertEqual(total[5].strip(), "1")
         self.assertEqual(list(self.root.glob("*/mutant-*")), [])
@@ -123,7 +128,9 @@ class Mutate(unittest.TestCase):
     def test_is_not_delayed_by_tests_that_were_timed_before(self):
         first, _ = self.run_script()
         # Of the header its test is compiled, of the source the build's own object serves.
-        self.assertRegex(first.stdout, r"(?m)^small part/small.test.cpp part/small.test.cpp: pass without a mutant, in \d")
+        self.assertRegex(
+            first.stdout, r"(?m)^small part/small.test.cpp part/small.test.cpp: pass without a mutant, in \d"
+        )
         self.assertRegex(first.stdout, r"(?m)^small part/small.test.cpp: pass without a mutant, in \d")
         again, _ = self.run_script("--again", "survived")
         self.assertIn("survived     part/small.cpp:9:30", again.stdout)

@@ -60,7 +60,9 @@ class SameResults(unittest.TestCase):
         self.assertIn("new graze explain mixed_scale:1:3", said)
         broken = self.graze("broken", status="2")  # both fail alike
         self.assertEqual(subprocess.run([sys.executable, SCRIPT, broken, broken], capture_output=True).returncode, 1)
-        self.assertEqual(subprocess.run([sys.executable, SCRIPT, broken, self.folder], capture_output=True).returncode, 2)
+        self.assertEqual(
+            subprocess.run([sys.executable, SCRIPT, broken, self.folder], capture_output=True).returncode, 2
+        )
 
 
 if __name__ == "__main__":

@@ -7,8 +7,15 @@ import sys
 
 EXACT, PROPER, CUDA = "exact/f32/cpu", "exact/f32/cpu,proper", "exact/f32/cuda"
 DOUBLES, THESIS = "guigue_devillers_2003/f64/cpu", "interval_overlap/f32/cpu"
-BESIDE = {EXACT: EXACT, DOUBLES: DOUBLES, THESIS: THESIS, "cgal_epick": "CGAL EPICK", "cgal_epeck": "CGAL EPECK",
-          "cgal_verdict": "CGAL, Graze's oracle", "gmp_contact": "GMP"}
+BESIDE = {
+    EXACT: EXACT,
+    DOUBLES: DOUBLES,
+    THESIS: THESIS,
+    "cgal_epick": "CGAL EPICK",
+    "cgal_epeck": "CGAL EPECK",
+    "cgal_verdict": "CGAL, Graze's oracle",
+    "gmp_contact": "GMP",
+}
 STAGES = ("bounded", "doubles", "int128", "wide")
 
 
@@ -27,7 +34,9 @@ def read(path):
         decision, stratum = name.rsplit("/", 1)
         results.setdefault(decision, {})[stratum] = {
             key: statistics.median(run[key] for run in runs)
-            for key, value in runs[0].items() if isinstance(value, (int, float))}
+            for key, value in runs[0].items()
+            if isinstance(value, (int, float))
+        }
     if not results:
         sys.exit(f"speed_table: {path}: expected benchmark results, found none")
     context = document["context"]
@@ -45,8 +54,10 @@ def figure(x):
 
 def lanes_by_strata(results, unit):
     strata = dict.fromkeys(stratum for runs in results.values() for stratum in runs)
-    return table(["lane", *strata], [[decision, *(unit(runs[s]) if s in runs else "-" for s in strata)]
-                                     for decision, runs in results.items()])
+    return table(
+        ["lane", *strata],
+        [[decision, *(unit(runs[s]) if s in runs else "-" for s in strata)] for decision, runs in results.items()],
+    )
 
 
 def host(context, results):
@@ -57,8 +68,15 @@ def host(context, results):
         of = {decision: results[decision].get(stratum) for decision in (*BESIDE, PROPER)}
         ratio = lambda l, r: f"{of[r]['items_per_second'] / of[l]['items_per_second']:.2f}" if of[l] and of[r] else "-"
         proper = of["cgal_epick"]["pairs"] / exact["pairs"] if of["cgal_epick"] else 0
-        rows.append([stratum, *(nanoseconds(of[d]) if of[d] else "-" for d in BESIDE),
-                     ratio(EXACT, DOUBLES), ratio("cgal_epick", PROPER), f"{100 * proper:.3g} %"])
+        rows.append(
+            [
+                stratum,
+                *(nanoseconds(of[d]) if of[d] else "-" for d in BESIDE),
+                ratio(EXACT, DOUBLES),
+                ratio("cgal_epick", PROPER),
+                f"{100 * proper:.3g} %",
+            ]
+        )
     return f"""## CPU: nanoseconds per pair on one core
 {context['processor']}, {context['num_cpus']} cores; {context['compiler']}, `{context['flags']}`; commit `{context['commit']}`.
 Median of {context['repetitions']} repetitions, CPU time, on the same pairs of each stratum (seed 1, at most {most:,.0f}), which lie in the cache: bound by arithmetic and branches, not by memory.
@@ -75,9 +93,16 @@ def device(context, results):
     memory = {kind: results[kind]["memory"]["bytes_per_second"] for kind in ("copy", "read")}
     giga = lambda run: figure(run["items_per_second"] / 1e9)
     share = lambda run, kind: f"{100 * run['bytes_per_second'] / memory[kind]:.3g} %"
-    rows = [[stratum, giga(run), share(run, "copy"), share(run, "read"),
-             *(f"{100 * run[stage] / sum(run[s] for s in STAGES):.3g} %" for stage in STAGES)]
-            for stratum, run in results[CUDA].items()]
+    rows = [
+        [
+            stratum,
+            giga(run),
+            share(run, "copy"),
+            share(run, "read"),
+            *(f"{100 * run[stage] / sum(run[s] for s in STAGES):.3g} %" for stage in STAGES),
+        ]
+        for stratum, run in results[CUDA].items()
+    ]
     lanes = {decision: runs for decision, runs in results.items() if decision not in memory}
     return f"""## GPU: 10^9 pairs per second, resident pairs
 {context['device']}, CUDA {context['driver']}; nvcc {context['nvcc']}, `{context['flags']}`; commit `{context['commit']}`.

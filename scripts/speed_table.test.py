@@ -19,7 +19,12 @@ def runs(name, *seconds, items=1000, **counters):
 
 
 def host_results():
-    times = {"guigue_devillers_2003/f64/cpu": 2e-5, "interval_overlap/f32/cpu": 3e-5, "cgal_verdict": 5e-4, "gmp_contact": 2e-3}
+    times = {
+        "guigue_devillers_2003/f64/cpu": 2e-5,
+        "interval_overlap/f32/cpu": 3e-5,
+        "cgal_verdict": 5e-4,
+        "gmp_contact": 2e-3,
+    }
     benchmarks = [run for name, s in times.items() for run in runs(f"{name}/thesis", s, pairs=1000)]
     benchmarks += runs("exact/f32/cpu/thesis", 9e-5, 4e-5, 3e-5, pairs=1000)  # median: 40 ns per pair
     benchmarks += runs("exact/f32/cpu,proper/thesis", 2e-5, items=800, pairs=800)  # 25 ns
@@ -30,8 +35,11 @@ def host_results():
 
 def device_results():
     stages = {"bounded": 900, "doubles": 50, "int128": 30, "wide": 20}
-    return (runs("copy/memory/manual_time", 1.0, bytes_per_second=2.88e12) + runs("read/memory/manual_time", 1.0, bytes_per_second=3e12)
-            + runs("exact/f32/cuda/thesis/manual_time", 1.0, items=3e10, bytes_per_second=2.16e12, **stages))
+    return (
+        runs("copy/memory/manual_time", 1.0, bytes_per_second=2.88e12)
+        + runs("read/memory/manual_time", 1.0, bytes_per_second=3e12)
+        + runs("exact/f32/cuda/thesis/manual_time", 1.0, items=3e10, bytes_per_second=2.16e12, **stages)
+    )
 
 
 class SpeedTable(unittest.TestCase):
@@ -50,7 +58,9 @@ class SpeedTable(unittest.TestCase):
         self.assertNotIn("GPU", result.stdout)
 
     def test_a_stratum_that_cgal_does_not_take_has_no_figure_for_it(self):
-        only_graze = [run for run in host_results() if "proper" not in run["run_name"] and "cgal_ep" not in run["run_name"]]
+        only_graze = [
+            run for run in host_results() if "proper" not in run["run_name"] and "cgal_ep" not in run["run_name"]
+        ]
         other = [{**run, "run_name": run["run_name"].replace("thesis", "degenerate")} for run in only_graze]
         result = self.run_script((HOST, host_results() + other))
         self.assertIn("| degenerate | 40 | 20 | 30 | - | - | 500 | 2,000 | 2.00 | - | 0 % |\n", result.stdout)
@@ -62,8 +72,13 @@ class SpeedTable(unittest.TestCase):
         self.assertIn("which is 40 * 10^9 pairs/s", result.stdout)
 
     def test_a_failed_validation_fails(self):
-        failed = {"name": "exact/f32/cpu/thesis", "run_name": "exact/f32/cpu/thesis", "run_type": "iteration",
-                  "error_occurred": True, "error_message": "differs from the oracle"}
+        failed = {
+            "name": "exact/f32/cpu/thesis",
+            "run_name": "exact/f32/cpu/thesis",
+            "run_type": "iteration",
+            "error_occurred": True,
+            "error_message": "differs from the oracle",
+        }
         result = self.run_script((HOST, host_results() + [failed]))
         self.assertEqual(result.returncode, 1)
         self.assertIn("expected figures of exact/f32/cpu/thesis, found: differs from the oracle", result.stderr)

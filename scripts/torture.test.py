@@ -18,7 +18,7 @@ torture = importlib.util.module_from_spec(importlib.util.spec_from_loader("tortu
 loader.exec_module(torture)
 
 # A campaign of eight rows, 50 ms each. MODE says what it does wrong.
-GRAZE = r'''#!%(python)s -BS
+GRAZE = r"""#!%(python)s -BS
 import fcntl, os, pathlib, shutil, signal, sqlite3, stat, subprocess, sys, time
 MODE = "%(mode)s"
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -139,7 +139,7 @@ elif words[0] == "corpus" and words[1] != "add":
     damaged(f"{option('--corpus')}/cases.pairs")
 else:
     damaged(next(word for word in words if word.startswith("/")))
-'''
+"""
 
 
 class Torture(unittest.TestCase):
@@ -167,7 +167,9 @@ class Torture(unittest.TestCase):
         return counts, said.getvalue()
 
     def test_nothing_of_one_that_does_what_it_must(self):
-        of_results = {kind for kind, attack in torture.KINDS.items() if attack.__module__.endswith(".results")}  # the stand-in has none of these verbs
+        of_results = {
+            kind for kind, attack in torture.KINDS.items() if attack.__module__.endswith(".results")
+        }  # the stand-in has none of these verbs
         for kind in sorted(torture.KINDS.keys() - of_results):
             with self.subTest(kind):
                 counts, said = self.attack("good", kind)
@@ -176,30 +178,35 @@ class Torture(unittest.TestCase):
 
     def test_what_each_does_wrong(self):
         for kind, mode, what in (
-                ("kill_fuzz", "loses", "found that 1 files differ, the first summary.json"),
-                ("kill_hunt", "loses", "found that 1 files differ, the first summary.json"),
-                ("kill_minimize", "loses", "found that 1 files differ, the first cases/1.json"),
-                ("full_disk", "litters", "expected nothing left behind"),
-                ("two_at_once", "collides", "expected one line on stderr"),
-                ("foreign", "leaves", "expected no process after the end"),
-                ("foreign", "infects", "expected moller_1997/f32/cpu to have the counts"),
-                ("flips", "believes", "found that 1 files differ, the first summary.json"),
-                ("flips", "crashes", "expected exit status 0, 1 or 2, found -11"),
-                ("flips", "stuck", "expected success, found status 1"),
-                ("database_bytes", "babbles", "expected one line on stderr"),
-                ("sql", "mumbles", "expected a line that names campaign.sqlite"),
-                ("forged", "crashes", "expected exit status 0, 1 or 2, found -11"),
-                ("pairs", "crashes", "expected exit status 0, 1 or 2, found -11"),
-                ("meshes", "mumbles", "expected a line that names"),
-                ("scenes", "mumbles", "expected a line that names"),
-                ("json", "crashes", "expected exit status 0, 1 or 2, found -11"),
-                ("outputs", "replaces", "found otherwise")):
+            ("kill_fuzz", "loses", "found that 1 files differ, the first summary.json"),
+            ("kill_hunt", "loses", "found that 1 files differ, the first summary.json"),
+            ("kill_minimize", "loses", "found that 1 files differ, the first cases/1.json"),
+            ("full_disk", "litters", "expected nothing left behind"),
+            ("two_at_once", "collides", "expected one line on stderr"),
+            ("foreign", "leaves", "expected no process after the end"),
+            ("foreign", "infects", "expected moller_1997/f32/cpu to have the counts"),
+            ("flips", "believes", "found that 1 files differ, the first summary.json"),
+            ("flips", "crashes", "expected exit status 0, 1 or 2, found -11"),
+            ("flips", "stuck", "expected success, found status 1"),
+            ("database_bytes", "babbles", "expected one line on stderr"),
+            ("sql", "mumbles", "expected a line that names campaign.sqlite"),
+            ("forged", "crashes", "expected exit status 0, 1 or 2, found -11"),
+            ("pairs", "crashes", "expected exit status 0, 1 or 2, found -11"),
+            ("meshes", "mumbles", "expected a line that names"),
+            ("scenes", "mumbles", "expected a line that names"),
+            ("json", "crashes", "expected exit status 0, 1 or 2, found -11"),
+            ("outputs", "replaces", "found otherwise"),
+        ):
             with self.subTest(f"{kind} {mode}"):
-                counts, said = self.attack(mode, kind, rounds=50 if mode in ("loses", "collides") else 1)  # depends on when
+                counts, said = self.attack(
+                    mode, kind, rounds=50 if mode in ("loses", "collides") else 1
+                )  # depends on when
                 self.assertEqual(counts["violations"], 1)
                 self.assertRegex(said, f"^VIOLATION in {kind}:[0-9]+: ")
                 self.assertIn(what, said)
-                self.assertRegex(said, f"again: scripts/torture --graze {self.folder}/graze-{mode} --seed 1 --repeat {kind}:[0-9]+\n")
+                self.assertRegex(
+                    said, f"again: scripts/torture --graze {self.folder}/graze-{mode} --seed 1 --repeat {kind}:[0-9]+\n"
+                )
                 kept = pathlib.Path(said.rsplit("kept:  ", 1)[1].strip())
                 self.assertTrue((kept / ".commands").read_text())
 
@@ -209,10 +216,19 @@ class Torture(unittest.TestCase):
         if not real.exists():
             self.skipTest("no build/bin/graze")
         for kind, wrong, what in (
-                ("foreign_places", f'exec {real} "$@" --force', "to refuse a file of another"),
-                ("forged_summaries", f'{real} "$@" || exit 0', "to be refused, found status 0"),
-                ("kill_results", f'exec 9< "$0"; flock 9; setpriv --pdeathsig KILL {real} "$@" && find . -name "*.json" -newer "$0" -exec truncate -s 9 {{}} +', "expected whole JSON"),
-                ("two_results", f'{real} "$@" && {{ touch "${{@: -1}}/x.part" 2> /dev/null; true; }}', "expected nothing left behind")):
+            ("foreign_places", f'exec {real} "$@" --force', "to refuse a file of another"),
+            ("forged_summaries", f'{real} "$@" || exit 0', "to be refused, found status 0"),
+            (
+                "kill_results",
+                f'exec 9< "$0"; flock 9; setpriv --pdeathsig KILL {real} "$@" && find . -name "*.json" -newer "$0" -exec truncate -s 9 {{}} +',
+                "expected whole JSON",
+            ),
+            (
+                "two_results",
+                f'{real} "$@" && {{ touch "${{@: -1}}/x.part" 2> /dev/null; true; }}',
+                "expected nothing left behind",
+            ),
+        ):
             with self.subTest(kind):
                 graze = self.folder / f"graze-{kind}"
                 graze.write_text(f"#!/bin/bash\n{wrong}\n")
@@ -237,8 +253,12 @@ class Torture(unittest.TestCase):
     def test_exit_status_and_table(self):
         def run(mode):
             out = self.folder / "table.md"
-            ran = subprocess.run([sys.executable, "-B", SCRIPT, "--graze", self.graze(mode), "--repeat", "meshes:3", "--out", out],
-                                 capture_output=True, text=True, env={"TMPDIR": str(self.folder)})
+            ran = subprocess.run(
+                [sys.executable, "-B", SCRIPT, "--graze", self.graze(mode), "--repeat", "meshes:3", "--out", out],
+                capture_output=True,
+                text=True,
+                env={"TMPDIR": str(self.folder)},
+            )
             return ran.returncode, ran.stdout, out.read_text()
 
         status, said, table = run("good")
@@ -248,11 +268,23 @@ class Torture(unittest.TestCase):
         status, said, table = run("crashes")
         self.assertEqual(status, 1)
         self.assertIn("| meshes | 1 | 1 | 0 | 0 | 0 | 1 |", table)
-        self.assertEqual(list(self.folder.glob("graze-torture-*/meshes-3")), [pathlib.Path(said.split("kept:  ")[1].split("\n")[0])])
+        self.assertEqual(
+            list(self.folder.glob("graze-torture-*/meshes-3")), [pathlib.Path(said.split("kept:  ")[1].split("\n")[0])]
+        )
 
     def test_kills_go_on_until_there_are_enough(self):
         kinds, torture.KINDS = torture.KINDS, {name: torture.KINDS[name] for name in torture.KILLS}
-        arguments, sys.argv = sys.argv, ["torture", "--graze", str(self.graze("good")), "--rounds", "1", "--kills", "6", "--seed", "commits"]
+        arguments, sys.argv = sys.argv, [
+            "torture",
+            "--graze",
+            str(self.graze("good")),
+            "--rounds",
+            "1",
+            "--kills",
+            "6",
+            "--seed",
+            "commits",
+        ]
         said = io.StringIO()
         try:
             with contextlib.redirect_stdout(said):

@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "core/exact/exact.h"
+#include "core/relation_of.h"
 #include "strata/golden.h"
 #include "strata/groups.h"
 
@@ -29,10 +29,10 @@ TEST(Groups, GeneralHasSomeCoplanarAndSomeDegeneratePairs) {
     if (group_of(row.stratum) != Group::general) continue;
     for (std::uint64_t i = 0; i < kPairs; ++i) {
       const Pair pair = generate(1, row.stratum, i);
-      const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-      const bool is_degenerate = r.dimension_a < 2 || r.dimension_b < 2;
+      const Relation r = relation_of(pair);
+      const bool is_degenerate = r.hulls.dimension_a < 2 || r.hulls.dimension_b < 2;
       degenerate += is_degenerate;
-      coplanar += !is_degenerate && r.coplanar;
+      coplanar += !is_degenerate && r.hulls.coplanar;
     }
     pairs += kPairs;
   }

@@ -45,10 +45,15 @@ bool map_user(uid_t user, gid_t group) {
          write_to("/proc/self/gid_map", g + ' ' + g + " 1");
 }
 
+// In the new namespace: what is mounted there is not seen outside. In a chroot, "/" is no mount point, but these are.
+bool keep_mounts_private() {
+  const auto keep = [](const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; };
+  return keep("/") || (keep("/proc") && (keep("/dev/shm") || errno == ENOENT));
+}
+
 // In the new namespace: its own /proc, without which nobody there could be found.
 bool mount_proc() {
-  return mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
-         mount("proc", "/proc", "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr) == 0 &&
+  return mount("proc", "/proc", "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr) == 0 &&
          fs::exists("/proc/thread-self/children");
 }
 
@@ -128,7 +133,8 @@ void enter_containment(bool namespaces, std::uint64_t shared_bytes) {
     if (supervisor == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       close(answer[0]);
-      const bool ready = (user == 0 || map_user(user, group)) && mount_proc() && limit_shared_memory(shared_bytes);
+      const bool ready = (user == 0 || map_user(user, group)) && keep_mounts_private() && mount_proc() &&
+                         limit_shared_memory(shared_bytes);
       if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
       limit_tasks();
       close(answer[1]);

@@ -18,17 +18,17 @@
 
 namespace graze {
 
-enum class Relation : std::uint8_t { less, at_most, equal, greater, at_least };
+enum class Comparison : std::uint8_t { less, at_most, equal, greater, at_least };
 
-constexpr bool holds(Relation relation, std::partial_ordering order) {
-  switch (relation) {
-    case Relation::less:
+constexpr bool holds(Comparison comparison, std::partial_ordering order) {
+  switch (comparison) {
+    case Comparison::less:
       return order < 0;
-    case Relation::at_most:
+    case Comparison::at_most:
       return order <= 0;
-    case Relation::equal:
+    case Comparison::equal:
       return order == 0;
-    case Relation::greater:
+    case Comparison::greater:
       return order > 0;
     default:
       return order >= 0;
@@ -41,7 +41,7 @@ struct Seen {
   std::source_location where;
   std::optional<Site> site;  // what the policy was asked about; none for a comparison of the algorithm's own
   bool compared;
-  Relation relation;
+  Comparison comparison;
   Number left, right;
   int left_result, right_result;  // which results of the run they are, counted from 0; -1: a coordinate or a constant
   bool held;                      // by the values
@@ -81,17 +81,17 @@ struct Recorder {
   static inline thread_local Recorder* current = nullptr;
 
   template <class Operand>  // a value and which result it is
-  bool compare(Relation relation, const Operand& l, const Operand& r, std::optional<Site> site,
+  bool compare(Comparison comparison, const Operand& l, const Operand& r, std::optional<Site> site,
                const std::source_location& where) {
-    const bool held = holds(relation, order(l.value, r.value));
+    const bool held = holds(comparison, order(l.value, r.value));
     const bool taken = comparisons < lead.size() ? lead[comparisons] : held;
     ++comparisons;
-    run.seen.push_back({where, site, true, relation, Kept(l.value), Kept(r.value), l.result, r.result, held, taken});
+    run.seen.push_back({where, site, true, comparison, Kept(l.value), Kept(r.value), l.result, r.result, held, taken});
     return taken;
   }
   template <class Operand>
   void ask(Site site, const Operand& x, const std::source_location& where) {
-    run.seen.push_back({where, site, false, Relation::equal, Kept(x.value), Kept(0), x.result, -1, true, true});
+    run.seen.push_back({where, site, false, Comparison::equal, Kept(x.value), Kept(0), x.result, -1, true, true});
   }
 
  private:
@@ -172,11 +172,11 @@ struct Traced {
     return computed(sqrt(n.value));
   }
 
-  friend bool operator<(Operand l, Operand r) { return compare(Relation::less, l, r); }
-  friend bool operator<=(Operand l, Operand r) { return compare(Relation::at_most, l, r); }
-  friend bool operator==(Operand l, Operand r) { return compare(Relation::equal, l, r); }
-  friend bool operator>(Operand l, Operand r) { return compare(Relation::greater, l, r); }
-  friend bool operator>=(Operand l, Operand r) { return compare(Relation::at_least, l, r); }
+  friend bool operator<(Operand l, Operand r) { return compare(Comparison::less, l, r); }
+  friend bool operator<=(Operand l, Operand r) { return compare(Comparison::at_most, l, r); }
+  friend bool operator==(Operand l, Operand r) { return compare(Comparison::equal, l, r); }
+  friend bool operator>(Operand l, Operand r) { return compare(Comparison::greater, l, r); }
+  friend bool operator>=(Operand l, Operand r) { return compare(Comparison::at_least, l, r); }
 
  private:
   static Traced computed(Number value) {
@@ -198,8 +198,8 @@ struct Traced {
     if (contraction == Contraction::left) return -1;
     return l.scaled && r.scaled ? 0 : right < left ? 1 : -1;
   }
-  static bool compare(Relation relation, const Operand& l, const Operand& r) {
-    return Recorder<Number>::current->compare(relation, l.number, r.number, std::nullopt, l.where);
+  static bool compare(Comparison comparison, const Operand& l, const Operand& r) {
+    return Recorder<Number>::current->compare(comparison, l.number, r.number, std::nullopt, l.where);
   }
 };
 
@@ -216,12 +216,12 @@ struct TracingPolicy {
   template <class Number, Contraction contraction>
   bool less(Site site, const Traced<Number, contraction>& l, const Traced<Number, contraction>& r,
             std::source_location where = std::source_location::current()) const {
-    return Recorder<Number>::current->compare(Relation::less, l, r, site, where);
+    return Recorder<Number>::current->compare(Comparison::less, l, r, site, where);
   }
   template <class Number, Contraction contraction>
   bool at_most(Site site, const Traced<Number, contraction>& l, const Traced<Number, contraction>& r,
                std::source_location where = std::source_location::current()) const {
-    return Recorder<Number>::current->compare(Relation::at_most, l, r, site, where);
+    return Recorder<Number>::current->compare(Comparison::at_most, l, r, site, where);
   }
 };
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/exact/axes.h"
-#include "core/exact/results.h"
+#include "core/exact/relation.h"
 #include "core/exact/triangles.h"
 
 namespace graze::exact::detail {
@@ -53,13 +53,11 @@ GRAZE_HD Relation by_axes(const Triangles<Numbers>& t) {
     return rank<Numbers>(v);
   };
   Relation r;
-  r.dimension_a = dimension(7, 0);
-  r.dimension_b = dimension(0, 7);
-  r.coplanar = seen.coplanar;
-  r.intersects = !seen.separated;
+  r.hulls = {dimension(7, 0), dimension(0, 7), seen.coplanar};
   if (seen.separated) return r;
+  r.verdict = Verdict::intersects;
   r.margin_sign = seen.flat || seen.touching ? 0 : -1;
-  r.contact = dimension(seen.face_a, 0) + dimension(0, seen.face_b) - dimension(seen.face_a, seen.face_b);
+  r.contact = contact_of(dimension(seen.face_a, 0) + dimension(0, seen.face_b) - dimension(seen.face_a, seen.face_b));
   return r;
 }
 

@@ -4,7 +4,7 @@
 
 #include "core/exact/by_planes.h"
 #include "core/exact/numbers.h"
-#include "core/exact/results.h"
+#include "core/exact/relation.h"
 #include "core/exact/screen.h"
 #include "core/exact/shared_vertex.h"
 #include "core/exact/triangles.h"
@@ -166,7 +166,7 @@ GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage)
 // The relation of a pair in general position of which a decision by planes found so much.
 // Returns: false when that does not tell it.
 GRAZE_HD inline bool relation_of(Finding found, const float* a, const float* b, Relation& r) {
-  r = found == Finding::crosses ? Relation{true, 1, -1, 2, 2, false} : Relation{};
+  r = found == Finding::crosses ? Relation{Verdict::intersects, Contact::segment, -1, {}} : Relation{};
   // A determinant that is certainly not zero parts them: they are not coplanar.
   return found == Finding::crosses || (found == Finding::disjoint && both_proper(a, b));
 }

@@ -19,7 +19,7 @@
 #include "core/exact/decision.h"
 #include "core/exact/grid.h"
 #include "core/exact/numbers.h"
-#include "core/exact/results.h"
+#include "core/exact/relation.h"
 #include "core/exact/screen.h"
 #include "core/exact/triangles.h"
 

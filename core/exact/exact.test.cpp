@@ -14,39 +14,95 @@ namespace {
 struct Example {
   const char* what;
   float a[9], b[9];
-  Relation relation;
+  Contact contact;
+  int margin_sign;
+  Hulls hulls;
 };
 
 const Example kExamples[] = {
-    {"b pierces a", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, -1, 1, 1, 1, 3, 3, 1}, {true, 1, -1, 2, 2, false}},
-    {"apart", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {0, 0, 1, 4, 0, 2, 0, 4, 3}, {false, -1, 1, 2, 2, false}},
-    {"a vertex on the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 1, 2, 4, 2, 1, 4}, {true, 0, 0, 2, 2, false}},
-    {"an edge in the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 2, 1, 0, 1, 1, 4}, {true, 1, 0, 2, 2, false}},
-    {"edges cross in a point", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {2, 0, -1, 2, 0, 1, 2, -4, 0}, {true, 0, 0, 2, 2, false}},
-    {"coplanar, overlapping", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 5, 1, 0, 1, 5, 0}, {true, 2, 0, 2, 2, true}},
-    {"coplanar, inside", {0, 0, 0, 8, 0, 0, 0, 8, 0}, {1, 1, 0, 3, 1, 0, 1, 3, 0}, {true, 2, 0, 2, 2, true}},
-    {"coplanar, a common edge", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {0, 0, 0, 4, 0, 0, 0, -4, 0}, {true, 1, 0, 2, 2, true}},
-    {"coplanar, a common vertex", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {0, 0, 0, -4, 0, 0, 0, -4, 0}, {true, 0, 0, 2, 2, true}},
-    {"coplanar, apart", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {5, 5, 0, 9, 5, 0, 5, 9, 0}, {false, -1, 1, 2, 2, true}},
+    {"b pierces a", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, -1, 1, 1, 1, 3, 3, 1}, Contact::segment, -1, {2, 2, false}},
+    {"apart", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {0, 0, 1, 4, 0, 2, 0, 4, 3}, Contact::none, 1, {2, 2, false}},
+    {"a vertex on the face",
+     {0, 0, 0, 4, 0, 0, 0, 4, 0},
+     {1, 1, 0, 1, 2, 4, 2, 1, 4},
+     Contact::point,
+     0,
+     {2, 2, false}},
+    {"an edge in the face",
+     {0, 0, 0, 4, 0, 0, 0, 4, 0},
+     {1, 1, 0, 2, 1, 0, 1, 1, 4},
+     Contact::segment,
+     0,
+     {2, 2, false}},
+    {"edges cross in a point",
+     {0, 0, 0, 4, 0, 0, 0, 4, 0},
+     {2, 0, -1, 2, 0, 1, 2, -4, 0},
+     Contact::point,
+     0,
+     {2, 2, false}},
+    {"coplanar, overlapping", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 5, 1, 0, 1, 5, 0}, Contact::area, 0, {2, 2, true}},
+    {"coplanar, inside", {0, 0, 0, 8, 0, 0, 0, 8, 0}, {1, 1, 0, 3, 1, 0, 1, 3, 0}, Contact::area, 0, {2, 2, true}},
+    {"coplanar, a common edge",
+     {0, 0, 0, 4, 0, 0, 0, 4, 0},
+     {0, 0, 0, 4, 0, 0, 0, -4, 0},
+     Contact::segment,
+     0,
+     {2, 2, true}},
+    {"coplanar, a common vertex",
+     {0, 0, 0, 4, 0, 0, 0, 4, 0},
+     {0, 0, 0, -4, 0, 0, 0, -4, 0},
+     Contact::point,
+     0,
+     {2, 2, true}},
+    {"coplanar, apart", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {5, 5, 0, 9, 5, 0, 5, 9, 0}, Contact::none, 1, {2, 2, true}},
     {"a segment through the face",
      {0, 0, 0, 4, 0, 0, 0, 4, 0},
      {1, 1, -1, 1, 1, 1, 1, 1, 0},
-     {true, 0, -1, 2, 1, false}},
-    {"a segment in the plane", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {-1, 1, 0, 9, 1, 0, 2, 1, 0}, {true, 1, 0, 2, 1, true}},
-    {"a point in the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 1, 1, 0, 1, 1, 0}, {true, 0, 0, 2, 0, true}},
-    {"a point beside the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 1, 1, 1, 1, 1, 1, 1}, {false, -1, 1, 2, 0, false}},
-    {"segments cross", {0, 0, 0, 4, 4, 0, 2, 2, 0}, {0, 4, 0, 4, 0, 0, 4, 0, 0}, {true, 0, 0, 1, 1, true}},
-    {"segments pass", {0, 0, 0, 4, 4, 0, 2, 2, 0}, {0, 4, 1, 4, 0, 1, 4, 0, 1}, {false, -1, 1, 1, 1, false}},
-    {"segments overlap on a line", {0, 0, 0, 4, 4, 4, 2, 2, 2}, {3, 3, 3, 9, 9, 9, 3, 3, 3}, {true, 1, 0, 1, 1, true}},
-    {"segments meet end to end", {0, 0, 0, 4, 4, 4, 2, 2, 2}, {4, 4, 4, 9, 9, 9, 4, 4, 4}, {true, 0, 0, 1, 1, true}},
-    {"segments apart on a line", {0, 0, 0, 1, 1, 1, 0, 0, 0}, {4, 4, 4, 9, 9, 9, 4, 4, 4}, {false, -1, 1, 1, 1, true}},
-    {"parallel segments", {0, 0, 0, 1, 1, 1, 0, 0, 0}, {0, 0, 1, 1, 1, 2, 0, 0, 1}, {false, -1, 1, 1, 1, true}},
-    {"equal points", {1, 2, 3, 1, 2, 3, 1, 2, 3}, {1, 2, 3, 1, 2, 3, 1, 2, 3}, {true, 0, 0, 0, 0, true}},
-    {"two points", {1, 2, 3, 1, 2, 3, 1, 2, 3}, {1, 2, 4, 1, 2, 4, 1, 2, 4}, {false, -1, 1, 0, 0, true}},
+     Contact::point,
+     -1,
+     {2, 1, false}},
+    {"a segment in the plane",
+     {0, 0, 0, 4, 0, 0, 0, 4, 0},
+     {-1, 1, 0, 9, 1, 0, 2, 1, 0},
+     Contact::segment,
+     0,
+     {2, 1, true}},
+    {"a point in the face", {0, 0, 0, 4, 0, 0, 0, 4, 0}, {1, 1, 0, 1, 1, 0, 1, 1, 0}, Contact::point, 0, {2, 0, true}},
+    {"a point beside the face",
+     {0, 0, 0, 4, 0, 0, 0, 4, 0},
+     {1, 1, 1, 1, 1, 1, 1, 1, 1},
+     Contact::none,
+     1,
+     {2, 0, false}},
+    {"segments cross", {0, 0, 0, 4, 4, 0, 2, 2, 0}, {0, 4, 0, 4, 0, 0, 4, 0, 0}, Contact::point, 0, {1, 1, true}},
+    {"segments pass", {0, 0, 0, 4, 4, 0, 2, 2, 0}, {0, 4, 1, 4, 0, 1, 4, 0, 1}, Contact::none, 1, {1, 1, false}},
+    {"segments overlap on a line",
+     {0, 0, 0, 4, 4, 4, 2, 2, 2},
+     {3, 3, 3, 9, 9, 9, 3, 3, 3},
+     Contact::segment,
+     0,
+     {1, 1, true}},
+    {"segments meet end to end",
+     {0, 0, 0, 4, 4, 4, 2, 2, 2},
+     {4, 4, 4, 9, 9, 9, 4, 4, 4},
+     Contact::point,
+     0,
+     {1, 1, true}},
+    {"segments apart on a line",
+     {0, 0, 0, 1, 1, 1, 0, 0, 0},
+     {4, 4, 4, 9, 9, 9, 4, 4, 4},
+     Contact::none,
+     1,
+     {1, 1, true}},
+    {"parallel segments", {0, 0, 0, 1, 1, 1, 0, 0, 0}, {0, 0, 1, 1, 1, 2, 0, 0, 1}, Contact::none, 1, {1, 1, true}},
+    {"equal points", {1, 2, 3, 1, 2, 3, 1, 2, 3}, {1, 2, 3, 1, 2, 3, 1, 2, 3}, Contact::point, 0, {0, 0, true}},
+    {"two points", {1, 2, 3, 1, 2, 3, 1, 2, 3}, {1, 2, 4, 1, 2, 4, 1, 2, 4}, Contact::none, 1, {0, 0, true}},
     {"zeros of either sign",
      {0, 0, 0, -0.0f, 0, 0, 0, -0.0f, 0},
      {-0.0f, 0, 0, 0, 0, 0, 0, 0, -0.0f},
-     {true, 0, 0, 0, 0, true}},
+     Contact::point,
+     0,
+     {0, 0, true}},
 };
 
 // The example, moved and scaled so that each kind of number has to decide it.
@@ -59,10 +115,12 @@ void expect_relation(const Example& example, float scale, float offset, const ch
       a[i] = example.a[3 * p + i % 3] * scale + offset;
       b[i] = example.b[3 * q + i % 3] * scale + offset;
     }
-    Relation expected = example.relation;
-    if (order >= 36) std::swap(expected.dimension_a, expected.dimension_b);
+    const bool meet = example.contact != Contact::none;
+    Relation expected{meet ? Verdict::intersects : Verdict::disjoint, example.contact, example.margin_sign,
+                      example.hulls};
+    if (order >= 36) std::swap(expected.hulls.dimension_a, expected.hulls.dimension_b);
     EXPECT_EQ(order < 36 ? relation(a, b) : relation(b, a), expected) << example.what << ' ' << numbers << ' ' << order;
-    EXPECT_EQ(order < 36 ? intersects(a, b) : intersects(b, a), expected.intersects) << example.what << ' ' << numbers;
+    EXPECT_EQ(order < 36 ? intersects(a, b) : intersects(b, a), meet) << example.what << ' ' << numbers;
   }
 }
 
@@ -87,8 +145,8 @@ TEST(Exact, DecidesWhereNoMachineNumberReaches) {
     EXPECT_EQ(intersects(a, b, &stage), height <= 0) << height;
     EXPECT_TRUE(height != 0 || stage == Stage::wide);
     const Relation r = relation(a, b);
-    EXPECT_EQ(r.intersects, height <= 0);
-    EXPECT_EQ(r.contact, height > 0 ? -1 : height == 0 ? 0 : 1);
+    EXPECT_EQ(r.intersects(), height <= 0);
+    EXPECT_EQ(r.contact, height > 0 ? Contact::none : height == 0 ? Contact::point : Contact::segment);
     EXPECT_EQ(r.margin_sign, height > 0 ? 1 : height == 0 ? 0 : -1);
   }
 }
@@ -104,13 +162,13 @@ TEST(Exact, KindsOfNumbersAgree) {
     for (float& x : b) x = coordinate();
     using namespace detail;
     const Relation r = by_axes(triangles<DoubleNumbers>(a, b));
-    ++contacts[r.contact + 1];
+    ++contacts[static_cast<int>(r.contact)];
     ASSERT_EQ(by_axes(triangles<NarrowNumbers>(a, b, 0)), r) << i;
     ASSERT_EQ(by_axes(triangles<IntNumbers>(a, b, 0)), r) << i;
     ASSERT_EQ(by_axes(triangles<ResidueNumbers>(a, b, 0)), r) << i;
     ASSERT_EQ(by_axes(triangles<WideNumbers>(a, b)), r) << i;
-    ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects) << i;
-    ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects) << i;
+    ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects()) << i;
+    ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects()) << i;
     // By planes a pair crosses where no vertex lies in the other's plane; it is then more than a touch.
     const Triangles<DoubleNumbers> t = triangles<DoubleNumbers>(a, b);
     const Finding found = by_planes(t);
@@ -147,9 +205,9 @@ TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
     ++pairs;
     widest += grid.bits == kResidueBits;
     const Relation r = by_axes(triangles<IntNumbers>(c, c + 9, grid.exponent));
-    ++by_contact[r.contact + 1];
+    ++by_contact[static_cast<int>(r.contact)];
     ASSERT_EQ(by_axes(triangles<ResidueNumbers>(c, c + 9, grid.exponent)), r) << i;
-    ASSERT_EQ(decide<ResidueNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
+    ASSERT_EQ(decide<ResidueNumbers>(c, c + 9, grid.exponent), r.intersects()) << i;
   }
   EXPECT_GT(pairs, 100'000);
   EXPECT_GT(widest, 5'000);
@@ -180,15 +238,15 @@ TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
     const Grid grid = grid_of(c, c + 9);
     ASSERT_TRUE(NarrowNumbers::holds(grid));
     const Relation r = by_axes(triangles<IntNumbers>(c, c + 9, grid.exponent));
-    ASSERT_EQ(decide<NarrowNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
-    ASSERT_EQ(decide<ResidueNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
-    ASSERT_EQ(decide<WideNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
+    ASSERT_EQ(decide<NarrowNumbers>(c, c + 9, grid.exponent), r.intersects()) << i;
+    ASSERT_EQ(decide<ResidueNumbers>(c, c + 9, grid.exponent), r.intersects()) << i;
+    ASSERT_EQ(decide<WideNumbers>(c, c + 9, grid.exponent), r.intersects()) << i;
     if (DoubleNumbers::holds(grid)) {
-      ASSERT_EQ(decide<DoubleNumbers>(c, c + 9, grid.exponent), r.intersects) << i;
+      ASSERT_EQ(decide<DoubleNumbers>(c, c + 9, grid.exponent), r.intersects()) << i;
     }
-    ++by_contact[r.contact + 1];
-    both_flat += r.dimension_a < 2 && r.dimension_b < 2;
-    points += r.dimension_a == 0 || r.dimension_b == 0;
+    ++by_contact[static_cast<int>(r.contact)];
+    both_flat += r.hulls.dimension_a < 2 && r.hulls.dimension_b < 2;
+    points += r.hulls.dimension_a == 0 || r.hulls.dimension_b == 0;
   }
   EXPECT_GT(both_flat, 10'000);
   EXPECT_GT(points, 500);
@@ -216,8 +274,8 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
     if (random() & 1) std::swap_ranges(c, c + 9, c + 9);
     Stage stage;
     const Relation r = detail::by_axes(detail::triangles<detail::WideNumbers>(c, c + 9));
-    ASSERT_EQ(intersects(c, c + 9, &stage), r.intersects) << i;
-    ++by_contact[r.contact + 1];
+    ASSERT_EQ(intersects(c, c + 9, &stage), r.intersects()) << i;
+    ++by_contact[static_cast<int>(r.contact)];
     wide += stage == Stage::wide;
   }
   EXPECT_GT(wide, 2'000);

@@ -16,12 +16,18 @@
 
 #include "core/exact/error_bound.h"
 #include "core/exact/grid.h"
+#include "core/exact/relation.h"
 #include "core/exact/residue.h"
-#include "core/exact/results.h"
 #include "core/exact/vector.h"
 #include "core/exact/wide_integer.h"
 
-namespace graze::exact::detail {
+namespace graze::exact {
+
+// Which numbers decided; bounded also where the triangles share a vertex.
+enum class Stage : std::uint8_t { bounded, doubles, int128, wide };
+inline constexpr int kStages = 4;
+
+namespace detail {
 
 // In each kind, D are coordinates and their differences, M minors, T determinants.
 // Of a determinant, positive, negative and zero say what is beyond doubt.
@@ -89,4 +95,5 @@ using MachineNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers>;
 using MultiwordNumbers = NumberKinds<LongNumbers, WideNumbers>;
 using AllNumbers = NumberKinds<DoubleNumbers, NarrowNumbers, IntNumbers, LongNumbers, WideNumbers>;
 
-}  // namespace graze::exact::detail
+}  // namespace detail
+}  // namespace graze::exact

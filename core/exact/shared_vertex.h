@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/exact/error_bound.h"
-#include "core/exact/results.h"
+#include "core/exact/relation.h"
 #include "core/exact/vector.h"
 
 namespace graze::exact::detail {
@@ -45,7 +45,7 @@ GRAZE_HD inline bool relate_at_vertex(const float* a, const float* b, int shared
   }
   const bool p1 = above & 1, p2 = above >> 1 & 1, q1 = above >> 2 & 1, q2 = above >> 3 & 1;
   const bool parted = p1 == p2 || q1 == q2 || p1 == q1;
-  r = {true, parted ? 0 : 1, parted ? 0 : -1, 2, 2, false};
+  r = {Verdict::intersects, parted ? Contact::point : Contact::segment, parted ? 0 : -1, {}};
   return true;
 }
 

@@ -26,6 +26,8 @@ GRAZE_HD constexpr Bucket make_bucket(int sign, int log2_ulps) {
   return static_cast<Bucket>(sign * (k - kBucketLowest + 1));
 }
 
+constexpr int sign_of(Bucket bucket) { return (bucket > 0) - (bucket < 0); }
+
 // "0", "+2^5", "-2^-3"; the names used in summaries.
 inline std::string name_of_bucket(Bucket bucket) {
   if (bucket == 0) return "0";

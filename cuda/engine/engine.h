@@ -28,16 +28,12 @@ std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes);
 
 // One subject's failure, and the pairs that fail so.
 struct EngineSignature {
-  Contact contact = Contact::none;  // none: the triangles are disjoint
-  int dimension_a = 2, dimension_b = 2;
-  bool coplanar = false;
+  Relation relation;
   Bucket bucket = 0;
   LaneGroup lanes{};
   std::vector<Verdict> verdicts;  // of each lane of the group
   std::uint64_t count = 0;
   std::vector<std::uint64_t> cases;  // the smallest indices, sorted, at most kEngineCases
-
-  Verdict truth() const { return contact == Contact::none ? Verdict::disjoint : Verdict::intersects; }
 };
 
 // What a run found. Pairs whose bucket the device cannot decide are in `undecided`, and counted nowhere else.

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/exact/results.h"
+#include "core/exact/relation.h"
 #include "core/margin/axis.h"
 #include "cuda/engine/engine.h"
 #include "cuda/engine/signature_table.h"
@@ -100,28 +100,20 @@ constexpr Verdict verdict_of(Mark mark, Verdict truth) {
 // Words of marks that a group needs.
 constexpr std::uint32_t mark_words(std::uint32_t lanes) { return (lanes + kMarksOfWord - 1) / kMarksOfWord; }
 
-// A relation in seven bits.
-GRAZE_HD constexpr std::uint8_t packed(const exact::Relation& r) {
-  return static_cast<std::uint8_t>(r.dimension_a | r.dimension_b << 2 | int{r.coplanar} << 4 | (r.contact + 1) << 5);
-}
-
 // What a signature says besides its marks, in the first word of its key; group: place of its lanes among the groups.
 GRAZE_HD constexpr std::uint64_t packed(std::uint32_t group, std::uint8_t relation, Bucket bucket) {
   return static_cast<std::uint64_t>(bucket + kBucketMost) | std::uint64_t{relation} << 8 | std::uint64_t{group} << 32;
 }
 
-struct SignatureShape {
+struct SignatureHead {
   std::uint32_t group;
-  int contact;  // as Relation has it: -1 for none
-  int dimension_a, dimension_b;
-  bool coplanar;
+  Relation relation;
   Bucket bucket;
 };
 
-constexpr SignatureShape unpacked(std::uint64_t word) {
-  const auto field = [word](int at, int bits) { return static_cast<int>(word >> at & ((1u << bits) - 1)); };
-  return {static_cast<std::uint32_t>(word >> 32),        field(13, 2) - 1, field(8, 2), field(10, 2), field(12, 1) != 0,
-          static_cast<Bucket>(field(0, 8) - kBucketMost)};
+constexpr SignatureHead unpacked(std::uint64_t word) {
+  const auto bucket = static_cast<Bucket>(static_cast<int>(word & 255) - kBucketMost);
+  return {static_cast<std::uint32_t>(word >> 32), unpacked_relation(word >> 8 & 127, sign_of(bucket)), bucket};
 }
 
 // The marks of pair i by 32 lanes of the group, from lane 32 * word on.

@@ -9,17 +9,14 @@ namespace {
 
 EngineSignature signature_of(std::uint64_t* row, const SignatureTable& table, std::span<const LaneGroup> groups) {
   const std::uint64_t* key = table.key(row);
-  const SignatureShape shape = unpacked(key[0]);
+  const SignatureHead head = unpacked(key[0]);
   EngineSignature s;
-  s.contact = static_cast<Contact>(shape.contact + 1);
-  s.dimension_a = shape.dimension_a;
-  s.dimension_b = shape.dimension_b;
-  s.coplanar = shape.coplanar;
-  s.bucket = shape.bucket;
-  s.lanes = groups[shape.group];
+  s.relation = head.relation;
+  s.bucket = head.bucket;
+  s.lanes = groups[head.group];
   for (std::uint32_t l = 0; l < s.lanes.count; ++l) {
     const std::uint64_t mark = key[1 + l / kMarksOfWord] >> 2 * (l % kMarksOfWord) & 3;
-    s.verdicts.push_back(verdict_of(static_cast<Mark>(mark), s.truth()));
+    s.verdicts.push_back(verdict_of(static_cast<Mark>(mark), s.relation.verdict));
   }
   s.count = *table.count(row);
   for (int k = 0; k < kEngineCases && table.cases(row)[k] != kNoCase; ++k) s.cases.push_back(table.cases(row)[k]);

@@ -93,9 +93,9 @@ GRAZE_HD inline bool has_signatures(const EngineBlock& block, std::uint32_t i) {
 }
 
 // The relation is known: completes the bucket of an intersecting pair, or leaves that to the next step.
-GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const exact::Relation& r) {
+GRAZE_HD inline void settle(const EngineBlock& block, std::uint32_t i, const Relation& r) {
   block.relations[i] = packed(r);
-  if (block.buckets[i] != kUndecided || !r.intersects) return;
+  if (block.buckets[i] != kUndecided || !r.intersects()) return;
   if (r.margin_sign != 0) return block.lists[kDepths].add(i);
   block.buckets[i] = 0;
 }
@@ -113,7 +113,7 @@ GRAZE_HD inline int list_by_numbers(const float* c) {
 struct Relate {
   static constexpr int kThreadBlocks = 2;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
-    exact::Relation r;
+    Relation r;
     if (exact::detail::relate_quickly(c, c + 9, r)) return settle(block, i, r);
     const int list = list_by_numbers(c);
     block.lists[list < kByLong ? list : kByBounds].add(i);
@@ -123,7 +123,7 @@ struct Relate {
 struct RelateByBounds {
   static constexpr int kThreadBlocks = 2;
   GRAZE_HD void operator()(const EngineBlock& block, std::uint32_t i, const float* c) const {
-    exact::Relation r;
+    Relation r;
     if (exact::detail::relate_by_bounds(c, c + 9, r)) return settle(block, i, r);
     block.lists[list_by_numbers(c)].add(i);
   }

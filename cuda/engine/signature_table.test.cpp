@@ -100,20 +100,18 @@ TEST_F(SignatureTableTest, KeysThatDifferInTheirLastWordOnlyAreApart) {
   }
 }
 
-TEST(SignatureShape, EveryShapeComesBackFromItsWord) {
+TEST(SignatureHead, EveryHeadComesBackFromItsWord) {
   for (int bucket = -kBucketMost; bucket <= kBucketMost; ++bucket) {
     for (int rest = 0; rest < 4 * 3 * 3 * 2; ++rest) {
-      const exact::Relation r{.contact = rest % 4 - 1,
-                              .dimension_a = rest / 4 % 3,
-                              .dimension_b = rest / 12 % 3,
-                              .coplanar = rest / 36 != 0};
+      const auto contact = static_cast<Contact>(rest % 4);
+      const Relation r{contact == Contact::none ? Verdict::disjoint : Verdict::intersects,
+                       contact,
+                       sign_of(static_cast<Bucket>(bucket)),
+                       {rest / 4 % 3, rest / 12 % 3, rest / 36 != 0}};
       const std::uint32_t group = static_cast<std::uint32_t>(rest) * 0x1234567u;
-      const SignatureShape back = unpacked(packed(group, packed(r), static_cast<Bucket>(bucket)));
+      const SignatureHead back = unpacked(packed(group, packed(r), static_cast<Bucket>(bucket)));
       EXPECT_EQ(back.group, group);
-      EXPECT_EQ(back.contact, r.contact);
-      EXPECT_EQ(back.dimension_a, r.dimension_a);
-      EXPECT_EQ(back.dimension_b, r.dimension_b);
-      EXPECT_EQ(back.coplanar, r.coplanar);
+      EXPECT_EQ(back.relation, r);
       EXPECT_EQ(back.bucket, bucket);
     }
   }

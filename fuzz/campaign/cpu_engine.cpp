@@ -11,8 +11,8 @@
 
 #include "analysis/convention.h"
 #include "analysis/signature.h"
-#include "core/exact/exact.h"
 #include "core/margin_blocks/buckets.h"
+#include "core/relation_of.h"
 #include "fuzz/campaign/signature_counts.h"
 #include "oracle/truth.h"
 
@@ -53,18 +53,6 @@ void bring_together(std::span<Pair> pairs, std::span<std::uint64_t> indices) {
     pairs[at] = before[i];
     indices[at] = indices_before[i];
   }
-}
-
-// What relates a pair's triangles besides the verdict.
-struct PairRelation {
-  Contact contact;
-  oracle::Shape hulls;
-  friend bool operator==(const PairRelation&, const PairRelation&) = default;
-};
-
-PairRelation exact_relation(const Pair& pair) {
-  const exact::Relation r = exact::relation(coordinates(pair), coordinates(pair) + 9);
-  return {static_cast<Contact>(r.contact + 1), {r.dimension_a, r.dimension_b, r.coplanar}};
 }
 
 // Judges one block of pairs: host lanes, twins and truth here, device lanes from their bits.
@@ -122,8 +110,8 @@ class BlockJudge {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const bool disagreement = analysis::test_bit(wrong, i), sampled = indices[i] % sample == 0;
       if (!disagreement && !sampled) continue;
-      const PairRelation relation = exact_ ? relation_by_exact_lane(pairs[i], indices[i], i, sampled, result)
-                                           : relation_by_oracle(pairs[i], indices[i], i, result);
+      const Relation relation = exact_ ? relation_by_exact_lane(pairs[i], indices[i], i, sampled, result)
+                                       : relation_by_oracle(pairs[i], indices[i], i, result);
       if (disagreement) add_failures(pairs[i], CaseKey{indices[i], source_}, i, relation, result, found);
     }
     if (!found) return;
@@ -164,18 +152,18 @@ class BlockJudge {
     }
   }
 
-  PairRelation relation_by_oracle(const Pair& pair, std::uint64_t index, std::size_t i, BatchResult& result) const {
+  Relation relation_by_oracle(const Pair& pair, std::uint64_t index, std::size_t i, BatchResult& result) const {
     const Contact contact = oracle::gmp_contact(pair);
     ++result.gmp;
     if ((contact == Contact::none) != (truth(i) == Verdict::disjoint))
       apart(index, fmt::format("CGAL ({}) and GMP (contact {})", name(truth(i)), name(contact)));
-    return {contact, oracle::shape(pair)};
+    return {truth(i), contact, sign_of(buckets_[i]), oracle::hulls(pair)};
   }
 
-  PairRelation relation_by_exact_lane(const Pair& pair, std::uint64_t index, std::size_t i, bool sampled,
-                                      BatchResult& result) const {
-    const PairRelation relation = exact_relation(pair);
-    if ((relation.contact == Contact::none) != (truth(i) == Verdict::disjoint))
+  Relation relation_by_exact_lane(const Pair& pair, std::uint64_t index, std::size_t i, bool sampled,
+                                  BatchResult& result) const {
+    const Relation relation = relation_of(pair);
+    if (relation.verdict != truth(i))
       apart(index, fmt::format("the exact lane ({}) and the exact relation (contact {})", name(truth(i)),
                                name(relation.contact)));
     if (!sampled) return relation;
@@ -186,8 +174,8 @@ class BlockJudge {
     return relation;
   }
 
-  void add_failures(const Pair& pair, const CaseKey& key, std::size_t i, const PairRelation& relation,
-                    BatchResult& result, PairJudge::Found* found) {
+  void add_failures(const Pair& pair, const CaseKey& key, std::size_t i, const Relation& relation, BatchResult& result,
+                    PairJudge::Found* found) {
     bool any_wrong = false;
     for (std::size_t l = 0; l < views_.size(); ++l) {
       verdicts_[l] = views_[l].at(i);
@@ -195,8 +183,7 @@ class BlockJudge {
       if (under_test_.lanes[l]->exact)
         apart(key.index,
               fmt::format("{} ({}) and the truth ({})", under_test_.lanes[l]->id, name(verdicts_[l]), name(truth(i))));
-      if (analysis::by_convention(*under_test_.lanes[l], verdicts_[l], pair, relation.contact, relation.hulls,
-                                  buckets_[i] == 0)) {
+      if (analysis::by_convention(*under_test_.lanes[l], verdicts_[l], pair, relation)) {
         result.tally.excuse(buckets_[i], static_cast<int>(l), verdicts_[l]);
         if (campaign_.sources[static_cast<std::size_t>(source_)].axis != Axis::none)
           result.extremes.excuse(extremes_[i], static_cast<int>(l), verdicts_[l]);
@@ -207,12 +194,12 @@ class BlockJudge {
     }
     if (!any_wrong) return;
     ++result.disagreements;
-    signatures_.add(relation.contact, relation.hulls, buckets_[i], truth(i), verdicts_, key);
+    signatures_.add(relation, buckets_[i], verdicts_, key);
     if (!found) return;
     analysis::for_each_subject(under_test_.lanes, [&](std::size_t first, std::size_t count) {
-      analysis::Signature failure = analysis::signature(relation.contact, relation.hulls, buckets_[i], truth(i),
-                                                        std::span(under_test_.lanes).subspan(first, count),
-                                                        std::span(verdicts_).subspan(first, count));
+      analysis::Signature failure =
+          analysis::signature(relation, buckets_[i], std::span(under_test_.lanes).subspan(first, count),
+                              std::span(verdicts_).subspan(first, count));
       if (failure.wrong()) found->failures.push_back(std::move(failure));
     });
   }

@@ -14,8 +14,7 @@ namespace {
 static_assert(cuda::kEngineCases >= kKeptCases);
 
 analysis::Signature signature_of(const cuda::EngineSignature& row, std::span<const Lane* const> lanes) {
-  return analysis::signature(row.contact, {row.dimension_a, row.dimension_b, row.coplanar}, row.bucket, row.truth(),
-                             lanes.subspan(row.lanes.first, row.lanes.count), row.verdicts);
+  return analysis::signature(row.relation, row.bucket, lanes.subspan(row.lanes.first, row.lanes.count), row.verdicts);
 }
 
 // Counts as EngineResult lays them out.

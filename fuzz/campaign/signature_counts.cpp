@@ -6,18 +6,13 @@
 
 namespace graze::fuzz {
 
-void SignatureCounts::add(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth,
-                          std::span<const Verdict> verdicts, const CaseKey& pair) {
+void SignatureCounts::add(const Relation& truth, Bucket bucket, std::span<const Verdict> verdicts,
+                          const CaseKey& pair) {
   analysis::for_each_subject(lanes_, [&](std::size_t first, std::size_t count) {
     const std::span<const Verdict> of_subject = verdicts.subspan(first, count);
-    if (std::all_of(of_subject.begin(), of_subject.end(), [&](Verdict verdict) { return verdict == truth; })) return;
-    const Head head{contact,
-                    static_cast<std::int8_t>(shape.dimension_a),
-                    static_cast<std::int8_t>(shape.dimension_b),
-                    shape.coplanar,
-                    bucket,
-                    truth,
-                    static_cast<std::uint16_t>(first)};
+    if (std::all_of(of_subject.begin(), of_subject.end(), [&](Verdict verdict) { return verdict == truth.verdict; }))
+      return;
+    const Head head{packed(truth), bucket, static_cast<std::uint16_t>(first)};
     key_.assign(reinterpret_cast<const char*>(&head), sizeof head);
     key_.append(reinterpret_cast<const char*>(of_subject.data()), count);
     auto found = counts_.find(std::string_view(key_));
@@ -32,8 +27,8 @@ void SignatureCounts::move_to(std::map<analysis::Signature, SignatureCount>& sig
     std::memcpy(&head, key.data(), sizeof head);
     const auto* verdicts = reinterpret_cast<const Verdict*>(key.data() + sizeof head);
     const std::size_t count = key.size() - sizeof head;
-    signatures[analysis::signature(head.contact, {head.dimension_a, head.dimension_b, head.coplanar}, head.bucket,
-                                   head.truth, std::span(lanes_).subspan(head.first, count), {verdicts, count})]
+    signatures[analysis::signature(unpacked_relation(head.relation, sign_of(head.bucket)), head.bucket,
+                                   std::span(lanes_).subspan(head.first, count), {verdicts, count})]
         .add(found);
   }
   counts_.clear();

@@ -19,8 +19,7 @@ class SignatureCounts {
   explicit SignatureCounts(std::vector<const Lane*> lanes) : lanes_(std::move(lanes)) {}
 
   // Counts the pair for each subject of which a lane's verdict is not the truth.
-  void add(Contact contact, const oracle::Shape& shape, Bucket bucket, Verdict truth, std::span<const Verdict> verdicts,
-           const CaseKey& pair);
+  void add(const Relation& truth, Bucket bucket, std::span<const Verdict> verdicts, const CaseKey& pair);
 
   // Adds all that was counted, and begins anew.
   void move_to(std::map<analysis::Signature, SignatureCount>& signatures);
@@ -28,11 +27,8 @@ class SignatureCounts {
  private:
   // The signature but for the lanes' verdicts, one byte each, which follow it in a key.
   struct Head {
-    Contact contact;
-    std::int8_t dimension_a, dimension_b;
-    bool coplanar;
+    std::uint8_t relation;  // packed
     Bucket bucket;
-    Verdict truth;
     std::uint16_t first;  // of the subject's lanes
   };
   static_assert(std::has_unique_object_representations_v<Head>);

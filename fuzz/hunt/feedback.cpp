@@ -91,9 +91,7 @@ unsigned line_of_parting(int algorithm, const Pair& pair) {
   return 0;
 }
 
-int shape_number(const oracle::Shape& shape) {
-  return (shape.dimension_a * 3 + shape.dimension_b) * 2 + shape.coplanar;
-}
+int number_of(const Hulls& hulls) { return (hulls.dimension_a * 3 + hulls.dimension_b) * 2 + hulls.coplanar; }
 
 }  // namespace
 
@@ -111,7 +109,7 @@ Feedback::Feedback(const std::vector<const Lane*>& lanes) : lanes_(lanes) {
 
 Features Feedback::features(const Pair& pair, const PairJudge::Found& found) const {
   Features features;
-  features.push_back(feature(Kind::closeness, found.bucket + kBucketMost, shape_number(oracle::shape(pair))));
+  features.push_back(feature(Kind::closeness, found.bucket + kBucketMost, number_of(oracle::hulls(pair))));
   for (const int algorithm : algorithms_) measure_sites(algorithm, pair, features);
   for (const analysis::Signature& failure : found.failures) {
     features.push_back(feature(Kind::failure, fnv1a(coarse_key(failure))));

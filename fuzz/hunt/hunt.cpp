@@ -209,7 +209,7 @@ class Hunter {
     std::set<std::string> known = found_->kinds;
     for (const New& of : fresh) {
       for (const LaneReason& reason : of.reasons) {
-        const std::string key = kind_key(of.signature.subject, reason, of.signature.shape);
+        const std::string key = kind_key(of.signature.subject, reason, of.signature.hulls);
         if (known.insert(key).second) kept.kinds.push_back({key, of.index, result.kept.at(of.index).mutation});
       }
     }

@@ -63,7 +63,7 @@ TEST(Mutations, DoWhatTheyAreNamedAfter) {
   };
   EXPECT_EQ(count_after(Mutation::onto_vertex, shares(1)), 200);
   EXPECT_EQ(count_after(Mutation::shared_edge, shares(2)), 200);
-  const auto flat = [](const Pair&, const Pair&, const Pair& r) { return oracle::shape(r).coplanar; };
+  const auto flat = [](const Pair&, const Pair&, const Pair& r) { return oracle::hulls(r).coplanar; };
   EXPECT_EQ(count_after(Mutation::coplanar,
                         [](const Pair&, const Pair&, const Pair& r) {
                           return oracle::cgal_verdict(r) == Verdict::intersects &&
@@ -73,8 +73,8 @@ TEST(Mutations, DoWhatTheyAreNamedAfter) {
       << "deeper than 2^8 ulps, they are far from a common plane";
   EXPECT_GT(count_after(Mutation::coplanar, flat, strata::Stratum::lattice), 20);
   const auto degenerate = [](const Pair&, const Pair&, const Pair& r) {
-    const oracle::Shape shape = oracle::shape(r);
-    return std::min(shape.dimension_a, shape.dimension_b) < 2;
+    const Hulls hulls = oracle::hulls(r);
+    return std::min(hulls.dimension_a, hulls.dimension_b) < 2;
   };
   EXPECT_GT(count_after(Mutation::collinear, degenerate), 30);
   EXPECT_EQ(count_after(Mutation::reordered,

@@ -15,6 +15,7 @@
 #include "analysis/laws.h"
 #include "analysis/neighbours.h"
 #include "analysis/tally.h"
+#include "core/relation_of.h"
 #include "fuzz/league/smallest.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimise.h"
@@ -29,17 +30,11 @@ constexpr std::size_t kBlockPairs = 1024;
 constexpr std::uint64_t kOrderSample = 950;  // pairs asked in all orders, shared evenly by the strata
 constexpr std::uint64_t kOrderShare = 20;    // at most one in so many of a lane's pairs
 
-Judged true_of(const Pair& pair) {
-  const Judged found = judged(pair);
+Relation true_of(const Pair& pair) {
+  const Relation found = relation_of(pair);
   if (found.verdict != oracle::cgal_verdict(pair))
     throw oracle::OracleApart(pair_text(pair) + ": CGAL and the exact decision of core differ");
   return found;
-}
-
-// Whether the lane's convention leaves the pair open.
-bool is_outside(const Lane& lane, const Pair& pair, const Judged& truth) {
-  return analysis::by_convention(lane, Verdict::declined, pair, truth.contact, truth.shape,
-                                 truth.verdict == Verdict::intersects && truth.margin_sign == 0);
 }
 
 std::vector<Verdict> verdicts_of(const DecideBlock& decide, std::span<const Pair> pairs) {
@@ -60,7 +55,7 @@ struct Counting {
   Smallest smallest;
 
   // GMP's word on a verdict that counts as wrong.
-  void confirm(const Pair& pair, const Judged& truth) const {
+  void confirm(const Pair& pair, const Relation& truth) const {
     const Contact contact = oracle::gmp_contact(pair);
     if (contact != truth.contact) {
       throw oracle::OracleApart(fmt::format("{}: the exact decision of core says contact {}, GMP {}", pair_text(pair),
@@ -68,11 +63,11 @@ struct Counting {
     }
   }
 
-  void count(std::span<const Pair> pairs, const std::vector<Judged>& truths, LeagueCounts& counts) {
+  void count(std::span<const Pair> pairs, const std::vector<Relation>& truths, LeagueCounts& counts) {
     const std::vector<Verdict> said = verdicts_of(*decide, pairs);
     std::vector<std::size_t> wrong;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool outside = is_outside(*row.lane, pairs[i], truths[i]);
+      const bool outside = analysis::is_outside(*row.lane, pairs[i], truths[i]);
       ++(outside ? counts.outside : counts.pairs);
       if (said[i] == truths[i].verdict) continue;
       if (outside && !is_failure(said[i])) {
@@ -87,7 +82,7 @@ struct Counting {
     for (std::size_t i = 0; i < pairs.size(); ++i) *row.flips += said[i] != other[i];
   }
 
-  void count_wrong(std::span<const Pair> pairs, const std::vector<Judged>& truths, const std::vector<Verdict>& said,
+  void count_wrong(std::span<const Pair> pairs, const std::vector<Relation>& truths, const std::vector<Verdict>& said,
                    const std::vector<std::size_t>& wrong, LeagueCounts& counts) {
     std::vector<Pair> again_of;
     for (const std::size_t i : wrong) again_of.push_back(pairs[i]);
@@ -101,7 +96,7 @@ struct Counting {
       }
       const WrongBy by = wrong_by(said[i]);
       ++counts.wrong[static_cast<std::size_t>(by)];
-      const std::string_view shape = shape_name(truths[i].shape);
+      const std::string_view shape = shape_name(truths[i].hulls);
       if (shape == "general" && truths[i].margin_sign != 0) {
         const int exponent = std::abs(int{oracle::margin_bucket(pairs[i], truths[i].verdict)}) + kBucketLowest - 1;
         counts.clear += exponent >= kClearExponent;
@@ -123,14 +118,14 @@ struct Counting {
     }
     const std::vector<Verdict> said = verdicts_of(*decide, all);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const bool open = laws[i] == analysis::Law::part && is_outside(*row.lane, all[i], judged(all[i]));
+      const bool open = laws[i] == analysis::Law::part && analysis::is_outside(*row.lane, all[i], relation_of(all[i]));
       if (!open && analysis::breaks(laws[i], of_pair, said[i])) return true;
     }
     return false;
   }
 
   // On how many of the pairs the verdict changes with the order, or breaks another law; those within the contract.
-  void count_orders(std::span<const Pair> pairs, const std::vector<Judged>& truths) {
+  void count_orders(std::span<const Pair> pairs, const std::vector<Relation>& truths) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (is_outside(*row.lane, pairs[i], truths[i])) continue;
       ++row.order_sample;
@@ -147,8 +142,8 @@ double processor_nanoseconds() {
   return 1e9 * static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec);
 }
 
-std::vector<Judged> truths_of(const std::vector<Pair>& pairs) {
-  std::vector<Judged> truths(pairs.size());
+std::vector<Relation> truths_of(const std::vector<Pair>& pairs) {
+  std::vector<Relation> truths(pairs.size());
   tbb::parallel_for(std::size_t{0}, (pairs.size() + kBlockPairs - 1) / kBlockPairs, [&](std::size_t block) {
     for (std::size_t i = block * kBlockPairs; i < std::min(pairs.size(), (block + 1) * kBlockPairs); ++i)
       truths[i] = true_of(pairs[i]);
@@ -220,7 +215,7 @@ League run_league(const LanesUnderTest& under_test, std::vector<strata::PairSour
     for (std::uint64_t begin = 0; begin < source.pairs && !stopped; begin += kBatchPairs) {
       std::vector<Pair> pairs(std::min<std::uint64_t>(kBatchPairs, source.pairs - begin));
       for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = source.pair(begin + i);
-      const std::vector<Judged> truths = truths_of(pairs);
+      const std::vector<Relation> truths = truths_of(pairs);
       tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t l) {
         const std::uint64_t its = std::min(source.pairs, all[l].of_source);
         if (its <= begin) return;

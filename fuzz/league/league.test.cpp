@@ -27,11 +27,11 @@ constexpr const char* kPlanted = R"(
 #include <graze/subject.h>
 #include "core/exact/exact.h"
 using graze::exact::relation;
-static int truth(const float a[9], const float b[9]) { return relation(a, b).intersects; }
-static int blind(const float a[9], const float b[9]) { return !relation(a, b).coplanar && truth(a, b); }
+static int truth(const float a[9], const float b[9]) { return relation(a, b).intersects(); }
+static int blind(const float a[9], const float b[9]) { return !relation(a, b).hulls.coplanar && truth(a, b); }
 static int dies(const float a[9], const float b[9]) { if (a[0] == 1) abort(); return truth(a, b); }
 static int narrow(const float a[9], const float b[9]) {
-  return relation(a, b).dimension_a == 2 && relation(a, b).dimension_b == 2 && truth(a, b);
+  return relation(a, b).hulls.dimension_a == 2 && relation(a, b).hulls.dimension_b == 2 && truth(a, b);
 }
 static int one_sided(const float a[9], const float b[9]) { return a[0] > b[0] || truth(a, b); }
 #define PLANT(name, outside) \
@@ -78,10 +78,10 @@ struct Planted : testing::Test {
 
 // What a subject must say, by the oracle.
 Verdict planted(std::string_view name, const Pair& pair) {
-  const oracle::Shape shape = oracle::shape(pair);
+  const Hulls hulls = oracle::hulls(pair);
   const Verdict truth = oracle::truth(pair).verdict;
-  const bool degenerate = shape.dimension_a < 2 || shape.dimension_b < 2;
-  if (name == "blind" && shape.coplanar) return Verdict::disjoint;
+  const bool degenerate = hulls.dimension_a < 2 || hulls.dimension_b < 2;
+  if (name == "blind" && hulls.coplanar) return Verdict::disjoint;
   if (name == "dies" && pair.a[0].x == 1) return Verdict::crashed;
   if (name == "narrow" && degenerate) return Verdict::disjoint;
   if (name == "one_sided" && pair.a[0].x > pair.b[0].x) return Verdict::intersects;
@@ -99,15 +99,15 @@ TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) {
       for (std::uint64_t i = 0; i < source.pairs; ++i) {
         const Pair pair = source.pair(i);
         const oracle::Truth truth = oracle::truth(pair);
-        const oracle::Shape shape = oracle::shape(pair);
-        const bool degenerate = shape.dimension_a < 2 || shape.dimension_b < 2;
+        const Hulls hulls = oracle::hulls(pair);
+        const bool degenerate = hulls.dimension_a < 2 || hulls.dimension_b < 2;
         const bool outside = name == "narrow" && degenerate;
         const Verdict says = planted(name, pair);
         ++(outside ? counts.outside : counts.pairs);
         counts.by_convention += outside && says != truth.verdict;
         if (!outside && says != truth.verdict) {
           ++counts.wrong[says == Verdict::disjoint ? 0 : says == Verdict::intersects ? 1 : 3];
-          counts.clear += !shape.coplanar && !degenerate && std::fabs(truth.margin_ulps) >= 4096;
+          counts.clear += !hulls.coplanar && !degenerate && std::fabs(truth.margin_ulps) >= 4096;
         }
         if (i >= kOrders || outside) continue;
         ++sample;
@@ -116,7 +116,7 @@ TEST_F(Planted, EveryNumberIsThatOfAnIndependentCount) {
           const std::vector<Pair> images = analysis::images(law.law, pair);
           return std::any_of(images.begin(), images.end(), [&](const Pair& other) {
             const bool open =
-                name == "narrow" && (oracle::shape(other).dimension_a < 2 || oracle::shape(other).dimension_b < 2);
+                name == "narrow" && (oracle::hulls(other).dimension_a < 2 || oracle::hulls(other).dimension_b < 2);
             return !open && analysis::breaks(law.law, says, planted(name, other));
           });
         });
@@ -170,7 +170,7 @@ TEST_F(Planted, TheSmallestFailureOfEachKindIsOneAndIsSmall) {
     ++kinds[subject + ", " + failure.shape + ", " + std::string(kWrongBy[static_cast<std::size_t>(failure.by)])];
     EXPECT_EQ(oracle::truth(failure.pair).verdict, failure.truth.verdict);
     EXPECT_NE(failure.verdict, failure.truth.verdict);
-    EXPECT_EQ(shape_name(oracle::shape(failure.pair)), failure.shape == kClear ? "general" : failure.shape);
+    EXPECT_EQ(shape_name(oracle::hulls(failure.pair)), failure.shape == kClear ? "general" : failure.shape);
     EXPECT_TRUE(failure.shape != kClear || std::fabs(failure.truth.margin_ulps) >= 4096);
     if (!failure.lane->foreign) continue;
     EXPECT_EQ(planted(subject, failure.pair), failure.verdict) << subject;

@@ -34,7 +34,7 @@ LanesUnderTest alone(const Lane& lane) {
 }
 
 bool is_clear(const Pair& pair, const oracle::Truth& truth) {
-  return shape_name(oracle::shape(pair)) == "general" &&
+  return shape_name(oracle::hulls(pair)) == "general" &&
          std::fabs(truth.margin_ulps) >= std::ldexp(1.0, kClearExponent);
 }
 
@@ -62,7 +62,7 @@ bool fails_so(const LeagueFailure& failure, const Pair& pair) {
   const Verdict verdict = decide_one(failure.lane->decide, pair);
   const oracle::Truth truth = oracle::truth(pair);
   const bool shaped =
-      failure.shape == kClear ? is_clear(pair, truth) : shape_name(oracle::shape(pair)) == failure.shape;
+      failure.shape == kClear ? is_clear(pair, truth) : shape_name(oracle::hulls(pair)) == failure.shape;
   return shaped && verdict != truth.verdict && wrong_by(verdict) == failure.by &&
          !analysis::by_convention(*failure.lane, verdict, pair, truth);
 }

@@ -67,12 +67,12 @@ std::vector<Kind> grouped(const std::vector<Case>& cases) {
   for (std::size_t place = 0; place < cases.size(); ++place) {
     const Case& c = cases[place];
     for (const LaneReason& reason : c.reasons) {
-      const std::string key = kind_key(c.signature.subject, reason, c.signature.shape);
+      const std::string key = kind_key(c.signature.subject, reason, c.signature.hulls);
       Kind& kind =
           kinds
               .try_emplace(
                   key,
-                  Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature.shape), 0, {}, {}})
+                  Kind{key, c.signature.subject, reason.cause, reason.line, shape_name(c.signature.hulls), 0, {}, {}})
               .first->second;
       kind.settled[0] += reason.audited && reason.settled;
       kind.settled[1] += reason.audited;
@@ -88,7 +88,7 @@ std::vector<Kind> grouped(const std::vector<Case>& cases) {
 }
 
 bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
-  return kind_key(c.signature.subject, reason, c.signature.shape) == kind.key;
+  return kind_key(c.signature.subject, reason, c.signature.hulls) == kind.key;
 }
 
 // The place of the case whose pair shows the kind best: rather one on which no lane is wrong for another reason, then
@@ -271,15 +271,15 @@ std::string pair_text(const Pair& pair) {
   return line.substr(0, line.find('\n'));
 }
 
-std::string_view shape_name(const oracle::Shape& shape) {
-  return shape.dimension_a < 2 || shape.dimension_b < 2 ? "degenerate" : shape.coplanar ? "coplanar" : "general";
+std::string_view shape_name(const Hulls& hulls) {
+  return hulls.dimension_a < 2 || hulls.dimension_b < 2 ? "degenerate" : hulls.coplanar ? "coplanar" : "general";
 }
 
-std::string kind_key(std::string_view subject, const LaneReason& reason, const oracle::Shape& shape) {
+std::string kind_key(std::string_view subject, const LaneReason& reason, const Hulls& hulls) {
   std::string cause = reason.cause;
   std::replace(cause.begin(), cause.end(), ' ', '_');
   const std::string file = reason.line.substr(reason.line.rfind('/') + 1);
-  return fmt::format("{}/{}/{}/{}", subject, cause, file.empty() ? "-" : file, shape_name(shape));
+  return fmt::format("{}/{}/{}/{}", subject, cause, file.empty() ? "-" : file, shape_name(hulls));
 }
 
 Json find_kinds(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,

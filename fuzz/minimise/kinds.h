@@ -36,10 +36,10 @@ inline constexpr std::size_t kMostShown = 40;
 std::string pair_text(const Pair& pair);
 
 // "degenerate" where a triangle is a segment or a point, or else "coplanar" or "general".
-std::string_view shape_name(const oracle::Shape& shape);
+std::string_view shape_name(const Hulls& hulls);
 
 // "moller_1997/rounding/moller_1997.h:117/general"; "-" for a line that is empty.
-std::string kind_key(std::string_view subject, const LaneReason& reason, const oracle::Shape& shape);
+std::string kind_key(std::string_view subject, const LaneReason& reason, const Hulls& hulls);
 
 // What a kind is, where it was seen, and its pairs:
 // {"key", "subject", "cause", "line", "shape", "pairs", "signatures", "lanes": [id], "settled": [yes, of],

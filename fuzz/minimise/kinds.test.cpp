@@ -78,11 +78,11 @@ TEST_F(Kinds, TheirPairsAreOfTheKind) {
     for (const char* which : {"simplest", "worst"}) {
       const Pair pair = pair_of(kind[which]);
       const Verdict truth = oracle::cgal_verdict(pair);
-      const oracle::Shape shape = oracle::shape(pair);
-      EXPECT_EQ(shape_name(shape), kind["shape"]) << kind["key"];
+      const Hulls hulls = oracle::hulls(pair);
+      EXPECT_EQ(shape_name(hulls), kind["shape"]) << kind["key"];
       std::set<std::string> lanes;
       for (const LaneReason& reason : reasons_of(under_test_, kind["subject"].get<std::string>(), pair, truth)) {
-        if (kind_key(kind["subject"].get<std::string>(), reason, shape) == kind["key"]) lanes.insert(reason.lane->id);
+        if (kind_key(kind["subject"].get<std::string>(), reason, hulls) == kind["key"]) lanes.insert(reason.lane->id);
       }
       EXPECT_FALSE(lanes.empty()) << kind["key"] << ' ' << which;
       for (const std::string& lane : lanes)

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "analysis/convention.h"
-#include "core/exact/exact.h"
 #include "core/margin/margin.h"
+#include "core/relation_of.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/minimise/moves.h"
 #include "oracle/truth.h"
@@ -135,12 +135,10 @@ std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t
 
 // The place of the first lane that is wrong and does not only differ by its convention; the number of lanes for none.
 std::size_t wrong_at(const Failure& failure, const Pair& pair) {
-  const Judged& truth = failure.truth;
-  const bool touches = truth.verdict == Verdict::intersects && truth.margin_sign == 0;
+  const Relation& truth = failure.truth;
   std::size_t l = 0;
-  while (l < failure.lanes.size() &&
-         (failure.verdicts[l] == truth.verdict ||
-          analysis::by_convention(*failure.lanes[l], failure.verdicts[l], pair, truth.contact, truth.shape, touches)))
+  while (l < failure.lanes.size() && (failure.verdicts[l] == truth.verdict ||
+                                      analysis::by_convention(*failure.lanes[l], failure.verdicts[l], pair, truth)))
     ++l;
   return l;
 }
@@ -176,7 +174,7 @@ struct Walk {
 
   // Of a pair that gets the failure's verdicts.
   bool take(const Pair& candidate) {
-    if (judged(candidate) != failure.truth || !counts(failure, candidate)) return false;
+    if (relation_of(candidate) != failure.truth || !counts(failure, candidate)) return false;
     if (!may_have_reason(failure, result.reason, candidate)) return false;
     if (ask_all && !has_cause(candidate)) return false;
     way.push_back(candidate);
@@ -277,19 +275,13 @@ bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& 
          analysis::cause_of(failure.first_wrong(pair), pair, failure.truth.verdict) == reason.cause;
 }
 
-Judged judged(const Pair& pair) {
-  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-  return {r.intersects ? Verdict::intersects : Verdict::disjoint, static_cast<Contact>(r.contact + 1),
-          oracle::Shape{r.dimension_a, r.dimension_b, r.coplanar}, r.margin_sign};
-}
-
 std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& pair) {
   std::vector<Failure> failures;
   if (!is_finite(pair)) return failures;
-  const Judged truth_of_pair = judged(pair);
+  const Relation truth = relation_of(pair);
   const std::vector<Verdict> verdicts = decide_in_turn(under_test, pair);
   analysis::for_each_subject(under_test.lanes, [&](std::size_t first, std::size_t count) {
-    Failure failure{truth_of_pair, {}, {}, {}};
+    Failure failure{truth, {}, {}, {}};
     for (std::size_t l = first; l < first + count; ++l) {
       const Lane& lane = *under_test.lanes[l];
       const DecideBlock on_host = cuda::block_on_host(lane);
@@ -309,12 +301,11 @@ std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& p
 }
 
 bool fails_alike(const Failure& failure, const Pair& pair) {
-  return !decided_alike(failure, {pair}).empty() && judged(pair) == failure.truth;
+  return !decided_alike(failure, {pair}).empty() && relation_of(pair) == failure.truth;
 }
 
 analysis::Signature signature_of(const Failure& failure, const Pair& pair) {
-  return analysis::signature(failure.truth.contact, failure.truth.shape,
-                             oracle::margin_bucket(pair, failure.truth.verdict), failure.truth.verdict, failure.lanes,
+  return analysis::signature(failure.truth, oracle::margin_bucket(pair, failure.truth.verdict), failure.lanes,
                              failure.verdicts);
 }
 
@@ -346,8 +337,7 @@ Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Min
 }
 
 void confirm(const LanesUnderTest& under_test, const Failure& failure, const Pair& pair) {
-  const oracle::Truth t = oracle::truth(pair);
-  const Judged by_oracle{t.verdict, t.contact, oracle::shape(pair), (t.margin > 0) - (t.margin < 0)};
+  const Relation by_oracle = oracle::truth(pair);
   if (by_oracle != failure.truth) throw oracle::OracleApart("the minimiser's truth and the oracle's differ");
   if (!can_shrink(failure)) return;  // its pair is the first one, and to ask again would be of no use
   const std::vector<Failure> failures = failures_of(under_test, pair);

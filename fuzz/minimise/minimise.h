@@ -14,24 +14,11 @@
 
 namespace graze::fuzz {
 
-// What is true of a pair and must stay when it shrinks: all of its signature but the margin's size. Shrinking
-// runs to the threshold, so a margin that had to keep its size would keep the coordinates long; its sign says whether
-// the pair is apart, touches or overlaps.
-struct Judged {
-  Verdict verdict = Verdict::declined;
-  Contact contact = Contact::unknown;
-  oracle::Shape shape;
-  int margin_sign = 0;
-  bool operator==(const Judged&) const = default;
-};
-
-// By the exact decision of core/exact/exact.h; the oracle confirms the results (see confirm).
-// Requires: finite coordinates.   Exact: always.
-Judged judged(const Pair& pair);
-
 // One algorithm's failure: the truth, and what each of its lanes says of it. A pair fails alike when all of it holds.
 struct Failure {
-  Judged truth;
+  // By the exact decision of core/exact/exact.h; the oracle confirms the results (see confirm). It stays when the pair
+  // shrinks. The margin's size need not: shrinking runs to the threshold, and would keep the coordinates long.
+  Relation truth;
   std::vector<const Lane*> lanes;    // of one algorithm, those of the under_test
   std::vector<DecideBlock> on_host;  // of each: the host lane or the twin
   std::vector<Verdict> verdicts;     // of each

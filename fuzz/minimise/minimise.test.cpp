@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/relation_of.h"
 #include "corpus/pair_format.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/minimise/moves.h"
@@ -170,7 +171,7 @@ TEST_P(MinimiseStratum, MinimisesToAOneMinimalPairThatFailsAlike) {
 
     const oracle::Truth t = oracle::truth(found.pair);
     EXPECT_EQ(t.contact, oracle::gmp_contact(c.pair));
-    EXPECT_EQ(oracle::shape(found.pair), oracle::shape(c.pair));
+    EXPECT_EQ(oracle::hulls(found.pair), oracle::hulls(c.pair));
     EXPECT_EQ(std::signbit(t.margin), std::signbit(oracle::truth(c.pair).margin));
     EXPECT_EQ(t.margin == 0, oracle::truth(c.pair).margin == 0);
     for (std::size_t l = 0; l < c.failure.lanes.size(); ++l) {
@@ -305,13 +306,13 @@ TEST(Minimise, TheFirstWrongLaneIsNotExcused) {
                kOutsideTouching,  ""};
   Lane crashes = excused;
   crashes.id = "excused/f64/cpu";
-  const Failure failure{judged(touching), {&excused, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
+  const Failure failure{relation_of(touching), {&excused, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
   EXPECT_EQ(failure.first_wrong(touching).id, "excused/f64/cpu");
-  const Failure both{judged(touching), {&crashes, &excused}, {}, {Verdict::crashed, Verdict::disjoint}};
+  const Failure both{relation_of(touching), {&crashes, &excused}, {}, {Verdict::crashed, Verdict::disjoint}};
   EXPECT_EQ(both.first_wrong(touching).id, "excused/f64/cpu");
   Lane strict = excused;
   strict.outside = 0;
-  const Failure wrong{judged(touching), {&strict, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
+  const Failure wrong{relation_of(touching), {&strict, &crashes}, {}, {Verdict::disjoint, Verdict::crashed}};
   EXPECT_EQ(&wrong.first_wrong(touching), &strict);
 }
 

@@ -51,7 +51,7 @@ std::string kind_of(const RegressionCase& c) {
 // The pair's signatures, one for each subject, right or wrong.
 std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& seen) {
   const analysis::Signature blank{
-      seen.truth.contact, oracle::shape(pair), oracle::margin_bucket(pair, seen.truth.verdict), "", {}};
+      seen.truth.contact, seen.truth.hulls, oracle::margin_bucket(pair, seen.truth.verdict), "", {}};
   std::vector<analysis::Signature> result;
   for (const Lane& lane : lanes()) {  // in table order
     if (lane.exact) continue;

@@ -15,25 +15,56 @@ except ImportError:
 
 
 class Triangles(ctypes.Structure):
-    _fields_ = [("count", ctypes.c_uint64), ("layout", ctypes.c_int), ("device", ctypes.c_int), ("rows", ctypes.c_void_p),
-                ("columns", ctypes.c_void_p * 9), ("vertices", ctypes.c_void_p), ("faces", ctypes.c_void_p),
-                ("vertex_count", ctypes.c_uint64), ("stride", ctypes.c_size_t), ("vertex_stride", ctypes.c_size_t)]
+    _fields_ = [
+        ("count", ctypes.c_uint64),
+        ("layout", ctypes.c_int),
+        ("device", ctypes.c_int),
+        ("rows", ctypes.c_void_p),
+        ("columns", ctypes.c_void_p * 9),
+        ("vertices", ctypes.c_void_p),
+        ("faces", ctypes.c_void_p),
+        ("vertex_count", ctypes.c_uint64),
+        ("stride", ctypes.c_size_t),
+        ("vertex_stride", ctypes.c_size_t),
+    ]
 
 
 class Query(ctypes.Structure):
-    _fields_ = [("size", ctypes.c_size_t), ("references", ctypes.c_void_p), ("reference_count", ctypes.c_uint64),
-                ("parts", ctypes.POINTER(Triangles)), ("part_count", ctypes.c_uint64), ("mode", ctypes.c_int),
-                ("executor", ctypes.c_int), ("lane", ctypes.c_char_p), ("bytes", ctypes.c_void_p), ("bits", ctypes.c_void_p),
-                ("list", ctypes.c_void_p), ("list_room", ctypes.c_uint64), ("outputs_on_device", ctypes.c_int),
-                ("stream", ctypes.c_void_p), ("launch_seconds", ctypes.c_double), ("progress", ctypes.c_void_p),
-                ("user", ctypes.c_void_p)]
+    _fields_ = [
+        ("size", ctypes.c_size_t),
+        ("references", ctypes.c_void_p),
+        ("reference_count", ctypes.c_uint64),
+        ("parts", ctypes.POINTER(Triangles)),
+        ("part_count", ctypes.c_uint64),
+        ("mode", ctypes.c_int),
+        ("executor", ctypes.c_int),
+        ("lane", ctypes.c_char_p),
+        ("bytes", ctypes.c_void_p),
+        ("bits", ctypes.c_void_p),
+        ("list", ctypes.c_void_p),
+        ("list_room", ctypes.c_uint64),
+        ("outputs_on_device", ctypes.c_int),
+        ("stream", ctypes.c_void_p),
+        ("launch_seconds", ctypes.c_double),
+        ("progress", ctypes.c_void_p),
+        ("user", ctypes.c_void_p),
+    ]
 
 
 class Answer(ctypes.Structure):
-    _fields_ = [("status", ctypes.c_int), ("message", ctypes.c_char * 200), ("position", ctypes.c_uint64),
-                ("triangles", ctypes.c_uint64), ("hits", ctypes.c_uint64), ("declined", ctypes.c_uint64),
-                ("first", ctypes.c_uint64), ("first_reference", ctypes.c_uint64), ("executor", ctypes.c_int),
-                ("seconds", ctypes.c_double), ("longest_launch", ctypes.c_double)]
+    _fields_ = [
+        ("status", ctypes.c_int),
+        ("message", ctypes.c_char * 200),
+        ("position", ctypes.c_uint64),
+        ("triangles", ctypes.c_uint64),
+        ("hits", ctypes.c_uint64),
+        ("declined", ctypes.c_uint64),
+        ("first", ctypes.c_uint64),
+        ("first_reference", ctypes.c_uint64),
+        ("executor", ctypes.c_int),
+        ("seconds", ctypes.c_double),
+        ("longest_launch", ctypes.c_double),
+    ]
 
 
 ALL = 1
@@ -47,8 +78,16 @@ def which(library, reference, rows, count, lane=None):
     """Returns: a byte for each triangle, 1 meets the reference, 0 does not, 2 declined; and the answer."""
     meets = numpy.zeros(count, numpy.uint8) if numpy is not None else array.array("B", bytes(count))
     part = Triangles(count=count, device=-1, rows=address(rows))
-    query = Query(size=ctypes.sizeof(Query), references=address(reference), reference_count=1,
-                  parts=ctypes.pointer(part), part_count=1, mode=ALL, lane=lane, bytes=address(meets))
+    query = Query(
+        size=ctypes.sizeof(Query),
+        references=address(reference),
+        reference_count=1,
+        parts=ctypes.pointer(part),
+        part_count=1,
+        mode=ALL,
+        lane=lane,
+        bytes=address(meets),
+    )
     answer = Answer()
     library.graze_open.restype = ctypes.c_void_p
     context = ctypes.c_void_p(library.graze_open())

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/exact/exact.h"
+#include "core/relation_of.h"
 
 namespace graze::reports::wasm {
 namespace {
@@ -223,14 +223,13 @@ Drawing drawing_of(const Pair& pair) {
     b[i] = widened(pair.b[i]);
   }
   Drawing result{};
-  const exact::Relation relation = exact::relation(&pair.a[0].x, &pair.b[0].x);
-  const int contact = relation.contact;
-  if (!relation.intersects) add_witness(result, nearest(a, b), {}, a, b);
-  if (contact >= 0) {
+  const Relation relation = relation_of(pair);
+  if (!relation.intersects()) add_witness(result, nearest(a, b), {}, a, b);
+  if (relation.intersects()) {
     Polygon common = hull_of(a);
     for (const HalfSpace& half : half_spaces(hull_of(b))) common = clipped(common, half);
-    if (contact < 2 && common.size() > static_cast<std::size_t>(contact) + 1)
-      common.resize(static_cast<std::size_t>(contact) + 1);
+    const auto points = static_cast<std::size_t>(relation.contact);  // a point has one, a segment two
+    if (relation.contact != Contact::area && common.size() > points) common.resize(points);
     result.contact_count = write(common, result.contact, Drawing::kMost);
     if (relation.margin_sign < 0) {
       if (common.empty()) common = hull_of(a);  // what rounding lost

@@ -7,7 +7,10 @@ const graze = await load(readFileSync(process.argv[2] ?? new URL('graze.wasm', i
 
 const floor = [0, 0, 0, 4, 0, 0, 0, 4, 0];
 const standing = (/** @type {number} */ height) => [...floor, 1, 1, height, 1, 2, 4, 2, 1, 4];
-for (const [name, pair] of /** @type {const} */ ([['touching', standing(0)], ['a quarter above', standing(0.25)]])) {
+for (const [name, pair] of /** @type {const} */ ([
+  ['touching', standing(0)],
+  ['a quarter above', standing(0.25)],
+])) {
   const { verdict, contact } = graze.truth(pair);
   const { least, most } = graze.margin(pair);
   console.log(`${name}: ${verdict}, contact ${contact}, margin ${least.toPrecision(3)} to ${most.toPrecision(3)}`);
@@ -16,4 +19,5 @@ for (const [name, pair] of /** @type {const} */ ([['touching', standing(0)], ['a
 const shared = [0.1, 0.2, 0.3, 0.4, 0.9, 0.2, 0.7, 0.1, 0.6, 0.1, 0.2, 0.3, 0.5, 0.5, 0.9, -0.3, 0.8, 0.4];
 const verdicts = graze.decide(shared);
 console.log(`two triangles with one vertex in common: ${graze.truth(shared).verdict}`);
-for (const lane of ['cpu', 'cuda-nofma', 'cuda-fma']) console.log(`  guigue_devillers_2003/f64/${lane}: ${verdicts[`guigue_devillers_2003/f64/${lane}`]}`);
+for (const lane of ['cpu', 'cuda-nofma', 'cuda-fma'])
+  console.log(`  guigue_devillers_2003/f64/${lane}: ${verdicts[`guigue_devillers_2003/f64/${lane}`]}`);

@@ -22,7 +22,14 @@ const kRelations = ['<', '<=', '==', '>', '>='];
 const kMostPoints = 9;
 
 /** @param {string} of @param {number} feature */
-const feature_at = (of, feature) => (feature < 0 ? '' : feature < 3 ? `${of}[${feature}]` : feature < 6 ? `edge ${of}[${feature - 3}] ${of}[${(feature - 2) % 3}]` : `face ${of}`);
+const feature_at = (of, feature) =>
+  feature < 0
+    ? ''
+    : feature < 3
+      ? `${of}[${feature}]`
+      : feature < 6
+        ? `edge ${of}[${feature - 3}] ${of}[${(feature - 2) % 3}]`
+        : `face ${of}`;
 
 /**
  * The functions over an instance of the module.
@@ -31,7 +38,7 @@ const feature_at = (of, feature) => (feature < 0 ? '' : feature < 3 ? `${of}[${f
 function graze_of(exports) {
   /** @type {WebAssembly.Memory} */
   const memory = exports.memory;
-  const view = () => new DataView(memory.buffer);  // anew each time: memory that grows leaves views behind
+  const view = () => new DataView(memory.buffer); // anew each time: memory that grows leaves views behind
 
   /** @param {number} at */
   function text_at(at) {
@@ -56,7 +63,10 @@ function graze_of(exports) {
   /** @param {number} at @param {number} count @returns {Point[]} */
   function points_at(at, count) {
     const data = view();
-    return Array.from({ length: count }, (_, i) => /** @type {Point} */ ([0, 8, 16].map((k) => data.getFloat64(at + 24 * i + k, true))));
+    return Array.from(
+      { length: count },
+      (_, i) => /** @type {Point} */ ([0, 8, 16].map((k) => data.getFloat64(at + 24 * i + k, true))),
+    );
   }
 
   /** From the repository's root: "core/vec3.h". @param {number} at */
@@ -98,7 +108,9 @@ function graze_of(exports) {
      */
     decide(pair) {
       set_pair(pair);
-      return Object.fromEntries(lanes.map((id, i) => [id, exports.decide(i, 1) ? kVerdicts[view().getUint8(verdicts_at)] : null]));
+      return Object.fromEntries(
+        lanes.map((id, i) => [id, exports.decide(i, 1) ? kVerdicts[view().getUint8(verdicts_at)] : null]),
+      );
     },
 
     /**
@@ -106,7 +118,8 @@ function graze_of(exports) {
      * @param {Pair} pair @returns {Truth}
      */
     truth(pair) {
-      const at = truth_at(pair), data = view();
+      const at = truth_at(pair),
+        data = view();
       const [verdict, contact, , a, b, coplanar] = Array.from({ length: 6 }, (_, i) => data.getInt32(at + 4 * i, true));
       return { verdict: kVerdicts[verdict], contact: kContacts[contact], coplanar: coplanar !== 0, dimensions: [a, b] };
     },
@@ -117,9 +130,15 @@ function graze_of(exports) {
      * @param {Pair} pair @returns {Margin}
      */
     margin(pair) {
-      const at = truth_at(pair), data = view();
+      const at = truth_at(pair),
+        data = view();
       const sign = /** @type {-1 | 0 | 1} */ (data.getInt32(at + 8, true));
-      return { sign, least: data.getFloat64(at + 32, true), most: data.getFloat64(at + 40, true), ulp: 2 ** data.getInt32(at + 24, true) };
+      return {
+        sign,
+        least: data.getFloat64(at + 32, true),
+        most: data.getFloat64(at + 40, true),
+        ulp: 2 ** data.getInt32(at + 24, true),
+      };
     },
 
     /**
@@ -128,7 +147,10 @@ function graze_of(exports) {
      */
     set_policy(policy) {
       const number = /^(?:abs|rel):(.+)$/.exec(policy);
-      if (!['', 'bound', 'filtered'].includes(policy) && !(number && Number(number[1]) >= 0 && Number.isFinite(Number(number[1]))))
+      if (
+        !['', 'bound', 'filtered'].includes(policy) &&
+        !(number && Number(number[1]) >= 0 && Number.isFinite(Number(number[1])))
+      )
         throw new RangeError(`expected abs:E, rel:K, bound, filtered or nothing, found '${policy}'`);
       set_text(policy);
       exports.set_policy();
@@ -183,15 +205,24 @@ function graze_of(exports) {
      */
     drawing(pair) {
       set_pair(pair);
-      const at = exports.draw(), data = view();
+      const at = exports.draw(),
+        data = view();
       const [contact, line, a, b] = [0, 4, 8, 12].map((k) => data.getInt32(at + k, true));
-      const points = at + 16, after = points + 24 * kMostPoints;
+      const points = at + 16,
+        after = points + 24 * kMostPoints;
       return {
-        contact: points_at(points, contact), line: points_at(after, line),
+        contact: points_at(points, contact),
+        line: points_at(after, line),
         sections: [points_at(after + 48, a), points_at(after + 96, b)],
         witness: points_at(after + 144, data.getInt32(after + 224, true)),
-        along: [0, 1].map((k) => /** @type {[number, number]} */ ([0, 8].map((end) => data.getFloat64(after + 192 + 16 * k + end, true)))),
-        features: [feature_at('a', data.getInt32(after + 228, true)), feature_at('b', data.getInt32(after + 232, true))],
+        along: [0, 1].map(
+          (k) =>
+            /** @type {[number, number]} */ ([0, 8].map((end) => data.getFloat64(after + 192 + 16 * k + end, true))),
+        ),
+        features: [
+          feature_at('a', data.getInt32(after + 228, true)),
+          feature_at('b', data.getInt32(after + 232, true)),
+        ],
       };
     },
 
@@ -205,13 +236,26 @@ function graze_of(exports) {
       set_pair(pair);
       const count = exports.steps(lane(id));
       if (count < 0) return null;
-      const at = exports.steps_at(), data = view();
+      const at = exports.steps_at(),
+        data = view();
       const steps = Array.from({ length: count }, (_, i) => {
         const step = at + 64 * i;
-        const [file, line, site, compared, relation, held, holds, result] = Array.from({ length: 8 }, (_, k) => data.getInt32(step + 4 * k, true));
+        const [file, line, site, compared, relation, held, holds, result] = Array.from({ length: 8 }, (_, k) =>
+          data.getInt32(step + 4 * k, true),
+        );
         const [left, right, exactLeft, exactRight] = [32, 40, 48, 56].map((k) => data.getFloat64(step + k, true));
-        return { line: `${file_at(file)}:${line}`, site: site < 0 ? '' : kSites[site], relation: compared ? kRelations[relation] : '',
-          held: held !== 0, holds: holds !== 0, result, left, right, exactLeft, exactRight };
+        return {
+          line: `${file_at(file)}:${line}`,
+          site: site < 0 ? '' : kSites[site],
+          relation: compared ? kRelations[relation] : '',
+          held: held !== 0,
+          holds: holds !== 0,
+          result,
+          left,
+          right,
+          exactLeft,
+          exactRight,
+        };
       });
       return { own: exports.evidence() < 2, steps, with_113_bits: kVerdicts[exports.with_113_bits()] };
     },
@@ -223,7 +267,8 @@ function graze_of(exports) {
     contractions(pair, id) {
       set_pair(pair);
       const count = exports.contractions(lane(id));
-      const at = exports.contractions_at(), data = view();
+      const at = exports.contractions_at(),
+        data = view();
       return Array.from({ length: count }, (_, i) => {
         const [file, from_file, line, from_line] = [0, 4, 8, 12].map((k) => data.getInt32(at + 16 * i + k, true));
         const from = file_at(from_file);

@@ -9,7 +9,9 @@ import { load } from './graze.js';
 const [reference, module, pairs] = process.argv.slice(2);
 const graze = await load(readFileSync(module));
 const { exports } = graze;
-const kSeed = 20120131n, kBlock = 1000, kFew = 5;
+const kSeed = 20120131n,
+  kBlock = 1000,
+  kFew = 5;
 
 // As reference.cpp has it.
 class Hash {
@@ -58,12 +60,20 @@ function steps(lane, few) {
     for (const pair of few) {
       const found = graze.steps(pair, lane)?.steps;
       if (!found) continue;
-      hash.whole(found.reduce((sum, { line, held, left, right }) => (sum + filled((step) => {
-        step.whole(line_of(line));
-        step.whole(Number(held));
-        step.number(left);
-        step.number(right);
-      })) | 0, 0));
+      hash.whole(
+        found.reduce(
+          (sum, { line, held, left, right }) =>
+            (sum +
+              filled((step) => {
+                step.whole(line_of(line));
+                step.whole(Number(held));
+                step.number(left);
+                step.number(right);
+              })) |
+            0,
+          0,
+        ),
+      );
       for (const { line } of graze.contractions(pair, lane)) hash.whole(line_of(line));
     }
   });
@@ -79,7 +89,11 @@ function compute(what, stratum, block, count) {
   const [subject, scalar, variant, policy] = id.split('/');
   const lane = graze.lanes.indexOf(`${subject}/${scalar}/${variant}`);
   assert.ok(lane >= 0, `the module has no lane ${id}`);
-  if (kind === 'steps') return steps(id, Array.from({ length: Math.min(kFew, count) }, (_, i) => pair_at(i)));
+  if (kind === 'steps')
+    return steps(
+      id,
+      Array.from({ length: Math.min(kFew, count) }, (_, i) => pair_at(i)),
+    );
   if (kind === 'trace') {
     assert.ok(exports.trace(lane, count), `${id} has no trace`);
     return new Hash().add(bytes(exports.hashes(), 8 * count)).value;
@@ -93,16 +107,17 @@ function compute(what, stratum, block, count) {
 
 // The fused multiply-add on rationals: x, y and z are integers times 2^-149.
 function fused_exactly(x, y, z) {
-  const whole = (v) => BigInt(v * 2 ** 149);  // exact: v < 2^128 stays a double
-  let sum = whole(x) * whole(y) + (whole(z) << 149n);  // times 2^-298
+  const whole = (v) => BigInt(v * 2 ** 149); // exact: v < 2^128 stays a double
+  let sum = whole(x) * whole(y) + (whole(z) << 149n); // times 2^-298
   if (sum === 0n) return 0;
   const negative = sum < 0n;
   if (negative) sum = -sum;
   const bits = BigInt(sum.toString(2).length);
-  const drop = bits - 24n > 149n ? bits - 24n : 149n;  // below the 24th bit, or below 2^-149
+  const drop = bits - 24n > 149n ? bits - 24n : 149n; // below the 24th bit, or below 2^-149
   let kept = sum >> drop;
-  const rest = sum - (kept << drop), half = 1n << (drop - 1n);
-  if (rest > half || (rest === half && (kept & 1n))) kept += 1n;
+  const rest = sum - (kept << drop),
+    half = 1n << (drop - 1n);
+  if (rest > half || (rest === half && kept & 1n)) kept += 1n;
   const value = Number(kept) * 2 ** Number(drop - 200n) * 2 ** -98;
   return negative ? -value : value;
 }
@@ -110,13 +125,15 @@ function fused_exactly(x, y, z) {
 function check_fused() {
   let state = 1;
   const below = (n) => {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;  // Numerical Recipes; enough for this
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0; // Numerical Recipes; enough for this
     return Math.floor((state / 2 ** 32) * n);
   };
   let halfway = 0;
   for (let i = 0; i < 100_000; ++i) {
-    const exponent = -100 + below(80), total = -160 + below(40);
-    const x = (1 + below(4095)) * 2 ** exponent, y = (1 + below(4095)) * 2 ** Math.max(-149, total - exponent);
+    const exponent = -100 + below(80),
+      total = -160 + below(40);
+    const x = (1 + below(4095)) * 2 ** exponent,
+      y = (1 + below(4095)) * 2 ** Math.max(-149, total - exponent);
     const z = (below(2 ** 21) - 2 ** 20) * 2 ** (-149 + below(8));
     const exact = fused_exactly(x, y, z);
     assert.equal(exports.fused(x, y, z) + 0, exact + 0, `fused(${x}, ${y}, ${z})`);
@@ -134,15 +151,28 @@ function check_interface() {
   assert.equal(graze.nudged(0, -1), -(2 ** -149));
   assert.throws(() => graze.set_policy('abs:x'), /expected abs:E/);
   assert.throws(() => graze.decide([1, 2]), /expected the 18 coordinates/);
-  const case_1 = [0, -2, 6, 0, 5, 0, 0, -3, 0, -2, -2, 0, 2, -3, 0, 3, -1, 0];  // of 2012
-  assert.deepEqual(graze.truth(case_1), { verdict: 'intersects', contact: 'segment', coplanar: false, dimensions: [2, 2] });
+  const case_1 = [0, -2, 6, 0, 5, 0, 0, -3, 0, -2, -2, 0, 2, -3, 0, 3, -1, 0]; // of 2012
+  assert.deepEqual(graze.truth(case_1), {
+    verdict: 'intersects',
+    contact: 'segment',
+    coplanar: false,
+    dimensions: [2, 2],
+  });
   const { contact, sections } = graze.drawing(case_1);
-  assert.deepEqual(contact.map(([, y]) => y).sort(), [-1.6, -2.5]);  // worked out by hand in corpus/classic/thesis_2012.pairs
-  assert.equal(sections.every((ends) => ends.length === 2), true);
+  assert.deepEqual(contact.map(([, y]) => y).sort(), [-1.6, -2.5]); // worked out by hand in corpus/classic/thesis_2012.pairs
+  assert.equal(
+    sections.every((ends) => ends.length === 2),
+    true,
+  );
   const { sign, least, most } = graze.margin([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0.5, 1, 0, 0.5, 0, 1, 0.5]);
   assert.ok(sign === 1 && least <= 0.5 && most >= 0.5 && most - least < 1e-9);
-  const output = execFileSync(process.execPath, [fileURLToPath(new URL('example.mjs', import.meta.url)), module], { encoding: 'utf8' });
-  assert.match(output, /touching: intersects, contact point, margin 0.00 to 0.00\na quarter above: disjoint, contact none, margin 0.250 to 0.250\n/);
+  const output = execFileSync(process.execPath, [fileURLToPath(new URL('example.mjs', import.meta.url)), module], {
+    encoding: 'utf8',
+  });
+  assert.match(
+    output,
+    /touching: intersects, contact point, margin 0.00 to 0.00\na quarter above: disjoint, contact none, margin 0.250 to 0.250\n/,
+  );
   assert.match(output, /cuda-fma: disjoint\n$/);
 }
 
@@ -151,17 +181,33 @@ function check_witness() {
   const found = { gap: 0, push: 0 };
   for (const stratum of graze.strata) {
     for (let index = 0; index < 60; ++index) {
-      const pair = graze.generate(stratum, 7n, BigInt(index)), { sign, least, most } = graze.margin(pair), { witness, along: reach, features } = graze.drawing(pair), where = `${stratum}:7:${index}`;
+      const pair = graze.generate(stratum, 7n, BigInt(index)),
+        { sign, least, most } = graze.margin(pair),
+        { witness, along: reach, features } = graze.drawing(pair),
+        where = `${stratum}:7:${index}`;
       if (sign === 0) assert.equal(witness.length, 0, where);
-      if (witness.length === 0 && (sign === 0 || least < 2 ** -90 * Math.max(...pair.map(Math.abs)))) continue;  // too small a gap for 113 bits
+      if (witness.length === 0 && (sign === 0 || least < 2 ** -90 * Math.max(...pair.map(Math.abs)))) continue; // too small a gap for 113 bits
       assert.equal(witness.length, 2, where);
-      const [p, q] = witness, axis = q.map((x, k) => x - p[k]), length = Math.hypot(...axis), size = Math.max(...pair.map(Math.abs), ...p.map(Math.abs)), slack = 1e-9 * most + 8 * 2 ** -52 * size;
-      assert.ok(length >= least - slack && length <= most + slack, `${where}: ${length}, margin between ${least} and ${most}`);
-      assert.ok(reach[0][1] === 0 && Math.abs(Math.abs(reach[1][0]) - length) <= slack && reach[1][0] > 0 === sign > 0, `${where}: ${reach}`);
+      const [p, q] = witness,
+        axis = q.map((x, k) => x - p[k]),
+        length = Math.hypot(...axis),
+        size = Math.max(...pair.map(Math.abs), ...p.map(Math.abs)),
+        slack = 1e-9 * most + 8 * 2 ** -52 * size;
+      assert.ok(
+        length >= least - slack && length <= most + slack,
+        `${where}: ${length}, margin between ${least} and ${most}`,
+      );
+      assert.ok(
+        reach[0][1] === 0 && Math.abs(Math.abs(reach[1][0]) - length) <= slack && reach[1][0] > 0 === sign > 0,
+        `${where}: ${reach}`,
+      );
       if (sign > 0) {
-        const along = Array.from({ length: 6 }, (_, v) => axis.reduce((sum, x, k) => sum + (x / length) * (pair[3 * v + k] - p[k]), 0));
-        const turned = (32 * 2 ** -52 * size * size) / most;  // by the ends' rounding
-        if (most > 1e-6 * size) assert.ok(Math.max(...along.slice(0, 3)) <= turned && Math.min(...along.slice(3)) >= least - turned, where);
+        const along = Array.from({ length: 6 }, (_, v) =>
+          axis.reduce((sum, x, k) => sum + (x / length) * (pair[3 * v + k] - p[k]), 0),
+        );
+        const turned = (32 * 2 ** -52 * size * size) / most; // by the ends' rounding
+        if (most > 1e-6 * size)
+          assert.ok(Math.max(...along.slice(0, 3)) <= turned && Math.min(...along.slice(3)) >= least - turned, where);
         assert.ok(features.every(Boolean), where);
       }
       ++found[sign > 0 ? 'gap' : 'push'];
@@ -171,20 +217,28 @@ function check_witness() {
 }
 
 function compare() {
-  const lines = execFileSync(reference, [pairs], { encoding: 'utf8', maxBuffer: 2 ** 30 }).trim().split('\n');
+  const lines = execFileSync(reference, [pairs], { encoding: 'utf8', maxBuffer: 2 ** 30 })
+    .trim()
+    .split('\n');
   const each = Math.ceil(Number(pairs) / graze.strata.length);
   const compared = new Map();
   for (const line of lines) {
     const [what, stratum, block, expected] = line.split(' ');
     const count = Math.min(each - Number(block) * kBlock, kBlock);
-    assert.equal(compute(what, stratum, Number(block), count), Number(expected), `${what} on block ${block} of ${stratum}`);
+    assert.equal(
+      compute(what, stratum, Number(block), count),
+      Number(expected),
+      `${what} on block ${block} of ${stratum}`,
+    );
     compared.set(what, (compared.get(what) ?? 0) + count);
   }
   const lanes = graze.lanes.filter((id) => compared.has(id));
   assert.deepEqual(lanes, graze.lanes);
   const kinds = (kind) => [...compared.keys()].filter((what) => what.startsWith(kind)).length;
   assert.ok(kinds('trace:') > 0 && kinds('steps:') > 0);
-  console.log(`${compared.get('pairs')} pairs of ${graze.strata.length} strata: 0 differences in the verdicts of ${lanes.length} lanes and the truth, in the trace hashes of ${kinds('trace:')} lanes`);
+  console.log(
+    `${compared.get('pairs')} pairs of ${graze.strata.length} strata: 0 differences in the verdicts of ${lanes.length} lanes and the truth, in the trace hashes of ${kinds('trace:')} lanes`,
+  );
 }
 
 check_fused();

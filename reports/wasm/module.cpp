@@ -8,6 +8,7 @@
 #include "core/exact/exact.h"
 #include "core/lanes.h"
 #include "core/margin/margin.h"
+#include "core/relation_of.h"
 #include "core/text.h"
 #include "cuda/twin/twin.h"
 #include "reports/wasm/drawing.h"
@@ -157,11 +158,13 @@ GRAZE_EXPORT(truth) const TruthOut* truth() {
   truth_out = {};
   truth_out.verdict = static_cast<std::int32_t>(truth_of(pair));
   if (!is_finite(pair)) return &truth_out;
-  const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-  const MarginBounds bounds =
-      r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, static_cast<Verdict>(r.intersects));
-  truth_out = {r.intersects, r.contact + 1, r.margin_sign, r.dimension_a, r.dimension_b, r.coplanar, log2_ulp(pair), 0,
-               bounds.lo,    bounds.hi};
+  const Relation r = relation_of(pair);
+  const MarginBounds bounds = r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, r.verdict);
+  truth_out = {r.intersects(),      static_cast<std::int32_t>(r.contact),
+               r.margin_sign,       r.hulls.dimension_a,
+               r.hulls.dimension_b, r.hulls.coplanar,
+               log2_ulp(pair),      0,
+               bounds.lo,           bounds.hi};
   return &truth_out;
 }
 

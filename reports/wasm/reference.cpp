@@ -8,8 +8,8 @@
 
 #include "analysis/blame.h"
 #include "analysis/lane_trace.h"
-#include "core/exact/exact.h"
 #include "core/margin/margin.h"
+#include "core/relation_of.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 
@@ -49,12 +49,11 @@ Hash verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
 Hash truths(const std::vector<Pair>& pairs) {
   Hash hash;
   for (const Pair& pair : pairs) {
-    const exact::Relation r = exact::relation(&pair.a[0].x, &pair.b[0].x);
-    const MarginBounds bounds = r.margin_sign == 0
-                                    ? MarginBounds{}
-                                    : margin_bounds(pair, r.intersects ? Verdict::intersects : Verdict::disjoint);
-    for (const std::int32_t x : {std::int32_t{r.intersects}, r.contact + 1, r.margin_sign, r.dimension_a, r.dimension_b,
-                                 std::int32_t{r.coplanar}, log2_ulp(pair)})
+    const Relation r = relation_of(pair);
+    const MarginBounds bounds = r.margin_sign == 0 ? MarginBounds{} : margin_bounds(pair, r.verdict);
+    for (const std::int32_t x :
+         {std::int32_t{r.intersects()}, static_cast<std::int32_t>(r.contact), r.margin_sign, r.hulls.dimension_a,
+          r.hulls.dimension_b, std::int32_t{r.hulls.coplanar}, log2_ulp(pair)})
       hash.add_value(x);
     hash.add_number(bounds.lo);
     hash.add_number(bounds.hi);

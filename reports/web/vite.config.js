@@ -11,17 +11,40 @@ const graze_wasm = {
   name: 'graze-wasm',
   enforce: 'pre',
   resolveId: (id) => (id === 'graze.wasm' ? '\0graze.wasm' : null),
-  load: (id) => (id === '\0graze.wasm' ? `export default "${process.env.GRAZE_WASM ? gzipSync(readFileSync(process.env.GRAZE_WASM), { level: 9 }).toString('base64') : ''}"` : null),
+  load: (id) =>
+    id === '\0graze.wasm'
+      ? `export default "${process.env.GRAZE_WASM ? gzipSync(readFileSync(process.env.GRAZE_WASM), { level: 9 }).toString('base64') : ''}"`
+      : null,
 };
 
 // The lines of the sources in which lanes take their steps.
-const kSources = ['core/vec3.h', ...(process.env.GRAZE_WASM ? readdirSync(`${process.env.GRAZE_SOURCE}/core/algorithms`).map((name) => `core/algorithms/${name}`) : [])];
+const kSources = [
+  'core/vec3.h',
+  ...(process.env.GRAZE_WASM
+    ? readdirSync(`${process.env.GRAZE_SOURCE}/core/algorithms`).map((name) => `core/algorithms/${name}`)
+    : []),
+];
 const sources = {
   name: 'graze-sources',
   enforce: 'pre',
   resolveId: (id) => (id === 'graze.sources' ? '\0graze.sources' : null),
-  load: (id) => (id === '\0graze.sources' ? `export default ${JSON.stringify(process.env.GRAZE_WASM ? Object.fromEntries(kSources.filter((file) => !/(algorithms?|traced)\.h$/.test(file))
-    .map((file) => [file, readFileSync(`${process.env.GRAZE_SOURCE}/${file}`, 'utf8').split('\n').map((line) => line.trim())])) : {})}` : null),
+  load: (id) =>
+    id === '\0graze.sources'
+      ? `export default ${JSON.stringify(
+          process.env.GRAZE_WASM
+            ? Object.fromEntries(
+                kSources
+                  .filter((file) => !/(algorithms?|traced)\.h$/.test(file))
+                  .map((file) => [
+                    file,
+                    readFileSync(`${process.env.GRAZE_SOURCE}/${file}`, 'utf8')
+                      .split('\n')
+                      .map((line) => line.trim()),
+                  ]),
+              )
+            : {},
+        )}`
+      : null,
 };
 
 export default defineConfig(({ mode }) => ({
@@ -29,7 +52,10 @@ export default defineConfig(({ mode }) => ({
   plugins: [graze_wasm, sources, viteSingleFile({ removeViteModuleLoader: true })],
   worker: { format: 'iife' },
   build: {
-    target: 'es2020', emptyOutDir: mode !== 'viewer', reportCompressedSize: false, chunkSizeWarningLimit: 4096,
+    target: 'es2020',
+    emptyOutDir: mode !== 'viewer',
+    reportCompressedSize: false,
+    chunkSizeWarningLimit: 4096,
     rollupOptions: { input: mode === 'viewer' ? 'view.html' : 'index.html' },
   },
 }));

@@ -24,7 +24,14 @@ class Seen:
     __slots__ = ("line", "left", "relation", "right", "held", "separation")
 
     def __init__(self, line, left, relation, right, held, separation):
-        self.line, self.left, self.relation, self.right, self.held, self.separation = line, left, relation, right, held, separation
+        self.line, self.left, self.relation, self.right, self.held, self.separation = (
+            line,
+            left,
+            relation,
+            right,
+            held,
+            separation,
+        )
 
 
 class Run:
@@ -47,7 +54,7 @@ class Run:
 
     def path(self):
         """What the algorithm was told."""
-        return tuple(self.lead) + tuple(s.held for s in self.seen[len(self.lead):])
+        return tuple(self.lead) + tuple(s.held for s in self.seen[len(self.lead) :])
 
     def compare(self, line, left, relation, right, separation=False):
         held = outcome(left, relation, right)
@@ -134,8 +141,9 @@ ONE_SIDE = [at("plane.h", "(distance[0] > zero &&"), at("plane.h", "(distance[0]
 
 
 def strictly_one_side(r, d):
-    return (all(r.compare(ONE_SIDE[0], x, ">", r.zero) for x in d) or
-            all(r.compare(ONE_SIDE[1], x, "<", r.zero) for x in d))
+    return all(r.compare(ONE_SIDE[0], x, ">", r.zero) for x in d) or all(
+        r.compare(ONE_SIDE[1], x, "<", r.zero) for x in d
+    )
 
 
 def plane_distances(r, plane, v):
@@ -162,10 +170,19 @@ def projected_sat(r, a, b):
     return projections_intersect(r, a, b, plane_a)
 
 
-IO = {key: at("interval_overlap.h", text) for key, text in {
-    "denominator": "if (denominator != Real(0))", "positive": "if (distance[i] > zero)", "negative": "} else if (distance[i] < zero)",
-    "difference": "difference == Real(0) ? Real(0)", "order": "return t[0] < t[1] ? Range", "contains": "policy.at_most(Site::separation, range.lo, t)",
-    "parallel": "if (policy.snap(Site::parallel, direction.x) == zero", "parallel_z": "policy.snap(Site::parallel, direction.z) == zero"}.items()}
+IO = {
+    key: at("interval_overlap.h", text)
+    for key, text in {
+        "denominator": "if (denominator != Real(0))",
+        "positive": "if (distance[i] > zero)",
+        "negative": "} else if (distance[i] < zero)",
+        "difference": "difference == Real(0) ? Real(0)",
+        "order": "return t[0] < t[1] ? Range",
+        "contains": "policy.at_most(Site::separation, range.lo, t)",
+        "parallel": "if (policy.snap(Site::parallel, direction.x) == zero",
+        "parallel_z": "policy.snap(Site::parallel, direction.z) == zero",
+    }.items()
+}
 
 
 def vertex_to_put_last(r, d):
@@ -202,7 +219,9 @@ def section(r, point, direction, v, distance):
 
 
 def contains(r, interval, t):
-    return r.compare(IO["contains"], interval[0], "<=", t, True) and r.compare(IO["contains"], t, "<=", interval[1], True)
+    return r.compare(IO["contains"], interval[0], "<=", t, True) and r.compare(
+        IO["contains"], t, "<=", interval[1], True
+    )
 
 
 def interval_overlap(r, a, b):
@@ -217,7 +236,11 @@ def interval_overlap(r, a, b):
     distance_a = plane_distances(r, plane_b, a)
     if strictly_one_side(r, distance_a):
         return False
-    n_dot, p_square, q_square = dot(plane_a.normal, plane_b.normal), dot(plane_a.normal, plane_a.normal), dot(plane_b.normal, plane_b.normal)
+    n_dot, p_square, q_square = (
+        dot(plane_a.normal, plane_b.normal),
+        dot(plane_a.normal, plane_a.normal),
+        dot(plane_b.normal, plane_b.normal),
+    )
     denominator = n_dot * n_dot - p_square * q_square
     s = t = r.zero
     if not r.compare(IO["denominator"], denominator, "==", r.zero):
@@ -229,11 +252,22 @@ def interval_overlap(r, a, b):
     return contains(r, sa, sb[0]) or contains(r, sa, sb[1]) or contains(r, sb, sa[0]) or contains(r, sb, sa[1])
 
 
-M = {key: at("moller_1997.h", text) for key, text in {
-    "cross": "if ((f > zero && d >= zero && d <= f)", "cross_e": "return f > zero ? e >= zero && e <= f", "inside": "return d0 * d1 > Real(0)",
-    "alone_01": "if (d[0] * d[1] > zero) return 2;", "alone_02": "if (d[0] * d[2] > zero) return 1;", "alone_12": "if (d[1] * d[2] > zero ||",
-    "alone": "return d[1] != zero ? 1", "du": "if (du[0] * du[1] > zero", "dv": "if (dv[0] * dv[1] > zero",
-    "apart_0": "const bool apart = policy.less", "apart_1": "policy.less(Site::separation, t0 < t1 ? t1 : t0"}.items()}
+M = {
+    key: at("moller_1997.h", text)
+    for key, text in {
+        "cross": "if ((f > zero && d >= zero && d <= f)",
+        "cross_e": "return f > zero ? e >= zero && e <= f",
+        "inside": "return d0 * d1 > Real(0)",
+        "alone_01": "if (d[0] * d[1] > zero) return 2;",
+        "alone_02": "if (d[0] * d[2] > zero) return 1;",
+        "alone_12": "if (d[1] * d[2] > zero ||",
+        "alone": "return d[1] != zero ? 1",
+        "du": "if (du[0] * du[1] > zero",
+        "dv": "if (dv[0] * dv[1] > zero",
+        "apart_0": "const bool apart = policy.less",
+        "apart_1": "policy.less(Site::separation, t0 < t1 ? t1 : t0",
+    }.items()
+}
 
 
 def segments_cross(r, p, q, u, s):
@@ -242,8 +276,9 @@ def segments_cross(r, p, q, u, s):
     f = ay * bx - ax * by
     d = by * cx - bx * cy
     w, e = M["cross"], M["cross_e"]
-    if ((r.compare(w, f, ">", z) and r.compare(w, d, ">=", z) and r.compare(w, d, "<=", f)) or
-            (r.compare(w, f, "<", z) and r.compare(w, d, "<=", z) and r.compare(w, d, ">=", f))):
+    if (r.compare(w, f, ">", z) and r.compare(w, d, ">=", z) and r.compare(w, d, "<=", f)) or (
+        r.compare(w, f, "<", z) and r.compare(w, d, "<=", z) and r.compare(w, d, ">=", f)
+    ):
         g = ax * cy - ay * cx
         if r.compare(e, f, ">", z):
             return r.compare(e, g, ">=", z) and r.compare(e, g, "<=", f)
@@ -323,21 +358,37 @@ def moller_1997(r, a, b):
             r_low = s0 if r.compare(line, s0, "<", s1) else s1
             l_high = t1 if r.compare(line, t0, "<", t1) else t0
         return r.compare(line, l_high, "<", r_low, True)
+
     return not (less(M["apart_0"], True) or less(M["apart_1"], False))
 
 
 G_TEXT = {
-    "c0": "if (d[0] > zero) return d[1] > zero", "c1": "if (d[0] < zero) return d[1] < zero", "c2": "if (d[1] < zero) return d[2] < zero",
-    "c3": "if (d[1] > zero) return d[2] > zero", "c4": "return d[2] > zero ? Canonical{2, false}",
-    "v0": "if (orient2d(r2, q2, q1, policy) <= zero) {", "v1": "if (orient2d(p1, p2, q1, policy) > zero) return orient2d(p1, q2, q1",
-    "v2": "return orient2d(p1, p2, r1, policy) >= zero && orient2d(q1, r1, p2", "v3": "return orient2d(p1, q2, q1, policy) <= zero && orient2d(r2, q2, r1",
-    "v4": "           orient2d(q1, r1, q2, policy) >= zero;", "v5": "if (orient2d(r2, p2, r1, policy) < zero) return false;",
-    "v6": "if (orient2d(q1, r1, r2, policy) >= zero) return", "v7": "return orient2d(q1, r1, q2, policy) >= zero && orient2d(r2, r1, q2",
-    "e1": "if (orient2d(p1, p2, q1, policy) >= zero) return orient2d(p1, q1, r2", "e2": "return orient2d(q1, r1, p2, policy) >= zero && orient2d(r1, p1, p2",
-    "e3": "return orient2d(r2, p2, r1, policy) >= zero && orient2d(p1, p2, r1", "e4": "(orient2d(p1, r1, r2, policy) >= zero ||",
-    "pq": "const bool left_of_pq", "qr": "const bool left_of_qr", "rp": "const bool left_of_rp", "turn": "const bool turn1 =",
-    "da": "if (da[0] * da[1] > zero", "db": "if (db[0] * db[1] > zero", "first": "dot(q2 - q1, cross(p2 - q1, p1 - q1))) > zero",
-    "second": "dot(r2 - p1, cross(p2 - p1, r1 - p1))) > zero"}
+    "c0": "if (d[0] > zero) return d[1] > zero",
+    "c1": "if (d[0] < zero) return d[1] < zero",
+    "c2": "if (d[1] < zero) return d[2] < zero",
+    "c3": "if (d[1] > zero) return d[2] > zero",
+    "c4": "return d[2] > zero ? Canonical{2, false}",
+    "v0": "if (orient2d(r2, q2, q1, policy) <= zero) {",
+    "v1": "if (orient2d(p1, p2, q1, policy) > zero) return orient2d(p1, q2, q1",
+    "v2": "return orient2d(p1, p2, r1, policy) >= zero && orient2d(q1, r1, p2",
+    "v3": "return orient2d(p1, q2, q1, policy) <= zero && orient2d(r2, q2, r1",
+    "v4": "           orient2d(q1, r1, q2, policy) >= zero;",
+    "v5": "if (orient2d(r2, p2, r1, policy) < zero) return false;",
+    "v6": "if (orient2d(q1, r1, r2, policy) >= zero) return",
+    "v7": "return orient2d(q1, r1, q2, policy) >= zero && orient2d(r2, r1, q2",
+    "e1": "if (orient2d(p1, p2, q1, policy) >= zero) return orient2d(p1, q1, r2",
+    "e2": "return orient2d(q1, r1, p2, policy) >= zero && orient2d(r1, p1, p2",
+    "e3": "return orient2d(r2, p2, r1, policy) >= zero && orient2d(p1, p2, r1",
+    "e4": "(orient2d(p1, r1, r2, policy) >= zero ||",
+    "pq": "const bool left_of_pq",
+    "qr": "const bool left_of_qr",
+    "rp": "const bool left_of_rp",
+    "turn": "const bool turn1 =",
+    "da": "if (da[0] * da[1] > zero",
+    "db": "if (db[0] * db[1] > zero",
+    "first": "dot(q2 - q1, cross(p2 - q1, p1 - q1))) > zero",
+    "second": "dot(r2 - p1, cross(p2 - p1, r1 - p1))) > zero",
+}
 G = {key: at("guigue_devillers_2003.h", text) for key, text in G_TEXT.items()}
 
 
@@ -355,14 +406,32 @@ G["vertex"], G["edge"] = first_lines()
 def canonical(r, d):
     z = r.zero
     if r.compare(G["c0"], d[0], ">", z):
-        return (2, True) if r.compare(G["c0"], d[1], ">", z) else (1, True) if r.compare(G["c0"], d[2], ">", z) else (0, False)
+        return (
+            (2, True)
+            if r.compare(G["c0"], d[1], ">", z)
+            else (1, True)
+            if r.compare(G["c0"], d[2], ">", z)
+            else (0, False)
+        )
     if r.compare(G["c1"], d[0], "<", z):
-        return (2, False) if r.compare(G["c1"], d[1], "<", z) else (1, False) if r.compare(G["c1"], d[2], "<", z) else (0, True)
+        return (
+            (2, False)
+            if r.compare(G["c1"], d[1], "<", z)
+            else (1, False)
+            if r.compare(G["c1"], d[2], "<", z)
+            else (0, True)
+        )
     if r.compare(G["c2"], d[1], "<", z):
         return (0, False) if r.compare(G["c2"], d[2], "<", z) else (1, True)
     if r.compare(G["c3"], d[1], ">", z):
         return (0, True) if r.compare(G["c3"], d[2], ">", z) else (1, False)
-    return (2, False) if r.compare(G["c4"], d[2], ">", z) else (2, True) if r.compare(G["c4"], d[2], "<", z) else (-1, False)
+    return (
+        (2, False)
+        if r.compare(G["c4"], d[2], ">", z)
+        else (2, True)
+        if r.compare(G["c4"], d[2], "<", z)
+        else (-1, False)
+    )
 
 
 def turn(r, key, p, q, s, relation):
@@ -388,8 +457,11 @@ def edge_region(r, p1, q1, r1, p2, r2):
         if turn(r, "e1", p1, p2, q1, ">="):
             return turn(r, "e1", p1, q1, r2, ">=")
         return turn(r, "e2", q1, r1, p2, ">=") and turn(r, "e2", r1, p1, p2, ">=")
-    return (turn(r, "e3", r2, p2, r1, ">=") and turn(r, "e3", p1, p2, r1, ">=") and
-            (turn(r, "e4", p1, r1, r2, ">=") or turn(r, "e4", q1, r1, r2, ">=")))
+    return (
+        turn(r, "e3", r2, p2, r1, ">=")
+        and turn(r, "e3", p1, p2, r1, ">=")
+        and (turn(r, "e4", p1, r1, r2, ">=") or turn(r, "e4", q1, r1, r2, ">="))
+    )
 
 
 def counterclockwise_intersect(r, p1, q1, r1, p2, q2, r2):
@@ -411,7 +483,9 @@ def guigue_coplanar(r, normal, a, b):
     axis = dominant_axis(r, normal)
     (p1, q1, r1), (p2, q2, r2) = [drop(x, axis) for x in a], [drop(x, axis) for x in b]
     turn1, turn2 = turn(r, "turn", p1, q1, r1, "<"), turn(r, "turn", p2, q2, r2, "<")
-    return counterclockwise_intersect(r, p1, r1 if turn1 else q1, q1 if turn1 else r1, p2, r2 if turn2 else q2, q2 if turn2 else r2)
+    return counterclockwise_intersect(
+        r, p1, r1 if turn1 else q1, q1 if turn1 else r1, p2, r2 if turn2 else q2, q2 if turn2 else r2
+    )
 
 
 def guigue_devillers_2003(r, a, b):
@@ -444,6 +518,7 @@ def separating_axes(r, a, b):
 
     def separates(axis):
         return not overlap(r, axis, a, b)
+
     if separates(na) or separates(nb):
         return False
     if any(separates(cross(e, f)) for e in ea for f in eb):
@@ -451,5 +526,7 @@ def separating_axes(r, a, b):
     return not any(separates(cross(na, ea[i])) or separates(cross(nb, eb[i])) for i in range(3))
 
 
-ALGORITHMS = {f.__name__: f for f in (projected_sat, interval_overlap, moller_1997, guigue_devillers_2003, separating_axes)}
+ALGORITHMS = {
+    f.__name__: f for f in (projected_sat, interval_overlap, moller_1997, guigue_devillers_2003, separating_axes)
+}
 ROOTS = ("projected_sat", "interval_overlap")

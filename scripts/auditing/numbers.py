@@ -10,6 +10,7 @@ np.seterr(all="ignore")
 
 class Root:
     """p + q sqrt(m), exactly; p None: not a number. m is the one square root that a run takes."""
+
     __slots__ = ("p", "q", "m")
 
     def __init__(self, p, q=0, m=0):
@@ -47,7 +48,11 @@ class Root:
         assert not self.q and not self.m, "a second square root"
         f = Fraction(self.p)
         n, d = math.isqrt(f.numerator), math.isqrt(f.denominator)
-        return Root(Fraction(n, d)) if n * n == f.numerator and d * d == f.denominator else Root(Fraction(0), Fraction(1), f)
+        return (
+            Root(Fraction(n, d))
+            if n * n == f.numerator and d * d == f.denominator
+            else Root(Fraction(0), Fraction(1), f)
+        )
 
     def sign(self):
         sp, sq = (self.p > 0) - (self.p < 0), (self.q > 0) - (self.q < 0)
@@ -63,7 +68,7 @@ class Root:
         bits = 200
         while True:
             scaled = self.m * Fraction(4) ** bits
-            root = Fraction(math.isqrt(scaled.numerator // scaled.denominator), 2 ** bits)
+            root = Fraction(math.isqrt(scaled.numerator // scaled.denominator), 2**bits)
             value = self.p + self.q * root
             if value and abs(self.q) < abs(value) * Fraction(2) ** (bits - 100):
                 return value
@@ -91,6 +96,7 @@ def rounded(x, bits, lowest=None):
 
 class Real:
     """The reals with a mantissa of so many bits, limited exponents or not: for what numpy has no type."""
+
     __slots__ = ("v",)  # a Fraction, or nan or inf as a float
     bits, upper, lower = 24, None, None
 
@@ -178,6 +184,7 @@ def fma(a, b, c):
 
 class Fused:
     """A number of a contracting lane: it knows of which product it is."""
+
     __slots__ = ("v", "run", "x", "y", "product", "quotient", "scaled")
 
     def __init__(self, v, run, quotient=False):
@@ -199,11 +206,15 @@ class Fused:
 
     def __add__(self, o):
         which = self._choose(o)
-        return Fused(fma(self.x, self.y, o.v) if which < 0 else fma(o.x, o.y, self.v) if which > 0 else self.v + o.v, self.run)
+        return Fused(
+            fma(self.x, self.y, o.v) if which < 0 else fma(o.x, o.y, self.v) if which > 0 else self.v + o.v, self.run
+        )
 
     def __sub__(self, o):
         which = self._choose(o)
-        return Fused(fma(self.x, self.y, -o.v) if which < 0 else fma(-o.x, o.y, self.v) if which > 0 else self.v - o.v, self.run)
+        return Fused(
+            fma(self.x, self.y, -o.v) if which < 0 else fma(-o.x, o.y, self.v) if which > 0 else self.v - o.v, self.run
+        )
 
     def __mul__(self, o):
         result = Fused(self.v * o.v, self.run)
@@ -241,5 +252,14 @@ def outcome(left, relation, right):
         left, right = (left - right).sign(), 0
     elif isinstance(left, (Fused, Real)):
         left, right = value_of(left), value_of(right)
-    return bool(left < right if relation == "<" else left <= right if relation == "<=" else left == right if relation == "=="
-                else left > right if relation == ">" else left >= right)
+    return bool(
+        left < right
+        if relation == "<"
+        else left <= right
+        if relation == "<="
+        else left == right
+        if relation == "=="
+        else left > right
+        if relation == ">"
+        else left >= right
+    )

@@ -49,6 +49,7 @@ class Audited:
 
         class Sized(Real):
             pass
+
         Sized.bits = bits or (24 if single else 53)
         Sized.upper = Fraction(2) ** (128 if single else 1024) if upper else None
         Sized.lower = (-149 if single else -1074) if lower else None
@@ -113,7 +114,7 @@ FACES = [[0], [1], [2], [0, 1], [1, 2], [0, 2], [0, 1, 2]]
 def contact_and_distance(c):
     """The dimension of the common set as a word, '' for none, and the squared distance. The corners of the common set
     are where faces of both meet in one point; the distance is that of a pair of faces' affine hulls."""
-    v = [c[i:i + 3] for i in range(0, 18, 3)]
+    v = [c[i : i + 3] for i in range(0, 18, 3)]
     points, least = [], None
     for f in FACES:
         for g in FACES:
@@ -127,7 +128,7 @@ def contact_and_distance(c):
                 t = []
             if t is None:
                 continue
-            s, u = t[:len(f) - 1], t[len(f) - 1:]
+            s, u = t[: len(f) - 1], t[len(f) - 1 :]
             if min(s + u, default=0) < 0 or sum(s) > 1 or sum(u) > 1:
                 continue
             at_a = origin

@@ -21,12 +21,16 @@ def close(text, value, digits):
     if text in ("NaN", "infinity", "-infinity"):
         return False
     said, value = Fraction(text), Fraction(value)
-    return said == 0 if value == 0 else abs(said - value) <= abs(value) * Fraction(11, 20) / Fraction(10) ** (digits - 1)
+    return (
+        said == 0 if value == 0 else abs(said - value) <= abs(value) * Fraction(11, 20) / Fraction(10) ** (digits - 1)
+    )
 
 
 SENTENCE = re.compile(r"(\w+)/(f32|f64) \(([^)]*)\) says (\w+), but the triangles (.*?): (.*)\.$", re.S)
-TURNS = re.compile(r"(?:a signed distance|a component of the normals' cross product|an orientation|the gap between two interval ends|a number|"
-                   r"the difference of two numbers) of exactly (\S+) into (\S+?),? so that")
+TURNS = re.compile(
+    r"(?:a signed distance|a component of the normals' cross product|an orientation|the gap between two interval ends|a number|"
+    r"the difference of two numbers) of exactly (\S+) into (\S+?),? so that"
+)
 TURNS_TWO = re.compile(r"two (?:numbers|interval ends) of exactly (\S+) and (\S+) into (\S+) and (\S+?),? so that")
 LINE = r"core/[\w/]+\.h:\d+"
 
@@ -59,22 +63,35 @@ def check_lane(pair, lane, counts):
         expect(pair.verdict(pair.run(name, scalar, "none")) == pair.truth, "without contraction it is right")
     found = pair.deciding(name, scalar, rule)
     if found is None:
-        expect(lane["decisive"] is None and not lane["then"] and lane["settled"] == "not by few comparisons", "no small set decides")
+        expect(
+            lane["decisive"] is None and not lane["then"] and lane["settled"] == "not by few comparisons",
+            "no small set decides",
+        )
         counts["no small set"] += 1
         return
     counts[f"sets of {len(found)}"] += 1
     steps = [lane["steps"][lane["decisive"]]] + lane["then"] if lane["decisive"] is not None else []
-    expect(lane["deciding"] == [i for i, _ in found], f"comparisons {lane['deciding']} decide; it is {[i for i, _ in found]}")
+    expect(
+        lane["deciding"] == [i for i, _ in found],
+        f"comparisons {lane['deciding']} decide; it is {[i for i, _ in found]}",
+    )
     expect(len(steps) == len(found), "as many steps as comparisons that decide")
     for step, (i, path) in zip(steps, found):
         lead = path[:i]
         seen = pair.run(name, scalar, rule, lead).seen[i]
-        expect((step["line"], step["relation"], step["held"], step["holds"]) == (seen.line, seen.relation, seen.held, not seen.held),
-               f"{step['line']} decides; it is {seen.line}")
+        expect(
+            (step["line"], step["relation"], step["held"], step["holds"])
+            == (seen.line, seen.relation, seen.held, not seen.held),
+            f"{step['line']} decides; it is {seen.line}",
+        )
         for side, value in (("left", seen.left), ("right", seen.right)):
             said, value = step[side]["lane"], float(value_of(value))
-            expect(said == value or (isinstance(said, str) and float(said) == value) or (said == "nan" and math.isnan(value)),
-                   f"{side} is {said}; it is {value}")
+            expect(
+                said == value
+                or (isinstance(said, str) and float(said) == value)
+                or (said == "nan" and math.isnan(value)),
+                f"{side} is {said}; it is {value}",
+            )
 
 
 def by_cause(pair, name, scalar, rule, cause, i, path):
@@ -83,7 +100,11 @@ def by_cause(pair, name, scalar, rule, cause, i, path):
     finite = all(math.isfinite(value_of(x)) for x in (seen.left, seen.right))
     if cause == "rounding" or not finite:
         return True
-    without = pair.run(name, scalar, "none", path) if cause == "contraction" else pair.sized(name, scalar, rule=rule, lead=path)
+    without = (
+        pair.run(name, scalar, "none", path)
+        if cause == "contraction"
+        else pair.sized(name, scalar, rule=rule, lead=path)
+    )
     return without.seen[i].held == pair.exact_outcomes(name, path)[i]
 
 
@@ -96,8 +117,10 @@ def check_sentence(pair, text, lanes, counts):
     expect(all(told), "its lanes are wrong")
     rest = reason.split("; also wrong: ")
     also = [] if len(rest) == 1 else [f"{name}/{x.split(' (')[0]}" for x in rest[1].split("), ")]
-    expect(sorted(also + [x["lane"] for x in told]) == sorted(x["lane"] for x in lanes if x["lane"].split("/")[0] == name),
-           "all wrong lanes of the algorithm, once each")
+    expect(
+        sorted(also + [x["lane"] for x in told]) == sorted(x["lane"] for x in lanes if x["lane"].split("/")[0] == name),
+        "all wrong lanes of the algorithm, once each",
+    )
     for x in told:
         expect(x["verdict"] == verdict, "each lane's verdict")
     if pair.contact:
@@ -114,42 +137,74 @@ def check_sentence(pair, text, lanes, counts):
         return
     lane = known[0]
     cause, rule = lane["cause"], lane["contracted"]
-    begins = {"rounding": "rounding", "logic": "the algorithm itself is wrong here", "contraction": ("nvcc fuses", "the compiler fuses"),
-              "overflow": f"an intermediate result is too large for {'float32' if scalar == 'f32' else 'float64'}",
-              "underflow": f"an intermediate result is too small for {'float32' if scalar == 'f32' else 'float64'}"}
+    begins = {
+        "rounding": "rounding",
+        "logic": "the algorithm itself is wrong here",
+        "contraction": ("nvcc fuses", "the compiler fuses"),
+        "overflow": f"an intermediate result is too large for {'float32' if scalar == 'f32' else 'float64'}",
+        "underflow": f"an intermediate result is too small for {'float32' if scalar == 'f32' else 'float64'}",
+    }
     expect(reason.startswith(begins[cause]), "the cause")
     check_remedy(pair, name, scalar, lane, reason, counts)
     if cause == "logic":
         return
     found = pair.deciding(name, scalar, rule)
     if found is None:
-        expect(f"not settled: it takes more than {MOST_DECIDING} corrected comparisons" in reason, "no small set decides")
+        expect(
+            f"not settled: it takes more than {MOST_DECIDING} corrected comparisons" in reason, "no small set decides"
+        )
         expect("the wrong way" not in reason, "no comparison is named")
         return
     lines = [pair.run(name, scalar, rule, path[:i]).seen[i].line for i, path in found]
     i, path = found[0]
     seen, exact = pair.run(name, scalar, rule, path[:i]).seen[i], pair.exact_seen(name, path)[i]
-    first = re.search(rf"the comparison at ({LINE})(?: goes the wrong way|, which decides, goes the wrong way without that too)", reason)
+    first = re.search(
+        rf"the comparison at ({LINE})(?: goes the wrong way|, which decides, goes the wrong way without that too)",
+        reason,
+    )
     expect(first and first[1] == lines[0], f"the first comparison stands at {lines[0]}")
     caused = by_cause(pair, name, scalar, rule, cause, i, path)
     expect(caused == ("without that too" not in reason), "whether the cause makes that comparison go wrong")
-    later = re.search(rf"(?: and, (were it|were each in turn) right, (a later one|later ones) at ((?:{LINE}(?:, | and )?)+)(?:and (\d+) more)?)", reason)
+    later = re.search(
+        rf"(?: and, (were it|were each in turn) right, (a later one|later ones) at ((?:{LINE}(?:, | and )?)+)(?:and (\d+) more)?)",
+        reason,
+    )
     expect(bool(later) == (len(lines) > 1), f"{len(lines)} comparisons decide")
     if later:
         named, distinct = re.findall(LINE, later[3]), list(dict.fromkeys(lines[1:]))
-        expect(named == distinct[:3] and int(later[4] or 0) == len(distinct) - len(named), f"the later ones stand at {lines[1:]}")
-        expect((later[1], later[2]) == (("were it", "a later one") if len(lines) == 2 else ("were each in turn", "later ones")), "how many come later")
+        expect(
+            named == distinct[:3] and int(later[4] or 0) == len(distinct) - len(named),
+            f"the later ones stand at {lines[1:]}",
+        )
+        expect(
+            (later[1], later[2])
+            == (("were it", "a later one") if len(lines) == 2 else ("were each in turn", "later ones")),
+            "how many come later",
+        )
     one, two = TURNS.search(reason), TURNS_TWO.search(reason)
     expect(bool(one) + bool(two) == caused, "the numbers that it compares")
     left, right = value_of(seen.left), value_of(seen.right)
     if one:
-        expect(math.isfinite(left) and math.isfinite(right) or (right == 0 and exact.right.sign() == 0), "no gap is formed of what is not finite")
-        expect(close(one[1], exact.left - exact.right, 6), f"exactly it is {float((exact.left - exact.right).number()):.9g}")
-        expect(close(one[2], left - right, 6) or close(one[2], Fraction(left) - Fraction(right), 6), f"the lane has {left - right}")
+        expect(
+            math.isfinite(left) and math.isfinite(right) or (right == 0 and exact.right.sign() == 0),
+            "no gap is formed of what is not finite",
+        )
+        expect(
+            close(one[1], exact.left - exact.right, 6),
+            f"exactly it is {float((exact.left - exact.right).number()):.9g}",
+        )
+        expect(
+            close(one[2], left - right, 6) or close(one[2], Fraction(left) - Fraction(right), 6),
+            f"the lane has {left - right}",
+        )
         counts["numbers"] += 1
     if two:
-        expect(not (math.isfinite(left) and math.isfinite(right) and math.isfinite(left - right)) or exact.left.p is None or exact.right.p is None,
-               "two numbers are told where a difference is not finite")
+        expect(
+            not (math.isfinite(left) and math.isfinite(right) and math.isfinite(left - right))
+            or exact.left.p is None
+            or exact.right.p is None,
+            "two numbers are told where a difference is not finite",
+        )
         expect(close(two[1], exact.left, 6) and close(two[2], exact.right, 6), "exact numbers")
         expect(close(two[3], left, 6) and close(two[4], right, 6), f"the lane compares {left} and {right}")
         counts["numbers that are not finite"] += 1
@@ -173,8 +228,11 @@ def check_remedy(pair, name, scalar, lane, reason, counts):
     elif last.startswith("no mantissa"):
         counts["no number of bits"] += 1
     elif last == "with exponents without limits it is right":
-        expect(pair.verdict(pair.sized(name, scalar, rule=lane["contracted"])) == pair.truth or
-               pair.verdict(pair.sized(name, scalar)) == pair.truth, "with exponents without limits it is right")
+        expect(
+            pair.verdict(pair.sized(name, scalar, rule=lane["contracted"])) == pair.truth
+            or pair.verdict(pair.sized(name, scalar)) == pair.truth,
+            "with exponents without limits it is right",
+        )
         counts["exponents"] += 1
 
 
@@ -184,7 +242,9 @@ def audit(explained):
     coordinates = explained["pair"].split()
     pair = Audited([float.fromhex(c) for c in coordinates])
     where = f"{explained['case']}: {' '.join(coordinates)}"
-    if explained["truth"]["verdict"] != pair.truth or (explained["truth"]["contact"].replace("none", "") != pair.contact):
+    if explained["truth"]["verdict"] != pair.truth or (
+        explained["truth"]["contact"].replace("none", "") != pair.contact
+    ):
         wrong.append(f"{where}: truth {explained['truth']}; it is {pair.truth} {pair.contact}")
     for lane in explained["lanes"]:
         try:

@@ -25,7 +25,9 @@ class Refused(Exception):
     """The tests cannot judge a mutant: they fail without one."""
 
 
-class NotCompiled(Exception): pass
+class NotCompiled(Exception):
+    pass
+
 
 class Commands:
     """How the finished build compiles and links, made cheap: unoptimised, what is not ours precompiled, linked by lld."""
@@ -35,7 +37,9 @@ class Commands:
         self.compile, self.link = {}, {}
         self.lock = threading.Lock()
         self.linker = ["-fuse-ld=lld"] if shutil.which("ld.lld") else []
-        said = subprocess.run(["ninja", "-C", build, "-t", "commands"], check=True, capture_output=True, text=True).stdout
+        said = subprocess.run(
+            ["ninja", "-C", build, "-t", "commands"], check=True, capture_output=True, text=True
+        ).stdout
         for line in said.splitlines():
             source = re.search(r" -c (\S+)$", line)
             if source:
@@ -48,11 +52,15 @@ class Commands:
     def flags(self, source, level):
         words = shlex.split(self.compile[str(self.root / source)])
         cache = [k for k, word in enumerate(words) if pathlib.Path(word).name == "ccache"]
-        words = words[cache[0] + 1 if cache else 0:]
+        words = words[cache[0] + 1 if cache else 0 :]
         for flag in ["-MF", "-MT", "-o", "-c", "-include"]:  # the last: what the build precompiled, for other flags
             if flag in words:
-                del words[words.index(flag):words.index(flag) + 2]
-        return [level if word in ("-O1", "-O2", "-O3") else word for word in words if word != "-MD" and not word.startswith("-W")] + CHECKED
+                del words[words.index(flag) : words.index(flag) + 2]
+        return [
+            level if word in ("-O1", "-O2", "-O3") else word
+            for word in words
+            if word != "-MD" and not word.startswith("-W")
+        ] + CHECKED
 
     def compiled(self, source, with_source, folder, out, level):
         words = self.flags(source, level)
@@ -63,7 +71,13 @@ class Commands:
         """A header of all that the source and our headers include in angle brackets, compiled once for all mutants; but
         for Highway's, which are included once for each instruction set."""
         with self.lock:
-            said = subprocess.run([*words, "-E", "-dI", str(self.root / source)], cwd=self.build, capture_output=True, text=True, check=True).stdout
+            said = subprocess.run(
+                [*words, "-E", "-dI", str(self.root / source)],
+                cwd=self.build,
+                capture_output=True,
+                text=True,
+                check=True,
+            ).stdout
             names, ours = set(), True
             for line in said.splitlines():
                 if place := re.match(r'# \d+ "[^"]*"((?: \d)*)$', line):
@@ -71,11 +85,15 @@ class Commands:
                 elif ours and (name := re.match(r"#\s*include\s*(<(?!hwy/)[^>]+>)", line)):
                     names.add(f"#include {name.group(1)}\n")
             text = "".join(sorted(names))
-            header = self.out / "precompiled" / hashlib.sha256((" ".join(words) + text).encode()).hexdigest()[:16] / "all.h"
+            header = (
+                self.out / "precompiled" / hashlib.sha256((" ".join(words) + text).encode()).hexdigest()[:16] / "all.h"
+            )
             if not header.exists():
                 header.parent.mkdir(parents=True)
                 header.write_text(text, encoding="utf-8")
-                subprocess.run([*words, "-x", "c++-header", str(header), "-o", f"{header}.gch"], cwd=self.build, check=True)
+                subprocess.run(
+                    [*words, "-x", "c++-header", str(header), "-o", f"{header}.gch"], cwd=self.build, check=True
+                )
         return ["-include", str(header)]
 
     def linked(self, program, objects, out):
@@ -99,7 +117,9 @@ def result_of(mutant, state, said):
 class Runner:
     def __init__(self, root, build, out, groups, patience=10):
         self.root, self.build, self.out, self.groups, self.patience = root, build, out, groups, patience
-        programs = {group["program"] for group in groups.values()} | {group["writes"]["program"] for group in groups.values() if "writes" in group}
+        programs = {group["program"] for group in groups.values()} | {
+            group["writes"]["program"] for group in groups.values() if "writes" in group
+        }
         self.commands = Commands(root, build, programs, out)
         self.lock = threading.Lock()
         self.kept = out / "baselines.json"
@@ -109,12 +129,18 @@ class Runner:
         """What has to be compiled anew: the file itself, or of a header what the group names."""
         if file.endswith(".cpp"):
             return [file]
-        return next((row["seen_by"] for row in group.get("header", []) if row["file"] == file), group.get("seen_by", []))
+        return next(
+            (row["seen_by"] for row in group.get("header", []) if row["file"] == file), group.get("seen_by", [])
+        )
 
     def stages(self, group, seeing):
         """The tests, in the order in which they are asked: those that are compiled anew one by one, as most mutants die
         in the first; before them all others at once, if they can see it at all."""
-        anew = [source for source in dict.fromkeys([*group["tests"], *seeing]) if source in seeing and source.endswith(".test.cpp")]
+        anew = [
+            source
+            for source in dict.fromkeys([*group["tests"], *seeing])
+            if source in seeing and source.endswith(".test.cpp")
+        ]
         others = [source for source in group["tests"] if source not in seeing]
         return ([others] if others and set(seeing) != set(anew) else []) + [[source] for source in anew]
 
@@ -123,8 +149,15 @@ class Runner:
         its seconds of the CPU."""
         limited = ["prlimit", f"--cpu={math.ceil(seconds)}", f"--as={MEMORY}", *command]
         with tempfile.TemporaryFile() as said:
-            process = subprocess.Popen(limited, cwd=self.build, stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT,
-                                       start_new_session=True, env={**os.environ, **(env or {})})
+            process = subprocess.Popen(
+                limited,
+                cwd=self.build,
+                stdin=subprocess.DEVNULL,
+                stdout=said,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                env={**os.environ, **(env or {})},
+            )
             timer = threading.Timer(10 * seconds, os.killpg, (process.pid, signal.SIGKILL))
             timer.start()
             _, status, used = os.wait4(process.pid, 0)
@@ -132,7 +165,11 @@ class Runner:
             process.returncode = os.waitstatus_to_exitcode(status)
             said.seek(0)
             ended = process.returncode not in (-signal.SIGXCPU, -signal.SIGKILL)
-            return process.returncode if ended else None, said.read().decode(errors="replace"), used.ru_utime + used.ru_stime
+            return (
+                process.returncode if ended else None,
+                said.read().decode(errors="replace"),
+                used.ru_utime + used.ru_stime,
+            )
 
     def compile(self, group, sources, folder, file=None):
         """Returns: their objects, the file's mutated.   Throws: NotCompiled."""
@@ -167,7 +204,9 @@ class Runner:
                 objects = self.built(stage, anew) + self.compile(group, anew, folder)
                 state, said, used = self.ask(group, self.link(group["program"], objects, folder / "tests"), 900)
                 if state != "survived" or " 0 tests" in said:
-                    raise Refused(f"expected the tests of group {group['name']} to pass without a mutant, found: {state}\n{said[-3000:]}")
+                    raise Refused(
+                        f"expected the tests of group {group['name']} to pass without a mutant, found: {state}\n{said[-3000:]}"
+                    )
                 self.seconds[key] = used
                 self.kept.write_text(json.dumps(self.seconds, indent=1), encoding="utf-8")
                 shutil.rmtree(folder)
@@ -199,12 +238,16 @@ class Runner:
         writer = self.link(group["writes"]["program"], mutated, folder / "writer")
         for source, flag, written, test in group["writes"]["runs"]:
             (folder / written).parent.mkdir(parents=True, exist_ok=True)
-            status, said, _ = self.run([writer, str(self.root / source), flag, str(folder / written)], self.patience, env)
+            status, said, _ = self.run(
+                [writer, str(self.root / source), flag, str(folder / written)], self.patience, env
+            )
             if status != 0:
                 return "timed out" if status is None else "killed", said
             if (folder / written).read_bytes() != (self.build / "generated" / written).read_bytes():
                 try:
-                    program = self.link(group["program"], mutated + self.compile(group, [test], folder), folder / "written")
+                    program = self.link(
+                        group["program"], mutated + self.compile(group, [test], folder), folder / "written"
+                    )
                 except NotCompiled as what_it_wrote:
                     return "killed", str(what_it_wrote)
                 state, said, _ = self.ask(group, program, 60, env)
@@ -222,9 +265,14 @@ class Runner:
                 if not numbered:
                     raise
                 named = {int(number) for number in re.findall(r"\bint id = (\d+)", str(error))}  # in switches.h
-                lines = re.findall(re.escape(file) + r":(\d+):\d+: error", str(error)) or re.findall(re.escape(file) + r":(\d+):", str(error))
+                lines = re.findall(re.escape(file) + r":(\d+):\d+: error", str(error)) or re.findall(
+                    re.escape(file) + r":(\d+):", str(error)
+                )
                 refused = [number for number in numbered if number in named] or [
-                    number for number, mutant in numbered.items() if any(abs(mutant["line"] - int(line)) <= 1 for line in lines)]
+                    number
+                    for number, mutant in numbered.items()
+                    if any(abs(mutant["line"] - int(line)) <= 1 for line in lines)
+                ]
                 for number in refused or list(numbered):
                     del numbered[number]
 
@@ -238,15 +286,25 @@ class Runner:
         (folder / file).parent.mkdir(parents=True)
         seeing = self.sources_seeing(group, file)
         stages = self.stages(group, seeing)
-        compiled = {source: self.compile_switched(group, file, source, text, numbered, folder) for source in dict.fromkeys(seeing)}
+        compiled = {
+            source: self.compile_switched(group, file, source, text, numbered, folder)
+            for source in dict.fromkeys(seeing)
+        }
         mutated = [compiled[source] for source in seeing if [source] not in stages]
         asked = []
         for place, stage in enumerate(stages):
-            objects = mutated + [compiled[source] if source in compiled else self.commands.object_of(source) for source in stage]
-            program, list_of_asked = self.link(group["program"], objects, folder / f"tests-{place}"), folder / f"asked-{place}"
+            objects = mutated + [
+                compiled[source] if source in compiled else self.commands.object_of(source) for source in stage
+            ]
+            program, list_of_asked = (
+                self.link(group["program"], objects, folder / f"tests-{place}"),
+                folder / f"asked-{place}",
+            )
             state, said, used = self.ask(group, program, 900, {"GRAZE_MUTANTS_ASKED": str(list_of_asked)})
             if state != "survived" or " 0 tests" in said:
-                raise Refused(f"expected the tests of group {group['name']} to pass without a mutant of {file}, found: {state}\n{said[-3000:]}")
+                raise Refused(
+                    f"expected the tests of group {group['name']} to pass without a mutant of {file}, found: {state}\n{said[-3000:]}"
+                )
             asked.append((program, set(list_of_asked.read_text().split()) if list_of_asked.exists() else set(), used))
         for number, mutant in list(numbered.items()):
             env, state = {"GRAZE_MUTANT": str(number)}, "not switched"
@@ -267,7 +325,7 @@ class Runner:
     def test(self, mutant, folder):
         """By a build of its own."""
         text = (self.root / mutant["file"]).read_text(encoding="utf-8")
-        text = text[:mutant["at"]] + mutant["new"] + text[mutant["at"] + len(mutant["old"]):]
+        text = text[: mutant["at"]] + mutant["new"] + text[mutant["at"] + len(mutant["old"]) :]
         try:
             state, said = self.build_and_test(self.groups[mutant["group"]], mutant["file"], text, folder)
         except NotCompiled:

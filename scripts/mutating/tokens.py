@@ -2,18 +2,46 @@
 """The mutants of a source: its tokens that can be another one, each by itself or all behind switches (switches.h)."""
 import re
 
-SWAPS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "&&": "||", "||": "&&", "+": "-", "-": "+",
-         "*": "+", "&": "|", "|": "&", "<<": ">>", ">>": "<<", "+=": "-=", "-=": "+=", "&=": "|=", "|=": "&=",
-         "++": "--", "--": "++", "true": "false", "false": "true", "min": "max", "max": "min", "continue": "break"}
+SWAPS = {
+    "<": "<=",
+    "<=": "<",
+    ">": ">=",
+    ">=": ">",
+    "==": "!=",
+    "!=": "==",
+    "&&": "||",
+    "||": "&&",
+    "+": "-",
+    "-": "+",
+    "*": "+",
+    "&": "|",
+    "|": "&",
+    "<<": ">>",
+    ">>": "<<",
+    "+=": "-=",
+    "-=": "+=",
+    "&=": "|=",
+    "|=": "&=",
+    "++": "--",
+    "--": "++",
+    "true": "false",
+    "false": "true",
+    "min": "max",
+    "max": "min",
+    "continue": "break",
+}
 # A token, by what stands around it: clang-format puts spaces around binary operators, and none inside <…> of templates.
-TOKEN = re.compile(r"""
+TOKEN = re.compile(
+    r"""
     (?<=\ )(?:<=|>=|==|!=|&&|\|\||\+=|-=|&=|\|=|<<|>>|<|>|\+|-|\*|&|\|)(?=\ )   # binary
   | \+\+ | --
   | (?<=[(\ ,!])!(?=[\w(])                                                       # not
   | (?<=[(,={?:]\ )-(?=\w) | (?<=\()-(?=\w) | (?<=return\ )-(?=\w)               # minus
   | \b(?:true|false|continue)\b | (?<=std::)(?:min|max)(?=\()
   | (?<![\w.'"])\d+(?![\w.'"])                                                   # a whole number
-""", re.VERBOSE)
+""",
+    re.VERBOSE,
+)
 SKIPPED = re.compile(r"^\s*(#|static_assert|template|using|namespace|friend)|\bstatic_assert\b|\bthrow\b|\boperator\b")
 
 
@@ -26,7 +54,11 @@ def blanked(text):
 def replacement(token, before):
     if token.isdecimal():
         return "0" if token == "1" else str(int(token) + 1)
-    if token == "!" or (token == "-" and not before.endswith(" ")) or (token == "-" and re.search(r"([(,={?:]|return) $", before)):
+    if (
+        token == "!"
+        or (token == "-" and not before.endswith(" "))
+        or (token == "-" and re.search(r"([(,={?:]|return) $", before))
+    ):
         return ""
     return SWAPS[token]
 
@@ -38,10 +70,21 @@ def mutants_of(root, group, file):
         # A declaration that is a pure constant of an array's size would not compile; the rest is as it comes.
         if not SKIPPED.search(blank):
             for found in TOKEN.finditer(blank):
-                new = replacement(found.group(), blank[:found.start()])
-                changed = line[:found.start()] + new + line[found.end():]
-                result.append({"group": group, "file": file, "line": number, "column": found.start() + 1, "old": found.group(),
-                               "new": new, "at": offset + found.start(), "before": line.strip(), "after": changed.strip()})
+                new = replacement(found.group(), blank[: found.start()])
+                changed = line[: found.start()] + new + line[found.end() :]
+                result.append(
+                    {
+                        "group": group,
+                        "file": file,
+                        "line": number,
+                        "column": found.start() + 1,
+                        "old": found.group(),
+                        "new": new,
+                        "at": offset + found.start(),
+                        "before": line.strip(),
+                        "after": changed.strip(),
+                    }
+                )
         offset += len(line) + 1
     return result
 
@@ -53,7 +96,7 @@ def name_of(mutant):
 def switch_of(mutant, number, text):
     """What stands in the mutant's place where it has a switch: (from, to, text); none for one that needs a build of its own."""
     old, new, at = mutant["old"], mutant["new"], mutant["at"]
-    end, follows = at + len(old), text[at + len(old):at + len(old) + 1]
+    end, follows = at + len(old), text[at + len(old) : at + len(old) + 1]
     chosen = f"graze_mutant::on({number})"
     if old.isdecimal() or old in ("true", "false"):
         return at, end, f"({chosen} ? {new} : {old})"
@@ -64,7 +107,11 @@ def switch_of(mutant, number, text):
     if new == "":
         return at, end, f"graze_mutant::{'Not' if old == '!' else 'Minus'}<{number}>{{}}->*{old}"
     if old in ("++", "--"):
-        return (at, end, f"graze_mutant::Step<{number}, {'true' if old == '++' else 'false'}>{{}}->*") if re.match(r"[\w(*]", follows) else None
+        return (
+            (at, end, f"graze_mutant::Step<{number}, {'true' if old == '++' else 'false'}>{{}}->*")
+            if re.match(r"[\w(*]", follows)
+            else None
+        )
     if old in ("&&", "||"):
         return None  # switches would ask both sides
     return at, end, f"{old} graze_mutant::Switch<{number}>{{}} {old}"
@@ -72,7 +119,10 @@ def switch_of(mutant, number, text):
 
 def switched(text, mutants):
     """The text with switches for these mutants: {number: mutant}."""
-    places = sorted((place for place in (switch_of(mutant, number, text) for number, mutant in mutants.items()) if place), reverse=True)
+    places = sorted(
+        (place for place in (switch_of(mutant, number, text) for number, mutant in mutants.items()) if place),
+        reverse=True,
+    )
     for begin, end, new in places:
         text = text[:begin] + new + text[end:]
     return text

@@ -34,7 +34,8 @@ class Slurm:
             (folder / name).mkdir()
         (folder / "munge.key").write_bytes(os.urandom(1024))
         os.chmod(folder / "munge.key", 0o600)
-        (folder / "slurm.conf").write_text(f"""ClusterName=graze
+        (folder / "slurm.conf").write_text(
+            f"""ClusterName=graze
 SlurmctldHost={host}(127.0.0.1)
 AuthInfo=socket={folder}/munge.socket
 SlurmUser=root
@@ -55,15 +56,24 @@ RebootProgram=/bin/true
 ReturnToService=2
 NodeName={host} NodeAddr=127.0.0.1 CPUs={cores} State=UNKNOWN
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
-""")
+"""
+        )
         self.environment = dict(os.environ, SLURM_CONF=str(folder / "slurm.conf"))
         for name in ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"]:
             self.environment.pop(name, None)
 
     def begin(self):
         folder = self.folder
-        self.start("munged", "--foreground", "--force", f"--key-file={folder}/munge.key", f"--socket={folder}/munge.socket",
-                   f"--pid-file={folder}/munged.pid", f"--log-file={folder}/munged.log", f"--seed-file={folder}/munged.seed")
+        self.start(
+            "munged",
+            "--foreground",
+            "--force",
+            f"--key-file={folder}/munge.key",
+            f"--socket={folder}/munge.socket",
+            f"--pid-file={folder}/munged.pid",
+            f"--log-file={folder}/munged.log",
+            f"--seed-file={folder}/munged.seed",
+        )
         self.wait_for(lambda: (folder / "munge.socket").exists(), "munged's socket")
         self.start("slurmctld", "-D")
         self.start("slurmd", "-D")
@@ -71,7 +81,9 @@ PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 
     def start(self, *command):
         log = open(self.folder / f"{command[0]}.out", "w")  # pylint: disable=consider-using-with
-        self.running.append(subprocess.Popen(command, env=self.environment, stdout=log, stderr=log, start_new_session=True))
+        self.running.append(
+            subprocess.Popen(command, env=self.environment, stdout=log, stderr=log, start_new_session=True)
+        )
 
     def wait_for(self, holds, what, seconds=60):
         until = time.time() + seconds
@@ -102,13 +114,17 @@ def run(slurm, root, graze, pairs, shards):
     subprocess.run([graze, "fuzz", *campaign, "--out", root / "whole"], check=True, capture_output=True)
     more = {"GRAZE": str(graze), "GRAZE_OUT": str(root / "out"), "TMPDIR": str(root)}
     script = str(HERE / "campaign.sbatch")
-    job = slurm("sbatch", "--parsable", f"--array=1-{shards}", f"--output={root}/job-%a.txt", script, *campaign, **more).strip()
-    merge = slurm("sbatch", "--parsable", f"--dependency=afterok:{job}", f"--output={root}/merge.txt", script, "merge",
-                  **more).strip()
+    job = slurm(
+        "sbatch", "--parsable", f"--array=1-{shards}", f"--output={root}/job-%a.txt", script, *campaign, **more
+    ).strip()
+    merge = slurm(
+        "sbatch", "--parsable", f"--dependency=afterok:{job}", f"--output={root}/merge.txt", script, "merge", **more
+    ).strip()
     print(f"array {job} of {shards} shards, merge {merge} after it")
     slurm.wait_for(lambda: (root / "out/shard-1/status.json").exists(), "a shard that runs")
-    requeued = slurm("scontrol", "requeue", f"{job}_1", fails=True) is not None and \
-        "Restarts=1" in slurm("scontrol", "show", "job", f"{job}_1", fails=True)
+    requeued = slurm("scontrol", "requeue", f"{job}_1", fails=True) is not None and "Restarts=1" in slurm(
+        "scontrol", "show", "job", f"{job}_1", fails=True
+    )
     print(f"shard 1 requeued while it ran: {requeued}")
     print(slurm("squeue", "--array"), end="")
     # A requeued job waits for two minutes; this one need not.
@@ -122,8 +138,11 @@ def run(slurm, root, graze, pairs, shards):
         slurm.wait_for(lambda: True, "Slurm")
         time.sleep(0.5)
     print((root / "merge.txt").read_text())
-    print(subprocess.run([graze, "status", *sorted((root / "out").glob("shard-*"))], check=True, capture_output=True,
-                         text=True).stdout)
+    print(
+        subprocess.run(
+            [graze, "status", *sorted((root / "out").glob("shard-*"))], check=True, capture_output=True, text=True
+        ).stdout
+    )
     same = filecmp.dircmp(root / "whole/cases", root / "out/campaign/cases")
     assert not same.left_only and not same.right_only and not same.diff_files and same.same_files
     assert filecmp.cmp(root / "whole/summary.json", root / "out/campaign/summary.json", shallow=False)

@@ -12,10 +12,14 @@ import signal
 import subprocess
 import time
 
-MEMORY_MIB = 1024       # address space; a sanitizer needs far more, so not for builds with one
+MEMORY_MIB = 1024  # address space; a sanitizer needs far more, so not for builds with one
 PROCESSOR_SECONDS = 60  # what takes longer hangs
-SECONDS = 600           # what waits, hangs; a machine under load takes many times as long as an idle one
-RESULTS = ("summary.json", "margins.svg", "hunt.json")  # and what is in cases/; timings and the database's pages may differ
+SECONDS = 600  # what waits, hangs; a machine under load takes many times as long as an idle one
+RESULTS = (
+    "summary.json",
+    "margins.svg",
+    "hunt.json",
+)  # and what is in cases/; timings and the database's pages may differ
 
 
 class Violation(Exception):
@@ -45,8 +49,24 @@ class Bench:
         if name == "hunt":
             return ["hunt", "--runs", "12000", "--seed", seed, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]
         many = "near_edge_edge,degenerate,uniform,lattice,near_vertex_face,coplanar_wide"
-        pairs, strata = {"large": ("240000", many), "small": ("600", many), "tiny": ("24", "near_edge_edge,degenerate")}[name]
-        return ["fuzz", "--pairs", pairs, "--seed", seed, "--strata", strata, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]
+        pairs, strata = {
+            "large": ("240000", many),
+            "small": ("600", many),
+            "tiny": ("24", "near_edge_edge,degenerate"),
+        }[name]
+        return [
+            "fuzz",
+            "--pairs",
+            pairs,
+            "--seed",
+            seed,
+            "--strata",
+            strata,
+            "--lanes",
+            "interval_overlap/f32/cpu",
+            "--threads",
+            "2",
+        ]
 
     def reference(self, name, minimised=False, reported=False, shard=None):
         """The folder of the campaign, run without disturbance. It must not be changed."""
@@ -55,7 +75,13 @@ class Bench:
             folder = self.folder / "undisturbed" / "-".join(map(str, key)).replace("/", "of")
             if reported or minimised:
                 shutil.copytree(self.reference(name, minimised and reported), folder)
-            steps = [["report", folder]] if reported else [["minimize", folder]] if minimised else [[*self.campaign(name), *(["--shard", shard] if shard else []), "--out", folder]]
+            steps = (
+                [["report", folder]]
+                if reported
+                else [["minimize", folder]]
+                if minimised
+                else [[*self.campaign(name), *(["--shard", shard] if shard else []), "--out", folder]]
+            )
             start = time.monotonic()
             for step in steps:
                 turn = Round(self, "undisturbed", 0, self.folder / "undisturbed")
@@ -95,13 +121,25 @@ class Round:
                 resource.setrlimit(resource.RLIMIT_FSIZE, (file_bytes, file_bytes))
 
         arguments = [os.fspath(argument) for argument in arguments]
-        shown = shlex.join(os.fsencode(word).decode(errors="backslashreplace") for word in [self.bench.graze, *arguments])
-        self.commands.append(f"cd {self.folder} && {shown}" + (f"  # files of at most {file_bytes} bytes" if file_bytes is not None else ""))
+        shown = shlex.join(
+            os.fsencode(word).decode(errors="backslashreplace") for word in [self.bench.graze, *arguments]
+        )
+        self.commands.append(
+            f"cd {self.folder} && {shown}"
+            + (f"  # files of at most {file_bytes} bytes" if file_bytes is not None else "")
+        )
         number = len(self.commands)
         out, err = (self.folder / f".{number}.{stream}" for stream in ("out", "err"))
         with open(out, "wb") as to_out, open(err, "wb") as to_err:
-            process = subprocess.Popen([self.bench.graze, *arguments], cwd=self.folder, stdin=subprocess.DEVNULL, stdout=to_out, stderr=to_err,
-                                       env={**os.environ, "MALLOC_ARENA_MAX": "2", "XDG_CACHE_HOME": os.fspath(self.bench.folder / "cache")}, preexec_fn=limit)
+            process = subprocess.Popen(
+                [self.bench.graze, *arguments],
+                cwd=self.folder,
+                stdin=subprocess.DEVNULL,
+                stdout=to_out,
+                stderr=to_err,
+                env={**os.environ, "MALLOC_ARENA_MAX": "2", "XDG_CACHE_HOME": os.fspath(self.bench.folder / "cache")},
+                preexec_fn=limit,
+            )
         return process, out, err
 
     def finish(self, started, kill_after=None, judged=True):
@@ -117,7 +155,9 @@ class Round:
         if not ended:
             process.send_signal(signal.SIGKILL)
         status = process.wait()
-        ran = Ran(status, out.read_bytes(), err.read_bytes().decode(errors="replace"), status == -signal.SIGKILL, not ended)
+        ran = Ran(
+            status, out.read_bytes(), err.read_bytes().decode(errors="replace"), status == -signal.SIGKILL, not ended
+        )
         out.unlink()
         err.unlink()
         if kill_after is None and judged:
@@ -155,7 +195,9 @@ class Round:
         found, expected = results_of(campaign), results_of(reference)
         apart = [name for name in sorted({*found, *expected}) if found.get(name) != expected.get(name)]
         if apart:
-            raise Violation(f"expected the results of the undisturbed run, found that {len(apart)} files differ, the first {apart[0]}")
+            raise Violation(
+                f"expected the results of the undisturbed run, found that {len(apart)} files differ, the first {apart[0]}"
+            )
         left = [file.name for file in campaign.rglob("*.part*")]
         if left:
             raise Violation(f"expected nothing left behind, found {left}")

@@ -9,7 +9,21 @@ from torture_attacks.bench import Violation
 
 ATTEMPTS = 8
 DATABASE = "campaign.sqlite"
-NUMBERS = ["-1", "0", "1", "2000000", "9223372036854775807", "-9223372036854775808", "1.5", "NULL", "'x'", "x'00'", "{0} + 1", "{0} - 1", "-{0}"]
+NUMBERS = [
+    "-1",
+    "0",
+    "1",
+    "2000000",
+    "9223372036854775807",
+    "-9223372036854775808",
+    "1.5",
+    "NULL",
+    "'x'",
+    "x'00'",
+    "{0} + 1",
+    "{0} - 1",
+    "-{0}",
+]
 ROW = "WHERE id = (SELECT id FROM batch ORDER BY random() LIMIT 1)"
 # Each leaves a database that SQLite itself finds nothing wrong with.
 STATEMENTS = [
@@ -90,7 +104,11 @@ def refuses_another_seed(turn, campaign, command):
     other = list(command)
     other[other.index("--seed") + 1] += "1"
     before = {file.relative_to(campaign): file.read_bytes() for file in campaign.rglob("*") if file.is_file()}
-    has_rows = b"near_edge_edge" in before[(campaign / DATABASE).relative_to(campaign)] if (campaign / DATABASE).is_file() else False
+    has_rows = (
+        b"near_edge_edge" in before[(campaign / DATABASE).relative_to(campaign)]
+        if (campaign / DATABASE).is_file()
+        else False
+    )
     ran = turn.run(*other)
     if ran.status == 0 and (has_rows or (campaign / "cases").exists() and "summary.json" in map(str, before)):
         raise Violation("expected another seed to be refused, found that it went on")
@@ -140,9 +158,9 @@ def database_bytes(turn):
         judge(turn, campaign)
 
 
-def fnv1a(data, start=0xcbf29ce484222325):
+def fnv1a(data, start=0xCBF29CE484222325):
     for byte in data:
-        start = (start ^ byte) * 0x100000001b3 & (1 << 64) - 1
+        start = (start ^ byte) * 0x100000001B3 & (1 << 64) - 1
     return start
 
 
@@ -155,12 +173,15 @@ def forged(turn):
     for attempt in range(ATTEMPTS):
         campaign = copy(turn, attempt)
         with sqlite3.connect(campaign / DATABASE, isolation_level=None) as database:
-            of_campaign, = database.execute("SELECT checksum FROM campaign").fetchone()
+            (of_campaign,) = database.execute("SELECT checksum FROM campaign").fetchone()
             rows = database.execute("SELECT id, source, first, pairs, counts FROM batch").fetchall()
             row, *place, counts = turn.random.choice(rows)
             start = f"{of_campaign & (1 << 64) - 1:016x} {' '.join(map(str, place))} ".encode()
             counts = mutate.any_of(turn.random, counts, mutate.BINARY)
-            database.execute("UPDATE batch SET counts = ?, checksum = ? WHERE id = ?", [counts, signed(fnv1a(counts, fnv1a(start))), row])
+            database.execute(
+                "UPDATE batch SET counts = ?, checksum = ? WHERE id = ?",
+                [counts, signed(fnv1a(counts, fnv1a(start))), row],
+            )
         database.close()
         command = [*turn.bench.campaign("small"), "--out", campaign]
         refused = turn.is_refused(turn.run(*command), DATABASE)

@@ -60,17 +60,35 @@ def foreign(turn):
         seed = str(turn.random.randrange(1 << 32))
         few = ["--pairs", "60", "--strata", "uniform", "--seed", seed, "--threads", "2"]
         campaign, alone = turn.folder / f"with-{attempt}", turn.folder / f"without-{attempt}"
-        command = ["fuzz", *few, "--subject", f"h={library(turn.bench)}:{name}", "--subject-timeout", "0.1", "--lanes", "h/*",
-                   "--lanes", OURS, "--out", campaign]
+        command = [
+            "fuzz",
+            *few,
+            "--subject",
+            f"h={library(turn.bench)}:{name}",
+            "--subject-timeout",
+            "0.1",
+            "--lanes",
+            "h/*",
+            "--lanes",
+            OURS,
+            "--out",
+            campaign,
+        ]
         way = turn.random.choice(["whole", "stopped", "killed"])
         if way != "whole":
             started = turn.start(*command)
             time.sleep(turn.random.random() * 0.5)
-            os.kill(started[0].pid, signal.SIGTERM if way == "stopped" else signal.SIGKILL)  # still there until it is waited for
+            os.kill(
+                started[0].pid, signal.SIGTERM if way == "stopped" else signal.SIGKILL
+            )  # still there until it is waited for
             ran = turn.finish(started, kill_after=ENDS)
             if ran.late:
                 raise Violation(f"expected an end within {ENDS} s of SIGTERM, found none")
-            if way == "stopped" and ran.status not in (0, 130, -signal.SIGTERM):  # by itself before, in order, before it began
+            if way == "stopped" and ran.status not in (
+                0,
+                130,
+                -signal.SIGTERM,
+            ):  # by itself before, in order, before it began
                 raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
             must_leave_nothing(turn)
         turn.must_succeed(turn.run(*command))

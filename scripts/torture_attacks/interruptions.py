@@ -48,7 +48,9 @@ def kill_hunt(turn):
     """With its processes; at times a round that was kept is damaged after it."""
     campaign = turn.folder / "campaign"
     command = [*turn.bench.campaign("hunt"), "--out", campaign]
-    ran = turn.run("hunt", "--runs", "1", "--seed", "1", "--lanes", "interval_overlap/f32/cpu", "--out", turn.folder / "one")
+    ran = turn.run(
+        "hunt", "--runs", "1", "--seed", "1", "--lanes", "interval_overlap/f32/cpu", "--out", turn.folder / "one"
+    )
     if turn.is_refused(ran):
         if "libFuzzer" not in ran.err:
             raise Violation(f"expected a hunt, found {ran.err!r}")
@@ -85,9 +87,17 @@ def small_disk(folder, size):
     """A file system of so many bytes. Yields: a function that makes it larger, or none where it cannot be had."""
     folder.mkdir()
     options = f"size={max(size, 4096)},mode=0700"
-    have = os.geteuid() == 0 and subprocess.run(["mount", "-t", "tmpfs", "-o", options, "graze-torture", folder], capture_output=True).returncode == 0
+    have = (
+        os.geteuid() == 0
+        and subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", options, "graze-torture", folder], capture_output=True
+        ).returncode
+        == 0
+    )
     try:
-        yield (lambda: subprocess.run(["mount", "-o", "remount,size=256m", folder], check=True, capture_output=True)) if have else None
+        yield (
+            lambda: subprocess.run(["mount", "-o", "remount,size=256m", folder], check=True, capture_output=True)
+        ) if have else None
     finally:
         if have:
             subprocess.run(["umount", folder], check=True)
@@ -102,7 +112,9 @@ def read_only(turn):
         before = {file: file.read_bytes() for file in campaign.rglob("*") if file.is_file()}
         refused = False
         if mounted:
-            remount = lambda how: subprocess.run(["mount", "-o", f"remount,{how}", turn.folder / "disk"], check=True, capture_output=True)
+            remount = lambda how: subprocess.run(
+                ["mount", "-o", f"remount,{how}", turn.folder / "disk"], check=True, capture_output=True
+            )
             remount("ro")
             try:
                 refused = turn.is_refused(turn.run(*command), "campaign")
@@ -156,8 +168,14 @@ def two_at_once(turn):
     fuzz = [*turn.bench.campaign("tiny"), "--out", campaign]
     large = [*turn.bench.campaign("large"), "--out", campaign]
     minimize = ["minimize", campaign]
-    first, second, name, minimised = turn.random.choice([(large, large, "large", False), (minimize, minimize, "tiny", True),
-                                                         (fuzz, minimize, "tiny", True), (minimize, fuzz, "tiny", True)])
+    first, second, name, minimised = turn.random.choice(
+        [
+            (large, large, "large", False),
+            (minimize, minimize, "tiny", True),
+            (fuzz, minimize, "tiny", True),
+            (minimize, fuzz, "tiny", True),
+        ]
+    )
     if minimised:
         shutil.copytree(turn.bench.reference("tiny"), campaign)
     started = turn.start(*first)

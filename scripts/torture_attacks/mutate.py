@@ -3,15 +3,67 @@
 import json
 import re
 
-NUMBERS = ["-1", "0", "1", "2", "3", "4294967295", "4294967296", "4294967297", "2147483648", "99999999999999999999", "-99999999999999999999",
-           "1e400", "-1e400", "1e-400", "nan", "inf", "-inf", "0x1p-1075", "0x1p+9999", "0x", "0.5", "1e", "--1", "1f", "", "x", "1_000", "٣"]
-PIECES = [b"\0", b"\xef\xbb\xbf", b"\r", b"\r\n", b"\n", b"\t", b" ", b"\xff\xfe", b"\x1b[31m", b"\"", b"\\", b"\\x", b"#", b"|", b"=", b"{", b"}",
-          b"[" * 5000, b"{\"a\":" * 5000, b"," , b"9" * 400, b"A" * 100000, b"\xc3", b"0 " * 1000]
+NUMBERS = [
+    "-1",
+    "0",
+    "1",
+    "2",
+    "3",
+    "4294967295",
+    "4294967296",
+    "4294967297",
+    "2147483648",
+    "99999999999999999999",
+    "-99999999999999999999",
+    "1e400",
+    "-1e400",
+    "1e-400",
+    "nan",
+    "inf",
+    "-inf",
+    "0x1p-1075",
+    "0x1p+9999",
+    "0x",
+    "0.5",
+    "1e",
+    "--1",
+    "1f",
+    "",
+    "x",
+    "1_000",
+    "٣",
+]
+PIECES = [
+    b"\0",
+    b"\xef\xbb\xbf",
+    b"\r",
+    b"\r\n",
+    b"\n",
+    b"\t",
+    b" ",
+    b"\xff\xfe",
+    b"\x1b[31m",
+    b'"',
+    b"\\",
+    b"\\x",
+    b"#",
+    b"|",
+    b"=",
+    b"{",
+    b"}",
+    b"[" * 5000,
+    b'{"a":' * 5000,
+    b",",
+    b"9" * 400,
+    b"A" * 100000,
+    b"\xc3",
+    b"0 " * 1000,
+]
 
 
 def flip_bit(random, data):
     at = random.randrange(len(data) * 8)
-    return data[:at // 8] + bytes([data[at // 8] ^ 1 << at % 8]) + data[at // 8 + 1:]
+    return data[: at // 8] + bytes([data[at // 8] ^ 1 << at % 8]) + data[at // 8 + 1 :]
 
 
 def edit_bytes(random, data):
@@ -22,7 +74,7 @@ def edit_bytes(random, data):
 
 
 def truncate(random, data):
-    return data[:random.randrange(len(data))]
+    return data[: random.randrange(len(data))]
 
 
 def _piece(random, data):
@@ -44,8 +96,8 @@ def overwrite(random, data):
     """A piece by zeros, or by another piece."""
     first, last = _piece(random, data)
     other = random.randrange(len(data))
-    piece = bytes(last - first) if random.random() < 0.5 else data[other:other + last - first]
-    return data[:first] + piece + data[first + len(piece):]
+    piece = bytes(last - first) if random.random() < 0.5 else data[other : other + last - first]
+    return data[:first] + piece + data[first + len(piece) :]
 
 
 def insert(random, data):
@@ -58,7 +110,7 @@ def replace_number(random, data):
     if not places:
         return flip_bit(random, data)
     place = random.choice(places)
-    return data[:place.start()] + random.choice(NUMBERS).encode() + data[place.end():]
+    return data[: place.start()] + random.choice(NUMBERS).encode() + data[place.end() :]
 
 
 def swap_lines(random, data):
@@ -108,6 +160,29 @@ def edit_json(random, data):
         other, where = random.choice(places)
         container[key] = json.loads(json.dumps(other[where]))
     else:
-        container[key] = random.choice([None, -1, 0, 1.5, 1e300, 2**63, 2**64, -2**63, "", "x", "../../../../etc/passwd", "/", "\0", [], {}, True,
-                                        [[]], {"a": None}, "A" * 10000, "near_edge_edge", "*"])
+        container[key] = random.choice(
+            [
+                None,
+                -1,
+                0,
+                1.5,
+                1e300,
+                2**63,
+                2**64,
+                -(2**63),
+                "",
+                "x",
+                "../../../../etc/passwd",
+                "/",
+                "\0",
+                [],
+                {},
+                True,
+                [[]],
+                {"a": None},
+                "A" * 10000,
+                "near_edge_edge",
+                "*",
+            ]
+        )
     return json.dumps(value, indent=1).encode()

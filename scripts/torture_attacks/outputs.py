@@ -15,7 +15,11 @@ def verbs(turn):
     """Each: arguments that write the file that is named last."""
     (turn.folder / "pair.txt").write_text(PAIR)
     report = turn.bench.reference("tiny", reported=True) / "report.json"
-    return [["minimize", "pair.txt", "--lanes", LANE, "--out"], ["map", "pair.txt", "--lanes", LANE, "--out"], ["report", "--from", report, "--out"]]
+    return [
+        ["minimize", "pair.txt", "--lanes", LANE, "--out"],
+        ["map", "pair.txt", "--lanes", LANE, "--out"],
+        ["report", "--from", report, "--out"],
+    ]
 
 
 def device(folder, minor, name):

@@ -10,8 +10,27 @@ from torture_attacks.bench import Violation
 from torture_attacks.interruptions import small_disk
 
 ATTEMPTS = 3  # verbs in a round
-TIMED = {"machine", "date", "near", "far", "in_cache", "from_memory", "dominated", "sentences", "costs", "nanoseconds", "ns", "updated"}
-ASIDE = {"front.svg", "league.md", "timings.json", "status.json", "campaign.sqlite"}  # and what a database has beside it
+TIMED = {
+    "machine",
+    "date",
+    "near",
+    "far",
+    "in_cache",
+    "from_memory",
+    "dominated",
+    "sentences",
+    "costs",
+    "nanoseconds",
+    "ns",
+    "updated",
+}
+ASIDE = {
+    "front.svg",
+    "league.md",
+    "timings.json",
+    "status.json",
+    "campaign.sqlite",
+}  # and what a database has beside it
 SUBJECT = "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n"
 PAIR = "0.1 0.2 0.3  0.4 0.9 0.2  0.7 0.1 0.6   0.1 0.2 0.3  0.5 0.5 0.9  -0.3 0.8 0.4\n"
 
@@ -37,8 +56,28 @@ def command(bench, verb, out):
     few = ["--strata", "near_edge_edge,degenerate"]
     return {
         "tune": lambda: ["tune", "moller_1997/f32/cpu", *few, "--pairs", "2000", "--threads", "2", "--out", out],
-        "trade": lambda: ["trade", "--lanes", "moller_1997/f32/cpu,exact/f32/cpu", *few, "--pairs", "1000", "--out", out],
-        "laws": lambda: ["laws", "--lanes", "moller_1997/f32/cpu", *few, "--pairs", "300", "--threads", "2", "--out", out],
+        "trade": lambda: [
+            "trade",
+            "--lanes",
+            "moller_1997/f32/cpu,exact/f32/cpu",
+            *few,
+            "--pairs",
+            "1000",
+            "--out",
+            out,
+        ],
+        "laws": lambda: [
+            "laws",
+            "--lanes",
+            "moller_1997/f32/cpu",
+            *few,
+            "--pairs",
+            "300",
+            "--threads",
+            "2",
+            "--out",
+            out,
+        ],
         "league": lambda: ["league", "--subjects", folder / "subjects.txt", *few, "--pairs", "200", "--out", out],
         "merge": lambda: ["merge", *shards(bench), "--out", out],
         "report": lambda: ["report", out],
@@ -122,7 +161,9 @@ def must_end_alike(turn, verb, out, expected):
     found = snapshot(out)
     apart = [name for name in sorted({*found, *expected}) if found.get(name) != expected.get(name)]
     if apart:
-        raise Violation(f"expected the results of the undisturbed {verb}, found that {len(apart)} files differ, the first {apart[0]}")
+        raise Violation(
+            f"expected the results of the undisturbed {verb}, found that {len(apart)} files differ, the first {apart[0]}"
+        )
     left = [file.name for file in [*out.rglob("*.part*"), *out.parent.glob(out.name + ".part*")]]
     if left:
         raise Violation(f"expected nothing left behind, found {left}")
@@ -132,7 +173,11 @@ def kill_results(turn):
     def attack(turn, verb, out, expected):
         begun = snapshot(out)
         for _ in range(2):
-            turn.run(*command(turn.bench, verb, out), kill_after=turn.bench.seconds["results", verb] * turn.random.choice([turn.random.random(), 0.9 + 0.2 * turn.random.random()]))
+            turn.run(
+                *command(turn.bench, verb, out),
+                kill_after=turn.bench.seconds["results", verb]
+                * turn.random.choice([turn.random.random(), 0.9 + 0.2 * turn.random.random()]),
+            )
             must_be_whole(out, expected, begun)
             if verb == "merge" and out.exists():  # done; it goes into a new folder alone
                 shutil.rmtree(out)
@@ -166,7 +211,9 @@ def read_only_results(turn):
             before = {file: file.read_bytes() for file in disk.rglob("*") if file.is_file()}
             refused = False
             if mounted:
-                remount = lambda how: subprocess.run(["mount", "-o", f"remount,{how}", disk], check=True, capture_output=True)
+                remount = lambda how: subprocess.run(
+                    ["mount", "-o", f"remount,{how}", disk], check=True, capture_output=True
+                )
                 remount("ro")
                 try:
                     ran = turn.run(*command(turn.bench, verb, there))
@@ -192,7 +239,9 @@ def two_results(turn):
             turn.must_end(ran)
         refused = [turn.is_refused(ran, verb) for ran in both]
         if all(refused):
-            raise Violation(f"expected one of two at once to go on, found both refused: {both[0].err!r} {both[1].err!r}")
+            raise Violation(
+                f"expected one of two at once to go on, found both refused: {both[0].err!r} {both[1].err!r}"
+            )
         if verb == "merge":
             shutil.rmtree(out)
         must_end_alike(turn, verb, out, expected)
@@ -204,7 +253,7 @@ def two_results(turn):
 def leaves(value, place=()):
     """The places of all counts."""
     if isinstance(value, (dict, list)):
-        for key, inner in (value.items() if isinstance(value, dict) else enumerate(value)):
+        for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
             yield from leaves(inner, (*place, key))
     elif isinstance(value, int) and not isinstance(value, bool):
         yield place
@@ -225,11 +274,24 @@ def forged_summaries(turn):
         shutil.copytree(reported, campaign)
         name = turn.random.choice(["summary.json", "summary.json", "kinds.json", "report.json"])
         value = json.loads((campaign / name).read_text())
-        part = {"summary.json": ["strata", "signatures", "disagreements", "spec"], "kinds.json": ["kinds"], "report.json": ["rates", "strata"]}[name]
-        counts = {"kinds.json": {"pairs", "signatures"}, "report.json": {"count", "of", "pairs", "intersects", "declined"}}.get(name)
+        part = {
+            "summary.json": ["strata", "signatures", "disagreements", "spec"],
+            "kinds.json": ["kinds"],
+            "report.json": ["rates", "strata"],
+        }[name]
+        counts = {
+            "kinds.json": {"pairs", "signatures"},
+            "report.json": {"count", "of", "pairs", "intersects", "declined"},
+        }.get(name)
         places = [place for place in leaves({key: value[key] for key in part}) if counts is None or place[-1] in counts]
-        readers = [["report", campaign], ["report", "--compare", reported, campaign], ["kinds", campaign], ["minimize", campaign],
-                   ["dump", campaign], ["corpus", "add", campaign, "--corpus", turn.folder / "corpus"]]
+        readers = [
+            ["report", campaign],
+            ["report", "--compare", reported, campaign],
+            ["kinds", campaign],
+            ["minimize", campaign],
+            ["dump", campaign],
+            ["corpus", "add", campaign, "--corpus", turn.folder / "corpus"],
+        ]
         place = turn.random.choice(places)
         changed(value, place, turn.random.choice([1, 7, 1 << 40]))
         if name == "report.json":
@@ -258,7 +320,12 @@ def foreign_places(turn):
     pair = inputs(turn.bench) / "pair.txt"
     lane = ["--lanes", "guigue_devillers_2003/f32/cpu"]
     report = turn.bench.reference("tiny", reported=True) / "report.json"
-    files = [["minimize", pair, *lane, "--out"], ["map", pair, *lane, "--out"], ["report", "--from", report, "--out"], ["view", pair, "--out"]]
+    files = [
+        ["minimize", pair, *lane, "--out"],
+        ["map", pair, *lane, "--out"],
+        ["report", "--from", report, "--out"],
+        ["view", pair, "--out"],
+    ]
     for place, verb in enumerate(files):
         theirs, link = turn.folder / f"theirs-{place}.png", turn.folder / f"link-{place}.png"
         theirs.write_text("kept")
@@ -276,12 +343,17 @@ def foreign_places(turn):
                 raise Violation(f"expected {verb[0]} --force to replace the file, found it as it was")
             turn.count("same")
     tiny = [*turn.bench.campaign("tiny"), "--out"]
-    for verb in [tiny, *(command(turn.bench, name, folder)[:-1] for name in ("tune", "trade", "laws", "league", "merge"))]:
+    for verb in [
+        tiny,
+        *(command(turn.bench, name, folder)[:-1] for name in ("tune", "trade", "laws", "league", "merge")),
+    ]:
         ran = turn.run(*verb, folder)
         if not turn.is_refused(ran, folder.name, "in this build"):
             raise Violation(f"expected {verb[0]} to refuse a folder of other things, found status {ran.status}")
         if [file.name for file in folder.iterdir()] != ["notes.txt"]:
-            raise Violation(f"expected a folder that is not of graze to stay as it is, found that {verb[0]} wrote into it")
+            raise Violation(
+                f"expected a folder that is not of graze to stay as it is, found that {verb[0]} wrote into it"
+            )
         turn.count("refused")
     league = turn.folder / "league"
     (league / "league").mkdir(parents=True)

@@ -4,14 +4,17 @@ import { MathUtils, OrthographicCamera } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { View } from './drawing';
 
-const kSteepest = 1e-3;  // radians from straight above or below, where right and left are lost
-const kFar = 1e4;        // parts outside the frame may lie far in front of it
+const kSteepest = 1e-3; // radians from straight above or below, where right and left are lost
+const kFar = 1e4; // parts outside the frame may lie far in front of it
 
 export function view_of({ position, zoom }: OrthographicCamera): View {
   return { azimuth: Math.atan2(position.y, position.x), elevation: Math.asin(position.z / position.length()), zoom };
 }
 
-export interface Orbit { camera: OrthographicCamera; set: (view: Partial<View>) => void }
+export interface Orbit {
+  camera: OrthographicCamera;
+  set: (view: Partial<View>) => void;
+}
 
 // `turned` is called whenever the camera has moved, `rested` at the end of a drag.
 export function orbit(board: HTMLElement, view: View, turned: () => void, rested: () => void): Orbit {
@@ -21,16 +24,24 @@ export function orbit(board: HTMLElement, view: View, turned: () => void, rested
   camera.far = 2 * kFar;
   camera.position.setScalar(kFar);
   const controls = new OrbitControls(camera, board);
-  board.style.touchAction = '';  // a finger that moves up or down scrolls the page
-  Object.assign(controls, { enablePan: false, enableZoom: false, rotateSpeed: 0.6, minPolarAngle: kSteepest, maxPolarAngle: Math.PI - kSteepest });
+  board.style.touchAction = ''; // a finger that moves up or down scrolls the page
+  Object.assign(controls, {
+    enablePan: false,
+    enableZoom: false,
+    rotateSpeed: 0.6,
+    minPolarAngle: kSteepest,
+    maxPolarAngle: Math.PI - kSteepest,
+  });
   controls.addEventListener('end', rested);
 
   function set(next: Partial<View>) {
     const { azimuth, elevation, zoom } = { ...view_of(camera), ...next };
     const steep = MathUtils.clamp(elevation, kSteepest - Math.PI / 2, Math.PI / 2 - kSteepest);
-    camera.position.set(Math.cos(steep) * Math.cos(azimuth), Math.cos(steep) * Math.sin(azimuth), Math.sin(steep)).multiplyScalar(kFar);
+    camera.position
+      .set(Math.cos(steep) * Math.cos(azimuth), Math.cos(steep) * Math.sin(azimuth), Math.sin(steep))
+      .multiplyScalar(kFar);
     camera.zoom = MathUtils.clamp(zoom, 0.25, 64);
-    if (!controls.update()) turned();  // it says true where the event tells
+    if (!controls.update()) turned(); // it says true where the event tells
   }
 
   set(view);

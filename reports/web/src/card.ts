@@ -10,14 +10,53 @@ import { stage } from './stage';
 type Card = Report['cards'][number];
 
 function coordinates({ pair }: Card) {
-  const row = (name: string, first: number) => h('tr', {}, h('th', { scope: 'row' }, name),
-    [0, 1, 2].map((k) => h('td', { class: 'number' }, h('span', {}, pair.decimal[first + k]), h('code', {}, pair.hex[first + k]))));
+  const row = (name: string, first: number) =>
+    h(
+      'tr',
+      {},
+      h('th', { scope: 'row' }, name),
+      [0, 1, 2].map((k) =>
+        h('td', { class: 'number' }, h('span', {}, pair.decimal[first + k]), h('code', {}, pair.hex[first + k])),
+      ),
+    );
   const text = pair.hex.join(' ');
-  return h('div', { class: 'coordinates' },
-    h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Coordinates' }, h('table', { class: 'plain' }, h('caption', {}, 'Coordinates, decimal and hex'),
-      h('thead', {}, h('tr', {}, h('td', {}), ['x', 'y', 'z'].map((axis) => h('th', { scope: 'col' }, axis)))),
-      h('tbody', {}, [0, 1, 2].map((i) => row(`a[${i}]`, 3 * i)), [0, 1, 2].map((i) => row(`b[${i}]`, 9 + 3 * i))))),
-    h('p', { class: 'inline-copy' }, 'All 18 as hex floats, for ', h('code', {}, 'graze check -'), ' ', copy_button(text, 'the coordinates')));
+  return h(
+    'div',
+    { class: 'coordinates' },
+    h(
+      'div',
+      { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Coordinates' },
+      h(
+        'table',
+        { class: 'plain' },
+        h('caption', {}, 'Coordinates, decimal and hex'),
+        h(
+          'thead',
+          {},
+          h(
+            'tr',
+            {},
+            h('td', {}),
+            ['x', 'y', 'z'].map((axis) => h('th', { scope: 'col' }, axis)),
+          ),
+        ),
+        h(
+          'tbody',
+          {},
+          [0, 1, 2].map((i) => row(`a[${i}]`, 3 * i)),
+          [0, 1, 2].map((i) => row(`b[${i}]`, 9 + 3 * i)),
+        ),
+      ),
+    ),
+    h(
+      'p',
+      { class: 'inline-copy' },
+      'All 18 as hex floats, for ',
+      h('code', {}, 'graze check -'),
+      ' ',
+      copy_button(text, 'the coordinates'),
+    ),
+  );
 }
 
 function verdicts(report: Report, card: Card) {
@@ -30,38 +69,111 @@ function verdicts(report: Report, card: Card) {
     rows.get(name)!.set(lane.target, verdict);
     if (!targets.includes(lane.target)) targets.push(lane.target);
   }
-  return h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' }, h('table', { class: 'plain verdicts' },
-    h('caption', {}, 'Verdict of every lane, wrong ones marked'),
-    h('thead', {}, h('tr', {}, h('td', {}), targets.map((target) => h('th', { scope: 'col' }, target)))),
-    h('tbody', {}, [...rows].map(([name, by_target]) => h('tr', {}, h('th', { scope: 'row' }, breakable(name)), targets.map((target) => {
-      const verdict = by_target.get(target);
-      return h('td', { class: verdict?.wrong ? 'bad' : '' }, verdict ? `${verdict.wrong ? '✗ ' : ''}${verdict.verdict}` : '–');
-    }))))));
+  return h(
+    'div',
+    { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' },
+    h(
+      'table',
+      { class: 'plain verdicts' },
+      h('caption', {}, 'Verdict of every lane, wrong ones marked'),
+      h(
+        'thead',
+        {},
+        h(
+          'tr',
+          {},
+          h('td', {}),
+          targets.map((target) => h('th', { scope: 'col' }, target)),
+        ),
+      ),
+      h(
+        'tbody',
+        {},
+        [...rows].map(([name, by_target]) =>
+          h(
+            'tr',
+            {},
+            h('th', { scope: 'row' }, breakable(name)),
+            targets.map((target) => {
+              const verdict = by_target.get(target);
+              return h(
+                'td',
+                { class: verdict?.wrong ? 'bad' : '' },
+                verdict ? `${verdict.wrong ? '✗ ' : ''}${verdict.verdict}` : '–',
+              );
+            }),
+          ),
+        ),
+      ),
+    ),
+  );
 }
 
 function ulp_maps(maps: NonNullable<Card['maps']>) {
-  return h('div', { class: 'maps' }, h('h4', {}, 'Ulp map'),
-    h('p', {}, `${maps.title}: ${maps.x} to the right, ${maps.y} upwards; the case is in the middle. `,
-      h('span', { class: 'map-key' }, maps.legend.map(({ colour, means }) => h('span', {}, h('i', { style: `background:${colour}` }), means)))),
-    h('div', { class: 'panels' }, maps.panels.map(({ name, shows, png }) => h('figure', { class: name === 'truth' ? 'panel truth' : 'panel' },
-      h('div', {}, h('img', { src: `data:image/png;base64,${png}`, width: maps.size, height: maps.size, decoding: 'async', alt: `${name}: ${shows ?? 'counts of the map are not stored'}` })),
-      h('figcaption', {}, name === 'truth' ? 'truth' : breakable(name.split('/').slice(1).join('/')))))));
+  return h(
+    'div',
+    { class: 'maps' },
+    h('h4', {}, 'Ulp map'),
+    h(
+      'p',
+      {},
+      `${maps.title}: ${maps.x} to the right, ${maps.y} upwards; the case is in the middle. `,
+      h(
+        'span',
+        { class: 'map-key' },
+        maps.legend.map(({ colour, means }) => h('span', {}, h('i', { style: `background:${colour}` }), means)),
+      ),
+    ),
+    h(
+      'div',
+      { class: 'panels' },
+      maps.panels.map(({ name, shows, png }) =>
+        h(
+          'figure',
+          { class: name === 'truth' ? 'panel truth' : 'panel' },
+          h(
+            'div',
+            {},
+            h('img', {
+              src: `data:image/png;base64,${png}`,
+              width: maps.size,
+              height: maps.size,
+              decoding: 'async',
+              alt: `${name}: ${shows ?? 'counts of the map are not stored'}`,
+            }),
+          ),
+          h('figcaption', {}, name === 'truth' ? 'truth' : breakable(name.split('/').slice(1).join('/'))),
+        ),
+      ),
+    ),
+  );
 }
 
 // The programs of a card, with the source that the report holds once for all of them.
-export const snippet_texts = (report: Report, card: Card) => card.snippets.map(({ label, text }) =>
-  ({ label, text: text.replace('@SOURCE@', () => report.sources[card.kind.subject]) }));
+export const snippet_texts = (report: Report, card: Card) =>
+  card.snippets.map(({ label, text }) => ({
+    label,
+    text: text.replace('@SOURCE@', () => report.sources[card.kind.subject]),
+  }));
 
 // One text at a time, chosen by its button.
 function snippets(report: Report, card: Card) {
   const shown = h('div', {});
   const buttons = snippet_texts(report, card).map(({ label, text }) => {
-    const button = h('button', { type: 'button', 'aria-pressed': 'false', onclick: () => {
-      const open = button.getAttribute('aria-pressed') === 'true';
-      buttons.forEach((other) => other.setAttribute('aria-pressed', 'false'));
-      button.setAttribute('aria-pressed', String(!open));
-      shown.replaceChildren(...(open ? [] : [code_block(text, `the ${label} snippet`)]));
-    } }, label);
+    const button = h(
+      'button',
+      {
+        type: 'button',
+        'aria-pressed': 'false',
+        onclick: () => {
+          const open = button.getAttribute('aria-pressed') === 'true';
+          buttons.forEach((other) => other.setAttribute('aria-pressed', 'false'));
+          button.setAttribute('aria-pressed', String(!open));
+          shown.replaceChildren(...(open ? [] : [code_block(text, `the ${label} snippet`)]));
+        },
+      },
+      label,
+    );
     return button;
   });
   return h('div', { class: 'snippets' }, h('h4', {}, 'For a bug report'), h('div', { class: 'chips' }, buttons), shown);
@@ -69,37 +181,84 @@ function snippets(report: Report, card: Card) {
 
 // "intersects, contact: point, margin 0"
 function truth_words({ truth }: Card) {
-  const where = truth.contact === 'none' ? `${figure(truth.margin)} apart` : truth.margin === 0 ? `contact: ${truth.contact}, margin 0`
-    : `contact: ${truth.contact}, ${figure(Math.abs(truth.margin))} deep`;
+  const where =
+    truth.contact === 'none'
+      ? `${figure(truth.margin)} apart`
+      : truth.margin === 0
+        ? `contact: ${truth.contact}, margin 0`
+        : `contact: ${truth.contact}, ${figure(Math.abs(truth.margin))} deep`;
   return `${truth.verdict}, ${where}${truth.margin === 0 ? '' : ` (${figure(Math.abs(truth.margin_ulps))} ulps)`}`;
 }
 
 // The inside of a card, made when it is opened.
 export function card_body(report: Report, card: Card, id: string) {
-  const truth = truth_words(card), [verdict] = truth.split(',');
-  return h('div', { class: 'card-body' }, kind_lanes(report, card),
-    h('div', { class: 'card-top' }, h('div', {}, stage(card, truth), viewer_button(report, card, id)),
-      h('div', { class: 'card-facts' },
+  const truth = truth_words(card),
+    [verdict] = truth.split(',');
+  return h(
+    'div',
+    { class: 'card-body' },
+    kind_lanes(report, card),
+    h(
+      'div',
+      { class: 'card-top' },
+      h('div', {}, stage(card, truth), viewer_button(report, card, id)),
+      h(
+        'div',
+        { class: 'card-facts' },
         h('p', { class: 'truth' }, h('b', {}, `Truth: ${verdict}`), truth.slice(verdict.length)),
-        h('ul', { class: 'sentences' }, card.sentences.map((sentence) => h('li', {}, sentence))),
-        coordinates(card))),
+        h(
+          'ul',
+          { class: 'sentences' },
+          card.sentences.map((sentence) => h('li', {}, sentence)),
+        ),
+        coordinates(card),
+      ),
+    ),
     kind_facts(card),
-    h('div', { class: card.maps ? 'card-low' : '' }, h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)), card.maps && ulp_maps(card.maps)),
+    h(
+      'div',
+      { class: card.maps ? 'card-low' : '' },
+      h('div', { class: 'card-facts' }, h('h4', {}, 'Verdicts'), verdicts(report, card)),
+      card.maps && ulp_maps(card.maps),
+    ),
     h('h4', {}, 'Again'),
-    h('div', { class: 'commands' }, card.commands.map(({ label, text }) => [h('span', { class: 'label' }, label), code_block(text, `the ${label} command`)])),
+    h(
+      'div',
+      { class: 'commands' },
+      card.commands.map(({ label, text }) => [
+        h('span', { class: 'label' }, label),
+        code_block(text, `the ${label} command`),
+      ]),
+    ),
     card.snippets.length > 0 && snippets(report, card),
-    h('p', { class: 'small' }, card.minimised ? `Minimised from ${card.from}; ` : `Not minimised, as drawn: ${card.from}; `, 'stored in ', h('code', {}, card.file),
-      '; the kind ', h('code', {}, ...breakable(card.kind.key))));
+    h(
+      'p',
+      { class: 'small' },
+      card.minimised ? `Minimised from ${card.from}; ` : `Not minimised, as drawn: ${card.from}; `,
+      'stored in ',
+      h('code', {}, card.file),
+      '; the kind ',
+      h('code', {}, ...breakable(card.kind.key)),
+    ),
+  );
 }
 
 // Of the card at that place.
 export const kind_id = (place: number) => `kind-${place + 1}`;
 
 export function card_element(report: Report, card: Card, place: number) {
-  const { details, open } = lazy_details([
-    h('span', { class: 'card-number' }, String(place + 1)),
-    h('span', { class: 'card-title' }, kind_title(card.kind)),
-    h('span', { class: 'card-count' }, `${counted(card.kind.pairs, 'pair')}, ${counted(card.kind.signatures, 'signature')}`),
-  ], () => card_body(report, card, kind_id(place)), { class: 'card', id: kind_id(place) });
+  const { details, open } = lazy_details(
+    [
+      h('span', { class: 'card-number' }, String(place + 1)),
+      h('span', { class: 'card-title' }, kind_title(card.kind)),
+      h(
+        'span',
+        { class: 'card-count' },
+        `${counted(card.kind.pairs, 'pair')}, ${counted(card.kind.signatures, 'signature')}`,
+      ),
+    ],
+    () => card_body(report, card, kind_id(place)),
+    { class: 'card', id: kind_id(place) },
+  );
   return { details, open };
 }

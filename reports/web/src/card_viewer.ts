@@ -13,40 +13,70 @@ import { make_ready, no_verdicts, viewer, type First } from './viewer/viewer';
 type Card = Report['cards'][number];
 
 let read: Stored | null | undefined;
-const stored = () => (read ??= JSON.parse(document.getElementById('view')?.textContent?.trim() || 'null') as Stored | null);
+const stored = () =>
+  (read ??= JSON.parse(document.getElementById('view')?.textContent?.trim() || 'null') as Stored | null);
 export const has_viewer = () => compressed !== '' && stored() !== null;
 
 const bits_of = ({ pair }: Card) => to_bits(Float32Array.from(pair.value));
 
 // A lane of the kind that is wrong on the pair shown; if there is one, one that the viewer has.
 function lane_of(report: Report, { kind, verdicts }: Card) {
-  const lanes = stored()!.replay.lanes, wrong = verdicts.filter((one) => one.wrong).map((one) => report.lanes[one.lane].id).filter((id) => kind.lanes.includes(id));
+  const lanes = stored()!.replay.lanes,
+    wrong = verdicts
+      .filter((one) => one.wrong)
+      .map((one) => report.lanes[one.lane].id)
+      .filter((id) => kind.lanes.includes(id));
   return wrong.find((id) => lanes.includes(id)) ?? '';
 }
 
-export const viewer_button = (report: Report, card: Card, id: string) => has_viewer() && h('button', { type: 'button', class: 'in-viewer', onclick: () => into_viewer(id, bits_of(card), lane_of(report, card)) }, 'Open in the viewer');
+export const viewer_button = (report: Report, card: Card, id: string) =>
+  has_viewer() &&
+  h(
+    'button',
+    { type: 'button', class: 'in-viewer', onclick: () => into_viewer(id, bits_of(card), lane_of(report, card)) },
+    'Open in the viewer',
+  );
 
 // Opens the viewer wherever the address holds a pair, now and after every link, and closes it where it holds none.
 export function follow_viewer(report: Report, id_of: (place: number) => string) {
   const checks = stored();
   if (!checks || !has_viewer()) return;
   const names = report.cards.map((card, i) => `Card ${i + 1}: ${kind_words(card.kind)}`);
-  const data: ViewData = { ...checks, format: 1, title: 'cards of this report', pairs: report.cards.map((card, i) => ({ name: names[i], bits: bits_of(card) })), triangles: [] };
-  const inside = h('div', {}), dialog = h('dialog', { id: 'viewer', 'aria-label': 'Viewer' },
-    h('p', { class: 'back' }, h('button', { type: 'button', onclick: out_of_viewer }, '← Back to the report')), inside);
+  const data: ViewData = {
+    ...checks,
+    format: 1,
+    title: 'cards of this report',
+    pairs: report.cards.map((card, i) => ({ name: names[i], bits: bits_of(card) })),
+    triangles: [],
+  };
+  const inside = h('div', {}),
+    dialog = h(
+      'dialog',
+      { id: 'viewer', 'aria-label': 'Viewer' },
+      h('p', { class: 'back' }, h('button', { type: 'button', onclick: out_of_viewer }, '← Back to the report')),
+      inside,
+    );
   document.body.append(dialog);
   dialog.addEventListener('cancel', (event) => {
     if (event.target !== dialog) return;
     event.preventDefault();
     out_of_viewer();
   });
-  let shown: Promise<ReturnType<typeof viewer> | null> | null = null, kept = '';
+  let shown: Promise<ReturnType<typeof viewer> | null> | null = null,
+    kept = '';
 
   function first_of(bits: string): First {
-    const place = report.cards.findIndex((_, i) => id_of(i) === place_of_address()), card = report.cards[place];
+    const place = report.cards.findIndex((_, i) => id_of(i) === place_of_address()),
+      card = report.cards[place];
     const first: First = { name: 'the pair of a link', pair: from_bits(bits), lane: chosen('by') };
     if (!card || bits_of(card) !== bits) return first;
-    return { ...first, name: names[place], note: lane_of(report, card) ? '' : `The lanes of this card (${within(card.kind.lanes)}) are not in the viewer, which another compiler built; the card has what they say.` };
+    return {
+      ...first,
+      name: names[place],
+      note: lane_of(report, card)
+        ? ''
+        : `The lanes of this card (${within(card.kind.lanes)}) are not in the viewer, which another compiler built; the card has what they say.`,
+    };
   }
   async function start(first: First) {
     inside.replaceChildren(h('p', { class: 'small', role: 'status' }, 'Checking the lanes against the native build …'));
@@ -59,7 +89,11 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
         link: () => location.href,
         active: () => dialog.open,
       });
-      inside.replaceChildren(h('div', { class: 'viewer-head' }, made.head), h('div', { class: 'viewer-body' }, made.body), made.help);
+      inside.replaceChildren(
+        h('div', { class: 'viewer-head' }, made.head),
+        h('div', { class: 'viewer-body' }, made.body),
+        made.help,
+      );
       made.begin();
       return made;
     } catch (error) {
@@ -68,10 +102,14 @@ export function follow_viewer(report: Report, id_of: (place: number) => string) 
     }
   }
   function follow() {
-    const bits = chosen('p'), valid = /^[0-9a-f]{144}$/.test(bits);
+    const bits = chosen('p'),
+      valid = /^[0-9a-f]{144}$/.test(bits);
     if (!valid && dialog.open) {
       dialog.close();
-      document.getElementById(place_of_address())?.querySelector<HTMLElement>('.in-viewer')?.focus({ preventScroll: true });
+      document
+        .getElementById(place_of_address())
+        ?.querySelector<HTMLElement>('.in-viewer')
+        ?.focus({ preventScroll: true });
     }
     if (!valid || (dialog.open && bits === kept)) return;
     kept = bits;

@@ -20,31 +20,85 @@ const row_id = (lane: string) => `trade-${lane.replace(/[^a-z0-9]+/gi, '-')}`;
 
 // Axis of shares: decades, and below them the line of those without any.
 function shares_axis(shares: number[]) {
-  const floor = Math.floor(Math.log10(Math.min(0.01, ...shares.filter((s) => s > 0)))), none = floor - 0.7;
+  const floor = Math.floor(Math.log10(Math.min(0.01, ...shares.filter((s) => s > 0)))),
+    none = floor - 0.7;
   const decades = Array.from({ length: -floor + 1 }, (_, i) => floor + i);
   return {
     y: (s: number) => (s > 0 ? Math.log10(s) : none),
-    options: { domain: [none, 0], ticks: [none, ...decades], grid: true, label: null, tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`) },
+    options: {
+      domain: [none, 0],
+      ticks: [none, ...decades],
+      grid: true,
+      label: null,
+      tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`),
+    },
   };
 }
 
 // The picture of the answer: lanes by cost and by how often they give no right verdict; a press leads to the row.
 export function front(trade: Trade) {
   const axis = shares_axis(trade.lanes.map((offer) => share(offer.errors)));
-  const words = (offer: Offer) => `${offer.lane}\n${nanoseconds(cost(offer).middle)} ns a pair\n${percent(share(offer.errors))} without a right verdict${offer.dominated ? '\nanother lane costs no more and errs no more' : ''}`;
+  const words = (offer: Offer) =>
+    `${offer.lane}\n${nanoseconds(cost(offer).middle)} ns a pair\n${percent(share(offer.errors))} without a right verdict${offer.dominated ? '\nanother lane costs no more and errs no more' : ''}`;
   const kept = trade.lanes.filter((offer) => !offer.dominated).sort((a, b) => cost(a).middle - cost(b).middle);
   const element = h('div', { class: 'chart', id: 'front-chart' });
   on_width(element, (width) => {
     const small = width < 520;
     const plot = Plot.plot({
-      width, height: 330, marginLeft: 54, marginRight: 14, marginTop: 22, marginBottom: 40, style: kChartStyle,
-      x: { type: 'log', inset: 12, label: 'nanoseconds a pair', labelAnchor: 'center', labelArrow: 'none', labelOffset: 36, ticks: small ? 4 : 8, tickFormat: (v: number) => String(v) },
+      width,
+      height: 330,
+      marginLeft: 54,
+      marginRight: 14,
+      marginTop: 22,
+      marginBottom: 40,
+      style: kChartStyle,
+      x: {
+        type: 'log',
+        inset: 12,
+        label: 'nanoseconds a pair',
+        labelAnchor: 'center',
+        labelArrow: 'none',
+        labelOffset: 36,
+        ticks: small ? 4 : 8,
+        tickFormat: (v: number) => String(v),
+      },
       y: axis.options,
       marks: [
-        Plot.line(kept, { x: (o: Offer) => cost(o).middle, y: (o: Offer) => axis.y(share(o.errors)), stroke: 'currentColor', strokeOpacity: 0.35 }),
-        Plot.dot(trade.lanes, { x: (o: Offer) => cost(o).middle, y: (o: Offer) => axis.y(share(o.errors)), r: (o: Offer) => (o.dominated ? 3 : 5.5), fill: (o: Offer) => (o.dominated ? '#999' : 'var(--series-0)') }),
-        ...(small ? [] : [0, 1].map((odd) => Plot.text(kept.filter((_, i) => i % 2 === odd), { x: (o: Offer) => cost(o).middle, y: (o: Offer) => axis.y(share(o.errors)), text: 'lane', dy: odd ? 14 : -12, fontSize: 11 }))),
-        Plot.tip(trade.lanes, Plot.pointer({ x: (o: Offer) => cost(o).middle, y: (o: Offer) => axis.y(share(o.errors)), title: words, maxRadius: 24 })),
+        Plot.line(kept, {
+          x: (o: Offer) => cost(o).middle,
+          y: (o: Offer) => axis.y(share(o.errors)),
+          stroke: 'currentColor',
+          strokeOpacity: 0.35,
+        }),
+        Plot.dot(trade.lanes, {
+          x: (o: Offer) => cost(o).middle,
+          y: (o: Offer) => axis.y(share(o.errors)),
+          r: (o: Offer) => (o.dominated ? 3 : 5.5),
+          fill: (o: Offer) => (o.dominated ? '#999' : 'var(--series-0)'),
+        }),
+        ...(small
+          ? []
+          : [0, 1].map((odd) =>
+              Plot.text(
+                kept.filter((_, i) => i % 2 === odd),
+                {
+                  x: (o: Offer) => cost(o).middle,
+                  y: (o: Offer) => axis.y(share(o.errors)),
+                  text: 'lane',
+                  dy: odd ? 14 : -12,
+                  fontSize: 11,
+                },
+              ),
+            )),
+        Plot.tip(
+          trade.lanes,
+          Plot.pointer({
+            x: (o: Offer) => cost(o).middle,
+            y: (o: Offer) => axis.y(share(o.errors)),
+            title: words,
+            maxRadius: 24,
+          }),
+        ),
       ],
       r: { type: 'identity' },
     });
@@ -52,55 +106,160 @@ export function front(trade: Trade) {
       const pointed = (plot as unknown as { value: Offer | null }).value;
       if (pointed) go_to(row_id(pointed.lane));
     });
-    element.replaceChildren(named(plot, `Lanes by cost and errors, on ${trade.machine}. ${trade.lanes.map(words).join('. ')}`));
+    element.replaceChildren(
+      named(plot, `Lanes by cost and errors, on ${trade.machine}. ${trade.lanes.map(words).join('. ')}`),
+    );
   });
-  return h('figure', { class: 'glance', id: 'front' },
+  return h(
+    'figure',
+    { class: 'glance', id: 'front' },
     h('p', { class: 'glance-title' }, 'Pairs without a right verdict, against what a pair costs'),
     element,
-    h('figcaption', {}, `Large: no lane costs less and errs less. Pairs ${trade.lanes[0]?.resident ? 'that lie on the device' : 'in cache, one core'}; ${trade.machine}.`));
+    h(
+      'figcaption',
+      {},
+      `Large: no lane costs less and errs less. Pairs ${trade.lanes[0]?.resident ? 'that lie on the device' : 'in cache, one core'}; ${trade.machine}.`,
+    ),
+  );
 }
 
 export function trade_section(report: Report, trade: Trade) {
   const on_device = trade.lanes.some((offer) => offer.resident);
   const pairs_of = (offer: Offer) => {
     const lane = report.lanes.findIndex((one) => one.id === offer.lane);
-    const shown = lane >= 0 && report.rates.some((rate) => rate.lane === lane && rate.stratum === null && rate.wrong.count > 0);
-    return shown && h('button', { type: 'button', onclick: () => go_to('kinds', { cell: cell_text(report, { lane, stratum: null, kind: 'wrong' }) }) }, 'its failures');
+    const shown =
+      lane >= 0 && report.rates.some((rate) => rate.lane === lane && rate.stratum === null && rate.wrong.count > 0);
+    return (
+      shown &&
+      h(
+        'button',
+        {
+          type: 'button',
+          onclick: () => go_to('kinds', { cell: cell_text(report, { lane, stratum: null, kind: 'wrong' }) }),
+        },
+        'its failures',
+      )
+    );
   };
-  const errors = (label: string, of: (e: Errors) => number) =>
-    ({ label, numeric: true, cell: (o: Offer) => count(of(o.errors)), order: (o: Offer) => of(o.errors) });
-  const needs = (label: string, of: (o: Offer) => number | undefined) =>
-    ({ label, numeric: true, cell: (o: Offer) => (of(o) === undefined ? '–' : count(of(o)!)), order: (o: Offer) => of(o) ?? 0 });
-  const table = sortable_table<Offer>([
-    { label: 'Lane', cell: (o) => h('td', { id: row_id(o.lane) }, breakable(o.lane)), order: (o) => o.lane },
-    { label: 'ns a pair', numeric: true, cell: (o) => h('td', { class: 'number', title: `quartiles ${nanoseconds(cost(o).low)} to ${nanoseconds(cost(o).high)}` }, nanoseconds(cost(o).middle)), order: (o) => cost(o).middle },
-    { label: on_device ? 'with copies' : 'from memory', numeric: true, cell: (o) => nanoseconds(far(o).middle), order: (o) => far(o).middle },
-    errors('Misses', (e) => e.misses), errors('False hits', (e) => e.false_hits), errors('Declined', (e) => e.declined),
-    ...(on_device ? [needs('Registers', (o) => o.registers), needs('Local bytes', (o) => o.local_bytes), needs('Threads at once', (o) => o.active_threads)] : []),
-    { label: 'On the front', cell: (o) => (o.dominated ? '' : share(o.errors) === 0 ? `yes; under ${percent_bound(o.bound, 'upper')}` : 'yes'), order: (o) => Number(o.dominated) },
-    { label: 'Smallest failure', cell: (o) => {
-      const command = `graze check '${o.failure}' --lanes '${o.lane}'`;
-      return h('td', { class: 'failure' }, o.failure ? [h('code', { title: command }, 'graze check …'), ' ', copy_button(command, `a small pair on which ${o.lane} is wrong`)] : 'none seen', ' ', pairs_of(o));
-    }, order: (o) => Number(!o.failure) },
-  ], { caption: `Errors on ${count(trade.lanes[0]?.errors.pairs ?? 0)} pairs, and costs on ${trade.machine}`, class: 'plain trade', page: 60 });
+  const errors = (label: string, of: (e: Errors) => number) => ({
+    label,
+    numeric: true,
+    cell: (o: Offer) => count(of(o.errors)),
+    order: (o: Offer) => of(o.errors),
+  });
+  const needs = (label: string, of: (o: Offer) => number | undefined) => ({
+    label,
+    numeric: true,
+    cell: (o: Offer) => (of(o) === undefined ? '–' : count(of(o)!)),
+    order: (o: Offer) => of(o) ?? 0,
+  });
+  const table = sortable_table<Offer>(
+    [
+      { label: 'Lane', cell: (o) => h('td', { id: row_id(o.lane) }, breakable(o.lane)), order: (o) => o.lane },
+      {
+        label: 'ns a pair',
+        numeric: true,
+        cell: (o) =>
+          h(
+            'td',
+            { class: 'number', title: `quartiles ${nanoseconds(cost(o).low)} to ${nanoseconds(cost(o).high)}` },
+            nanoseconds(cost(o).middle),
+          ),
+        order: (o) => cost(o).middle,
+      },
+      {
+        label: on_device ? 'with copies' : 'from memory',
+        numeric: true,
+        cell: (o) => nanoseconds(far(o).middle),
+        order: (o) => far(o).middle,
+      },
+      errors('Misses', (e) => e.misses),
+      errors('False hits', (e) => e.false_hits),
+      errors('Declined', (e) => e.declined),
+      ...(on_device
+        ? [
+            needs('Registers', (o) => o.registers),
+            needs('Local bytes', (o) => o.local_bytes),
+            needs('Threads at once', (o) => o.active_threads),
+          ]
+        : []),
+      {
+        label: 'On the front',
+        cell: (o) =>
+          o.dominated ? '' : share(o.errors) === 0 ? `yes; under ${percent_bound(o.bound, 'upper')}` : 'yes',
+        order: (o) => Number(o.dominated),
+      },
+      {
+        label: 'Smallest failure',
+        cell: (o) => {
+          const command = `graze check '${o.failure}' --lanes '${o.lane}'`;
+          return h(
+            'td',
+            { class: 'failure' },
+            o.failure
+              ? [
+                  h('code', { title: command }, 'graze check …'),
+                  ' ',
+                  copy_button(command, `a small pair on which ${o.lane} is wrong`),
+                ]
+              : 'none seen',
+            ' ',
+            pairs_of(o),
+          );
+        },
+        order: (o) => Number(!o.failure),
+      },
+    ],
+    {
+      caption: `Errors on ${count(trade.lanes[0]?.errors.pairs ?? 0)} pairs, and costs on ${trade.machine}`,
+      class: 'plain trade',
+      page: 60,
+    },
+  );
   table.show(trade.lanes);
-  return section('trade', 'Errors against cost',
-    h('p', {}, 'What each lane gets wrong on the same pairs, and what a pair costs; on the front are those that no other beats in both. A lane without an error has the bound of its error rate at 95 % confidence.'),
+  return section(
+    'trade',
+    'Errors against cost',
+    h(
+      'p',
+      {},
+      'What each lane gets wrong on the same pairs, and what a pair costs; on the front are those that no other beats in both. A lane without an error has the bound of its error rate at 95 % confidence.',
+    ),
     table.element,
-    h('ul', { class: 'answer' }, trade.sentences.map((text) => h('li', {}, text))));
+    h(
+      'ul',
+      { class: 'answer' },
+      trade.sentences.map((text) => h('li', {}, text)),
+    ),
+  );
 }
 
 const policy_of = (tuned: Tuned, point: PolicyErrors) => (point.policy ? `${tuned.lane}/${point.policy}` : tuned.lane);
 
 export function tuned_section(tuned: Tuned) {
-  const title = (curve: Tuned['curves'][number]) => `${curve.tolerance === 'rel' ? 'relative' : 'absolute'}, ${curve.site === 'all' ? 'at all sites' : `at ${curve.site}`}`;
+  const title = (curve: Tuned['curves'][number]) =>
+    `${curve.tolerance === 'rel' ? 'relative' : 'absolute'}, ${curve.site === 'all' ? 'at all sites' : `at ${curve.site}`}`;
   const tolerance = (point: PolicyErrors) => Number(point.policy.slice(point.policy.lastIndexOf(':') + 1));
-  let shown = Math.max(0, tuned.curves.findIndex((curve) => curve.points.some((point) => point.policy === tuned.chosen)));
+  let shown = Math.max(
+    0,
+    tuned.curves.findIndex((curve) => curve.points.some((point) => point.policy === tuned.chosen)),
+  );
   let at = 0;
   const element = h('figure', { class: 'chart', id: 'tuning-chart' });
   const readout = h('output', { class: 'readout', 'aria-live': 'polite' });
   const policy = h('div', {});
-  const slider = h('input', { type: 'range', min: 0, value: 0, step: 1, 'aria-label': 'Tolerance', oninput: () => { at = Number(slider.value); tell(); redraw(); } });
+  const slider = h('input', {
+    type: 'range',
+    min: 0,
+    value: 0,
+    step: 1,
+    'aria-label': 'Tolerance',
+    oninput: () => {
+      at = Number(slider.value);
+      tell();
+      redraw();
+    },
+  });
   const curve = () => tuned.curves[shown];
 
   function tell() {
@@ -112,36 +271,101 @@ export function tuned_section(tuned: Tuned) {
   }
 
   function draw(width: number) {
-    const points = curve().points, x = (point: PolicyErrors) => Math.log2(tolerance(point));
+    const points = curve().points,
+      x = (point: PolicyErrors) => Math.log2(tolerance(point));
     const axis = shares_axis(points.flatMap((e) => [e.misses / e.pairs, e.false_hits / e.pairs]));
-    const lines = ([['misses', 'var(--series-1)'], ['false_hits', 'var(--series-0)']] as const).map(([kind, stroke]) =>
-      Plot.line(points, { x, y: (e: PolicyErrors) => axis.y(e[kind] / e.pairs), stroke, strokeWidth: 2, strokeDasharray: kind === 'misses' ? '6 3' : '' }));
+    const lines = (
+      [
+        ['misses', 'var(--series-1)'],
+        ['false_hits', 'var(--series-0)'],
+      ] as const
+    ).map(([kind, stroke]) =>
+      Plot.line(points, {
+        x,
+        y: (e: PolicyErrors) => axis.y(e[kind] / e.pairs),
+        stroke,
+        strokeWidth: 2,
+        strokeDasharray: kind === 'misses' ? '6 3' : '',
+      }),
+    );
     const chosen = points.filter((point) => point.policy === tuned.chosen);
     const plot = Plot.plot({
-      width, height: width < 560 ? 280 : 340, marginLeft: 54, marginRight: 12, marginTop: 14, marginBottom: 44, style: kChartStyle,
-      x: { label: curve().tolerance === 'rel' ? 'K, in machine epsilons times the quantity’s size' : 'E, in the quantity’s own unit', labelAnchor: 'center', labelArrow: 'none', labelOffset: 38, ticks: width < 560 ? 5 : 10, tickFormat: (v: number) => power_of_two(v) },
+      width,
+      height: width < 560 ? 280 : 340,
+      marginLeft: 54,
+      marginRight: 12,
+      marginTop: 14,
+      marginBottom: 44,
+      style: kChartStyle,
+      x: {
+        label:
+          curve().tolerance === 'rel'
+            ? 'K, in machine epsilons times the quantity’s size'
+            : 'E, in the quantity’s own unit',
+        labelAnchor: 'center',
+        labelArrow: 'none',
+        labelOffset: 38,
+        ticks: width < 560 ? 5 : 10,
+        tickFormat: (v: number) => power_of_two(v),
+      },
       y: axis.options,
-      marks: [...lines, Plot.ruleX(chosen, { x, strokeDasharray: '4 3', strokeOpacity: 0.7 }), Plot.ruleX([points[at]], { x, stroke: 'currentColor', strokeWidth: 2 })],
+      marks: [
+        ...lines,
+        Plot.ruleX(chosen, { x, strokeDasharray: '4 3', strokeOpacity: 0.7 }),
+        Plot.ruleX([points[at]], { x, stroke: 'currentColor', strokeWidth: 2 }),
+      ],
     });
-    element.replaceChildren(named(plot, `Misses and false hits of ${tuned.lane} against its tolerance, ${title(curve())}. ${readout.textContent}`));
+    element.replaceChildren(
+      named(
+        plot,
+        `Misses and false hits of ${tuned.lane} against its tolerance, ${title(curve())}. ${readout.textContent}`,
+      ),
+    );
   }
   const redraw = () => element.clientWidth && draw(element.clientWidth);
 
   function show(which: number) {
     shown = which;
     slider.max = String(curve().points.length - 1);
-    at = Math.max(0, curve().points.findIndex((point) => point.policy === tuned.chosen));
+    at = Math.max(
+      0,
+      curve().points.findIndex((point) => point.policy === tuned.chosen),
+    );
     slider.value = String(at);
     tell();
     redraw();
   }
   show(shown);
   on_width(element, draw);
-  return section('tuning', `Which tolerance for ${tuned.lane}`,
-    h('ul', { class: 'answer' }, tuned.sentences.map((text) => h('li', {}, text))),
-    h('div', { class: 'controls' },
-      choice('Curve', tuned.curves.map((one, i): [string, string] => [String(i), title(one)]), String(shown), (value) => show(Number(value)))),
+  return section(
+    'tuning',
+    `Which tolerance for ${tuned.lane}`,
+    h(
+      'ul',
+      { class: 'answer' },
+      tuned.sentences.map((text) => h('li', {}, text)),
+    ),
+    h(
+      'div',
+      { class: 'controls' },
+      choice(
+        'Curve',
+        tuned.curves.map((one, i): [string, string] => [String(i), title(one)]),
+        String(shown),
+        (value) => show(Number(value)),
+      ),
+    ),
     element,
-    h('label', { class: 'field slide' }, h('span', {}, 'Tolerance'), slider), h('p', {}, readout), policy,
-    h('p', { class: 'key' }, h('span', { style: 'color:var(--series-1)' }, '╌╌'), ' misses, ', h('span', { style: 'color:var(--series-0)' }, '──'), ' false hits, on the pairs that the tolerance was chosen on; dashed upright line: chosen.'));
+    h('label', { class: 'field slide' }, h('span', {}, 'Tolerance'), slider),
+    h('p', {}, readout),
+    policy,
+    h(
+      'p',
+      { class: 'key' },
+      h('span', { style: 'color:var(--series-1)' }, '╌╌'),
+      ' misses, ',
+      h('span', { style: 'color:var(--series-0)' }, '──'),
+      ' false hits, on the pairs that the tolerance was chosen on; dashed upright line: chosen.',
+    ),
+  );
 }

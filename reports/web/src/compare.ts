@@ -12,27 +12,55 @@ type Seen = Compare['gained'][number];
 const cell = (share: Share) => h('td', { class: 'number', title: in_full(share) }, percent(share.share));
 
 function rates_table(compare: Compare) {
-  const table = sortable_table<Change>([
-    { label: 'Lane', cell: (c) => breakable(c.lane), order: (c) => c.lane },
-    { label: 'Stratum', cell: (c) => c.stratum, order: (c) => c.stratum },
-    { label: 'Before', numeric: true, cell: (c) => cell(c.before), order: (c) => c.before.share },
-    { label: 'After', numeric: true, cell: (c) => cell(c.after), order: (c) => c.after.share },
-    { label: 'Change', numeric: true, cell: (c) => (c.after.share === c.before.share ? '0' : `${c.after.share > c.before.share ? '+' : '−'}${percent(Math.abs(c.after.share - c.before.share)).replace('%', 'points')}`), order: (c) => c.after.share - c.before.share },
-    { label: 'Changed', title: 'More than chance would explain', cell: (c) => (c.changed ? h('b', {}, 'yes') : 'no'), order: (c) => Number(c.changed), descending_first: true },
-  ], { caption: 'Share wrong before and after', class: 'plain', page: 60 });
+  const table = sortable_table<Change>(
+    [
+      { label: 'Lane', cell: (c) => breakable(c.lane), order: (c) => c.lane },
+      { label: 'Stratum', cell: (c) => c.stratum, order: (c) => c.stratum },
+      { label: 'Before', numeric: true, cell: (c) => cell(c.before), order: (c) => c.before.share },
+      { label: 'After', numeric: true, cell: (c) => cell(c.after), order: (c) => c.after.share },
+      {
+        label: 'Change',
+        numeric: true,
+        cell: (c) =>
+          c.after.share === c.before.share
+            ? '0'
+            : `${c.after.share > c.before.share ? '+' : '−'}${percent(Math.abs(c.after.share - c.before.share)).replace('%', 'points')}`,
+        order: (c) => c.after.share - c.before.share,
+      },
+      {
+        label: 'Changed',
+        title: 'More than chance would explain',
+        cell: (c) => (c.changed ? h('b', {}, 'yes') : 'no'),
+        order: (c) => Number(c.changed),
+        descending_first: true,
+      },
+    ],
+    { caption: 'Share wrong before and after', class: 'plain', page: 60 },
+  );
   const all = h('input', { type: 'checkbox', onchange: () => update() });
   const update = () => table.show(all.checked ? compare.rates : compare.rates.filter((c) => c.changed));
   update();
-  return [h('label', { class: 'check' }, all, ` also the ${count(compare.rates.filter((c) => !c.changed).length)} rates that did not change`), table.element];
+  return [
+    h(
+      'label',
+      { class: 'check' },
+      all,
+      ` also the ${count(compare.rates.filter((c) => !c.changed).length)} rates that did not change`,
+    ),
+    table.element,
+  ];
 }
 
 function kinds_table(caption: string, seen: Seen[]) {
   if (!seen.length) return h('div', {}, h('h3', {}, `${caption}: none`));
-  const table = sortable_table<Seen>([
-    { label: 'Kind', cell: (s) => h('code', {}, ...breakable(s.key)), order: (s) => s.key },
-    { label: 'Signatures', numeric: true, cell: (s) => count(s.signatures), order: (s) => s.signatures },
-    { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },
-  ], { caption, class: 'plain', page: 30 });
+  const table = sortable_table<Seen>(
+    [
+      { label: 'Kind', cell: (s) => h('code', {}, ...breakable(s.key)), order: (s) => s.key },
+      { label: 'Signatures', numeric: true, cell: (s) => count(s.signatures), order: (s) => s.signatures },
+      { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },
+    ],
+    { caption, class: 'plain', page: 30 },
+  );
   table.show(seen);
   return h('div', {}, h('h3', {}, `${caption}: ${count(seen.length)}`), table.element);
 }
@@ -41,11 +69,31 @@ export function compare_section(report: Report) {
   const { compare } = report;
   if (!compare) return null;
   const side = (name: string, run: Report['run']) =>
-    h('div', {}, h('dt', {}, name), h('dd', {}, `${count(run.pairs)} pairs, seed ${run.seed}; ${build_words(run).join(', ')}`));
-  return section('compare', 'Compared with another campaign',
+    h(
+      'div',
+      {},
+      h('dt', {}, name),
+      h('dd', {}, `${count(run.pairs)} pairs, seed ${run.seed}; ${build_words(run).join(', ')}`),
+    );
+  return section(
+    'compare',
+    'Compared with another campaign',
     h('p', { class: 'headline' }, h('b', {}, compare.headline)),
-    compare.differences.length > 0 && h('ul', { class: 'differences' }, compare.differences.map((text) => h('li', {}, sentence(text)))),
+    compare.differences.length > 0 &&
+      h(
+        'ul',
+        { class: 'differences' },
+        compare.differences.map((text) => h('li', {}, sentence(text))),
+      ),
     h('dl', { class: 'facts both' }, side('Before', compare.other), side('After', report.run)),
-    h('h3', {}, 'Rates'), rates_table(compare),
-    compare.kinds_compared && h('div', { class: 'two' }, kinds_table('Kinds of failure gained', compare.gained), kinds_table('Kinds of failure lost', compare.lost)));
+    h('h3', {}, 'Rates'),
+    rates_table(compare),
+    compare.kinds_compared &&
+      h(
+        'div',
+        { class: 'two' },
+        kinds_table('Kinds of failure gained', compare.gained),
+        kinds_table('Kinds of failure lost', compare.lost),
+      ),
+  );
 }

@@ -40,7 +40,8 @@ export function sentence(text: string): Child[] {
 async function to_clipboard(text: string) {
   try {
     await navigator.clipboard.writeText(text);
-  } catch {  // not every browser counts a file on disk as a secure place
+  } catch {
+    // not every browser counts a file on disk as a secure place
     const area = h('textarea', { class: 'hidden' });
     area.value = text;
     document.body.append(area);
@@ -62,7 +63,12 @@ export function copy_button(text: string, what: string) {
 
 // A text to copy, in one scrolling line or as it is.
 export function code_block(text: string, what: string) {
-  return h('div', { class: 'code' }, h('pre', { tabindex: 0, 'aria-label': what }, h('code', {}, text)), copy_button(text, what));
+  return h(
+    'div',
+    { class: 'code' },
+    h('pre', { tabindex: 0, 'aria-label': what }, h('code', {}, text)),
+    copy_button(text, what),
+  );
 }
 
 // A <details> whose inside is made when it is opened first.
@@ -80,8 +86,11 @@ export function lazy_details(summary: Child[], make: () => Child, props: Props =
 
 // A labelled <select>; `change` gets the value chosen.
 export function choice(label: string, options: [string, string][], value: string, change: (value: string) => void) {
-  const select = h('select', { onchange: () => change(select.value) },
-    options.map(([id, text]) => h('option', { value: id, selected: id === value }, text)));
+  const select = h(
+    'select',
+    { onchange: () => change(select.value) },
+    options.map(([id, text]) => h('option', { value: id, selected: id === value }, text)),
+  );
   return h('label', { class: 'field' }, h('span', {}, label), select);
 }
 

@@ -6,12 +6,32 @@ import type { Report } from './report';
 
 export type Vec = [number, number, number];
 export type Frame = 'both' | 'a' | 'b';
-export interface Shape { a: Vec[]; b: Vec[]; contact: Vec[]; line: Vec[]; radius: number; note: string; marks?: Mark[]; names?: { p: Vec; name: string }[] }
+export interface Shape {
+  a: Vec[];
+  b: Vec[];
+  contact: Vec[];
+  line: Vec[];
+  radius: number;
+  note: string;
+  marks?: Mark[];
+  names?: { p: Vec; name: string }[];
+}
 // What else is drawn, in a colour of the style sheet: triangles, three corners each, or polylines of that width.
-export interface Mark { colour: string; triangles?: Vec[]; opacity?: number; lines?: Vec[][]; width?: number; dashed?: boolean }
-export interface View { azimuth: number; elevation: number; zoom: number }
+export interface Mark {
+  colour: string;
+  triangles?: Vec[];
+  opacity?: number;
+  lines?: Vec[][];
+  width?: number;
+  dashed?: boolean;
+}
+export interface View {
+  azimuth: number;
+  elevation: number;
+  zoom: number;
+}
 
-const kLongestToScale = 12;  // axes whose extents differ by more than this are stretched to one length
+const kLongestToScale = 12; // axes whose extents differ by more than this are stretched to one length
 
 export function shape_of(card: Report['cards'][number], frame: Frame): Shape {
   const { value } = card.pair;
@@ -23,12 +43,17 @@ export function shape_of(card: Report['cards'][number], frame: Frame): Shape {
   const longest = Math.max(...extent) || Math.max(...value.map(Math.abs)) || 1;
   const stretch = extent.some((e) => e > 0 && longest / e > kLongestToScale);
   const size = extent.map((e) => (stretch && e > 0 ? e : longest));
-  const place = (p: readonly number[]) => [0, 1, 2].map((k) => (p[k] - (low[k] / 2 + high[k] / 2)) / (size[k] / 2)) as Vec;
-  const factors = ['x', 'y', 'z'].flatMap((axis, k) => (size[k] < 0.99 * longest ? [`${axis} × ${figure(longest / size[k])}`] : []));
+  const place = (p: readonly number[]) =>
+    [0, 1, 2].map((k) => (p[k] - (low[k] / 2 + high[k] / 2)) / (size[k] / 2)) as Vec;
+  const factors = ['x', 'y', 'z'].flatMap((axis, k) =>
+    size[k] < 0.99 * longest ? [`${axis} × ${figure(longest / size[k])}`] : [],
+  );
   return {
-    a: points.slice(0, 3).map(place), b: points.slice(3).map(place),
-    contact: card.drawing.contact.map(place), line: card.drawing.planes_line.map(place),
-    radius: (frame === 'both' ? 1 : 1.5) * Math.max(0.5, ...framed.map((p) => Math.hypot(...place(p)))),  // the other one shows as well
+    a: points.slice(0, 3).map(place),
+    b: points.slice(3).map(place),
+    contact: card.drawing.contact.map(place),
+    line: card.drawing.planes_line.map(place),
+    radius: (frame === 'both' ? 1 : 1.5) * Math.max(0.5, ...framed.map((p) => Math.hypot(...place(p)))), // the other one shows as well
     note: factors.length ? `not to scale: ${factors.join(', ')}` : 'to scale',
   };
 }
@@ -36,7 +61,8 @@ export function shape_of(card: Report['cards'][number], frame: Frame): Shape {
 const dot = (p: Vec, q: Vec) => p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 
 function normal([p, q, r]: Vec[]): Vec {
-  const u = q.map((c, k) => c - p[k]), v = r.map((c, k) => c - p[k]);
+  const u = q.map((c, k) => c - p[k]),
+    v = r.map((c, k) => c - p[k]);
   const n: Vec = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
   const length = Math.hypot(...n);
   return length > 0 ? (n.map((c) => c / length) as Vec) : [0, 0, 0];
@@ -51,7 +77,8 @@ export function axes({ azimuth, elevation }: View): { right: Vec; up: Vec; eye: 
 // A direction from which neither triangle is seen edge-on.
 export function good_view({ a, b }: Shape): View {
   const normals = [normal(a), normal(b)].filter((n) => dot(n, n) > 0);
-  let best: View = { azimuth: 0.6, elevation: 0.45, zoom: 1 }, most = -1;
+  let best: View = { azimuth: 0.6, elevation: 0.45, zoom: 1 },
+    most = -1;
   for (let i = 0; i < 48; ++i) {
     for (const elevation of [0.3, 0.5, 0.75, 1]) {
       const view = { azimuth: (Math.PI * i) / 24 + 0.05, elevation, zoom: 1 };
@@ -64,7 +91,8 @@ export function good_view({ a, b }: Shape): View {
 
 // The least height of a triangle as it is drawn: 0 for one that looks like a segment or a point.
 function height([p, q, r]: Vec[]): number {
-  const u = q.map((c, k) => c - p[k]), v = r.map((c, k) => c - p[k]);
+  const u = q.map((c, k) => c - p[k]),
+    v = r.map((c, k) => c - p[k]);
   const area = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]);
   const longest = Math.max(Math.hypot(...u), Math.hypot(...v), Math.hypot(...u.map((c, k) => c - v[k])));
   return longest > 0 ? area / longest : 0;
@@ -74,7 +102,9 @@ function height([p, q, r]: Vec[]): number {
 export function good_frame(card: Report['cards'][number]): Frame {
   const kThin = 0.06;
   const both = shape_of(card, 'both');
-  const thin = (['a', 'b'] as const).filter((name) => height(both[name]) < kThin && height(shape_of(card, name)[name]) >= kThin);
+  const thin = (['a', 'b'] as const).filter(
+    (name) => height(both[name]) < kThin && height(shape_of(card, name)[name]) >= kThin,
+  );
   return thin[0] ?? 'both';
 }
 
@@ -82,7 +112,13 @@ export function good_frame(card: Report['cards'][number]): Frame {
 export const framed_half_height = (shape: Shape) => 1.12 * shape.radius;
 
 // Where a point comes to lie on a stage of that many pixels.
-export function project(shape: Shape, p: Vec, view: View, width: number, height: number): { x: number; y: number; depth: number } {
+export function project(
+  shape: Shape,
+  p: Vec,
+  view: View,
+  width: number,
+  height: number,
+): { x: number; y: number; depth: number } {
   const { right, up, eye } = axes(view);
   const scale = ((height / 2) * view.zoom) / framed_half_height(shape);
   return { x: width / 2 + scale * dot(p, right), y: height / 2 - scale * dot(p, up), depth: dot(p, eye) };
@@ -91,8 +127,12 @@ export function project(shape: Shape, p: Vec, view: View, width: number, height:
 // The vertices' names, those of coinciding vertices as one, pushed away from the middle of what is drawn.
 export function labels(shape: Shape, view: View, width: number, height: number) {
   const at = new Map<string, { x: number; y: number; text: string }>();
-  const kAway = 14, kHalfLetter = 3.6;
-  const vertices = shape.names ?? [...shape.a.map((p, i) => ({ p, name: `a${i}` })), ...shape.b.map((p, i) => ({ p, name: `b${i}` }))];
+  const kAway = 14,
+    kHalfLetter = 3.6;
+  const vertices = shape.names ?? [
+    ...shape.a.map((p, i) => ({ p, name: `a${i}` })),
+    ...shape.b.map((p, i) => ({ p, name: `b${i}` })),
+  ];
   const seen = vertices.map(({ p, name }) => ({ ...project(shape, p, view, width, height), name }));
   const middle = { x: width / 2, y: height / 2 };
   for (const { x, y, name } of seen) {
@@ -101,8 +141,14 @@ export function labels(shape: Shape, view: View, width: number, height: number) 
     if (found) found.text += ` ${name}`;
     else at.set(key, { x, y, text: name });
   }
-  return [...at.values()].map(({ x, y, text }) => {
-    const away = Math.hypot(x - middle.x, y - middle.y) || 1;
-    return { x: x + ((kAway + kHalfLetter * (text.length - 2)) * (x - middle.x)) / away, y: y + (kAway * (y - middle.y)) / away, text };
-  }).filter(({ x, y }) => x > -10 && y > -10 && x < width + 10 && y < height + 10);
+  return [...at.values()]
+    .map(({ x, y, text }) => {
+      const away = Math.hypot(x - middle.x, y - middle.y) || 1;
+      return {
+        x: x + ((kAway + kHalfLetter * (text.length - 2)) * (x - middle.x)) / away,
+        y: y + (kAway * (y - middle.y)) / away,
+        text,
+      };
+    })
+    .filter(({ x, y }) => x > -10 && y > -10 && x < width + 10 && y < height + 10);
 }

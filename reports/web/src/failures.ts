@@ -5,7 +5,15 @@ import { has_viewer } from './card_viewer';
 import { choice, code_block, h, section } from './dom';
 import { count, counted } from './format';
 import { kind_words } from './kind';
-import { campaign_command, cell_of, cell_words, kept_pairs, repro_command, wrong_lanes, type Cell } from './pairs_of_cell';
+import {
+  campaign_command,
+  cell_of,
+  cell_words,
+  kept_pairs,
+  repro_command,
+  wrong_lanes,
+  type Cell,
+} from './pairs_of_cell';
 import type { Report } from './report';
 import { matcher } from './search';
 import { signature_table, signature_words } from './signatures';
@@ -39,43 +47,101 @@ export function failure_sections(report: Report) {
   // What a cell of the league table leads to, above the cards and rows that are left.
   function note(cell: Cell, rows: Signature[], left: number) {
     const words = cell_words(report, cell);
-    const clear = h('button', { type: 'button', onclick: () => { choose('cell', ''); update(); } }, 'Show all again');
-    cell_note.replaceChildren(...(rows.length
-      ? [h('p', {}, h('b', {}, words), `: ${counted(rows.length, 'signature')} ${rows.length === 1 ? 'keeps' : 'keep'} such pairs, of ${left ? counted(left, 'kind') : 'no kind'} with a card. `, clear),
-        h('p', { class: 'label' }, 'One of them'), code_block(repro_command(report, cell, kept_pairs(report, cell, rows[0])[0]), 'the command that shows one')]
-      : [h('p', {}, h('b', {}, words), ': no pair listed here shows it. ', clear)]),
-    h('p', { class: 'label' }, 'All such pairs of the campaign again'), code_block(campaign_command(report, cell), 'the command that finds all'));
+    const clear = h(
+      'button',
+      {
+        type: 'button',
+        onclick: () => {
+          choose('cell', '');
+          update();
+        },
+      },
+      'Show all again',
+    );
+    cell_note.replaceChildren(
+      ...(rows.length
+        ? [
+            h(
+              'p',
+              {},
+              h('b', {}, words),
+              `: ${counted(rows.length, 'signature')} ${rows.length === 1 ? 'keeps' : 'keep'} such pairs, of ${left ? counted(left, 'kind') : 'no kind'} with a card. `,
+              clear,
+            ),
+            h('p', { class: 'label' }, 'One of them'),
+            code_block(repro_command(report, cell, kept_pairs(report, cell, rows[0])[0]), 'the command that shows one'),
+          ]
+        : [h('p', {}, h('b', {}, words), ': no pair listed here shows it. ', clear)]),
+      h('p', { class: 'label' }, 'All such pairs of the campaign again'),
+      code_block(campaign_command(report, cell), 'the command that finds all'),
+    );
   }
 
   // Kinds are found by what they are and by their lanes, signatures also by what their kinds are.
   const names_of = ({ kind }: Report['cards'][number]) => [kind.key, kind_words(kind), kind.line];
 
   function update() {
-    const cell = cell_of(report, chosen('cell')), algorithm = chosen('algorithm'), matches = matcher(chosen('find'));
-    const rows = report.signatures.filter((s) => (!algorithm || s.algorithm === algorithm) && (!cell || kept_pairs(report, cell, s).length > 0)
-      && matches([s.key, signature_words(s), ...wrong_lanes(report, s), ...s.cards.flatMap((place) => names_of(report.cards[place]))]));
-    const listed = report.signatures.length < report.signature_count ? `the ${count(report.signatures.length)} commonest of ${count(report.signature_count)}` : `all ${count(report.signature_count)}`;
+    const cell = cell_of(report, chosen('cell')),
+      algorithm = chosen('algorithm'),
+      matches = matcher(chosen('find'));
+    const rows = report.signatures.filter(
+      (s) =>
+        (!algorithm || s.algorithm === algorithm) &&
+        (!cell || kept_pairs(report, cell, s).length > 0) &&
+        matches([
+          s.key,
+          signature_words(s),
+          ...wrong_lanes(report, s),
+          ...s.cards.flatMap((place) => names_of(report.cards[place])),
+        ]),
+    );
+    const listed =
+      report.signatures.length < report.signature_count
+        ? `the ${count(report.signatures.length)} commonest of ${count(report.signature_count)}`
+        : `all ${count(report.signature_count)}`;
     shown.textContent = `${count(rows.length)} shown, of ${listed} signatures.`;
     table.show(rows);
 
     // A kind shows a cell when its lane fails so, in a signature with such pairs.
     const of_cell = cell && new Set(rows.flatMap((s) => s.cards));
-    const shows = (place: number) => !of_cell || (of_cell.has(place) && (cell.kind === 'differs_from_cpu' || report.cards[place].kind.lanes.includes(report.lanes[cell.lane].id)));
-    report.cards.forEach((card, i) => (cards[i].details.hidden = !(
-      (!algorithm || card.kind.subject === algorithm) && shows(i) && matches([...names_of(card), ...card.kind.lanes]))));
+    const shows = (place: number) =>
+      !of_cell ||
+      (of_cell.has(place) &&
+        (cell.kind === 'differs_from_cpu' || report.cards[place].kind.lanes.includes(report.lanes[cell.lane].id)));
+    report.cards.forEach(
+      (card, i) =>
+        (cards[i].details.hidden = !(
+          (!algorithm || card.kind.subject === algorithm) &&
+          shows(i) &&
+          matches([...names_of(card), ...card.kind.lanes])
+        )),
+    );
     const left = cards.filter(({ details }) => !details.hidden).length;
-    card_count.textContent = left === cards.length ? counted(left, 'card') : `${left} of ${counted(cards.length, 'card')}`;
+    card_count.textContent =
+      left === cards.length ? counted(left, 'card') : `${left} of ${counted(cards.length, 'card')}`;
     none.hidden = left > 0;
     if (cell) note(cell, rows, left);
     else cell_note.replaceChildren();
   }
 
-  const search = h('input', { type: 'search', placeholder: 'moller f64, or *.h:117*', oninput: () => {
-    choose('find', search.value.trim());
-    update();
-  } });
+  const search = h('input', {
+    type: 'search',
+    placeholder: 'moller f64, or *.h:117*',
+    oninput: () => {
+      choose('find', search.value.trim());
+      update();
+    },
+  });
   const algorithms = [...new Set(report.signatures.map((s) => s.algorithm))];
-  const by_algorithm = choice('Algorithm', [['', 'all'], ...algorithms.map((a): [string, string] => [a, a])], '', (value) => { choose('algorithm', value); update(); });
+  const by_algorithm = choice(
+    'Algorithm',
+    [['', 'all'], ...algorithms.map((a): [string, string] => [a, a])],
+    '',
+    (value) => {
+      choose('algorithm', value);
+      update();
+    },
+  );
   const reread = () => {
     search.value = chosen('find');
     by_algorithm.querySelector('select')!.value = chosen('algorithm');
@@ -85,16 +151,45 @@ export function failure_sections(report: Report) {
   when_chosen(reread);
   const all = (open: boolean) => () => cards.forEach((card) => (open ? card.open() : (card.details.open = false)));
   const sections = [
-    section('kinds', 'Kinds of failure',
-      h('p', {}, 'Failures with one reason: an algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, coplanar or neither. A pair on which lanes are wrong for different reasons is of several kinds.',
-        !has_viewer() && ' No card opens in the viewer: graze was built without the compiler for WebAssembly that it takes.'),
-      h('div', { class: 'controls' }, h('label', { class: 'field' }, h('span', {}, 'Find'), search), by_algorithm), cell_note,
-      cards.length > 0 && [h('div', { class: 'between cards-head' }, card_count,
-        h('span', {}, h('button', { type: 'button', onclick: all(true) }, 'Open all'), h('button', { type: 'button', onclick: all(false) }, 'Close all'))),
-      none, cards.map(({ details }) => details)]),
-    section('signatures', 'Signatures',
-      h('p', {}, 'Failures that look alike, counted together: how the triangles meet, how close the call was, and which lanes of the algorithm are wrong. What is chosen above the kinds of failure holds here too.'),
-      shown, table.element),
+    section(
+      'kinds',
+      'Kinds of failure',
+      h(
+        'p',
+        {},
+        'Failures with one reason: an algorithm, the cause, the source line of the comparison that decides, and whether the triangles are degenerate, coplanar or neither. A pair on which lanes are wrong for different reasons is of several kinds.',
+        !has_viewer() &&
+          ' No card opens in the viewer: graze was built without the compiler for WebAssembly that it takes.',
+      ),
+      h('div', { class: 'controls' }, h('label', { class: 'field' }, h('span', {}, 'Find'), search), by_algorithm),
+      cell_note,
+      cards.length > 0 && [
+        h(
+          'div',
+          { class: 'between cards-head' },
+          card_count,
+          h(
+            'span',
+            {},
+            h('button', { type: 'button', onclick: all(true) }, 'Open all'),
+            h('button', { type: 'button', onclick: all(false) }, 'Close all'),
+          ),
+        ),
+        none,
+        cards.map(({ details }) => details),
+      ],
+    ),
+    section(
+      'signatures',
+      'Signatures',
+      h(
+        'p',
+        {},
+        'Failures that look alike, counted together: how the triangles meet, how close the call was, and which lanes of the algorithm are wrong. What is chosen above the kinds of failure holds here too.',
+      ),
+      shown,
+      table.element,
+    ),
   ];
   return {
     sections,

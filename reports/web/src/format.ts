@@ -57,15 +57,18 @@ export const percent = (share: number) => `${small(100 * share) ? figure(100 * s
 
 // A bound in per cent, rounded outward: what is printed, read again, is not below an upper bound, nor above a lower one.
 export function percent_bound(share: number, bound: 'lower' | 'upper'): string {
-  const value = 100 * share, step = bound === 'upper' ? 1 : -1;
+  const value = 100 * share,
+    step = bound === 'upper' ? 1 : -1;
   const holds = (read: number) => (bound === 'upper' ? read / 100 >= share : read / 100 <= share);
   if (value === 0 || value === 100) return `${value} %`;
   if (small(value)) {
-    const [digits, power] = value.toExponential(2).split('e'), mantissa = Math.round(100 * Number(digits));
+    const [digits, power] = value.toExponential(2).split('e'),
+      mantissa = Math.round(100 * Number(digits));
     const read = [mantissa, mantissa + step].map((m) => Number(`${m}e${Number(power) - 2}`)).find(holds)!;
     return `${figure(read)} %`;
   }
-  const digits = places(value), units = Math.round(Number(value.toFixed(digits)) * 10 ** digits);
+  const digits = places(value),
+    units = Math.round(Number(value.toFixed(digits)) * 10 ** digits);
   return `${[units, units + step].map((u) => (u / 10 ** digits).toFixed(digits)).find((text) => holds(Number(text)))!} %`;
 }
 
@@ -74,5 +77,6 @@ export const interval = (share: Share) =>
 
 // "10,802 of 52,632 = 20.5 % (95 %: 20.2 to 20.9 %)"
 export const in_full = (share: Share) =>
-  share.of === 0 ? 'no pairs'
+  share.of === 0
+    ? 'no pairs'
     : `${count(share.count)} of ${count(share.of)} = ${percent(share.share)} (95 %: ${interval(share)})`;

@@ -6,8 +6,18 @@ import { h, on_width } from './dom';
 import { count, figure, in_full, nanoseconds, percent } from './format';
 import type { Costs, Report, Share } from './report';
 
-interface Row { lane: number; name: string; wrong: number; cost: string }
-interface Dot { name: string; group: string; x: number; words: string }
+interface Row {
+  lane: number;
+  name: string;
+  wrong: number;
+  cost: string;
+}
+interface Dot {
+  name: string;
+  group: string;
+  x: number;
+  words: string;
+}
 
 const kSymbols = ['circle', 'square', 'triangle', 'diamond2', 'star'] as const;
 
@@ -19,17 +29,26 @@ function cost_ground(report: Report) {
 
 // One lane of each algorithm and precision, as the cpu rounds it where it ran there; the least wrong first.
 export function glance_rows(report: Report, costs: Costs | null): Row[] {
-  const total = new Map(report.rates.filter((rate) => rate.stratum === null).map((rate) => [rate.lane, rate.wrong.count]));
+  const total = new Map(
+    report.rates.filter((rate) => rate.stratum === null).map((rate) => [rate.lane, rate.wrong.count]),
+  );
   const ground = cost_ground(report);
   const families = new Map<string, number>();
   report.lanes.forEach(({ algorithm, scalar, target }, lane) => {
     const family = `${algorithm}/${scalar}`;
     if (!families.has(family) || target === 'cpu') families.set(family, lane);
   });
-  return [...families.values()].map((lane) => {
-    const cost = costs?.rows.find((row) => row.lane === lane && row.group === ground);
-    return { lane, name: report.lanes[lane].id, wrong: total.get(lane) ?? 0, cost: cost ? nanoseconds(cost.middle) : '' };
-  }).sort((a, b) => a.wrong - b.wrong || a.lane - b.lane);
+  return [...families.values()]
+    .map((lane) => {
+      const cost = costs?.rows.find((row) => row.lane === lane && row.group === ground);
+      return {
+        lane,
+        name: report.lanes[lane].id,
+        wrong: total.get(lane) ?? 0,
+        cost: cost ? nanoseconds(cost.middle) : '',
+      };
+    })
+    .sort((a, b) => a.wrong - b.wrong || a.lane - b.lane);
 }
 
 export function glance(report: Report, costs: Costs | null) {
@@ -39,32 +58,70 @@ export function glance(report: Report, costs: Costs | null) {
   const floor = Math.floor(Math.log10(Math.min(0.01, ...shares.filter((s) => s.count).map((s) => s.share))));
   const none = floor - 0.7;
   const x = (share: Share) => (share.count ? Math.log10(share.share) : none);
-  const dots: Dot[] = rows.flatMap((row) => report.groups.map(({ id }, g) => {
-    const share = wrong.get(`${row.lane}/${g}`)!;
-    return { name: row.name, group: id, x: x(share), words: `${row.name}\n${id} pairs: ${in_full(share)}` };
-  }));
+  const dots: Dot[] = rows.flatMap((row) =>
+    report.groups.map(({ id }, g) => {
+      const share = wrong.get(`${row.lane}/${g}`)!;
+      return { name: row.name, group: id, x: x(share), words: `${row.name}\n${id} pairs: ${in_full(share)}` };
+    }),
+  );
   const pair = cost_ground(report) === null ? 'a pair' : 'a general pair';
   const title = `Wrong verdicts of each lane, by kind of pair${costs ? `, and its cost for ${pair}` : ''}`;
   const element = h('div', { class: 'chart' });
-  const said = rows.map((row) => {
-    const groups = report.groups.map(({ id }, g) => { const share = wrong.get(`${row.lane}/${g}`)!; return `${share.count ? percent(share.share) : 'none'} of ${id}`; });
-    return `${row.name}: wrong on ${groups.join(', ')} pairs${row.cost && `; ${row.cost}`}`;
-  }).join('. ');
+  const said = rows
+    .map((row) => {
+      const groups = report.groups.map(({ id }, g) => {
+        const share = wrong.get(`${row.lane}/${g}`)!;
+        return `${share.count ? percent(share.share) : 'none'} of ${id}`;
+      });
+      return `${row.name}: wrong on ${groups.join(', ')} pairs${row.cost && `; ${row.cost}`}`;
+    })
+    .join('. ');
 
   on_width(element, (width) => {
-    const small = width < 520, pitch = small ? 36 : 27;
+    const small = width < 520,
+      pitch = small ? 36 : 27;
     const decades = Array.from({ length: -floor + 1 }, (_, i) => floor + i);
     const plot = Plot.plot({
-      width, height: rows.length * pitch + 62, marginLeft: small ? 8 : 186, marginRight: rows.some((row) => row.cost) ? 56 : 14, marginTop: 20, marginBottom: 42,
+      width,
+      height: rows.length * pitch + 62,
+      marginLeft: small ? 8 : 186,
+      marginRight: rows.some((row) => row.cost) ? 56 : 14,
+      marginTop: 20,
+      marginBottom: 42,
       style: kChartStyle,
-      x: { domain: [none, 0], ticks: [none, ...decades], tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`), label: 'share of wrong verdicts', labelAnchor: 'center', labelArrow: 'none', labelOffset: 38 },
+      x: {
+        domain: [none, 0],
+        ticks: [none, ...decades],
+        tickFormat: (v: number) => (v === none ? 'none' : `${figure(100 * 10 ** v)} %`),
+        label: 'share of wrong verdicts',
+        labelAnchor: 'center',
+        labelArrow: 'none',
+        labelOffset: 38,
+      },
       y: { domain: rows.map((row) => row.name), label: null, axis: small ? null : 'left', tickSize: 0 },
       symbol: { domain: report.groups.map((group) => group.id), range: [...kSymbols] },
       marks: [
         Plot.ruleY(rows, { y: 'name', stroke: 'currentColor', strokeOpacity: 0.15, dy: small ? 6 : 0 }),
-        Plot.dot(dots, { x: 'x', y: 'name', dy: small ? 6 : 0, symbol: 'group', r: 4.5, fill: (d: Dot) => `var(--series-${report.groups.findIndex((g) => g.id === d.group)})`, fillOpacity: 0.85 }),
-        ...(small ? [Plot.text(rows, { y: 'name', x: none, text: 'name', textAnchor: 'start', dy: -8, fontSize: 11 })] : []),
-        Plot.text(rows, { y: 'name', text: 'cost', frameAnchor: 'right', textAnchor: 'start', dx: 10, dy: small ? 6 : 0 }),
+        Plot.dot(dots, {
+          x: 'x',
+          y: 'name',
+          dy: small ? 6 : 0,
+          symbol: 'group',
+          r: 4.5,
+          fill: (d: Dot) => `var(--series-${report.groups.findIndex((g) => g.id === d.group)})`,
+          fillOpacity: 0.85,
+        }),
+        ...(small
+          ? [Plot.text(rows, { y: 'name', x: none, text: 'name', textAnchor: 'start', dy: -8, fontSize: 11 })]
+          : []),
+        Plot.text(rows, {
+          y: 'name',
+          text: 'cost',
+          frameAnchor: 'right',
+          textAnchor: 'start',
+          dx: 10,
+          dy: small ? 6 : 0,
+        }),
         Plot.tip(dots, Plot.pointer({ x: 'x', y: 'name', title: 'words', maxRadius: 24 })),
       ],
     });
@@ -72,12 +129,29 @@ export function glance(report: Report, costs: Costs | null) {
   });
 
   const timed = costs?.rows.find((row) => row.lane === rows[0]?.lane && row.group === cost_ground(report));
-  return h('figure', { class: 'glance', id: 'glance' },
+  return h(
+    'figure',
+    { class: 'glance', id: 'glance' },
     h('p', { class: 'glance-title' }, title),
-    h('p', { class: 'glance-key' }, report.groups.map(({ id, describes }, g) => h('span', { title: describes },
-      h('i', { style: `color:var(--series-${g})`, 'aria-hidden': 'true' }, ['●', '■', '▲', '◆', '★'][g]), ` ${id}`))),
+    h(
+      'p',
+      { class: 'glance-key' },
+      report.groups.map(({ id, describes }, g) =>
+        h(
+          'span',
+          { title: describes },
+          h('i', { style: `color:var(--series-${g})`, 'aria-hidden': 'true' }, ['●', '■', '▲', '◆', '★'][g]),
+          ` ${id}`,
+        ),
+      ),
+    ),
     element,
-    h('figcaption', {}, costs
-      ? `Cost: median of ${costs.passes} passes${timed ? ` over ${count(timed.pairs)} of the campaign’s pairs` : ''}, one core, ${costs.machine}.`
-      : 'What the lanes cost was not measured in this campaign.'));
+    h(
+      'figcaption',
+      {},
+      costs
+        ? `Cost: median of ${costs.passes} passes${timed ? ` over ${count(timed.pairs)} of the campaign’s pairs` : ''}, one core, ${costs.machine}.`
+        : 'What the lanes cost was not measured in this campaign.',
+    ),
+  );
 }

@@ -25,13 +25,15 @@ export const heat_fill = (share: number) => {
 };
 
 function luminance(hex: string) {
-  const [r, g, b] = [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255)
+  const [r, g, b] = [1, 3, 5]
+    .map((i) => parseInt(hex.slice(i, i + 2), 16) / 255)
     .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
 
 function rules(dark: boolean) {
-  let properties = '', classes = '';
+  let properties = '',
+    classes = '';
   for (let step = 0; step < kSteps; ++step) {
     const t = step / (kSteps - 1);
     const colour = interpolateMagma(dark ? 0.2 + 0.78 * t : 0.98 - 0.8 * t);
@@ -47,7 +49,22 @@ export function heat_styles() {
 
 export function heat_legend() {
   const steps = Array.from({ length: kSteps }, (_, i) => h('i', { class: `h${i}` }));
-  return h('div', { class: 'heat-legend', role: 'img', 'aria-label': 'Colour scale: share of wrong verdicts; no colour where none is wrong' },
-    h('i', { class: 'none' }), h('span', {}, 'none wrong'),
-    h('span', { class: 'ramp' }, steps, [0.001, 0.01, 0.1, 0.3, 1].map((share) => h('b', { style: `left:${100 * Math.cbrt(share)}%` }, share === 1 ? '100 %' : String(100 * share)))));
+  return h(
+    'div',
+    {
+      class: 'heat-legend',
+      role: 'img',
+      'aria-label': 'Colour scale: share of wrong verdicts; no colour where none is wrong',
+    },
+    h('i', { class: 'none' }),
+    h('span', {}, 'none wrong'),
+    h(
+      'span',
+      { class: 'ramp' },
+      steps,
+      [0.001, 0.01, 0.1, 0.3, 1].map((share) =>
+        h('b', { style: `left:${100 * Math.cbrt(share)}%` }, share === 1 ? '100 %' : String(100 * share)),
+      ),
+    ),
+  );
 }

@@ -11,10 +11,15 @@ type Card = Report['cards'][number];
 // File and number: "moller_1997.h:117".
 const place_of = (line: string) => line.slice(line.lastIndexOf('/') + 1);
 
-export const kind_words = ({ subject, cause, line, shape }: FailureKind) => `${subject}: ${cause}${line && ` at ${place_of(line)}`}, ${shape} pairs`;
+export const kind_words = ({ subject, cause, line, shape }: FailureKind) =>
+  `${subject}: ${cause}${line && ` at ${place_of(line)}`}, ${shape} pairs`;
 
-export const kind_title = ({ subject, cause, line, shape }: FailureKind): Child[] =>
-  [h('b', {}, subject), `: ${cause}`, line ? [' at ', h('code', {}, ...breakable(place_of(line)))] : '', `, ${shape} pairs`];
+export const kind_title = ({ subject, cause, line, shape }: FailureKind): Child[] => [
+  h('b', {}, subject),
+  `: ${cause}`,
+  line ? [' at ', h('code', {}, ...breakable(place_of(line)))] : '',
+  `, ${shape} pairs`,
+];
 
 // "f32/cpu, f64/cpu", without the algorithm.
 export const within = (ids: string[]) => ids.map((id) => id.split('/').slice(1).join('/')).join(', ');
@@ -22,37 +27,76 @@ export const within = (ids: string[]) => ids.map((id) => id.split('/').slice(1).
 // The lanes that fail so, which of them do on the pair shown, and whether the cause is settled.
 export function kind_lanes(report: Report, { kind, verdicts }: Card) {
   const wrong = new Set(verdicts.filter((verdict) => verdict.wrong).map((verdict) => report.lanes[verdict.lane].id));
-  const here = kind.lanes.filter((id) => wrong.has(id)), [yes, of] = kind.settled;
-  return h('p', { class: 'kind-lanes' }, 'Lanes that fail so: ', h('span', { class: 'all' }, within(kind.lanes)), '. ',
-    here.length < kind.lanes.length && ['Wrong on the pair shown here: ', h('span', { class: 'here' }, within(here)), '. '],
-    yes < of && `The cause is settled for ${count(yes)} of ${count(of)} lanes looked at.`);
+  const here = kind.lanes.filter((id) => wrong.has(id)),
+    [yes, of] = kind.settled;
+  return h(
+    'p',
+    { class: 'kind-lanes' },
+    'Lanes that fail so: ',
+    h('span', { class: 'all' }, within(kind.lanes)),
+    '. ',
+    here.length < kind.lanes.length && [
+      'Wrong on the pair shown here: ',
+      h('span', { class: 'here' }, within(here)),
+      '. ',
+    ],
+    yes < of && `The cause is settled for ${count(yes)} of ${count(of)} lanes looked at.`,
+  );
 }
 
-interface Bar { name: string; pairs: number; words: string }
+interface Bar {
+  name: string;
+  pairs: number;
+  words: string;
+}
 
-function histogram(name: string, title: string, bars: Bar[], draw: (width: number, bars: Bar[]) => SVGSVGElement | HTMLElement) {
+function histogram(
+  name: string,
+  title: string,
+  bars: Bar[],
+  draw: (width: number, bars: Bar[]) => SVGSVGElement | HTMLElement,
+) {
   const element = h('div', { class: 'chart' });
-  const said = bars.filter((bar) => bar.pairs > 0).map((bar) => bar.words).join('; ');
+  const said = bars
+    .filter((bar) => bar.pairs > 0)
+    .map((bar) => bar.words)
+    .join('; ');
   on_width(element, (width) => element.replaceChildren(named(draw(width, bars), `${title}: ${said}`)));
   return h('figure', { class: `histogram ${name}` }, h('figcaption', {}, title), element);
 }
 
 function strata_histogram({ strata }: FailureKind) {
-  const bars = Object.entries(strata).sort((l, r) => r[1] - l[1]).map(([name, pairs]) => ({ name, pairs, words: `${name} ${count(pairs)}` }));
+  const bars = Object.entries(strata)
+    .sort((l, r) => r[1] - l[1])
+    .map(([name, pairs]) => ({ name, pairs, words: `${name} ${count(pairs)}` }));
   const sum = bars.reduce((all, bar) => all + bar.pairs, 0);
-  return histogram('strata', `Strata of the ${counted(sum, 'pair')} kept of it`, bars, (width) => Plot.plot({
-    width, height: 22 + 18 * bars.length, marginLeft: 124, marginRight: 40, marginTop: 2, marginBottom: 4, style: kChartStyle,
-    x: { axis: null }, y: { domain: bars.map((bar) => bar.name), label: null, tickSize: 0 },
-    marks: [Plot.barX(bars, { x: 'pairs', y: 'name', fill: 'var(--accent)', insetTop: 2, insetBottom: 2, title: 'words' }),
-      Plot.text(bars, { x: 'pairs', y: 'name', text: (bar: Bar) => count(bar.pairs), textAnchor: 'start', dx: 4 })],
-  }));
+  return histogram('strata', `Strata of the ${counted(sum, 'pair')} kept of it`, bars, (width) =>
+    Plot.plot({
+      width,
+      height: 22 + 18 * bars.length,
+      marginLeft: 124,
+      marginRight: 40,
+      marginTop: 2,
+      marginBottom: 4,
+      style: kChartStyle,
+      x: { axis: null },
+      y: { domain: bars.map((bar) => bar.name), label: null, tickSize: 0 },
+      marks: [
+        Plot.barX(bars, { x: 'pairs', y: 'name', fill: 'var(--accent)', insetTop: 2, insetBottom: 2, title: 'words' }),
+        Plot.text(bars, { x: 'pairs', y: 'name', text: (bar: Bar) => count(bar.pairs), textAnchor: 'start', dx: 4 }),
+      ],
+    }),
+  );
 }
 
 // Every power of two between the deepest and the shallowest, 0, and so for pairs that are apart.
 function buckets_of(margins: FailureKind['margins']): string[] {
   const side = (sign: string) => {
-    const exponents = Object.keys(margins).filter((bucket) => bucket.startsWith(sign)).map((bucket) => Number(bucket.slice(3)));
-    const least = Math.min(...exponents), most = Math.max(...exponents);
+    const exponents = Object.keys(margins)
+      .filter((bucket) => bucket.startsWith(sign))
+      .map((bucket) => Number(bucket.slice(3)));
+    const least = Math.min(...exponents),
+      most = Math.max(...exponents);
     return exponents.length ? Array.from({ length: most - least + 1 }, (_, i) => `${sign}2^${least + i}`) : [];
   };
   return [...side('-'), '0', ...side('+')].sort((l, r) => margin_order(l) - margin_order(r));
@@ -61,7 +105,9 @@ function buckets_of(margins: FailureKind['margins']): string[] {
 // The buckets that are named below their columns: 0, both ends, and between them those for which there is room.
 function ticks_of(bars: Bar[], column: number): string[] {
   const named = (i: number) => Number(bars[i].name.slice(3)) % 4 === 0;
-  const wanted = [bars.findIndex((bar) => bar.name === '0'), 0, bars.length - 1, ...bars.keys()].filter((i, order) => order < 3 || named(i));
+  const wanted = [bars.findIndex((bar) => bar.name === '0'), 0, bars.length - 1, ...bars.keys()].filter(
+    (i, order) => order < 3 || named(i),
+  );
   const chosen: number[] = [];
   for (const i of wanted) {
     if (chosen.every((other) => Math.abs(i - other) * column >= 36)) chosen.push(i);
@@ -74,28 +120,69 @@ function margins_histogram(kind: FailureKind) {
     const pairs = kind.margins[name] ?? 0;
     return { name, pairs, words: `${margin_words(name)}${name.startsWith('+') ? ' apart' : ''}: ${count(pairs)}` };
   });
-  const sides = [bars[0].name !== '0' && '← deep', bars[bars.length - 1].name !== '0' && 'apart →'].filter(Boolean).join('      ');
-  return histogram('margins', `Margins of its ${counted(kind.pairs, 'pair')}, in ulps`, bars, (width) => Plot.plot({
-    width, height: 128, marginLeft: 12, marginRight: 16, marginTop: 6, marginBottom: 36, style: kChartStyle,
-    x: { type: 'band', padding: 0.12, domain: bars.map((bar) => bar.name), ticks: ticks_of(bars, (width - 28) / bars.length),
-      tickFormat: (name: string) => margin_words(name).replace(/ ulps.*/, ''), tickSize: 3, label: sides || null, labelAnchor: 'center', labelArrow: 'none', labelOffset: 32 },
-    y: { axis: null },
-    marks: [Plot.barY(bars, { x: 'name', y: 'pairs', fill: 'var(--accent)', title: 'words' }), Plot.ruleY([0], { strokeOpacity: 0.3 })],
-  }));
+  const sides = [bars[0].name !== '0' && '← deep', bars[bars.length - 1].name !== '0' && 'apart →']
+    .filter(Boolean)
+    .join('      ');
+  return histogram('margins', `Margins of its ${counted(kind.pairs, 'pair')}, in ulps`, bars, (width) =>
+    Plot.plot({
+      width,
+      height: 128,
+      marginLeft: 12,
+      marginRight: 16,
+      marginTop: 6,
+      marginBottom: 36,
+      style: kChartStyle,
+      x: {
+        type: 'band',
+        padding: 0.12,
+        domain: bars.map((bar) => bar.name),
+        ticks: ticks_of(bars, (width - 28) / bars.length),
+        tickFormat: (name: string) => margin_words(name).replace(/ ulps.*/, ''),
+        tickSize: 3,
+        label: sides || null,
+        labelAnchor: 'center',
+        labelArrow: 'none',
+        labelOffset: 32,
+      },
+      y: { axis: null },
+      marks: [
+        Plot.barY(bars, { x: 'name', y: 'pairs', fill: 'var(--accent)', title: 'words' }),
+        Plot.ruleY([0], { strokeOpacity: 0.3 }),
+      ],
+    }),
+  );
 }
 
 function worst({ kind, pair, commands }: Card) {
   const { margin_ulps, from } = kind.worst;
-  const margin = margin_ulps === 0 ? 'margin 0' : `${figure(Math.abs(margin_ulps))} ulps ${margin_ulps < 0 ? 'deep' : 'apart'}`;
-  if (kind.worst.pair === pair.hex.join(' ')) return h('p', { class: 'worst' }, `The pair shown is also the worst one looked at: ${margin}.`);
+  const margin =
+    margin_ulps === 0 ? 'margin 0' : `${figure(Math.abs(margin_ulps))} ulps ${margin_ulps < 0 ? 'deep' : 'apart'}`;
+  if (kind.worst.pair === pair.hex.join(' '))
+    return h('p', { class: 'worst' }, `The pair shown is also the worst one looked at: ${margin}.`);
   // As the card's own: it says where foreign code is.
-  const explain = commands.find(({ label }) => label === 'explain')!.text.replace(/^.*graze explain case.pairs/, 'graze explain worst.pairs');
+  const explain = commands
+    .find(({ label }) => label === 'explain')!
+    .text.replace(/^.*graze explain case.pairs/, 'graze explain worst.pairs');
   const command = `echo '${kind.worst.pair}' > worst.pairs; ${explain}`;
-  return h('div', { class: 'worst' }, h('p', {}, `Its worst pair of those looked at: ${margin}, from `, h('code', {}, from), '.'), code_block(command, 'the command that explains the worst pair'));
+  return h(
+    'div',
+    { class: 'worst' },
+    h('p', {}, `Its worst pair of those looked at: ${margin}, from `, h('code', {}, from), '.'),
+    code_block(command, 'the command that explains the worst pair'),
+  );
 }
 
 export function kind_facts(card: Card) {
-  return h('div', { class: 'kind-facts' }, h('h4', {}, 'The kind'),
-    h('div', { class: 'histograms' }, Object.keys(card.kind.strata).length > 0 && strata_histogram(card.kind), margins_histogram(card.kind)),
-    worst(card));
+  return h(
+    'div',
+    { class: 'kind-facts' },
+    h('h4', {}, 'The kind'),
+    h(
+      'div',
+      { class: 'histograms' },
+      Object.keys(card.kind.strata).length > 0 && strata_histogram(card.kind),
+      margins_histogram(card.kind),
+    ),
+    worst(card),
+  );
 }

@@ -13,8 +13,13 @@ export interface Picker {
   lanes: () => number[];
 }
 
-export function lane_picker(report: Report, key: string, initial: Partial<Record<Part, string[]>>, change: () => void,
-                            swatch?: (algorithm: string) => string): Picker {
+export function lane_picker(
+  report: Report,
+  key: string,
+  initial: Partial<Record<Part, string[]>>,
+  change: () => void,
+  swatch?: (algorithm: string) => string,
+): Picker {
   const picked = {} as Record<Part, Set<string>>;
   const rereads: (() => void)[] = [];
   const rows = kParts.map((part) => {
@@ -22,13 +27,27 @@ export function lane_picker(report: Report, key: string, initial: Partial<Record
     const wanted = initial[part]?.filter((value) => values.includes(value));
     const first = wanted?.length ? wanted : values;
     const listed = () => values.filter((value) => picked[part].has(value)).join(',');
-    const buttons = values.map((value) => h('button', { type: 'button', onclick: () => {
-      if (!picked[part].delete(value)) picked[part].add(value);
-      choose(`${key}-${part}`, listed() === values.filter((one) => first.includes(one)).join(',') ? '' : listed() || 'none');
-      show();
-      change();
-    } }, part === 'algorithm' && swatch ? h('i', { class: 'swatch', style: `background:${swatch(value)}` }) : null, value));
-    const show = () => buttons.forEach((button, i) => button.setAttribute('aria-pressed', String(picked[part].has(values[i]))));
+    const buttons = values.map((value) =>
+      h(
+        'button',
+        {
+          type: 'button',
+          onclick: () => {
+            if (!picked[part].delete(value)) picked[part].add(value);
+            choose(
+              `${key}-${part}`,
+              listed() === values.filter((one) => first.includes(one)).join(',') ? '' : listed() || 'none',
+            );
+            show();
+            change();
+          },
+        },
+        part === 'algorithm' && swatch ? h('i', { class: 'swatch', style: `background:${swatch(value)}` }) : null,
+        value,
+      ),
+    );
+    const show = () =>
+      buttons.forEach((button, i) => button.setAttribute('aria-pressed', String(picked[part].has(values[i]))));
     const reread = () => {
       const kept = chosen(`${key}-${part}`);
       picked[part] = new Set(kept ? kept.split(',').filter((value) => values.includes(value)) : first);

@@ -30,20 +30,25 @@ function words(report: Report, rate: Rate): string {
     `false negatives ${in_full(rate.false_negative)}`,
     rate.declined ? `declined ${rate.declined}` : '',
     rate.differs_from_cpu ? `differs from cpu ${in_full(rate.differs_from_cpu)}` : '',
-  ].filter(Boolean).join('; ');
+  ]
+    .filter(Boolean)
+    .join('; ');
 }
 
 export function league_section(report: Report) {
   const rates = new Map(report.rates.map((rate) => [`${rate.lane}/${rate.stratum}`, rate]));
   const find = (lane: number, stratum: number | null) => rates.get(`${lane}/${stratum}`);
-  let show: Show = 'both', only = 'all';
+  let show: Show = 'both',
+    only = 'all';
 
   const readout = h('p', { class: 'readout', 'aria-live': 'polite' });
-  const kHint = 'Point at a cell, or walk through them with the arrow keys, for counts and intervals; press it, or Enter, for the pairs behind it.';
+  const kHint =
+    'Point at a cell, or walk through them with the arrow keys, for counts and intervals; press it, or Enter, for the pairs behind it.';
   readout.textContent = kHint;
 
   const part = (share: Share | null, kind: Kind) =>
-    share === null || share.of === 0 ? h('span', { class: 'none' }, '–')
+    share === null || share.of === 0
+      ? h('span', { class: 'none' }, '–')
       : h('span', { class: heat_class(share.share), 'data-kind': kind }, bare_percent(share.share));
 
   // Leads from a cell to the pairs that show it; says so where there is none.
@@ -63,9 +68,23 @@ export function league_section(report: Report) {
     if (!rate) return h('td', { class: 'rate' }, '–');
     const title = words(report, rate);
     const tell = () => (readout.textContent = title);
-    const enter = (event: KeyboardEvent) => { if (event.key === 'Enter') press(event, rate); };
-    return h('td', { class: 'rate', title, onfocus: tell, onmouseenter: tell, onclick: (event: Event) => press(event, rate), onkeydown: enter },
-      show === 'both' ? [part(rate.false_positive, 'false_positive'), part(rate.false_negative, 'false_negative')] : part(rate[show], show));
+    const enter = (event: KeyboardEvent) => {
+      if (event.key === 'Enter') press(event, rate);
+    };
+    return h(
+      'td',
+      {
+        class: 'rate',
+        title,
+        onfocus: tell,
+        onmouseenter: tell,
+        onclick: (event: Event) => press(event, rate),
+        onkeydown: enter,
+      },
+      show === 'both'
+        ? [part(rate.false_positive, 'false_positive'), part(rate.false_negative, 'false_negative')]
+        : part(rate[show], show),
+    );
   }
 
   function order(lane: number, stratum: number | null) {
@@ -76,18 +95,26 @@ export function league_section(report: Report) {
   function columns(): Column<number>[] {
     const shown = only === 'all' ? report.strata.map((_, i) => i) : [Number(only)];
     const column = (stratum: number | null, label: string): Column<number> => ({
-      label, numeric: true, cell: (lane) => cell(lane, stratum), order: (lane) => order(lane, stratum),
+      label,
+      numeric: true,
+      cell: (lane) => cell(lane, stratum),
+      order: (lane) => order(lane, stratum),
       title: stratum === null ? 'All strata together' : `${label}: ${report.strata[stratum].describes}`,
       heading: [h('span', { class: 'upright' }, label)],
     });
     const all = report.rates.some((rate) => rate.stratum === null) ? [column(null, 'all strata')] : [];
     return [
       { label: 'Lane', cell: (lane) => breakable(report.lanes[lane].id), order: (lane) => lane },
-      ...all, ...shown.map((stratum) => column(stratum, report.strata[stratum].id)),
+      ...all,
+      ...shown.map((stratum) => column(stratum, report.strata[stratum].id)),
     ];
   }
 
-  const table = sortable_table<number>(columns(), { caption: 'Share of wrong verdicts in per cent, lanes by strata', class: 'league', walk: true });
+  const table = sortable_table<number>(columns(), {
+    caption: 'Share of wrong verdicts in per cent, lanes by strata',
+    class: 'league',
+    walk: true,
+  });
   const update = () => {
     const matches = matcher(chosen('lane'));
     table.show(picker.lanes().filter((lane) => matches([report.lanes[lane].id])));
@@ -95,13 +122,27 @@ export function league_section(report: Report) {
   };
   const picker = lane_picker(report, 'league', {}, () => update());
 
-  const search = h('input', { type: 'search', placeholder: 'such as moller f64, or */f64/*', oninput: () => {
-    choose('lane', search.value.trim());
-    update();
-  } });
-  const shows = choice('Show', kShow, show, (value) => { choose('show', value === 'both' ? '' : value); redraw(); });
-  const strata = choice('Stratum', [['all', 'all'], ...report.strata.map((stratum, i): [string, string] => [String(i), stratum.id])], only,
-    (value) => { choose('stratum', value === 'all' ? '' : report.strata[Number(value)].id); redraw(); });
+  const search = h('input', {
+    type: 'search',
+    placeholder: 'such as moller f64, or */f64/*',
+    oninput: () => {
+      choose('lane', search.value.trim());
+      update();
+    },
+  });
+  const shows = choice('Show', kShow, show, (value) => {
+    choose('show', value === 'both' ? '' : value);
+    redraw();
+  });
+  const strata = choice(
+    'Stratum',
+    [['all', 'all'], ...report.strata.map((stratum, i): [string, string] => [String(i), stratum.id])],
+    only,
+    (value) => {
+      choose('stratum', value === 'all' ? '' : report.strata[Number(value)].id);
+      redraw();
+    },
+  );
   const redraw = () => {
     const place = report.strata.findIndex((stratum) => stratum.id === chosen('stratum'));
     only = place < 0 ? 'all' : String(place);
@@ -116,11 +157,27 @@ export function league_section(report: Report) {
   redraw();
   when_chosen(redraw);
   table.element.classList.add('league-table');
-  return section('league', 'League table',
-    h('p', {}, 'In per cent. A ', h('b', {}, 'false positive'), ' says “intersects” of triangles that are apart, and is counted against the pairs that are apart; a ',
-      h('b', {}, 'false negative'), ' misses a contact, and is counted against the pairs that intersect. In each cell false positives stand above false negatives; every head sorts.'),
-    h('div', { class: 'controls' },
+  return section(
+    'league',
+    'League table',
+    h(
+      'p',
+      {},
+      'In per cent. A ',
+      h('b', {}, 'false positive'),
+      ' says “intersects” of triangles that are apart, and is counted against the pairs that are apart; a ',
+      h('b', {}, 'false negative'),
+      ' misses a contact, and is counted against the pairs that intersect. In each cell false positives stand above false negatives; every head sorts.',
+    ),
+    h(
+      'div',
+      { class: 'controls' },
       h('label', { class: 'field' }, h('span', {}, 'Find a lane'), search),
-      shows, strata),
-    picker.element, h('div', { class: 'between' }, heat_legend(), readout), table.element);
+      shows,
+      strata,
+    ),
+    picker.element,
+    h('div', { class: 'between' }, heat_legend(), readout),
+    table.element,
+  );
 }

@@ -22,16 +22,37 @@ function build(report: Report, costs: Costs | null, { tuned, trade }: Choices) {
   document.head.append(heat_styles());
   const failures = failure_sections(report);
   const sections = [
-    answer_section(report, costs, trade), compare_section(report), tuned && tuned_section(tuned), trade && trade_section(report, trade), league_section(report), ...failures.sections, margins_section(report),
-    extremes_section(report), side_by_side_section(report), method_section(), run_section(report, costs),
+    answer_section(report, costs, trade),
+    compare_section(report),
+    tuned && tuned_section(tuned),
+    trade && trade_section(report, trade),
+    league_section(report),
+    ...failures.sections,
+    margins_section(report),
+    extremes_section(report),
+    side_by_side_section(report),
+    method_section(),
+    run_section(report, costs),
   ].filter((one) => one !== null);
   const contents = sections.map((one) => h('a', { href: `#${one.id}` }, one.querySelector('h2')!.textContent));
   const { pairs, seed } = report.run;
-  document.getElementById('page')!.replaceChildren(
-    h('a', { class: 'skip', href: '#answer' }, 'To the answer'),
-    h('header', {}, h('h1', {}, 'Graze: discrepancy report'),
-      h('p', {}, `Where triangle-triangle tests stop being right: ${count(pairs)} pairs of ${report.strata.length} ${report.strata.length === 1 ? 'stratum' : 'strata'}, ${report.lanes.length} lanes, seed ${seed}`)),
-    h('nav', { 'aria-label': 'Contents' }, contents), h('main', {}, sections));
+  document
+    .getElementById('page')!
+    .replaceChildren(
+      h('a', { class: 'skip', href: '#answer' }, 'To the answer'),
+      h(
+        'header',
+        {},
+        h('h1', {}, 'Graze: discrepancy report'),
+        h(
+          'p',
+          {},
+          `Where triangle-triangle tests stop being right: ${count(pairs)} pairs of ${report.strata.length} ${report.strata.length === 1 ? 'stratum' : 'strata'}, ${report.lanes.length} lanes, seed ${seed}`,
+        ),
+      ),
+      h('nav', { 'aria-label': 'Contents' }, contents),
+      h('main', {}, sections),
+    );
   follow_fragment((id) => {
     failures.open(id);
     document.getElementById(id)?.scrollIntoView({ block: 'start' });
@@ -44,10 +65,12 @@ const data = (id: string) => document.getElementById(id)?.textContent?.trim() ??
 function start() {
   const page = document.getElementById('page')!;
   const text = data('report');
-  if (!text || text.startsWith('<!--')) page.textContent = 'This is the empty page: graze report DIR writes one with data.';
+  if (!text || text.startsWith('<!--'))
+    page.textContent = 'This is the empty page: graze report DIR writes one with data.';
   else {
     const report = JSON.parse(text) as Report;
-    if (report.format === 2) build(report, JSON.parse(data('costs') || 'null') as Costs | null, JSON.parse(data('choices')) as Choices);
+    if (report.format === 2)
+      build(report, JSON.parse(data('costs') || 'null') as Costs | null, JSON.parse(data('choices')) as Choices);
     else page.textContent = `This page reads reports of format 2, and its data is of format ${report.format}.`;
   }
 }

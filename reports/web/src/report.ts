@@ -3,131 +3,227 @@
 // numbers are computed there, the page only renders. Lanes and strata are referred to by their place in `lanes` and
 // `strata`. What is absent is null or an empty array.
 
-export interface Share { count: number; of: number; share: number; low: number; high: number }  // Wilson, 95 %; six significant digits are enough; the last three null of nothing
+export interface Share {
+  count: number;
+  of: number;
+  share: number;
+  low: number;
+  high: number;
+} // Wilson, 95 %; six significant digits are enough; the last three null of nothing
 
 // Smallest margin (in ulps, a power of two) from which on no error was seen; `bound`: 95 % upper bound of the error rate
 // of the `above` pairs beyond it (1 - 0.05^(1/n)). null exponent: errors up to the largest margin seen, 2^largest; null
 // largest: no pair on that side of zero.
-export interface Threshold { exponent: number | null; above: number; bound: number; largest: number | null }
+export interface Threshold {
+  exponent: number | null;
+  above: number;
+  bound: number;
+  largest: number | null;
+}
 
 // What lanes cost, in nanoseconds a pair on one core: costs.json, beside the report because it depends on the machine.
 // low, middle, high: quartiles of the passes. group null: all strata. answer: the report's, with costs.
 export interface Costs {
-  machine: string; passes: number;
+  machine: string;
+  passes: number;
   rows: { lane: number; group: number | null; pairs: number; low: number; middle: number; high: number }[];
   answer: string[];
 }
 
-export interface Errors { pairs: number; misses: number; false_hits: number; declined: number }
+export interface Errors {
+  pairs: number;
+  misses: number;
+  false_hits: number;
+  declined: number;
+}
 // Under one policy; mended and broken: against the lane without one.
-export interface PolicyErrors extends Errors { policy: string; mended: number; broken: number }
+export interface PolicyErrors extends Errors {
+  policy: string;
+  mended: number;
+  broken: number;
+}
 
 // tune.json and trade.json, where they lie in the campaign's folder; docs/formats.md describes them.
 export interface Tuned {
-  lane: string; forbid: "miss" | "false" | "any"; max_rate: number; chosen: string; result: string; bound: number;
-  confirmed: PolicyErrors; zero_confirmed: PolicyErrors; dead: string[];
+  lane: string;
+  forbid: 'miss' | 'false' | 'any';
+  max_rate: number;
+  chosen: string;
+  result: string;
+  bound: number;
+  confirmed: PolicyErrors;
+  zero_confirmed: PolicyErrors;
+  dead: string[];
   scale_break: { up?: { log2: number; errors: PolicyErrors }; down?: { log2: number; errors: PolicyErrors } };
   interactions: { first: PolicyErrors; second: PolicyErrors; together: PolicyErrors }[];
   zero: PolicyErrors;
-  curves: { site: string; tolerance: "rel" | "abs"; points: PolicyErrors[] }[];
+  curves: { site: string; tolerance: 'rel' | 'abs'; points: PolicyErrors[] }[];
   sentences: string[];
 }
-export interface Quartiles { low: number; middle: number; high: number }
+export interface Quartiles {
+  low: number;
+  middle: number;
+  high: number;
+}
 export interface Trade {
-  pairs: number; seed: number; machine: string;
+  pairs: number;
+  seed: number;
+  machine: string;
   // in_cache and from_memory of one core, or resident, with_copies and what the kernels need of a device. failure: the
   // smallest pair on which the lane is wrong, as `graze check` takes it.
-  lanes: { lane: string; errors: Errors; bound: number; in_cache?: Quartiles; from_memory?: Quartiles; resident?: Quartiles;
-           with_copies?: Quartiles; dominated: boolean; registers?: number; local_bytes?: number; active_threads?: number; failure: string | null }[];
+  lanes: {
+    lane: string;
+    errors: Errors;
+    bound: number;
+    in_cache?: Quartiles;
+    from_memory?: Quartiles;
+    resident?: Quartiles;
+    with_copies?: Quartiles;
+    dominated: boolean;
+    registers?: number;
+    local_bytes?: number;
+    active_threads?: number;
+    failure: string | null;
+  }[];
   extremes: { lane: string; extreme: string; points: ({ log2: number } & Errors)[] }[];
   sentences: string[];
 }
-export interface Choices { tuned: Tuned | null; trade: Trade | null }
+export interface Choices {
+  tuned: Tuned | null;
+  trade: Trade | null;
+}
 
 export interface Report {
   format: 2;
   run: {
-    seed: number; pairs: number; complete: boolean;
-    command: string;                       // reproduces the whole campaign
-    map_command: string;                   // regenerates the page from stored data: "graze report DIR"
+    seed: number;
+    pairs: number;
+    complete: boolean;
+    command: string; // reproduces the whole campaign
+    map_command: string; // regenerates the page from stored data: "graze report DIR"
     build: { version: string; commit: string; compiler: string; cuda: string | null; device: string | null };
-    scene: string | null;                  // "arm.toml#0123456789abcdef"
-    machine: string | null;                // from timings.json only if deterministic; else null
+    scene: string | null; // "arm.toml#0123456789abcdef"
+    machine: string | null; // from timings.json only if deterministic; else null
   };
   strata: { id: string; describes: string; pairs: number; intersects: number }[];
-  lanes: { id: string; algorithm: string; scalar: "f32" | "f64"; target: string; paper: string; evidence: string | null;
-           exact: boolean }[];
-  answer: string[];                        // sentences, the most useful first; where costs are known, theirs are shown
-  groups: { id: string; describes: string; strata: number[] }[];   // strata that are asked after together, by place
+  lanes: {
+    id: string;
+    algorithm: string;
+    scalar: 'f32' | 'f64';
+    target: string;
+    paper: string;
+    evidence: string | null;
+    exact: boolean;
+  }[];
+  answer: string[]; // sentences, the most useful first; where costs are known, theirs are shown
+  groups: { id: string; describes: string; strata: number[] }[]; // strata that are asked after together, by place
   // One row for each lane and stratum that has pairs, and one for each lane over all strata (stratum null).
-  rates: { lane: number; stratum: number | null; false_positive: Share; false_negative: Share; wrong: Share; declined: number;
-           differs_from_cpu: Share | null }[];
+  rates: {
+    lane: number;
+    stratum: number | null;
+    false_positive: Share;
+    false_negative: Share;
+    wrong: Share;
+    declined: number;
+    differs_from_cpu: Share | null;
+  }[];
   group_rates: { lane: number; group: number; wrong: Share }[];
   // Side by side: left and right lane of one algorithm; `differs` is measured pair by pair where known, else null.
   // Stratum null: all strata together (as in `rates`).
-  side_by_side: { kind: "cpu-nofma" | "nofma-fma" | "f32-f64"; left: number; right: number;
-                  strata: { stratum: number | null; left_wrong: Share; right_wrong: Share; differs: Share | null }[] }[];
+  side_by_side: {
+    kind: 'cpu-nofma' | 'nofma-fma' | 'f32-f64';
+    left: number;
+    right: number;
+    strata: { stratum: number | null; left_wrong: Share; right_wrong: Share; differs: Share | null }[];
+  }[];
   // Error against margin, over all strata (stratum null; those of each stratum are in margins.csv). side: disjoint or
   // intersecting pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have their own entry with
   // exponent null. Only buckets that have pairs.
-  margins: { lane: number; stratum: number | null;
-             points: { side: "disjoint" | "zero" | "intersects"; exponent: number | null; wrong: Share }[] }[];
+  margins: {
+    lane: number;
+    stratum: number | null;
+    points: { side: 'disjoint' | 'zero' | 'intersects'; exponent: number | null; wrong: Share }[];
+  }[];
   // Of a group of strata, a stratum, or all (both null).
-  thresholds: { lane: number; group: number | null; stratum: number | null; disjoint: Threshold; intersects: Threshold }[];
+  thresholds: {
+    lane: number;
+    group: number | null;
+    stratum: number | null;
+    disjoint: Threshold;
+    intersects: Threshold;
+  }[];
   // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair). A
   // cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
-  extremes: { kind: "scale" | "offset"; step: number; lane: number; cells: { exponent: number; wrong: Share }[] }[];
-  signature_count: number;                 // all; `signatures` holds the first of them by pairs
-  signatures: {                            // every signature listed that fits (table), commonest first
-    key: string; algorithm: string; count: number; share: number;   // of all pairs
-    contact: string; dimensions: string; coplanar: boolean; margin: string;   // "-2^-3", "0", "2^4" ulps
-    marks: string;   // one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
-    cards: number[];                       // places in `cards` of the kinds that it belongs to, commonest first
-    pairs: string[];                       // those kept of it, "near_edge_edge:1:42"
+  extremes: { kind: 'scale' | 'offset'; step: number; lane: number; cells: { exponent: number; wrong: Share }[] }[];
+  signature_count: number; // all; `signatures` holds the first of them by pairs
+  signatures: {
+    // every signature listed that fits (table), commonest first
+    key: string;
+    algorithm: string;
+    count: number;
+    share: number; // of all pairs
+    contact: string;
+    dimensions: string;
+    coplanar: boolean;
+    margin: string; // "-2^-3", "0", "2^4" ulps
+    marks: string; // one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
+    cards: number[]; // places in `cards` of the kinds that it belongs to, commonest first
+    pairs: string[]; // those kept of it, "near_edge_edge:1:42"
   }[];
-  sources: { [algorithm: string]: string };  // stands for "@SOURCE@" in the snippets of the algorithm's cards
-  cards: {                                 // one for each kind of failure, the commonest first; the pair is its simplest case
+  sources: { [algorithm: string]: string }; // stands for "@SOURCE@" in the snippets of the algorithm's cards
+  cards: {
+    // one for each kind of failure, the commonest first; the pair is its simplest case
     kind: FailureKind;
-    file: string; minimised: boolean; from: string;                        // "near_edge_edge:1:42"
-    pair: { decimal: string[]; hex: string[]; value: number[] };           // 18 each, a[0].x … b[2].z
+    file: string;
+    minimised: boolean;
+    from: string; // "near_edge_edge:1:42"
+    pair: { decimal: string[]; hex: string[]; value: number[] }; // 18 each, a[0].x … b[2].z
     truth: { verdict: string; contact: string; margin: number; margin_ulps: number };
     // For the drawing: points in double (from exact values), the common set and the line of both planes, clipped to it.
-    drawing: { contact: number[][]; planes_line: number[][] };              // 0, 1, 2 or more points; 0 or 2 points
-    verdicts: { lane: number; verdict: "disjoint" | "intersects" | "declined"; wrong: boolean }[];   // all lanes run
-    sentences: string[];                   // explain's, the first ones on lanes of the kind
+    drawing: { contact: number[][]; planes_line: number[][] }; // 0, 1, 2 or more points; 0 or 2 points
+    verdicts: { lane: number; verdict: 'disjoint' | 'intersects' | 'declined'; wrong: boolean }[]; // all lanes run
+    sentences: string[]; // explain's, the first ones on lanes of the kind
     // What `graze minimize DIR` stored; null where it did not, for another pair than the one shown, or for want of room.
-    maps: { title: string; x: string; y: string; size: number;             // "b[0].x", "b[0].y", 256; y grows upwards
-            legend: { colour: string; means: string }[];                   // "#rrggbb" as in the panels, "disjoint", …
-            // name: "truth" or a lane id; shows: its counts in words, absent in maps stored before; png: base64
-            panels: { name: string; shows?: string; png: string }[] } | null;
-    commands: { label: string; text: string }[];                           // "repro", "explain", "minimize"
-    snippets: { label: string; text: string }[];                           // "cpp", "python", … may be empty to save room
+    maps: {
+      title: string;
+      x: string;
+      y: string;
+      size: number; // "b[0].x", "b[0].y", 256; y grows upwards
+      legend: { colour: string; means: string }[]; // "#rrggbb" as in the panels, "disjoint", …
+      // name: "truth" or a lane id; shows: its counts in words, absent in maps stored before; png: base64
+      panels: { name: string; shows?: string; png: string }[];
+    } | null;
+    commands: { label: string; text: string }[]; // "repro", "explain", "minimize"
+    snippets: { label: string; text: string }[]; // "cpp", "python", … may be empty to save room
   }[];
-  missing: string[];                       // sentences on what this report lacks (not minimised, no maps, …)
+  missing: string[]; // sentences on what this report lacks (not minimised, no maps, …)
   compare: Compare | null;
 }
 
 // What several signatures have in common (fuzz/minimise/kinds.h): a subject (algorithm), a cause, the source line of the
 // comparison that decides, and the shape of the pairs.
 export interface FailureKind {
-  key: string;                             // "moller_1997/rounding/moller_1997.h:117/general"
-  subject: string; cause: string;
-  line: string;                            // "core/algorithms/moller_1997.h:117"; empty where no comparison is to blame
+  key: string; // "moller_1997/rounding/moller_1997.h:117/general"
+  subject: string;
+  cause: string;
+  line: string; // "core/algorithms/moller_1997.h:117"; empty where no comparison is to blame
   shape: 'general' | 'coplanar' | 'degenerate';
-  pairs: number; signatures: number;
-  lanes: string[];                         // ids of those that fail so, on some pair of the kind
-  settled: [number, number];               // lanes for which the audit of the cause passed, of those it could look at
-  strata: { [id: string]: number };        // of the pairs kept, at most four of each signature
-  margins: { [bucket: string]: number };   // of all its pairs; "-2^-3", "0", "+2^4" ulps
-  worst: { case: string; pair: string; from: string; margin_ulps: number };   // pair: 18 hex floats
+  pairs: number;
+  signatures: number;
+  lanes: string[]; // ids of those that fail so, on some pair of the kind
+  settled: [number, number]; // lanes for which the audit of the cause passed, of those it could look at
+  strata: { [id: string]: number }; // of the pairs kept, at most four of each signature
+  margins: { [bucket: string]: number }; // of all its pairs; "-2^-3", "0", "+2^4" ulps
+  worst: { case: string; pair: string; from: string; margin_ulps: number }; // pair: 18 hex floats
 }
 
-export interface Compare {                 // `--compare DIR1 DIR2`: run is DIR2, other is DIR1
-  other: Report["run"];
-  headline: string;                        // "Nothing changed: …", "Changed: …"
-  differences: string[];                   // sentences on how the campaigns differ
-  rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[];   // changed: more than by chance
-  gained: { key: string; signatures: number; count: number }[];          // kinds, with their signatures and pairs
+export interface Compare {
+  // `--compare DIR1 DIR2`: run is DIR2, other is DIR1
+  other: Report['run'];
+  headline: string; // "Nothing changed: …", "Changed: …"
+  differences: string[]; // sentences on how the campaigns differ
+  rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[]; // changed: more than by chance
+  gained: { key: string; signatures: number; count: number }[]; // kinds, with their signatures and pairs
   lost: { key: string; signatures: number; count: number }[];
-  kinds_compared: boolean;                 // false where `graze minimize` went not through both
+  kinds_compared: boolean; // false where `graze minimize` went not through both
 }

@@ -18,22 +18,37 @@ function executors(report: Report): Child[] {
 }
 
 function strata_table(report: Report) {
-  const table = sortable_table<Report['strata'][number]>([
-    { label: 'Stratum', cell: (s) => [s.id], order: (s) => report.strata.indexOf(s) },
-    { label: 'What it draws', cell: (s) => [s.describes], order: (s) => s.describes },
-    { label: 'Pairs', numeric: true, cell: (s) => count(s.pairs), order: (s) => s.pairs },
-    { label: 'Intersect', numeric: true, cell: (s) => (s.pairs ? percent(s.intersects / s.pairs) : '–'), order: (s) => s.intersects / s.pairs },
-  ], { caption: 'Strata of the campaign', class: 'plain' });
+  const table = sortable_table<Report['strata'][number]>(
+    [
+      { label: 'Stratum', cell: (s) => [s.id], order: (s) => report.strata.indexOf(s) },
+      { label: 'What it draws', cell: (s) => [s.describes], order: (s) => s.describes },
+      { label: 'Pairs', numeric: true, cell: (s) => count(s.pairs), order: (s) => s.pairs },
+      {
+        label: 'Intersect',
+        numeric: true,
+        cell: (s) => (s.pairs ? percent(s.intersects / s.pairs) : '–'),
+        order: (s) => s.intersects / s.pairs,
+      },
+    ],
+    { caption: 'Strata of the campaign', class: 'plain' },
+  );
   table.show(report.strata);
   return table.element;
 }
 
 function lanes_table(report: Report) {
-  const table = sortable_table<Report['lanes'][number]>([
-    { label: 'Lane', cell: (lane) => breakable(lane.id), order: (lane) => report.lanes.indexOf(lane) },
-    { label: 'Reference', cell: (lane) => lane.paper, order: (lane) => lane.paper },
-    { label: 'Ran by', cell: (lane) => lane.evidence ?? 'this build, on the CPU', order: (lane) => lane.evidence ?? '' },
-  ], { caption: 'Lanes of the campaign', class: 'plain' });
+  const table = sortable_table<Report['lanes'][number]>(
+    [
+      { label: 'Lane', cell: (lane) => breakable(lane.id), order: (lane) => report.lanes.indexOf(lane) },
+      { label: 'Reference', cell: (lane) => lane.paper, order: (lane) => lane.paper },
+      {
+        label: 'Ran by',
+        cell: (lane) => lane.evidence ?? 'this build, on the CPU',
+        order: (lane) => lane.evidence ?? '',
+      },
+    ],
+    { caption: 'Lanes of the campaign', class: 'plain' },
+  );
   table.show(report.lanes);
   return table.element;
 }
@@ -42,19 +57,40 @@ function lanes_table(report: Report) {
 function costs_table(report: Report, costs: Costs) {
   const lanes = [...new Set(costs.rows.map((row) => row.lane))];
   const of = (lane: number, group: number | null) => costs.rows.find((row) => row.lane === lane && row.group === group);
-  const column = (label: string, group: number | null) => ({ label, numeric: true,
-    cell: (lane: number) => { const cost = of(lane, group); return cost ? h('td', { class: 'number', title: `quartiles ${cost.low} to ${cost.high}, of ${count(cost.pairs)} pairs` }, nanoseconds(cost.middle)) : '–'; },
-    order: (lane: number) => of(lane, group)?.middle ?? Infinity });
-  const table = sortable_table<number>([
-    { label: 'Lane', cell: (lane) => breakable(report.lanes[lane].id), order: (lane) => lane },
-    column('all strata', null), ...report.groups.map(({ id }, group) => column(id, group)),
-  ], { caption: 'Cost of a pair, in nanoseconds on one core', class: 'plain costs' });
+  const column = (label: string, group: number | null) => ({
+    label,
+    numeric: true,
+    cell: (lane: number) => {
+      const cost = of(lane, group);
+      return cost
+        ? h(
+            'td',
+            { class: 'number', title: `quartiles ${cost.low} to ${cost.high}, of ${count(cost.pairs)} pairs` },
+            nanoseconds(cost.middle),
+          )
+        : '–';
+    },
+    order: (lane: number) => of(lane, group)?.middle ?? Infinity,
+  });
+  const table = sortable_table<number>(
+    [
+      { label: 'Lane', cell: (lane) => breakable(report.lanes[lane].id), order: (lane) => lane },
+      column('all strata', null),
+      ...report.groups.map(({ id }, group) => column(id, group)),
+    ],
+    { caption: 'Cost of a pair, in nanoseconds on one core', class: 'plain costs' },
+  );
   table.show(lanes);
   return table.element;
 }
 
 export function build_words({ build }: Report['run']) {
-  return [`graze ${build.version}, commit ${build.commit}`, build.compiler, build.cuda ?? 'built without CUDA', build.device ?? 'no CUDA device'];
+  return [
+    `graze ${build.version}, commit ${build.commit}`,
+    build.compiler,
+    build.cuda ?? 'built without CUDA',
+    build.device ?? 'no CUDA device',
+  ];
 }
 
 export function run_section(report: Report, costs: Costs | null) {
@@ -72,14 +108,40 @@ export function run_section(report: Report, costs: Costs | null) {
     ['Costs measured on', costs?.machine ?? 'not measured'],
     ['Executors', executors(report)],
   ];
-  return section('run', 'What was run',
-    h('dl', { class: 'facts' }, facts.filter(([, value]) => value !== null).map(([name, value]) => h('div', {}, h('dt', {}, name), h('dd', {}, value)))),
-    h('p', { class: 'label' }, 'The whole campaign again'), code_block(run.command, 'the campaign’s command'),
-    h('p', { class: 'label' }, 'This page again, from the stored results'), code_block(run.map_command, 'the report’s command'),
+  return section(
+    'run',
+    'What was run',
+    h(
+      'dl',
+      { class: 'facts' },
+      facts
+        .filter(([, value]) => value !== null)
+        .map(([name, value]) => h('div', {}, h('dt', {}, name), h('dd', {}, value))),
+    ),
+    h('p', { class: 'label' }, 'The whole campaign again'),
+    code_block(run.command, 'the campaign’s command'),
+    h('p', { class: 'label' }, 'This page again, from the stored results'),
+    code_block(run.map_command, 'the report’s command'),
     lazy_details([`${report.strata.length} strata`], () => strata_table(report), { class: 'more-facts' }).details,
     lazy_details([`${report.lanes.length} lanes`], () => lanes_table(report), { class: 'more-facts' }).details,
-    costs && lazy_details([`What ${new Set(costs.rows.map((row) => row.lane)).size} lanes cost`], () => costs_table(report, costs), { class: 'more-facts' }).details,
-    report.missing.length > 0 && h('div', { class: 'notice' }, h('strong', {}, 'What this report lacks'), h('ul', {}, report.missing.map((text) => h('li', {}, sentence(text))))));
+    costs &&
+      lazy_details(
+        [`What ${new Set(costs.rows.map((row) => row.lane)).size} lanes cost`],
+        () => costs_table(report, costs),
+        { class: 'more-facts' },
+      ).details,
+    report.missing.length > 0 &&
+      h(
+        'div',
+        { class: 'notice' },
+        h('strong', {}, 'What this report lacks'),
+        h(
+          'ul',
+          {},
+          report.missing.map((text) => h('li', {}, sentence(text))),
+        ),
+      ),
+  );
 }
 
 // What is said first stands out: "Use exact/f32/cpu: …".
@@ -88,13 +150,23 @@ function advice(text: string): Child[] {
   return found ? [h('b', {}, ...breakable(found[0])), text.slice(found[0].length)] : sentence(text);
 }
 
-const kFirst = 2, kBeside = 4;  // sentences above the picture on a phone, and beside it where there is room
+const kFirst = 2,
+  kBeside = 4; // sentences above the picture on a phone, and beside it where there is room
 
 export function answer_section(report: Report, costs: Costs | null, trade: Trade | null) {
   const said = (costs?.answer ?? report.answer).map((text) => h('li', {}, advice(text)));
   const list = (items: HTMLElement[], start: number) => items.length > 0 && h('ol', { class: 'answer', start }, items);
-  return section('answer', 'The answer',
+  return section(
+    'answer',
+    'The answer',
     !report.run.complete && h('p', { class: 'notice' }, 'The campaign is not finished: these are its figures so far.'),
-    h('div', { class: 'opening' }, list(said.slice(0, kFirst), 1), h('div', { class: 'pictures' }, trade && front(trade), glance(report, costs)), list(said.slice(kFirst, kBeside), kFirst + 1)),
-    list(said.slice(kBeside), kBeside + 1));
+    h(
+      'div',
+      { class: 'opening' },
+      list(said.slice(0, kFirst), 1),
+      h('div', { class: 'pictures' }, trade && front(trade), glance(report, costs)),
+      list(said.slice(kFirst, kBeside), kFirst + 1),
+    ),
+    list(said.slice(kBeside), kBeside + 1),
+  );
 }

@@ -3,7 +3,10 @@
 
 function test_of(word: string): (text: string) => boolean {
   if (!word.includes('*')) return (text) => text.includes(word);
-  const pattern = word.split('*').map((part) => part.replace(/[.?+^${}()|[\]\\]/g, '\\$&')).join('.*');
+  const pattern = word
+    .split('*')
+    .map((part) => part.replace(/[.?+^${}()|[\]\\]/g, '\\$&'))
+    .join('.*');
   const whole = new RegExp(`^${pattern}$`);
   return (text) => whole.test(text);
 }

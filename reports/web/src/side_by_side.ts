@@ -9,8 +9,16 @@ import { sortable_table } from './sortable_table';
 type Side = Report['side_by_side'][number];
 
 const kKinds: { kind: Side['kind']; title: string; says: string }[] = [
-  { kind: 'cpu-nofma', title: 'CPU against CUDA without contraction', says: 'Both round every operation, so they must be equal pair by pair.' },
-  { kind: 'nofma-fma', title: 'CUDA without and with contraction', says: 'The same source; nvcc fuses products into additions, unless -fmad=false forbids it.' },
+  {
+    kind: 'cpu-nofma',
+    title: 'CPU against CUDA without contraction',
+    says: 'Both round every operation, so they must be equal pair by pair.',
+  },
+  {
+    kind: 'nofma-fma',
+    title: 'CUDA without and with contraction',
+    says: 'The same source; nvcc fuses products into additions, unless -fmad=false forbids it.',
+  },
   { kind: 'f32-f64', title: 'float32 against float64', says: 'The same source in twice the precision, on one target.' },
 ];
 
@@ -21,8 +29,11 @@ function share_cell(share: Share) {
 function differs_cell(differs: Share | null, must_be_equal: boolean) {
   if (!differs) return h('td', { class: 'number', title: 'Not counted pair by pair' }, '–');
   const equal = differs.count === 0;
-  return h('td', { class: `number ${must_be_equal ? (equal ? 'good' : 'bad') : ''}`, title: in_full(differs) },
-    equal ? (must_be_equal ? '✓ equal' : '0') : `${must_be_equal ? '✗ ' : ''}${percent(differs.share)}`);
+  return h(
+    'td',
+    { class: `number ${must_be_equal ? (equal ? 'good' : 'bad') : ''}`, title: in_full(differs) },
+    equal ? (must_be_equal ? '✓ equal' : '0') : `${must_be_equal ? '✗ ' : ''}${percent(differs.share)}`,
+  );
 }
 
 // The part of a lane's name in which the two do not differ.
@@ -40,22 +51,65 @@ export function side_by_side_section(report: Report) {
     const own = (lane: number) => report.lanes[lane][kind === 'f32-f64' ? 'scalar' : 'target'];
     const equal = kind === 'cpu-nofma';
     const measured = rows.some((side) => side.strata.some((entry) => entry.differs));
-    const table = sortable_table<Side>([
-      { label: 'Algorithm', cell: (side) => common(report, side), order: (side) => rows.indexOf(side) },
-      { label: `${own(rows[0].left)}, wrong`, numeric: true, cell: (side) => { const s = of(side); return s ? share_cell(s.left_wrong) : '–'; }, order: (side) => of(side)?.left_wrong.share ?? -1 },
-      { label: `${own(rows[0].right)}, wrong`, numeric: true, cell: (side) => { const s = of(side); return s ? share_cell(s.right_wrong) : '–'; }, order: (side) => of(side)?.right_wrong.share ?? -1 },
-      ...(measured ? [{ label: 'Differ', title: 'Pairs on which the two give another verdict', numeric: true, cell: (side: Side) => differs_cell(of(side)?.differs ?? null, equal), order: (side: Side) => of(side)?.differs?.share ?? -1 }] : []),
-    ], { caption: title, class: 'plain beside' });
+    const table = sortable_table<Side>(
+      [
+        { label: 'Algorithm', cell: (side) => common(report, side), order: (side) => rows.indexOf(side) },
+        {
+          label: `${own(rows[0].left)}, wrong`,
+          numeric: true,
+          cell: (side) => {
+            const s = of(side);
+            return s ? share_cell(s.left_wrong) : '–';
+          },
+          order: (side) => of(side)?.left_wrong.share ?? -1,
+        },
+        {
+          label: `${own(rows[0].right)}, wrong`,
+          numeric: true,
+          cell: (side) => {
+            const s = of(side);
+            return s ? share_cell(s.right_wrong) : '–';
+          },
+          order: (side) => of(side)?.right_wrong.share ?? -1,
+        },
+        ...(measured
+          ? [
+              {
+                label: 'Differ',
+                title: 'Pairs on which the two give another verdict',
+                numeric: true,
+                cell: (side: Side) => differs_cell(of(side)?.differs ?? null, equal),
+                order: (side: Side) => of(side)?.differs?.share ?? -1,
+              },
+            ]
+          : []),
+      ],
+      { caption: title, class: 'plain beside' },
+    );
     const show = () => table.show(rows);
     show();
     return [{ show, element: h('div', { class: 'beside-one' }, h('h3', {}, title), h('p', {}, says), table.element) }];
   });
   if (!tables.length) return null;
-  const options: [string, string][] = [['', 'all'], ...report.strata.map((s, i): [string, string] => [String(i), s.id])];
-  return section('side-by-side', 'Side by side',
-    h('div', { class: 'controls' }, choice('Stratum', options, '', (value) => {
-      stratum = value === '' ? null : Number(value);
-      tables.forEach(({ show }) => show());
-    })),
-    h('div', { class: 'beside-all' }, tables.map(({ element }) => element)));
+  const options: [string, string][] = [
+    ['', 'all'],
+    ...report.strata.map((s, i): [string, string] => [String(i), s.id]),
+  ];
+  return section(
+    'side-by-side',
+    'Side by side',
+    h(
+      'div',
+      { class: 'controls' },
+      choice('Stratum', options, '', (value) => {
+        stratum = value === '' ? null : Number(value);
+        tables.forEach(({ show }) => show());
+      }),
+    ),
+    h(
+      'div',
+      { class: 'beside-all' },
+      tables.map(({ element }) => element),
+    ),
+  );
 }

@@ -13,7 +13,12 @@ function hulls(dimensions: string, how = '') {
   const [a, b] = [...dimensions].map((d) => kHulls[Number(d)] ?? d);
   return a === b ? `two ${how}${a}s` : `a ${how}${a} and a ${b}`;
 }
-const kContacts: Record<string, string> = { none: 'apart', point: 'meeting in a point', segment: 'meeting in a segment', area: 'meeting in an area' };
+const kContacts: Record<string, string> = {
+  none: 'apart',
+  point: 'meeting in a point',
+  segment: 'meeting in a segment',
+  area: 'meeting in an area',
+};
 
 export function signature_words(signature: Signature): string {
   const { contact, dimensions, coplanar, margin } = signature;
@@ -25,23 +30,54 @@ export function signature_table(report: Report, pair_of: (signature: Signature) 
   function marks({ algorithm, marks: text }: Signature) {
     const lanes = report.lanes.filter((lane) => lane.algorithm === algorithm);
     const f64 = lanes.findIndex((lane) => lane.scalar === 'f64');
-    return h('span', { class: 'marks' }, [...text].map((mark, i) =>
-      h('span', { class: `${{ '+': 'plus', '-': 'minus' }[mark] ?? ''} ${i === f64 ? 'apart' : ''}`, title: `${lanes[i]?.id}: ${{ '+': 'false positive', '-': 'false negative', '?': 'declined', '!': 'crashed', '@': 'timed out', '%': 'unstable', '.': 'right' }[mark] ?? 'did not run'}` }, mark === '-' ? '−' : mark)));
+    return h(
+      'span',
+      { class: 'marks' },
+      [...text].map((mark, i) =>
+        h(
+          'span',
+          {
+            class: `${{ '+': 'plus', '-': 'minus' }[mark] ?? ''} ${i === f64 ? 'apart' : ''}`,
+            title: `${lanes[i]?.id}: ${{ '+': 'false positive', '-': 'false negative', '?': 'declined', '!': 'crashed', '@': 'timed out', '%': 'unstable', '.': 'right' }[mark] ?? 'did not run'}`,
+          },
+          mark === '-' ? '−' : mark,
+        ),
+      ),
+    );
   }
 
-  const kinds = ({ cards }: Signature) => cards.map((place, i) => [i > 0 && ' ', h('a', { class: 'link', href: `#${kind_id(place)}` }, `kind ${place + 1}`)]);
+  const kinds = ({ cards }: Signature) =>
+    cards.map((place, i) => [i > 0 && ' ', h('a', { class: 'link', href: `#${kind_id(place)}` }, `kind ${place + 1}`)]);
 
-  return sortable_table<Signature>([
-    { label: 'No.', numeric: true, cell: (s) => String(report.signatures.indexOf(s) + 1), order: (s) => -s.count },
-    { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },
-    { label: 'Share', numeric: true, cell: (s) => percent(s.share), order: (s) => s.share },
-    { label: 'Algorithm', cell: (s) => s.algorithm, order: (s) => s.algorithm },
-    { label: 'Contact', cell: (s) => s.contact, order: (s) => s.contact },
-    { label: 'Hulls', cell: (s) => hulls(s.dimensions), order: (s) => s.dimensions },
-    { label: 'Planes', cell: (s) => (s.coplanar ? 'coplanar' : 'skew'), order: (s) => Number(s.coplanar) },
-    { label: 'Margin', numeric: true, cell: (s) => margin_words(s.margin), order: (s) => margin_order(s.margin) },
-    { label: 'Lanes f32 · f64', title: 'Marks of the lanes: + false positive, − false negative, ? declined, . right', cell: marks, order: (s) => s.marks },
-    { label: 'Kinds', title: 'The kinds of failure that it belongs to, of those with a card', cell: kinds, order: (s) => s.cards[0] ?? Infinity },
-    { label: 'A pair', title: 'One of the pairs kept', cell: (s) => h('code', {}, pair_of(s)), order: (s) => pair_of(s) },
-  ], { caption: 'Signatures listed', class: 'plain signatures', page: 12 });
+  return sortable_table<Signature>(
+    [
+      { label: 'No.', numeric: true, cell: (s) => String(report.signatures.indexOf(s) + 1), order: (s) => -s.count },
+      { label: 'Pairs', numeric: true, cell: (s) => count(s.count), order: (s) => s.count },
+      { label: 'Share', numeric: true, cell: (s) => percent(s.share), order: (s) => s.share },
+      { label: 'Algorithm', cell: (s) => s.algorithm, order: (s) => s.algorithm },
+      { label: 'Contact', cell: (s) => s.contact, order: (s) => s.contact },
+      { label: 'Hulls', cell: (s) => hulls(s.dimensions), order: (s) => s.dimensions },
+      { label: 'Planes', cell: (s) => (s.coplanar ? 'coplanar' : 'skew'), order: (s) => Number(s.coplanar) },
+      { label: 'Margin', numeric: true, cell: (s) => margin_words(s.margin), order: (s) => margin_order(s.margin) },
+      {
+        label: 'Lanes f32 · f64',
+        title: 'Marks of the lanes: + false positive, − false negative, ? declined, . right',
+        cell: marks,
+        order: (s) => s.marks,
+      },
+      {
+        label: 'Kinds',
+        title: 'The kinds of failure that it belongs to, of those with a card',
+        cell: kinds,
+        order: (s) => s.cards[0] ?? Infinity,
+      },
+      {
+        label: 'A pair',
+        title: 'One of the pairs kept',
+        cell: (s) => h('code', {}, pair_of(s)),
+        order: (s) => pair_of(s),
+      },
+    ],
+    { caption: 'Signatures listed', class: 'plain signatures', page: 12 },
+  );
 }

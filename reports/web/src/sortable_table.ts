@@ -6,9 +6,9 @@ export interface Column<Row> {
   label: string;
   title?: string;
   numeric?: boolean;
-  heading?: Child[];                              // in place of the label
+  heading?: Child[]; // in place of the label
   cell: (row: Row) => HTMLTableCellElement | Child;
-  order: (row: Row) => number | string;           // what sorting compares
+  order: (row: Row) => number | string; // what sorting compares
   descending_first?: boolean;
 }
 
@@ -21,17 +21,28 @@ export interface Table<Row> {
 interface Options {
   caption: string;
   class?: string;
-  page?: number;                                  // rows shown at first; a button shows as many more
-  walk?: boolean;                                 // cells take the focus, one tab stop for the table
+  page?: number; // rows shown at first; a button shows as many more
+  walk?: boolean; // cells take the focus, one tab stop for the table
 }
 
 export function sortable_table<Row>(columns: Column<Row>[], options: Options): Table<Row> {
-  const head = h('tr', {}), body = h('tbody', {});
-  const table = h('table', { class: options.class ?? '' }, h('caption', {}, options.caption), h('thead', {}, head), body);
+  const head = h('tr', {}),
+    body = h('tbody', {});
+  const table = h(
+    'table',
+    { class: options.class ?? '' },
+    h('caption', {}, options.caption),
+    h('thead', {}, head),
+    body,
+  );
   const scroller = h('div', { class: 'scroller', role: 'region', 'aria-label': options.caption, tabindex: 0 }, table);
   const more = h('button', { type: 'button', class: 'more' });
   const element = h('div', { class: 'sortable' }, scroller, more);
-  let rows: Row[] = [], sorted: Row[] = [], by = -1, descending = false, limit = options.page ?? Infinity;
+  let rows: Row[] = [],
+    sorted: Row[] = [],
+    by = -1,
+    descending = false,
+    limit = options.page ?? Infinity;
 
   function sort() {
     sorted = [...rows];
@@ -40,34 +51,61 @@ export function sortable_table<Row>(columns: Column<Row>[], options: Options): T
     const sign = descending ? -1 : 1;
     const keys = new Map(rows.map((row) => [row, order(row)]));
     sorted.sort((x, y) => {
-      const a = keys.get(x)!, b = keys.get(y)!;
+      const a = keys.get(x)!,
+        b = keys.get(y)!;
       return sign * (a < b ? -1 : a > b ? 1 : 0);
     });
   }
 
   function draw_head() {
-    head.replaceChildren(...columns.map((column, i) => {
-      const state = i !== by ? 'none' : descending ? 'descending' : 'ascending';
-      const button = h('button', { type: 'button', title: column.title ?? `Sort by ${column.label}`, onclick: () => {
-        if (by === i) descending = !descending;
-        else [by, descending] = [i, column.descending_first ?? column.numeric ?? false];
-        draw();
-        (head.children[i].firstElementChild as HTMLElement).focus();
-      } }, ...(column.heading ?? [column.label]), h('span', { class: 'arrow', 'aria-hidden': 'true' }, ''));
-      return h('th', { scope: 'col', 'aria-sort': state, class: column.numeric ? 'number' : '' }, button);
-    }));
+    head.replaceChildren(
+      ...columns.map((column, i) => {
+        const state = i !== by ? 'none' : descending ? 'descending' : 'ascending';
+        const button = h(
+          'button',
+          {
+            type: 'button',
+            title: column.title ?? `Sort by ${column.label}`,
+            onclick: () => {
+              if (by === i) descending = !descending;
+              else [by, descending] = [i, column.descending_first ?? column.numeric ?? false];
+              draw();
+              (head.children[i].firstElementChild as HTMLElement).focus();
+            },
+          },
+          ...(column.heading ?? [column.label]),
+          h('span', { class: 'arrow', 'aria-hidden': 'true' }, ''),
+        );
+        return h('th', { scope: 'col', 'aria-sort': state, class: column.numeric ? 'number' : '' }, button);
+      }),
+    );
   }
 
   function draw_body() {
     const shown = sorted.slice(0, limit);
-    body.replaceChildren(...shown.map((row) => h('tr', {}, ...columns.map((column, i) => {
-      const cell = column.cell(row);
-      const made = cell instanceof HTMLTableCellElement ? cell
-        : h(i === 0 ? 'th' : 'td', { scope: i === 0 ? 'row' : null, class: column.numeric ? 'number' : null }, cell);
-      if (options.walk && i > 0) made.tabIndex = -1;
-      return made;
-    }))));
-    if (!shown.length) body.append(h('tr', {}, h('td', { colspan: columns.length, class: 'empty' }, 'Nothing passes the filter.')));
+    body.replaceChildren(
+      ...shown.map((row) =>
+        h(
+          'tr',
+          {},
+          ...columns.map((column, i) => {
+            const cell = column.cell(row);
+            const made =
+              cell instanceof HTMLTableCellElement
+                ? cell
+                : h(
+                    i === 0 ? 'th' : 'td',
+                    { scope: i === 0 ? 'row' : null, class: column.numeric ? 'number' : null },
+                    cell,
+                  );
+            if (options.walk && i > 0) made.tabIndex = -1;
+            return made;
+          }),
+        ),
+      ),
+    );
+    if (!shown.length)
+      body.append(h('tr', {}, h('td', { colspan: columns.length, class: 'empty' }, 'Nothing passes the filter.')));
     else if (options.walk) (body.rows[0].cells[1] ?? body.rows[0].cells[0]).tabIndex = 0;
     more.hidden = sorted.length <= limit;
     more.textContent = `Show ${Math.min(options.page ?? 0, sorted.length - limit)} more of ${sorted.length - limit}`;
@@ -83,17 +121,21 @@ export function sortable_table<Row>(columns: Column<Row>[], options: Options): T
     limit += options.page ?? 0;
     draw_body();
   });
-  if (options.walk) body.addEventListener('keydown', (event) => {
-    const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
-    const from = (event.target as Element).closest('td');
-    if (!step || !from) return;
-    event.preventDefault();
-    const to = body.rows[(from.parentElement as HTMLTableRowElement).sectionRowIndex + step[0]]?.cells[from.cellIndex + step[1]];
-    if (!(to instanceof HTMLTableCellElement) || to.cellIndex === 0) return;
-    from.tabIndex = -1;
-    to.tabIndex = 0;
-    to.focus();
-  });
+  if (options.walk)
+    body.addEventListener('keydown', (event) => {
+      const step = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key];
+      const from = (event.target as Element).closest('td');
+      if (!step || !from) return;
+      event.preventDefault();
+      const to =
+        body.rows[(from.parentElement as HTMLTableRowElement).sectionRowIndex + step[0]]?.cells[
+          from.cellIndex + step[1]
+        ];
+      if (!(to instanceof HTMLTableCellElement) || to.cellIndex === 0) return;
+      from.tabIndex = -1;
+      to.tabIndex = 0;
+      to.focus();
+    });
 
   return {
     element,

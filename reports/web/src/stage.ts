@@ -13,12 +13,24 @@ const kZoom = 1.25;
 // truth: what there is to see, in words.
 export function stage(card: Report['cards'][number], truth: string): HTMLElement {
   const frame = good_frame(card);
-  let shape = shape_of(card, frame), visible = false;
+  let shape = shape_of(card, frame),
+    visible = false;
   let drawn: Picture | null = null;
-  const canvas = h('canvas', {}), paper = h('div', { class: 'paper' });
+  const canvas = h('canvas', {}),
+    paper = h('div', { class: 'paper' });
   const note = h('span', { class: 'scale-note' });
-  const board = h('div', { class: 'board', tabindex: 0, role: 'application', 'aria-roledescription': 'turnable drawing',
-    'aria-label': `Two triangles: ${truth}. Arrow keys turn the drawing, plus and minus zoom, 0 resets it.` }, canvas, paper);
+  const board = h(
+    'div',
+    {
+      class: 'board',
+      tabindex: 0,
+      role: 'application',
+      'aria-roledescription': 'turnable drawing',
+      'aria-label': `Two triangles: ${truth}. Arrow keys turn the drawing, plus and minus zoom, 0 resets it.`,
+    },
+    canvas,
+    paper,
+  );
 
   const { camera, set } = orbit(board, good_view(shape), draw, draw_paper);
 
@@ -52,10 +64,15 @@ export function stage(card: Report['cards'][number], truth: string): HTMLElement
   board.addEventListener('keydown', (event) => {
     const { azimuth, elevation, zoom } = view_of(camera);
     const actions: Record<string, () => void> = {
-      ArrowLeft: () => set({ azimuth: azimuth - kTurn }), ArrowRight: () => set({ azimuth: azimuth + kTurn }),
-      ArrowUp: () => set({ elevation: elevation + kTurn }), ArrowDown: () => set({ elevation: elevation - kTurn }),
-      '+': () => set({ zoom: zoom * kZoom }), '=': () => set({ zoom: zoom * kZoom }), '-': () => set({ zoom: zoom / kZoom }),
-      '0': reset, Home: reset,
+      ArrowLeft: () => set({ azimuth: azimuth - kTurn }),
+      ArrowRight: () => set({ azimuth: azimuth + kTurn }),
+      ArrowUp: () => set({ elevation: elevation + kTurn }),
+      ArrowDown: () => set({ elevation: elevation - kTurn }),
+      '+': () => set({ zoom: zoom * kZoom }),
+      '=': () => set({ zoom: zoom * kZoom }),
+      '-': () => set({ zoom: zoom / kZoom }),
+      '0': reset,
+      Home: reset,
     };
     const action = event.ctrlKey || event.metaKey || event.altKey ? undefined : actions[event.key];
     if (!action) return;
@@ -64,24 +81,61 @@ export function stage(card: Report['cards'][number], truth: string): HTMLElement
     draw_paper();
   });
 
-  new IntersectionObserver(([entry]) => {
-    visible = entry.isIntersecting;
-    draw();
-  }, { rootMargin: '100px' }).observe(board);
+  new IntersectionObserver(
+    ([entry]) => {
+      visible = entry.isIntersecting;
+      draw();
+    },
+    { rootMargin: '100px' },
+  ).observe(board);
   new ResizeObserver(draw).observe(board);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
 
   note.textContent = shape.note;
   draw_paper();
   const button = (text: string, label: string, action: () => void) =>
-    h('button', { type: 'button', 'aria-label': label, title: label, onclick: () => { action(); draw_paper(); } }, text);
-  return h('figure', { class: 'stage' }, board,
-    h('div', { class: 'stage-tools' },
-      choice('Frame', [['both', 'both triangles'], ['a', 'triangle a'], ['b', 'triangle b']], frame, (value) => look_at(value as Frame)),
-      button('−', 'Zoom out', () => set({ zoom: camera.zoom / kZoom })), button('+', 'Zoom in', () => set({ zoom: camera.zoom * kZoom })),
-      button('Reset', 'Reset the view', reset)),
-    h('figcaption', {},
-      h('span', { class: 'key-a' }, 'a'), h('span', { class: 'key-b' }, 'b'),
+    h(
+      'button',
+      {
+        type: 'button',
+        'aria-label': label,
+        title: label,
+        onclick: () => {
+          action();
+          draw_paper();
+        },
+      },
+      text,
+    );
+  return h(
+    'figure',
+    { class: 'stage' },
+    board,
+    h(
+      'div',
+      { class: 'stage-tools' },
+      choice(
+        'Frame',
+        [
+          ['both', 'both triangles'],
+          ['a', 'triangle a'],
+          ['b', 'triangle b'],
+        ],
+        frame,
+        (value) => look_at(value as Frame),
+      ),
+      button('−', 'Zoom out', () => set({ zoom: camera.zoom / kZoom })),
+      button('+', 'Zoom in', () => set({ zoom: camera.zoom * kZoom })),
+      button('Reset', 'Reset the view', reset),
+    ),
+    h(
+      'figcaption',
+      {},
+      h('span', { class: 'key-a' }, 'a'),
+      h('span', { class: 'key-b' }, 'b'),
       card.drawing.contact.length > 0 && h('span', { class: 'key-contact' }, 'contact'),
-      card.drawing.planes_line.length > 0 && h('span', { class: 'key-line' }, 'the planes’ line'), note));
+      card.drawing.planes_line.length > 0 && h('span', { class: 'key-line' }, 'the planes’ line'),
+      note,
+    ),
+  );
 }

@@ -4,7 +4,7 @@
 // (card_viewer.ts) is no filter: "#kind-7&p=…&by=…".
 
 let place = '';
-let entered = false;  // the entry before the last one is where the viewer was opened
+let entered = false; // the entry before the last one is where the viewer was opened
 let values = new URLSearchParams();
 const kOfTheViewer = ['p', 'by'];
 const listeners: (() => void)[] = [];
@@ -70,12 +70,13 @@ export function follow_fragment(arrived: (id: string) => void) {
   write('replaceState');
   if (place) arrived(place);
   addEventListener('hashchange', () => {
-    const before = place, in_viewer = chosen('p') !== '';
+    const before = place,
+      in_viewer = chosen('p') !== '';
     read();
     entered = false;
     write('replaceState');
     listeners.forEach((changed) => changed());
-    if (place && !(in_viewer && place === before)) arrived(place);  // what was read is where it was
+    if (place && !(in_viewer && place === before)) arrived(place); // what was read is where it was
   });
 }
 

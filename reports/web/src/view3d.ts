@@ -2,8 +2,19 @@
 // The drawing by WebGL. One renderer serves all cards: a browser grants only about 16 contexts. It draws off screen, and
 // each card keeps a copy of its picture in a canvas of its own.
 import {
-  AmbientLight, BufferGeometry, Color, DirectionalLight, DoubleSide, Float32BufferAttribute, Material, Mesh, MeshLambertMaterial,
-  MeshBasicMaterial, type OrthographicCamera, Scene, WebGLRenderer,
+  AmbientLight,
+  BufferGeometry,
+  Color,
+  DirectionalLight,
+  DoubleSide,
+  Float32BufferAttribute,
+  Material,
+  Mesh,
+  MeshLambertMaterial,
+  MeshBasicMaterial,
+  type OrthographicCamera,
+  Scene,
+  WebGLRenderer,
 } from 'three';
 import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
@@ -11,7 +22,7 @@ import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeome
 import { view_of } from './camera';
 import { framed_half_height, labels, project, type Shape, type Vec, type View } from './drawing';
 
-let renderer: WebGLRenderer | null | undefined;  // null: this browser has no WebGL
+let renderer: WebGLRenderer | null | undefined; // null: this browser has no WebGL
 
 function shared_renderer(): WebGLRenderer | null {
   if (renderer !== undefined) return renderer;
@@ -24,7 +35,10 @@ function shared_renderer(): WebGLRenderer | null {
 
 export const has_webgl = () => shared_renderer() !== null;
 
-export interface Picture { draw: (canvas: HTMLCanvasElement, camera: OrthographicCamera) => void; dispose: () => void }
+export interface Picture {
+  draw: (canvas: HTMLCanvasElement, camera: OrthographicCamera) => void;
+  dispose: () => void;
+}
 
 const style_colour = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -37,7 +51,9 @@ function fan(points: Vec[]) {
 }
 
 function segments(points: Vec[], closed: boolean) {
-  const ends = points.flatMap((p, i) => (i + 1 < points.length ? [...p, ...points[i + 1]] : closed ? [...p, ...points[0]] : []));
+  const ends = points.flatMap((p, i) =>
+    i + 1 < points.length ? [...p, ...points[i + 1]] : closed ? [...p, ...points[0]] : [],
+  );
   return new LineSegmentsGeometry().setPositions(ends);
 }
 
@@ -49,7 +65,13 @@ export function picture(shape: Shape): Picture {
   const lines: { material: LineMaterial; width: number }[] = [];
   const made: { dispose: () => void }[] = [];
 
-  function add_line(geometry: LineSegmentsGeometry, name: string, width: number, hidden: 'shown' | 'faint', dashed = false) {
+  function add_line(
+    geometry: LineSegmentsGeometry,
+    name: string,
+    width: number,
+    hidden: 'shown' | 'faint',
+    dashed = false,
+  ) {
     const material = new LineMaterial({ linewidth: width, dashed, dashSize: 0.06, gapSize: 0.04, transparent: true });
     if (hidden === 'faint') Object.assign(material, { depthTest: false, opacity: 0.35 });
     coloured.push({ material, name });
@@ -61,20 +83,36 @@ export function picture(shape: Shape): Picture {
     return line;
   }
 
-  for (const [name, points, shift] of [['--triangle-a', shape.a, 1], ['--triangle-b', shape.b, 2]] as const) {
+  for (const [name, points, shift] of [
+    ['--triangle-a', shape.a, 1],
+    ['--triangle-b', shape.b, 2],
+  ] as const) {
     // The shift keeps edges in front of faces, and coplanar faces from flickering into each other.
-    const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: shift, polygonOffsetUnits: 2 * shift });
+    const material = new MeshLambertMaterial({
+      side: DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: shift,
+      polygonOffsetUnits: 2 * shift,
+    });
     const geometry = fan([...points]);
     scene.add(new Mesh(geometry, material));
     coloured.push({ material, name });
     made.push(geometry, material);
     add_line(segments([...points], true), `${name}-edge`, 2, 'shown');
-    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1;  // also where the other hides it
+    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1; // also where the other hides it
   }
   for (const { colour, triangles, opacity, lines, width, dashed } of shape.marks ?? []) {
     if (triangles?.length) {
       const solid = opacity === undefined;
-      const material = new MeshLambertMaterial({ side: DoubleSide, transparent: !solid, opacity: opacity ?? 1, depthWrite: solid, polygonOffset: true, polygonOffsetFactor: 3, polygonOffsetUnits: 6 });
+      const material = new MeshLambertMaterial({
+        side: DoubleSide,
+        transparent: !solid,
+        opacity: opacity ?? 1,
+        depthWrite: solid,
+        polygonOffset: true,
+        polygonOffsetFactor: 3,
+        polygonOffsetUnits: 6,
+      });
       const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(triangles.flat(), 3));
       geometry.computeVertexNormals();
       scene.add(new Mesh(geometry, material));
@@ -111,7 +149,8 @@ export function picture(shape: Shape): Picture {
       canvas.height = Math.round(height * ratio);
     }
     gl.setPixelRatio(1);
-    if (gl.domElement.width !== canvas.width || gl.domElement.height !== canvas.height) gl.setSize(canvas.width, canvas.height, false);
+    if (gl.domElement.width !== canvas.width || gl.domElement.height !== canvas.height)
+      gl.setSize(canvas.width, canvas.height, false);
     for (const { material, name } of coloured) material.color.set(style_colour(name));
     for (const line of lines) line.material.linewidth = line.width * ratio;
     const half = framed_half_height(shape);
@@ -143,7 +182,7 @@ export function picture(shape: Shape): Picture {
     context.textAlign = 'center';
     context.textBaseline = 'middle';
     context.fillStyle = style_colour('--ink');
-    context.strokeStyle = style_colour('--raised');  // lines do not strike names through
+    context.strokeStyle = style_colour('--raised'); // lines do not strike names through
     context.lineWidth = 3;
     context.lineJoin = 'round';
     for (const { x, y, text } of labels(shape, view, width, height)) {

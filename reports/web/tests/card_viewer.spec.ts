@@ -19,9 +19,19 @@ async function expect_verdicts_of(page: Page, report: Report, number: number) {
   const { truth, verdicts } = report.cards[number - 1];
   await expect(viewer(page).locator('h1')).toContainText(`Card ${number}: `);
   await expect(viewer(page).locator('#truth')).toContainText(`Truth: ${truth.verdict}`);
-  const shown = await viewer(page).locator('[data-lane]').evaluateAll((cells) =>
-    Object.fromEntries(cells.map((cell) => [cell.getAttribute('data-lane')!, `${cell.classList.contains('bad') ? 'wrong' : 'right'}: ${cell.textContent!.replace(/[^a-z]/g, '')}`])));
-  const stored = verdicts.map(({ lane, verdict, wrong }) => [report.lanes[lane].id, `${wrong ? 'wrong' : 'right'}: ${verdict}`] as const).filter(([lane]) => lane in shown);  // not cpu-fma and the like
+  const shown = await viewer(page)
+    .locator('[data-lane]')
+    .evaluateAll((cells) =>
+      Object.fromEntries(
+        cells.map((cell) => [
+          cell.getAttribute('data-lane')!,
+          `${cell.classList.contains('bad') ? 'wrong' : 'right'}: ${cell.textContent!.replace(/[^a-z]/g, '')}`,
+        ]),
+      ),
+    );
+  const stored = verdicts
+    .map(({ lane, verdict, wrong }) => [report.lanes[lane].id, `${wrong ? 'wrong' : 'right'}: ${verdict}`] as const)
+    .filter(([lane]) => lane in shown); // not cpu-fma and the like
   expect(stored.length).toBeGreaterThan(10);
   expect(shown).toMatchObject(Object.fromEntries(stored));
 }
@@ -29,15 +39,18 @@ async function expect_verdicts_of(page: Page, report: Report, number: number) {
 test('a card opens in the viewer, says there what it says here, and back again', async ({ page, report }) => {
   const { lanes } = (JSON.parse((await page.locator('#view').textContent())!) as Stored).replay;
   const in_viewer = (card: Report['cards'][number]) => card.kind.lanes.some((lane) => lanes.includes(lane));
-  const first = 1 + report.cards.findIndex(in_viewer), without = 1 + report.cards.findIndex((card) => !in_viewer(card));
+  const first = 1 + report.cards.findIndex(in_viewer),
+    without = 1 + report.cards.findIndex((card) => !in_viewer(card));
   await open_card(page, first);
   await expect(viewer(page)).toBeHidden();
   await open_button(page, first).scrollIntoViewIfNeeded();
   const scrolled = await page.evaluate(() => scrollY);
-  await open_button(page, first).press('Enter');  // by keyboard
+  await open_button(page, first).press('Enter'); // by keyboard
   await expect(viewer(page).locator('#replayed')).toContainText('Same as the native build');
   await expect_verdicts_of(page, report, first);
-  expect(report.cards[first - 1].kind.lanes).toContain(await viewer(page).locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'));
+  expect(report.cards[first - 1].kind.lanes).toContain(
+    await viewer(page).locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'),
+  );
   await expect.poll(() => page.url()).toMatch(new RegExp(`#kind-${first}&.*p=[0-9a-f]{144}`));
   // Keys act in the viewer, and help closes alone.
   await page.keyboard.press('h');
@@ -51,9 +64,10 @@ test('a card opens in the viewer, says there what it says here, and back again',
   await expect(open_button(page, first)).toBeFocused();
   expect(await page.evaluate(() => scrollY)).toBe(scrolled);
   expect(page.url()).not.toContain('p=');
-  await page.keyboard.press('h');  // not while it is closed
+  await page.keyboard.press('h'); // not while it is closed
   await expect(page.locator('#help')).toBeHidden();
-  if (without > 0) {  // another one, in the viewer that is there
+  if (without > 0) {
+    // another one, in the viewer that is there
     await open_card(page, without);
     await open_button(page, without).click();
     await expect_verdicts_of(page, report, without);
@@ -79,7 +93,11 @@ test('a link leads into the viewer on a phone, changed pair and all, and from th
   await expect(viewer(page).locator('[data-coordinate="1"]')).toHaveValue(moved);
   await expect(viewer(page).locator('h1')).toHaveText('the pair of a link');
   expect(await viewer(page).evaluate((dialog) => dialog.scrollWidth)).toBeLessThanOrEqual(390);
-  expect((await new AxeBuilder({ page }).include('#viewer').analyze()).violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`)).toEqual([]);
+  expect(
+    (await new AxeBuilder({ page }).include('#viewer').analyze()).violations.map(
+      ({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`,
+    ),
+  ).toEqual([]);
   await viewer(page).locator('button', { hasText: 'Back to the report' }).click();
   await expect(viewer(page)).toBeHidden();
   await expect(page.locator('#kind-1')).toHaveAttribute('open', '');
@@ -88,10 +106,15 @@ test('a link leads into the viewer on a phone, changed pair and all, and from th
 
 unwatched('without the module no card has the button, and the page says so', async ({ page }) => {
   const altered = join(dirname(process.env.GRAZE_REPORT!), 'without_viewer.html');
-  writeFileSync(altered, readFileSync(new URL(url()), 'utf8').replace(/(<script type="application\/json" id="view">)[^<]*/, '$1null'));
+  writeFileSync(
+    altered,
+    readFileSync(new URL(url()), 'utf8').replace(/(<script type="application\/json" id="view">)[^<]*/, '$1null'),
+  );
   await page.addInitScript(without_webgl);
   await page.goto(pathToFileURL(altered).href);
-  await expect(page.locator('#kinds')).toContainText('No card opens in the viewer: graze was built without the compiler for WebAssembly that it takes.');
+  await expect(page.locator('#kinds')).toContainText(
+    'No card opens in the viewer: graze was built without the compiler for WebAssembly that it takes.',
+  );
   await expect(page.locator('.card-body').first()).toBeVisible();
   await expect(page.locator('.in-viewer')).toHaveCount(0);
 });

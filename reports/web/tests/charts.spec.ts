@@ -7,17 +7,27 @@ const kLines = '#margin-chart svg g[data-mark="line"] path';
 
 // On the log axis a lane has a line on the sides of zero on which it was ever wrong.
 const lines_of = (report: Report, shown: (lane: Report['lanes'][number]) => boolean) =>
-  report.margins.filter((row) => row.stratum === null && shown(report.lanes[row.lane])).reduce((lines, row) =>
-    lines + ['disjoint', 'intersects'].filter((side) => row.points.some((p) => p.side === side && p.wrong.count > 0)).length, 0);
+  report.margins
+    .filter((row) => row.stratum === null && shown(report.lanes[row.lane]))
+    .reduce(
+      (lines, row) =>
+        lines +
+        ['disjoint', 'intersects'].filter((side) => row.points.some((p) => p.side === side && p.wrong.count > 0))
+          .length,
+      0,
+    );
 
 test('errors against margin: one line for each lane, thresholds with their bounds', async ({ page, report }) => {
   await page.locator('#margin-chart').scrollIntoViewIfNeeded();
   const published = report.lanes.filter((lane) => !lane.exact && lane.scalar === 'f32' && lane.target === 'cpu');
   await expect(page.locator(kLines)).toHaveCount(lines_of(report, (lane) => published.includes(lane)));
-  for (const d of await page.locator(kLines).evaluateAll((paths) => paths.map((path) => path.getAttribute('d')))) expect(d).not.toContain('NaN');
+  for (const d of await page.locator(kLines).evaluateAll((paths) => paths.map((path) => path.getAttribute('d'))))
+    expect(d).not.toContain('NaN');
   await expect(page.locator('.thresholds tbody tr')).toHaveCount(published.length);
   const certified = published.flatMap((lane) => {
-    const t = report.thresholds.find((one) => report.lanes[one.lane] === lane && one.group === null && one.stratum === null)!;
+    const t = report.thresholds.find(
+      (one) => report.lanes[one.lane] === lane && one.group === null && one.stratum === null,
+    )!;
     return [t.disjoint, t.intersects].filter((side) => side.exponent !== null && side.above > 0);
   });
   const titles = await page.locator('#margin-chart title').allTextContents();
@@ -44,15 +54,25 @@ test('pointing at the chart tells the lane, the margin and the interval', async 
 
 test('trust is asked for a group of strata or a stratum', async ({ page, report }) => {
   const shown = async () => (await page.locator('.thresholds tbody tr').allInnerTexts()).map((row) => row.split(/\t/));
-  const words = (t: Threshold) => (t.exponent !== null ? power_of_two(t.exponent) : t.largest === null ? 'no such pairs' : `wrong at ${power_of_two(t.largest)}`);
-  const expected = (is: (t: Report['thresholds'][number]) => boolean) => report.thresholds.filter((t) => {
-    const lane = report.lanes[t.lane];
-    return is(t) && !lane.exact && lane.scalar === 'f32' && lane.target === 'cpu';
-  }).map((t) => [words(t.disjoint), words(t.intersects)]);
+  const words = (t: Threshold) =>
+    t.exponent !== null
+      ? power_of_two(t.exponent)
+      : t.largest === null
+        ? 'no such pairs'
+        : `wrong at ${power_of_two(t.largest)}`;
+  const expected = (is: (t: Report['thresholds'][number]) => boolean) =>
+    report.thresholds
+      .filter((t) => {
+        const lane = report.lanes[t.lane];
+        return is(t) && !lane.exact && lane.scalar === 'f32' && lane.target === 'cpu';
+      })
+      .map((t) => [words(t.disjoint), words(t.intersects)]);
   const trust = page.locator('#margins select').nth(1);
   const found: string[] = [];
   for (const [value, is] of [
-    [report.groups[0].id, (t) => t.group === 0], ['all', (t) => t.group === null && t.stratum === null], [`stratum ${report.strata[1].id}`, (t) => t.stratum === 1],
+    [report.groups[0].id, (t) => t.group === 0],
+    ['all', (t) => t.group === null && t.stratum === null],
+    [`stratum ${report.strata[1].id}`, (t) => t.stratum === 1],
   ] as [string, (t: Report['thresholds'][number]) => boolean][]) {
     await trust.selectOption(value);
     expect((await shown()).map((row) => [row[1], row[4]])).toEqual(expected(is));
@@ -72,10 +92,17 @@ test('extremes: a cell for every exponent that has pairs, thin where they are fe
     await expect(page.locator(`#extremes-${kind} g[data-mark="rect"] rect`)).toHaveCount(cells);
     const few = rows.reduce((sum, row) => sum + row.cells.filter((cell) => cell.wrong.of < 100).length, 0);
     expect(few).toBeGreaterThan(0);
-    const heights = await page.locator(`#extremes-${kind} g[data-mark="rect"] rect`).evaluateAll((rects) => rects.map((rect) => rect.getBoundingClientRect().height));
+    const heights = await page
+      .locator(`#extremes-${kind} g[data-mark="rect"] rect`)
+      .evaluateAll((rects) => rects.map((rect) => rect.getBoundingClientRect().height));
     expect(heights.filter((height) => height < 8)).toHaveLength(few);
-    await expect(page.locator(`#extremes-${kind} svg`).first()).toHaveAttribute('aria-label', /(at most [0-9.]+ %|none wrong)/);
-    const fills = await page.locator(`#extremes-${kind} g[data-mark="rect"] rect`).evaluateAll((rects) => [...new Set(rects.map((rect) => getComputedStyle(rect).fill))]);
+    await expect(page.locator(`#extremes-${kind} svg`).first()).toHaveAttribute(
+      'aria-label',
+      /(at most [0-9.]+ %|none wrong)/,
+    );
+    const fills = await page
+      .locator(`#extremes-${kind} g[data-mark="rect"] rect`)
+      .evaluateAll((rects) => [...new Set(rects.map((rect) => getComputedStyle(rect).fill))]);
     expect(fills.length).toBeGreaterThan(3);
   }
 });

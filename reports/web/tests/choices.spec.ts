@@ -4,7 +4,11 @@ import { count } from '../src/format';
 import { expect, pixels, test } from './page';
 import type { Page } from '@playwright/test';
 
-const choices = async (page: Page) => JSON.parse((await page.locator('#choices').textContent())!) as { tuned: NonNullable<Choices['tuned']>; trade: NonNullable<Choices['trade']> };
+const choices = async (page: Page) =>
+  JSON.parse((await page.locator('#choices').textContent())!) as {
+    tuned: NonNullable<Choices['tuned']>;
+    trade: NonNullable<Choices['trade']>;
+  };
 
 test('the front is the first picture: a dot for each lane, and a press leads to its row', async ({ page }) => {
   const { trade } = await choices(page);
@@ -18,12 +22,15 @@ test('the front is the first picture: a dot for each lane, and a press leads to 
   const wrong = trade.lanes.filter((lane) => lane.errors.misses + lane.errors.false_hits > 0);
   expect(wrong.length).toBeGreaterThan(3);
   for (const lane of wrong) expect(lane.failure).toMatch(/^(\S+ ){17}\S+$/);
-  await expect(page.locator(`.trade code[title="graze check '${wrong[0].failure}' --lanes '${wrong[0].lane}'"]`)).toHaveCount(1);
+  await expect(
+    page.locator(`.trade code[title="graze check '${wrong[0].failure}' --lanes '${wrong[0].lane}'"]`),
+  ).toHaveCount(1);
 });
 
 test('the slider tells what each tolerance does, and names the lane under it', async ({ page }) => {
   const { tuned } = await choices(page);
-  const readout = page.locator('#tuning output'), slider = page.locator('#tuning input[type=range]');
+  const readout = page.locator('#tuning output'),
+    slider = page.locator('#tuning input[type=range]');
   await slider.scrollIntoViewIfNeeded();
   const first = await pixels(page.locator('#tuning-chart'));
   await expect(readout).toContainText('This one is chosen');

@@ -15,17 +15,24 @@ test('two campaigns compared: what changed on top, rates, kinds gained and lost'
   await expect(section.locator('.headline')).toHaveText(compare!.headline);
   expect(compare!.differences[0]).toContain('They differ in seed');
   await expect(section.locator('.differences li')).toHaveText(compare!.differences);
-  const tops = await section.locator('.headline, .differences, h3').evaluateAll((all) => all.map((one) => one.className || one.localName));
+  const tops = await section
+    .locator('.headline, .differences, h3')
+    .evaluateAll((all) => all.map((one) => one.className || one.localName));
   expect(tops.slice(0, 3)).toEqual(['headline', 'differences', 'h3']);
   const changed = compare!.rates.filter((rate) => rate.changed).length;
   const rows = section.locator('table').first().locator('tbody tr');
-  await expect(rows).toHaveCount(Math.max(1, Math.min(60, changed)));  // one that says so, where there is none
+  await expect(rows).toHaveCount(Math.max(1, Math.min(60, changed))); // one that says so, where there is none
   await section.locator('input[type=checkbox]').check();
   await expect(rows).toHaveCount(Math.min(60, compare!.rates.length));
   expect(compare!.kinds_compared).toBe(true);
   expect(compare!.gained.length + compare!.lost.length).toBeGreaterThan(0);
-  for (const [what, kinds] of [['gained', compare!.gained], ['lost', compare!.lost]] as const) {
-    await expect(section).toContainText(`Kinds of failure ${what}: ${kinds.length ? kinds.length.toLocaleString('en-US') : 'none'}`);
+  for (const [what, kinds] of [
+    ['gained', compare!.gained],
+    ['lost', compare!.lost],
+  ] as const) {
+    await expect(section).toContainText(
+      `Kinds of failure ${what}: ${kinds.length ? kinds.length.toLocaleString('en-US') : 'none'}`,
+    );
     for (const { key } of kinds.slice(0, 5)) await expect(section).toContainText(key);
   }
   await page.setViewportSize({ width: 375, height: 740 });

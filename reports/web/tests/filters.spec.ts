@@ -10,7 +10,11 @@ const names = (page: Page) => page.locator('.league tbody th');
 
 // A cell of the league table.
 const cell_at = (page: Page, report: Report, { lane, stratum }: Cell) =>
-  page.locator('.league tbody tr').nth(lane).locator('td').nth(stratum === null ? 0 : stratum + 1);
+  page
+    .locator('.league tbody tr')
+    .nth(lane)
+    .locator('td')
+    .nth(stratum === null ? 0 : stratum + 1);
 
 // The first cell of that kind of error of which `is` holds.
 function find_cell(report: Report, is: (kept: number, count: number) => boolean): Cell | undefined {
@@ -36,7 +40,9 @@ test('a search takes all words, and patterns of whole names', () => {
 test('the league table finds lanes by words and patterns, again after a reload', async ({ page, report }) => {
   const search = page.locator('#league input[type=search]');
   await search.fill('moller f64');
-  await expect(names(page)).toHaveText(report.lanes.filter((lane) => lane.id.startsWith('moller_1997/f64')).map((lane) => lane.id));
+  await expect(names(page)).toHaveText(
+    report.lanes.filter((lane) => lane.id.startsWith('moller_1997/f64')).map((lane) => lane.id),
+  );
   await search.fill('*/f64/*');
   await page.locator('#league select').first().selectOption('false_negative');
   await page.locator('#league select').nth(1).selectOption({ label: report.strata[1].id });
@@ -47,16 +53,18 @@ test('the league table finds lanes by words and patterns, again after a reload',
   await expect(names(page)).toHaveText(kept);
   await expect(search).toHaveValue('*/f64/*');
   await expect(page.locator('#league select').first()).toHaveValue('false_negative');
-  await expect(page.locator('.league thead th')).toHaveCount(3);  // lane, all strata, one
-  await page.locator('nav a', { hasText: 'Extremes' }).click();   // a link to a place keeps what is chosen
+  await expect(page.locator('.league thead th')).toHaveCount(3); // lane, all strata, one
+  await page.locator('nav a', { hasText: 'Extremes' }).click(); // a link to a place keeps what is chosen
   await expect(page).toHaveURL(/#extremes&/);
   await expect(names(page)).toHaveText(kept);
 });
 
 test('the filters reach cards and signatures, again after a reload', async ({ page, report }) => {
-  const shown = page.locator('.card:not([hidden])'), rows = page.locator('.signatures tbody tr');
+  const shown = page.locator('.card:not([hidden])'),
+    rows = page.locator('.signatures tbody tr');
   const search = page.locator('#kinds input[type=search]');
-  const kinds = (is: (kind: Report['cards'][number]['kind']) => boolean) => report.cards.filter(({ kind }) => is(kind)).length;
+  const kinds = (is: (kind: Report['cards'][number]['kind']) => boolean) =>
+    report.cards.filter(({ kind }) => is(kind)).length;
   await expect(shown).toHaveCount(report.cards.length);
   await page.locator('#kinds select').first().selectOption('moller_1997');
   const own = kinds(({ subject }) => subject === 'moller_1997');
@@ -71,7 +79,9 @@ test('the filters reach cards and signatures, again after a reload', async ({ pa
   const { cause, line, shape, lanes } = report.cards.find(({ kind }) => kind.line && kind.cause === 'rounding')!.kind;
   const place = line.split('/').at(-1)!;
   for (const [query, is] of [
-    ['overflow', (kind) => kind.cause === 'overflow'], [place, (kind) => kind.line.includes(place)], [`*${place}/${shape}`, (kind) => kind.line === line && kind.shape === shape],
+    ['overflow', (kind) => kind.cause === 'overflow'],
+    [place, (kind) => kind.line.includes(place)],
+    [`*${place}/${shape}`, (kind) => kind.line === line && kind.shape === shape],
     [`${cause} ${shape} ${place}`, (kind) => kind.line.includes(place) && kind.cause === cause && kind.shape === shape],
     [lanes[0], (kind) => kind.lanes.some((lane) => lane.includes(lanes[0]))],
   ] as [string, (kind: Report['cards'][number]['kind']) => boolean][]) {
@@ -81,8 +91,12 @@ test('the filters reach cards and signatures, again after a reload', async ({ pa
     await expect(shown, query).toHaveCount(kinds(is));
   }
   await search.fill('overflow');
-  const overflowing = report.signatures.filter(({ cards }) => cards.some((card) => report.cards[card].kind.cause === 'overflow')).length;
-  await expect(page.locator('#signatures .readout')).toHaveText(new RegExp(`^${overflowing.toLocaleString('en-US')} shown`));
+  const overflowing = report.signatures.filter(({ cards }) =>
+    cards.some((card) => report.cards[card].kind.cause === 'overflow'),
+  ).length;
+  await expect(page.locator('#signatures .readout')).toHaveText(
+    new RegExp(`^${overflowing.toLocaleString('en-US')} shown`),
+  );
   await search.fill('no such thing');
   await expect(shown).toHaveCount(0);
   await expect(page.locator('#kinds')).toContainText('No card passes the filter.');
@@ -104,11 +118,20 @@ test('a cell leads to the pairs kept of it', async ({ page, report }) => {
   await at.locator('[data-kind=false_negative]').click();
   const kept = report.signatures.filter((signature) => kept_pairs(report, cell, signature).length);
   const note = page.locator('.cell-note');
-  await expect(note).toContainText(`${report.lanes[cell.lane].id}, false negatives on ${report.strata[cell.stratum!].id}: ${kept.length} signature`);
-  await expect(note).toContainText(`graze repro ${kept_pairs(report, cell, kept[0])[0]} --lanes '${report.lanes[cell.lane].id}'`);
+  await expect(note).toContainText(
+    `${report.lanes[cell.lane].id}, false negatives on ${report.strata[cell.stratum!].id}: ${kept.length} signature`,
+  );
+  await expect(note).toContainText(
+    `graze repro ${kept_pairs(report, cell, kept[0])[0]} --lanes '${report.lanes[cell.lane].id}'`,
+  );
   await expect(page.locator('.signatures tbody tr')).toHaveCount(Math.min(12, kept.length));
-  for (const pair of await page.locator('.signatures tbody td:last-child').allTextContents()) expect(pair).toMatch(new RegExp(`^${report.strata[cell.stratum!].id}:`));
-  const kinds = new Set(kept.flatMap((signature) => signature.cards).filter((card) => report.cards[card].kind.lanes.includes(report.lanes[cell.lane].id)));
+  for (const pair of await page.locator('.signatures tbody td:last-child').allTextContents())
+    expect(pair).toMatch(new RegExp(`^${report.strata[cell.stratum!].id}:`));
+  const kinds = new Set(
+    kept
+      .flatMap((signature) => signature.cards)
+      .filter((card) => report.cards[card].kind.lanes.includes(report.lanes[cell.lane].id)),
+  );
   await expect(page.locator('.card:not([hidden])')).toHaveCount(kinds.size);
   await expect(page.locator('#kinds h2')).toBeInViewport();
   await page.reload();
@@ -130,7 +153,11 @@ test('a cell without a kept pair gives the command, one without errors says so',
   await cell_at(page, report, none).locator('[data-kind=false_negative]').click();
   await expect(page.locator('#league .readout')).toContainText('so no pair shows one');
   await expect(page.locator('.cell-note')).toBeEmpty();
-  await cell_at(page, report, find_cell(report, (kept) => kept > 0)!).focus();
+  await cell_at(
+    page,
+    report,
+    find_cell(report, (kept) => kept > 0)!,
+  ).focus();
   await page.keyboard.press('Enter');
   await expect(page.locator('.cell-note')).toContainText('wrong verdicts on');
 });
@@ -145,13 +172,24 @@ test('the heads of the league table stay', async ({ page }) => {
 });
 
 test('where lanes of a device fail, a card has their program', async ({ report }) => {
-  const fails_on = (card: Report['cards'][number], device: boolean) => card.verdicts.some(({ lane, wrong }) => wrong && report.lanes[lane].target.startsWith('cuda') === device
-    && card.kind.lanes.includes(report.lanes[lane].id));
+  const fails_on = (card: Report['cards'][number], device: boolean) =>
+    card.verdicts.some(
+      ({ lane, wrong }) =>
+        wrong &&
+        report.lanes[lane].target.startsWith('cuda') === device &&
+        card.kind.lanes.includes(report.lanes[lane].id),
+    );
   const has = (card: Report['cards'][number], program: string) => card.snippets.some(({ label }) => label === program);
   for (const card of report.cards) {
     // On a pair shown with a second reason, lanes of the kind may fail for that one: then there may be no program.
-    const mixed = card.verdicts.some(({ lane, wrong }) => wrong && report.lanes[lane].algorithm === card.kind.subject && !card.kind.lanes.includes(report.lanes[lane].id));
-    for (const [program, device] of [['cuda', true], ['cpp', false]] as const) {
+    const mixed = card.verdicts.some(
+      ({ lane, wrong }) =>
+        wrong && report.lanes[lane].algorithm === card.kind.subject && !card.kind.lanes.includes(report.lanes[lane].id),
+    );
+    for (const [program, device] of [
+      ['cuda', true],
+      ['cpp', false],
+    ] as const) {
       if (has(card, program)) expect(fails_on(card, device)).toBe(true);
       else if (!mixed) expect(fails_on(card, device), `${card.kind.key} ${program}`).toBe(false);
     }

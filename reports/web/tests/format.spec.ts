@@ -18,8 +18,9 @@ test('bounds are rounded outward', () => {
   let rounded = 0;
   const wrong: string[] = [];
   for (let i = 0; i < 100_000; ++i) {
-    const share = i % 4 === 0 ? Number((10 ** (-12 * draw())).toPrecision(1 + (i / 4) % 4)) : 10 ** (-12 * draw());
-    const upper = percent_bound(share, 'upper'), lower = percent_bound(share, 'lower');
+    const share = i % 4 === 0 ? Number((10 ** (-12 * draw())).toPrecision(1 + ((i / 4) % 4))) : 10 ** (-12 * draw());
+    const upper = percent_bound(share, 'upper'),
+      lower = percent_bound(share, 'lower');
     const within = read(upper) >= share && read(lower) <= share;
     const near = read(upper) <= share * 1.011 + 1.0001e-5 && read(lower) >= share * 0.989 - 1.0001e-5;
     if (!within || !near) wrong.push(`${share}: ${lower} to ${upper}`);

@@ -8,7 +8,9 @@ const place_of = (line: string) => line.split('/').at(-1)!;
 test('the cards have all sorts of kinds', async ({ report }) => {
   const kinds = report.cards.map(({ kind }) => kind);
   expect(kinds.some(({ line }) => line) && kinds.some(({ line }) => !line)).toBe(true);
-  expect(kinds.some(({ settled: [yes, of] }) => yes < of) && kinds.some(({ settled: [yes, of] }) => yes === of)).toBe(true);
+  expect(kinds.some(({ settled: [yes, of] }) => yes < of) && kinds.some(({ settled: [yes, of] }) => yes === of)).toBe(
+    true,
+  );
   expect(new Set(kinds.map(({ shape }) => shape)).size).toBeGreaterThan(1);
   expect(new Set(kinds.map(({ key }) => key)).size).toBe(kinds.length);
   expect([...kinds].sort((l, r) => r.pairs - l.pairs)).toEqual(kinds);
@@ -17,21 +19,40 @@ test('the cards have all sorts of kinds', async ({ report }) => {
 test('title, sentence, lanes and verdicts of a card do not contradict each other', async ({ page, report }) => {
   await page.locator('button', { hasText: 'Open all' }).click();
   await expect(page.locator('.card .kind-lanes .all')).toHaveCount(report.cards.length);
-  const cards = await page.locator('.card').evaluateAll((all) => all.map((card) => {  // at once: a question for each text takes long
-    const texts = (where: string) => [...card.querySelectorAll(where)].map((one) => one.textContent!.replace(/\s+/g, ' ').trim());
-    return {
-      id: card.id, title: texts('summary .card-title'), count: texts('summary .card-count'), sentences: texts('.sentences li'),
-      lanes: texts('.kind-lanes'), all: texts('.kind-lanes .all'), here: texts('.kind-lanes .here'), targets: texts('.verdicts thead th'),
-      marked: [...card.querySelectorAll('.verdicts tbody tr')].flatMap((row) => [...row.querySelectorAll('td')].flatMap((cell, column) =>
-        (cell.className === 'bad' ? [{ name: row.querySelector('th')!.textContent!, column }] : []))),
-    };
-  }));
+  const cards = await page.locator('.card').evaluateAll((all) =>
+    all.map((card) => {
+      // at once: a question for each text takes long
+      const texts = (where: string) =>
+        [...card.querySelectorAll(where)].map((one) => one.textContent!.replace(/\s+/g, ' ').trim());
+      return {
+        id: card.id,
+        title: texts('summary .card-title'),
+        count: texts('summary .card-count'),
+        sentences: texts('.sentences li'),
+        lanes: texts('.kind-lanes'),
+        all: texts('.kind-lanes .all'),
+        here: texts('.kind-lanes .here'),
+        targets: texts('.verdicts thead th'),
+        marked: [...card.querySelectorAll('.verdicts tbody tr')].flatMap((row) =>
+          [...row.querySelectorAll('td')].flatMap((cell, column) =>
+            cell.className === 'bad' ? [{ name: row.querySelector('th')!.textContent!, column }] : [],
+          ),
+        ),
+      };
+    }),
+  );
   let partly = 0;
   for (const [i, { kind, sentences, verdicts }] of report.cards.entries()) {
     const card = cards[i];
     expect(card.id).toBe(`kind-${i + 1}`);
-    expect(card.title).toEqual([`${kind.subject}: ${kind.cause}${kind.line ? ` at ${place_of(kind.line)}` : ''}, ${kind.shape} pairs`]);
-    expect(card.count[0]).toMatch(new RegExp(`^${kind.pairs.toLocaleString('en-US')} pairs?, ${kind.signatures.toLocaleString('en-US')} signatures?$`));
+    expect(card.title).toEqual([
+      `${kind.subject}: ${kind.cause}${kind.line ? ` at ${place_of(kind.line)}` : ''}, ${kind.shape} pairs`,
+    ]);
+    expect(card.count[0]).toMatch(
+      new RegExp(
+        `^${kind.pairs.toLocaleString('en-US')} pairs?, ${kind.signatures.toLocaleString('en-US')} signatures?$`,
+      ),
+    );
     const first = card.sentences[0];
     expect(first).toBe(sentences[0]);
     expect(first.startsWith(`${kind.subject}/`), first).toBe(true);
@@ -42,23 +63,38 @@ test('title, sentence, lanes and verdicts of a card do not contradict each other
     const claimed = card.here.length > 0 ? card.here[0].split(', ').map((lane) => `${kind.subject}/${lane}`) : said;
     partly += card.here.length;
     const wrong = card.marked.map(({ name, column }) => `${name}/${card.targets[column]}`);
-    expect(wrong.sort()).toEqual(verdicts.filter((verdict) => verdict.wrong).map((verdict) => report.lanes[verdict.lane].id).sort());
+    expect(wrong.sort()).toEqual(
+      verdicts
+        .filter((verdict) => verdict.wrong)
+        .map((verdict) => report.lanes[verdict.lane].id)
+        .sort(),
+    );
     expect(claimed.length).toBeGreaterThan(0);
     expect(claimed).toEqual(said.filter((lane) => wrong.includes(lane)));
-    const [yes, of] = kind.settled, text = card.lanes[0];
+    const [yes, of] = kind.settled,
+      text = card.lanes[0];
     expect(text.includes('The cause is settled for')).toBe(yes < of);
-    if (yes < of) expect(text).toContain(`settled for ${yes.toLocaleString('en-US')} of ${of.toLocaleString('en-US')} lanes looked at`);
+    if (yes < of)
+      expect(text).toContain(
+        `settled for ${yes.toLocaleString('en-US')} of ${of.toLocaleString('en-US')} lanes looked at`,
+      );
   }
   expect(partly).toBeGreaterThan(0);
   expect(partly).toBeLessThan(report.cards.length);
 });
 
 test('the histograms say their numbers, which add up, and draw them', async ({ page, report }) => {
-  const with_sides = report.cards.findIndex(({ kind }) => ['-', '0', '+'].every((sign) => Object.keys(kind.margins).some((bucket) => bucket.startsWith(sign))));
+  const with_sides = report.cards.findIndex(({ kind }) =>
+    ['-', '0', '+'].every((sign) => Object.keys(kind.margins).some((bucket) => bucket.startsWith(sign))),
+  );
   expect(with_sides).toBeGreaterThanOrEqual(0);
   for (const place of [0, 1, with_sides]) {
-    const { kind } = report.cards[place], card = await open_card(page, place + 1);
-    for (const [name, numbers, of] of [['margins', kind.margins, kind.pairs], ['strata', kind.strata, null]] as const) {
+    const { kind } = report.cards[place],
+      card = await open_card(page, place + 1);
+    for (const [name, numbers, of] of [
+      ['margins', kind.margins, kind.pairs],
+      ['strata', kind.strata, null],
+    ] as const) {
       const svg = card.locator(`.histogram.${name} svg`).first();
       await svg.scrollIntoViewIfNeeded();
       const alt = (await svg.getAttribute('aria-label'))!;
@@ -68,21 +104,37 @@ test('the histograms say their numbers, which add up, and draw them', async ({ p
       expect([...said].sort()).toEqual(Object.values(numbers).sort());
       expect(title).toContain(` ${sum.toLocaleString('en-US')} pair`);
       if (of !== null) expect(sum).toBe(of);
-      const heights = await svg.locator('g[data-mark="bar"] rect').evaluateAll((bars) => bars.map((bar) => Math.max(Number(bar.getAttribute('height')), Number(bar.getAttribute('width')))));
+      const heights = await svg
+        .locator('g[data-mark="bar"] rect')
+        .evaluateAll((bars) =>
+          bars.map((bar) => Math.max(Number(bar.getAttribute('height')), Number(bar.getAttribute('width')))),
+        );
       expect(heights.filter((height) => height > 0).length).toBeGreaterThanOrEqual(said.length);
     }
     const margins = (await card.locator('.histogram.margins svg').first().getAttribute('aria-label'))!;
-    for (const [bucket, word] of [['-', 'deep'], ['+', 'apart']]) expect(margins.includes(word)).toBe(Object.keys(kind.margins).some((one) => one.startsWith(bucket)));
+    for (const [bucket, word] of [
+      ['-', 'deep'],
+      ['+', 'apart'],
+    ])
+      expect(margins.includes(word)).toBe(Object.keys(kind.margins).some((one) => one.startsWith(bucket)));
   }
 });
 
 test('the worst pair is named, with a command that explains it', async ({ page, report }) => {
-  const place = report.cards.findIndex(({ kind, pair }) => kind.worst.pair !== pair.hex.join(' ') && kind.worst.margin_ulps !== 0);
-  const { kind } = report.cards[place], worst = (await open_card(page, place + 1)).locator('.worst');
+  const place = report.cards.findIndex(
+    ({ kind, pair }) => kind.worst.pair !== pair.hex.join(' ') && kind.worst.margin_ulps !== 0,
+  );
+  const { kind } = report.cards[place],
+    worst = (await open_card(page, place + 1)).locator('.worst');
   await expect(worst).toContainText(kind.worst.from);
   await expect(worst).toContainText(kind.worst.margin_ulps < 0 ? 'ulps deep' : 'ulps apart');
   await worst.locator('[aria-label="Copy the command that explains the worst pair"]').click();
-  expect(await page.evaluate(() => navigator.clipboard.readText())).toBe(`echo '${kind.worst.pair}' > worst.pairs; graze explain worst.pairs --lanes '${kind.subject}/*'`);
+  expect(await page.evaluate(() => navigator.clipboard.readText())).toBe(
+    `echo '${kind.worst.pair}' > worst.pairs; graze explain worst.pairs --lanes '${kind.subject}/*'`,
+  );
   const same = report.cards.findIndex(({ kind: one, pair }) => one.worst.pair === pair.hex.join(' '));
-  if (same >= 0) await expect((await open_card(page, same + 1)).locator('.worst')).toHaveText(/^The pair shown is also the worst one looked at/);
+  if (same >= 0)
+    await expect((await open_card(page, same + 1)).locator('.worst')).toHaveText(
+      /^The pair shown is also the worst one looked at/,
+    );
 });

@@ -11,14 +11,29 @@ const kStrata = 'thesis,near_edge_edge,coplanar_wide,exact_contact,far_from_orig
 export default function make_report() {
   const { GRAZE, GRAZE_REPORT } = process.env;
   if (GRAZE_REPORT) {
-    if (!existsSync(GRAZE_REPORT)) throw new Error(`GRAZE_REPORT: expected a report's page, found nothing at ${GRAZE_REPORT}`);
+    if (!existsSync(GRAZE_REPORT))
+      throw new Error(`GRAZE_REPORT: expected a report's page, found nothing at ${GRAZE_REPORT}`);
     return;
   }
   if (!GRAZE) throw new Error('GRAZE: expected the path of the graze binary, found nothing');
   const folder = mkdtempSync(join(tmpdir(), 'graze-page-'));
   const run = (...args: string[]) => execFileSync(GRAZE, args, { cwd: folder, stdio: ['ignore', 'ignore', 'inherit'] });
   const campaign = (out: string, seed: string, pairs: string, lanes: string) => {
-    run('fuzz', '--pairs', pairs, '--seed', seed, '--strata', kStrata, '--lanes', lanes, '--executor', 'twin', '--out', out);
+    run(
+      'fuzz',
+      '--pairs',
+      pairs,
+      '--seed',
+      seed,
+      '--strata',
+      kStrata,
+      '--lanes',
+      lanes,
+      '--executor',
+      'twin',
+      '--out',
+      out,
+    );
     run('minimize', out, '--executor', 'twin');
     run('tune', 'moller_1997/f32/cpu', '--pairs', '5000', '--strata', 'near_*', '--out', out);
     run('trade', '--pairs', '2000', '--strata', 'near_*', '--out', out);
@@ -30,7 +45,8 @@ export default function make_report() {
   try {
     run('view', 'thesis:1:0', '--out', 'view.html');
     process.env.GRAZE_VIEW = join(folder, 'view.html');
-  } catch {  // a build without the viewer; cli/view.test.cpp says whether it should have one
+  } catch {
+    // a build without the viewer; cli/view.test.cpp says whether it should have one
     process.env.GRAZE_VIEW = '';
   }
   process.env.GRAZE_REPORT = join(folder, 'campaign', 'report.html');

@@ -10,21 +10,25 @@ export const compare_url = () => pathToFileURL(process.env.GRAZE_COMPARE || proc
 // Without WebGL, which takes most of the time where there is no GPU, but in the tests that ask for it.
 export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs | null; watched: void }>({
   webgl: [false, { option: true }],
-  watched: [async ({ page, webgl }, use) => {
-    if (!webgl) await page.addInitScript(without_webgl);
-    const fetched: string[] = [], said: string[] = [];
-    page.on('request', (request) => {
-      const asked = request.url().split('#')[0];
-      if (asked !== url() && asked !== compare_url() && !/^(data|blob):/.test(asked)) fetched.push(asked);
-    });
-    page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
-    page.on('pageerror', (error) => said.push(`error: ${error.message}`));
-    await page.goto(url());
-    await page.waitForSelector('#method');
-    await use();
-    expect(fetched, 'fetched').toEqual([]);
-    expect(said, 'on the console').toEqual([]);
-  }, { auto: true }],
+  watched: [
+    async ({ page, webgl }, use) => {
+      if (!webgl) await page.addInitScript(without_webgl);
+      const fetched: string[] = [],
+        said: string[] = [];
+      page.on('request', (request) => {
+        const asked = request.url().split('#')[0];
+        if (asked !== url() && asked !== compare_url() && !/^(data|blob):/.test(asked)) fetched.push(asked);
+      });
+      page.on('console', (message) => said.push(`${message.type()}: ${message.text()}`));
+      page.on('pageerror', (error) => said.push(`error: ${error.message}`));
+      await page.goto(url());
+      await page.waitForSelector('#method');
+      await use();
+      expect(fetched, 'fetched').toEqual([]);
+      expect(said, 'on the console').toEqual([]);
+    },
+    { auto: true },
+  ],
   report: async ({ page, watched: _ }, use) => {
     await use(JSON.parse((await page.locator('#report').textContent())!) as Report);
   },

@@ -7,12 +7,18 @@ import { chromium } from '@playwright/test';
 
 const [report, desktop, phone] = process.argv.slice(2);
 const executablePath = process.env.GRAZE_CHROMIUM ?? execSync('command -v chromium', { encoding: 'utf8' }).trim();
-const browser = await chromium.launch({ executablePath, args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'] });
-for (const [path, width, height] of [[desktop, 1280, 800], [phone, 390, 844]]) {
+const browser = await chromium.launch({
+  executablePath,
+  args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
+});
+for (const [path, width, height] of [
+  [desktop, 1280, 800],
+  [phone, 390, 844],
+]) {
   const page = await browser.newPage({ viewport: { width, height } });
   await page.goto(pathToFileURL(resolve(report)).href);
   await page.waitForSelector('#glance svg, #replayed');
-  await page.waitForTimeout(1500);  // the viewer's answer comes a moment later
+  await page.waitForTimeout(1500); // the viewer's answer comes a moment later
   await page.screenshot({ path });
 }
 await browser.close();

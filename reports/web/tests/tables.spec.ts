@@ -6,22 +6,32 @@ const column_of = (title: string) => `//thead//th[.//span[normalize-space()="${t
 test('the league table holds the report’s numbers, with intervals', async ({ page, report }) => {
   const rows = page.locator('.league tbody tr');
   await expect(rows).toHaveCount(report.lanes.length);
-  const rate = report.rates.find((r) => r.stratum === 0 && r.wrong.count > 0) ?? report.rates.find((r) => r.stratum === 0)!;
+  const rate =
+    report.rates.find((r) => r.stratum === 0 && r.wrong.count > 0) ?? report.rates.find((r) => r.stratum === 0)!;
   const has_all = report.rates.some((r) => r.stratum === null);
-  const cell = rows.nth(rate.lane).locator('td').nth(has_all ? 1 : 0);
+  const cell = rows
+    .nth(rate.lane)
+    .locator('td')
+    .nth(has_all ? 1 : 0);
   const title = (await cell.getAttribute('title'))!;
   expect(title).toContain(`${report.lanes[rate.lane].id} on ${report.strata[0].id}`);
-  expect(title).toContain(`false positives ${rate.false_positive.count.toLocaleString('en-US')} of ${rate.false_positive.of.toLocaleString('en-US')}`);
+  expect(title).toContain(
+    `false positives ${rate.false_positive.count.toLocaleString('en-US')} of ${rate.false_positive.of.toLocaleString('en-US')}`,
+  );
   expect(title).toMatch(/95 %: [<0-9.]/);
   await cell.hover();
   await expect(page.locator('#league .readout')).toHaveText(title);
 });
 
 test('the league table sorts by a column, down and up', async ({ page, report }) => {
-  const head = page.locator(`.league ${column_of(report.strata[1].id)}`.replace('.league ', '//table[contains(@class,"league")]'));
+  const head = page.locator(
+    `.league ${column_of(report.strata[1].id)}`.replace('.league ', '//table[contains(@class,"league")]'),
+  );
   const shares = async () => {
     const names = await page.locator('.league tbody th').allTextContents();
-    return names.map((name) => report.rates.find((r) => report.lanes[r.lane].id === name && r.stratum === 1)!.wrong.share);
+    return names.map(
+      (name) => report.rates.find((r) => report.lanes[r.lane].id === name && r.stratum === 1)!.wrong.share,
+    );
   };
   await head.locator('button').click();
   await expect(head).toHaveAttribute('aria-sort', 'descending');
@@ -40,7 +50,9 @@ test('the league table filters by text, scalar, target and stratum', async ({ pa
   await page.locator('#league input[type=search]').fill('moller');
   await expect(names).toHaveCount(report.lanes.filter((lane) => lane.id.includes('moller')).length);
   await page.locator('#league .chips button', { hasText: /^f64$/ }).click();
-  await expect(names).toHaveCount(report.lanes.filter((lane) => lane.id.includes('moller') && lane.scalar === 'f32').length);
+  await expect(names).toHaveCount(
+    report.lanes.filter((lane) => lane.id.includes('moller') && lane.scalar === 'f32').length,
+  );
   await page.locator('#league .chips button', { hasText: /^cpu$/ }).click();
   for (const name of await names.allTextContents()) expect(name).toMatch(/^moller_1997\/f32\/(?!cpu$)/);
   await page.locator('#league select').nth(1).selectOption({ label: report.strata[2].id });
@@ -63,14 +75,20 @@ test('the arrow keys walk through the cells', async ({ page }) => {
 test('cells can be read on their colour', async ({ page }) => {
   const worst = await page.locator('.rate span').evaluateAll((spans) => {
     const luminance = (colour: string) => {
-      const [r, g, b] = colour.match(/[\d.]+/g)!.map(Number).map((c) => c / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+      const [r, g, b] = colour
+        .match(/[\d.]+/g)!
+        .map(Number)
+        .map((c) => c / 255)
+        .map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
       return 0.2126 * r + 0.7152 * g + 0.0722 * b;
     };
-    return Math.min(...spans.map((span) => {
-      const style = getComputedStyle(span);
-      const [x, y] = [luminance(style.color), luminance(style.backgroundColor)];
-      return (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05);
-    }));
+    return Math.min(
+      ...spans.map((span) => {
+        const style = getComputedStyle(span);
+        const [x, y] = [luminance(style.color), luminance(style.backgroundColor)];
+        return (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05);
+      }),
+    );
   });
   expect(worst).toBeGreaterThanOrEqual(4.5);
 });
@@ -105,7 +123,12 @@ test('signatures sort and filter, and lead to their kinds', async ({ page, repor
   const link = page.locator('.signatures .link', { hasText: new RegExp(`^kind ${last}$`) }).first();
   while (!(await link.count()) && (await more.isVisible())) await more.click();
   const row = report.signatures.find(({ cards }) => cards.includes(last - 1))!;
-  await expect(rows.filter({ has: page.locator('.link', { hasText: new RegExp(`^kind ${last}$`) }) }).first().locator('.link')).toHaveText(row.cards.map((card) => `kind ${card + 1}`));
+  await expect(
+    rows
+      .filter({ has: page.locator('.link', { hasText: new RegExp(`^kind ${last}$`) }) })
+      .first()
+      .locator('.link'),
+  ).toHaveText(row.cards.map((card) => `kind ${card + 1}`));
   await link.click();
   await expect(page.locator(`#kind-${last}`)).toHaveAttribute('open', '');
   await expect(page.locator(`#kind-${last} .truth`).first()).toBeInViewport();

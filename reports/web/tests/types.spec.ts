@@ -13,58 +13,111 @@ const read = (page: string) => JSON.parse(readFileSync(page.replace(/html$/, 'js
 
 // The compiler's complaints about values, each of its type, in one run, which takes seconds; for each value.
 function complaints(values: Record<string, [type: string, value: unknown]>, info: TestInfo): Record<string, string> {
-  const rows = Object.entries(values).map(([name, [type, value]]) => `export const ${name}: ${type} = ${JSON.stringify(value)};\n`);
+  const rows = Object.entries(values).map(
+    ([name, [type, value]]) => `export const ${name}: ${type} = ${JSON.stringify(value)};\n`,
+  );
   const file = info.outputPath('reports.ts');
-  writeFileSync(file, `import type { Choices, Costs, Report } from ${JSON.stringify(resolve(here, '../src/report'))};\n${rows.join('')}`);
+  writeFileSync(
+    file,
+    `import type { Choices, Costs, Report } from ${JSON.stringify(resolve(here, '../src/report'))};\n${rows.join('')}`,
+  );
   let said = '';
   try {
-    execFileSync(process.execPath, [join(here, '../node_modules/typescript/bin/tsc'), '--noEmit', '--strict', '--pretty', 'false', '--skipLibCheck',
-      '--moduleResolution', 'bundler', '--module', 'ESNext', file], { encoding: 'utf8', cwd: info.outputDir });
+    execFileSync(
+      process.execPath,
+      [
+        join(here, '../node_modules/typescript/bin/tsc'),
+        '--noEmit',
+        '--strict',
+        '--pretty',
+        'false',
+        '--skipLibCheck',
+        '--moduleResolution',
+        'bundler',
+        '--module',
+        'ESNext',
+        file,
+      ],
+      { encoding: 'utf8', cwd: info.outputDir },
+    );
   } catch (error) {
     said = (error as { stdout: string }).stdout;
   }
-  const of_line = (number: number) => said.split(/^(?=\S)/m).filter((one) => one.startsWith(`reports.ts(${number},`)).join('');
+  const of_line = (number: number) =>
+    said
+      .split(/^(?=\S)/m)
+      .filter((one) => one.startsWith(`reports.ts(${number},`))
+      .join('');
   const found = Object.fromEntries(Object.keys(values).map((name, i) => [name, of_line(i + 2)]));
-  expect(Object.values(found).join('').length, said).toBe(said.length);  // nothing of another line
+  expect(Object.values(found).join('').length, said).toBe(said.length); // nothing of another line
   return found;
 }
 
-const beside = (name: string) => JSON.parse(readFileSync(process.env.GRAZE_REPORT!.replace(/report.html$/, name), 'utf8'));
+const beside = (name: string) =>
+  JSON.parse(readFileSync(process.env.GRAZE_REPORT!.replace(/report.html$/, name), 'utf8'));
 
 test('real reports, costs and choices are what report.ts says', ({}, info) => {
   const { GRAZE_REPORT, GRAZE_COMPARE } = process.env;
-  const campaign = read(GRAZE_REPORT!), compared = GRAZE_COMPARE ? read(GRAZE_COMPARE) : null, costs = beside('costs.json') as Costs;
+  const campaign = read(GRAZE_REPORT!),
+    compared = GRAZE_COMPARE ? read(GRAZE_COMPARE) : null,
+    costs = beside('costs.json') as Costs;
   const [tuned, trade] = [beside('tune.json'), beside('trade.json')];
   expect(campaign.cards.some((card) => card.maps && card.snippets.length && card.sentences.length)).toBe(true);
   if (compared) expect(compared.compare).not.toBeNull();
   expect(costs.rows.length).toBeGreaterThan(20);
   expect(tuned.curves.length).toBeGreaterThan(3);
   expect(trade.lanes.length).toBeGreaterThan(10);
-  const found = complaints({
-    campaign: ['Report', campaign], ...(compared ? { compared: ['Report', compared] } : {}), costs: ['Costs', costs],
-    choices: ['Choices', { tuned, trade }], none: ['Choices', { tuned: null, trade: null }],
-  }, info);
+  const found = complaints(
+    {
+      campaign: ['Report', campaign],
+      ...(compared ? { compared: ['Report', compared] } : {}),
+      costs: ['Costs', costs],
+      choices: ['Choices', { tuned, trade }],
+      none: ['Choices', { tuned: null, trade: null }],
+    },
+    info,
+  );
   for (const [name, said] of Object.entries(found)) expect(said, name).toBe('');
 });
 
 test('and others are told apart', ({}, info) => {
-  const whole = read(process.env.GRAZE_REPORT!), costs = beside('costs.json'), [tuned, trade] = [beside('tune.json'), beside('trade.json')];
-  const right: Report = { ...whole, rates: [], margins: [], thresholds: [], extremes: [], side_by_side: [], signatures: [], sources: {}, cards: [{ ...whole.cards[0], maps: null, snippets: [] }] };
+  const whole = read(process.env.GRAZE_REPORT!),
+    costs = beside('costs.json'),
+    [tuned, trade] = [beside('tune.json'), beside('trade.json')];
+  const right: Report = {
+    ...whole,
+    rates: [],
+    margins: [],
+    thresholds: [],
+    extremes: [],
+    side_by_side: [],
+    signatures: [],
+    sources: {},
+    cards: [{ ...whole.cards[0], maps: null, snippets: [] }],
+  };
   const { strata: _, ...missing } = right;
-  const found = complaints({
-    right: ['Report', right],
-    missing: ['Report', missing],
-    more: ['Report', { ...right, lane: 1 }],
-    kind: ['Report', { ...right, cards: [{ ...right.cards[0], kind: { ...right.cards[0].kind, shape: 'round' } }] }],
-    deeper: ['Report', { ...right, cards: [{ ...right.cards[0], truth: { ...right.cards[0].truth, ulps: 0 } }] }],
-    other_type: ['Report', { ...right, run: { ...right.run, seed: '1' } }],
-    other_word: ['Report', { ...right, lanes: [{ ...right.lanes[0], scalar: 'f16' }] }],
-    costs: ['Costs', { ...costs, passes: '9' }],
-    choices: ['Choices', { tuned, trade: { ...trade, machine: 1 } }],
-  }, info);
+  const found = complaints(
+    {
+      right: ['Report', right],
+      missing: ['Report', missing],
+      more: ['Report', { ...right, lane: 1 }],
+      kind: ['Report', { ...right, cards: [{ ...right.cards[0], kind: { ...right.cards[0].kind, shape: 'round' } }] }],
+      deeper: ['Report', { ...right, cards: [{ ...right.cards[0], truth: { ...right.cards[0].truth, ulps: 0 } }] }],
+      other_type: ['Report', { ...right, run: { ...right.run, seed: '1' } }],
+      other_word: ['Report', { ...right, lanes: [{ ...right.lanes[0], scalar: 'f16' }] }],
+      costs: ['Costs', { ...costs, passes: '9' }],
+      choices: ['Choices', { tuned, trade: { ...trade, machine: 1 } }],
+    },
+    info,
+  );
   const expected: Record<string, string> = {
-    missing: "Property 'strata' is missing", more: `'"lane"' does not exist`, kind: `'"round"' is not assignable`, deeper: `'"ulps"' does not exist`,
-    other_type: "'string' is not assignable to type 'number'", other_word: `'"f16"' is not assignable`, costs: "'string' is not assignable",
+    missing: "Property 'strata' is missing",
+    more: `'"lane"' does not exist`,
+    kind: `'"round"' is not assignable`,
+    deeper: `'"ulps"' does not exist`,
+    other_type: "'string' is not assignable to type 'number'",
+    other_word: `'"f16"' is not assignable`,
+    costs: "'string' is not assignable",
     choices: "'number' is not assignable",
   };
   expect(found.right).toBe('');

@@ -11,8 +11,10 @@ import { pixels, without_webgl } from './page';
 const file = () => process.env.GRAZE_VIEW!;
 const url = () => pathToFileURL(file()).href;
 const kCells = 256;
-const kEndsApart = '40000000c0000000408000003f80000040a00000c00000003f800000c0400000c04000003ff333344019999a40d66666bdccccc0bf19999a409666663ff33334bf19999a402ccccd';  // thesis:1:15524
-const kOverflow = 'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95';  // extreme_scale:1:2
+const kEndsApart =
+  '40000000c0000000408000003f80000040a00000c00000003f800000c0400000c04000003ff333344019999a40d66666bdccccc0bf19999a409666663ff33334bf19999a402ccccd'; // thesis:1:15524
+const kOverflow =
+  'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95'; // extreme_scale:1:2
 
 // Without WebGL, which takes most of the time where there is no GPU, but in the tests that ask for it.
 const test = base.extend<{ webgl: boolean; viewer: Page }>({
@@ -20,7 +22,8 @@ const test = base.extend<{ webgl: boolean; viewer: Page }>({
   viewer: async ({ page, webgl }, use) => {
     if (!webgl) await page.addInitScript(without_webgl);
     test.skip(!file(), 'this build has no viewer');
-    const fetched: string[] = [], said: string[] = [];
+    const fetched: string[] = [],
+      said: string[] = [];
     page.on('request', (request) => {
       const asked = request.url().split('#')[0];
       if (asked !== url() && !asked.startsWith('data:') && !asked.startsWith('blob:')) fetched.push(asked);
@@ -40,8 +43,14 @@ const verdict = (page: Page, lane: string) => page.locator(`[data-lane="${lane}"
 const name = (page: Page) => page.locator('h1').textContent();
 
 // The verdicts on the page, without their marks.
-const verdicts = (page: Page) => page.locator('[data-lane]').evaluateAll((cells) =>
-  Object.fromEntries(cells.map((cell) => [cell.getAttribute('data-lane')!, cell.textContent!.replace(/[^a-z]/g, '')])));
+const verdicts = (page: Page) =>
+  page
+    .locator('[data-lane]')
+    .evaluateAll((cells) =>
+      Object.fromEntries(
+        cells.map((cell) => [cell.getAttribute('data-lane')!, cell.textContent!.replace(/[^a-z]/g, '')]),
+      ),
+    );
 
 test('it checks itself by stored verdicts, and says on how many pairs', async ({ viewer }) => {
   const said = (await viewer.locator('#replayed').textContent())!;
@@ -52,10 +61,17 @@ test('it checks itself by stored verdicts, and says on how many pairs', async ({
 
 test('where a verdict differs from the stored one it shows none', async ({ page }) => {
   test.skip(!file());
-  const altered = join(dirname(file()), 'altered.html'), text = readFileSync(file(), 'utf8'), stored = /"verdicts":"([012])/;
-  writeFileSync(altered, text.replace(stored, (_, first) => `"verdicts":"${first === '1' ? 0 : 1}`));
+  const altered = join(dirname(file()), 'altered.html'),
+    text = readFileSync(file(), 'utf8'),
+    stored = /"verdicts":"([012])/;
+  writeFileSync(
+    altered,
+    text.replace(stored, (_, first) => `"verdicts":"${first === '1' ? 0 : 1}`),
+  );
   await page.goto(pathToFileURL(altered).href);
-  await expect(page.locator('#warning')).toContainText(/decides otherwise than the native build: stored pair 1, projected_sat\/f32\/cpu: here \w+, natively \w+\./);
+  await expect(page.locator('#warning')).toContainText(
+    /decides otherwise than the native build: stored pair 1, projected_sat\/f32\/cpu: here \w+, natively \w+\./,
+  );
   await expect(page.locator('[data-lane]')).toHaveCount(0);
 });
 
@@ -63,36 +79,59 @@ test('it says what graze check says', async ({ viewer }) => {
   for (let pair = 0; pair < 3; ++pair) {
     await viewer.locator('button', { hasText: 'check line' }).click();
     const line = (await viewer.locator('.copied code').textContent())!;
-    const checked = JSON.parse(execFileSync(process.env.GRAZE!, ['check', '-', '--json', '--executor', 'twin'], { input: line, encoding: 'utf8' })) as { truth: { verdict: string; contact: string }; lanes: Record<string, string> };
+    const checked = JSON.parse(
+      execFileSync(process.env.GRAZE!, ['check', '-', '--json', '--executor', 'twin'], {
+        input: line,
+        encoding: 'utf8',
+      }),
+    ) as { truth: { verdict: string; contact: string }; lanes: Record<string, string> };
     const shown = await verdicts(viewer);
     for (const [lane, said] of Object.entries(shown)) expect(checked.lanes[lane], lane).toBe(said);
     await expect(viewer.locator('#truth')).toContainText(`Truth: ${checked.truth.verdict}`);
-    if (checked.truth.contact !== 'none') await expect(viewer.locator('#truth')).toContainText(`contact: ${checked.truth.contact}`);
+    if (checked.truth.contact !== 'none')
+      await expect(viewer.locator('#truth')).toContainText(`contact: ${checked.truth.contact}`);
     const before = await name(viewer);
-    await viewer.keyboard.press('Shift+n');  // one on which more is to be seen
+    await viewer.keyboard.press('Shift+n'); // one on which more is to be seen
     await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
   }
 });
 
 test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer }) => {
-  await viewer.goto(`${url()}#p=3dcccccd3e4ccccd3e99999a3ecccccd3f6666663e4ccccd3f3333333dcccccd3f19999a3dcccccd3e4ccccd3e99999a3f0000003f0000003f666666be99999a3f4ccccd3ecccccd`);
+  await viewer.goto(
+    `${url()}#p=3dcccccd3e4ccccd3e99999a3ecccccd3f6666663e4ccccd3f3333333dcccccd3f19999a3dcccccd3e4ccccd3e99999a3f0000003f0000003f666666be99999a3f4ccccd3ecccccd`,
+  );
   await viewer.reload();
   await expect(viewer.locator('#summary')).toContainText('CPU and GPU differ: guigue_devillers_2003/f64.');
   await expect(verdict(viewer, 'guigue_devillers_2003/f64/cuda-fma')).toHaveAttribute('aria-pressed', 'true');
-  await expect(verdict(viewer, 'guigue_devillers_2003/f64/cuda-fma')).toHaveAttribute('aria-label', 'guigue_devillers_2003/f64/cuda-fma: disjoint, wrong, not what the CPU says');
+  await expect(verdict(viewer, 'guigue_devillers_2003/f64/cuda-fma')).toHaveAttribute(
+    'aria-label',
+    'guigue_devillers_2003/f64/cuda-fma: disjoint, wrong, not what the CPU says',
+  );
   await expect(viewer.locator('#summary')).toContainText('4 of 32 lanes are wrong, 1 of them only on the GPU.');
-  await expect(viewer.locator('#brief')).toHaveText('guigue_devillers_2003 in f64 asks: on the CPU -0 > 0, no; on the GPU 2.61·10⁻¹⁹ > 0, yes. Why?');
+  await expect(viewer.locator('#brief')).toHaveText(
+    'guigue_devillers_2003 in f64 asks: on the CPU -0 > 0, no; on the GPU 2.61·10⁻¹⁹ > 0, yes. Why?',
+  );
   await expect(viewer.locator('tr.apart')).toHaveText(/^guigue_devillers_2003\/f64/);
   const why = viewer.locator('#why');
   await expect(viewer.locator('#why-title')).toHaveText('Why do CPU and GPU differ?');
-  for (const said of ['guigue_devillers_2003 in float64 says intersects on the CPU (right) and disjoint on the GPU (wrong). The cause is contraction: for the GPU nvcc fuses',
-    'into one operation that rounds once; the CPU rounds twice', 'Built with -fmad=false, the GPU says intersects.',
-    'Both run the same source on the same numbers. The first comparison that goes otherwise is at core/algorithms/guigue_devillers_2003.h:115', 'if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;',
+  for (const said of [
+    'guigue_devillers_2003 in float64 says intersects on the CPU (right) and disjoint on the GPU (wrong). The cause is contraction: for the GPU nvcc fuses',
+    'into one operation that rounds once; the CPU rounds twice',
+    'Built with -fmad=false, the GPU says intersects.',
+    'Both run the same source on the same numbers. The first comparison that goes otherwise is at core/algorithms/guigue_devillers_2003.h:115',
+    'if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;',
     'more than 0 where both lie on one side of it: on the CPU of 0 and -0.235, on the GPU of -1.11·10⁻¹⁸ and -0.235. With 113 bits the value is 0: anything else there is rounding, and its sign decides.',
-    'Fused here alone, the verdict is already the GPU’s: core/vec3.h:48', 'called at core/algorithms/guigue_devillers_2003.h:114']) await expect(why).toContainText(said);
-  expect(await viewer.locator('.parting tr').allInnerTexts()).toEqual([expect.stringMatching(/value\s+> 0\?\s+and so/),
-    expect.stringMatching(/^CPU\s+-0\s+no\s+goes on, says intersects$/), expect.stringMatching(/^GPU\s+2\.61·10⁻¹⁹\s+yes\s+goes on, says ✗ disjoint$/), expect.stringMatching(/^with 113 bits\s+0\s+no\s+as the CPU$/)]);
-  await verdict(viewer, 'guigue_devillers_2003/f64/cpu').click();  // asked of the CPU it is the same question
+    'Fused here alone, the verdict is already the GPU’s: core/vec3.h:48',
+    'called at core/algorithms/guigue_devillers_2003.h:114',
+  ])
+    await expect(why).toContainText(said);
+  expect(await viewer.locator('.parting tr').allInnerTexts()).toEqual([
+    expect.stringMatching(/value\s+> 0\?\s+and so/),
+    expect.stringMatching(/^CPU\s+-0\s+no\s+goes on, says intersects$/),
+    expect.stringMatching(/^GPU\s+2\.61·10⁻¹⁹\s+yes\s+goes on, says ✗ disjoint$/),
+    expect.stringMatching(/^with 113 bits\s+0\s+no\s+as the CPU$/),
+  ]);
+  await verdict(viewer, 'guigue_devillers_2003/f64/cpu').click(); // asked of the CPU it is the same question
   await expect(viewer.locator('#why-title')).toHaveText('Why do CPU and GPU differ?');
   await verdict(viewer, 'guigue_devillers_2003/f32/cpu').click();
   await expect(viewer.locator('#why-title')).toHaveText('Why does guigue_devillers_2003/f32/cpu say disjoint?');
@@ -107,23 +146,37 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
     await viewer.locator('button', { hasText: 'Next where CPU and GPU differ' }).click();
     await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
     const chosen = (await viewer.locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'))!;
-    const [subject, , variant] = chosen.split('/'), says = (await verdicts(viewer))[chosen];
+    const [subject, , variant] = chosen.split('/'),
+      says = (await verdicts(viewer))[chosen];
     expect(variant).toBe('cuda-fma');
-    await expect(viewer.locator('.because')).toContainText(new RegExp(`^${subject} in float(32|64) says \\w+ on the CPU \\((right|wrong)\\) and ${says} on the GPU`));
-    const explained = JSON.parse(execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', chosen, '--json'], { encoding: 'utf8' })) as { lanes: { lane: string; cause: string; contractions: { at: string }[] }[] };
+    await expect(viewer.locator('.because')).toContainText(
+      new RegExp(`^${subject} in float(32|64) says \\w+ on the CPU \\((right|wrong)\\) and ${says} on the GPU`),
+    );
+    const explained = JSON.parse(
+      execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', chosen, '--json'], {
+        encoding: 'utf8',
+      }),
+    ) as { lanes: { lane: string; cause: string; contractions: { at: string }[] }[] };
     // A lane of the CPU that is wrong by logic is said to be so, and no other.
-    const causes = JSON.parse(execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', '*/cpu', '--json'], { encoding: 'utf8' })) as typeof explained;
+    const causes = JSON.parse(
+      execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', '*/cpu', '--json'], {
+        encoding: 'utf8',
+      }),
+    ) as typeof explained;
     for (const { lane: wrong, cause } of causes.lanes.slice(0, 4)) {
       await verdict(viewer, wrong).click();
       await expect(viewer.locator('#why-title')).toContainText(/^Why do(es)? /);
       if (/Why do CPU/.test((await viewer.locator('#why-title').textContent())!)) continue;
       await expect(viewer.locator('#why-title')).toContainText(wrong);
-      expect(/its logic is wrong here/.test((await viewer.locator('.because').textContent())!), `${wrong}: ${cause}`).toBe(cause === 'logic');
+      expect(
+        /its logic is wrong here/.test((await viewer.locator('.because').textContent())!),
+        `${wrong}: ${cause}`,
+      ).toBe(cause === 'logic');
     }
     await verdict(viewer, chosen).click();
     await expect(viewer.locator('#why-title')).toContainText('Why do CPU and GPU differ?');
     const lane = explained.lanes.find((one) => one.lane === chosen);
-    if (!lane) continue;  // right on the GPU, wrong on the CPU
+    if (!lane) continue; // right on the GPU, wrong on the CPU
     expect(lane.cause, chosen).toBe('contraction');
     const said = viewer.locator('.because');
     await expect(said).toContainText('contraction');
@@ -146,53 +199,93 @@ test('ranges on a line are those by which the lane decides, and the axis is the 
         if (/nofma|guigue|exact/.test(lane)) continue;
         cell.click();
         await new Promise((done) => setTimeout(done, 100));
-        all.push({ lane, verdict: cell.textContent!.replace(/[^a-z]/g, ''), text: document.querySelector('#ranges .compared')?.textContent ?? '' });
+        all.push({
+          lane,
+          verdict: cell.textContent!.replace(/[^a-z]/g, ''),
+          text: document.querySelector('#ranges .compared')?.textContent ?? '',
+        });
       }
       return all;
     });
     for (const { lane, verdict, text } of said) {
       const subject = lane.split('/')[0];
-      if (!text) continue;  // decided before it came to ranges, or compares none
+      if (!text) continue; // decided before it came to ranges, or compares none
       expect(text).toContain(`In ${lane} the two ranges `);
-      expect(/^In \S+ the two ranges are \S+ apart;/.test(text), `${lane} says ${verdict}: ${text}`).toBe(verdict === 'disjoint');
+      expect(/^In \S+ the two ranges are \S+ apart;/.test(text), `${lane} says ${verdict}: ${text}`).toBe(
+        verdict === 'disjoint',
+      );
       seen[subject] = (seen[subject] ?? 0) + 1;
     }
-    const [, margin] = /(?:disjoint|intersects), (?:contact: \w+, )?([\d.]+(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?) \(/.exec((await viewer.locator('#truth').textContent())!) ?? [];
-    if (margin) await expect(viewer.locator('#ranges')).toContainText(new RegExp(`(ends|by) ${margin}( before b begins)?; that is the margin`));
+    const [, margin] =
+      /(?:disjoint|intersects), (?:contact: \w+, )?([\d.]+(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?) \(/.exec(
+        (await viewer.locator('#truth').textContent())!,
+      ) ?? [];
+    if (margin)
+      await expect(viewer.locator('#ranges')).toContainText(
+        new RegExp(`(ends|by) ${margin}( before b begins)?; that is the margin`),
+      );
   }
   await viewer.goto(`${url()}#p=${kEndsApart}&lane=moller_1997/f32/cuda-fma`);
   await viewer.reload();
-  await expect(viewer.locator('#brief')).toContainText('asks whether a ends before b begins: on the CPU 40106304 < 40106308, yes; on the GPU 40106292 < 40106292, no.');
+  await expect(viewer.locator('#brief')).toContainText(
+    'asks whether a ends before b begins: on the CPU 40106304 < 40106308, yes; on the GPU 40106292 < 40106292, no.',
+  );
   await expect(viewer.locator('#why')).toContainText('Neighbouring numbers of float32 are 4 apart at this size.');
-  await expect(viewer.locator('#ranges svg').first().locator('text')).toHaveText([/^in moller_1997\/f32\/cpu$/, /^in moller_1997\/f32\/cuda-fma$/, /^with 113 bits$/, /, × /, /, × /, /, × /]);
+  await expect(viewer.locator('#ranges svg').first().locator('text')).toHaveText([
+    /^in moller_1997\/f32\/cpu$/,
+    /^in moller_1997\/f32\/cuda-fma$/,
+    /^with 113 bits$/,
+    /, × /,
+    /, × /,
+    /, × /,
+  ]);
   await viewer.locator('button', { hasText: 'Show the gap' }).click();
   await expect(viewer.locator('.scale-note')).toContainText('× 3.91·10⁷');
   await viewer.goto(`${url()}#p=${kOverflow}&lane=interval_overlap/f32/cpu`);
   await viewer.reload();
-  await expect(viewer.locator('#ranges')).toContainText('In interval_overlap/f32/cpu the two ranges are not numbers; with 113 bits they overlap by');
+  await expect(viewer.locator('#ranges')).toContainText(
+    'In interval_overlap/f32/cpu the two ranges are not numbers; with 113 bits they overlap by',
+  );
   expect(Object.keys(seen).sort()).toEqual(['interval_overlap', 'moller_1997', 'projected_sat', 'separating_axes']);
   expect(await viewer.locator('#ranges svg rect').count()).toBeGreaterThan(3);
 });
 
 test('a query is shown with all triangles, its hits and what a lane gets wrong', async ({ page }) => {
   test.skip(!file(), 'this build has no viewer');
-  const folder = dirname(file()), kSide = 24, at = (i: number, j: number) => [i, j, Math.fround(0.3 * Math.sin(i) * Math.cos(0.7 * j))];
-  const vertices = Array.from({ length: (kSide + 1) ** 2 }, (_, v) => `v ${at(v % (kSide + 1), Math.floor(v / (kSide + 1))).join(' ')}`);
-  const faces = Array.from({ length: kSide ** 2 }, (_, c) => 1 + (c % kSide) + Math.floor(c / kSide) * (kSide + 1)).map((v) => `f ${v} ${v + 1} ${v + kSide + 2}\nf ${v} ${v + kSide + 2} ${v + kSide + 1}`);
+  const folder = dirname(file()),
+    kSide = 24,
+    at = (i: number, j: number) => [i, j, Math.fround(0.3 * Math.sin(i) * Math.cos(0.7 * j))];
+  const vertices = Array.from(
+    { length: (kSide + 1) ** 2 },
+    (_, v) => `v ${at(v % (kSide + 1), Math.floor(v / (kSide + 1))).join(' ')}`,
+  );
+  const faces = Array.from({ length: kSide ** 2 }, (_, c) => 1 + (c % kSide) + Math.floor(c / kSide) * (kSide + 1)).map(
+    (v) => `f ${v} ${v + 1} ${v + kSide + 2}\nf ${v} ${v + kSide + 2} ${v + kSide + 1}`,
+  );
   writeFileSync(join(folder, 'hills.obj'), [...vertices, ...faces, ''].join('\n'));
   writeFileSync(join(folder, 'ref.txt'), '2 3 -2  21 5 -2  11 22 3\n');
   const graze = (...args: string[]) => execFileSync(process.env.GRAZE!, args, { cwd: folder, encoding: 'utf8' });
   graze('view', 'ref.txt', 'hills.obj', '--out', 'query.html');
   await page.addInitScript(without_webgl);
   await page.goto(pathToFileURL(join(folder, 'query.html')).href);
-  const hits = (lane: string) => (JSON.parse(graze('query', 'ref.txt', 'hills.obj', '--executor', 'one-core', '--lanes', lane, '--json')) as { hits: number }).hits, exact = hits('exact');
+  const hits = (lane: string) =>
+      (
+        JSON.parse(graze('query', 'ref.txt', 'hills.obj', '--executor', 'one-core', '--lanes', lane, '--json')) as {
+          hits: number;
+        }
+      ).hits,
+    exact = hits('exact');
   expect(exact).toBeGreaterThan(10);
-  await expect(page.locator('#field')).toContainText(`1,152 triangles against a, the reference: exact/f32/cpu hits ${exact}, wrong on 0 (outlined)`);
+  await expect(page.locator('#field')).toContainText(
+    `1,152 triangles against a, the reference: exact/f32/cpu hits ${exact}, wrong on 0 (outlined)`,
+  );
   await expect(page.locator('#board svg polygon[style*="--hit"]')).toHaveCount(exact);
-  await verdict(page, 'projected_sat/f32/cpu').click();  // wrong by logic
-  await expect(page.locator('#field')).toContainText(`projected_sat/f32/cpu hits ${hits('projected_sat/f32/cpu').toLocaleString('en-US')}, wrong on `);
+  await verdict(page, 'projected_sat/f32/cpu').click(); // wrong by logic
+  await expect(page.locator('#field')).toContainText(
+    `projected_sat/f32/cpu hits ${hits('projected_sat/f32/cpu').toLocaleString('en-US')}, wrong on `,
+  );
   const wrong = Number(/wrong on ([\d,]+)/.exec((await page.locator('#field').textContent())!)![1].replace(',', ''));
-  expect(wrong).toBe(hits('projected_sat/f32/cpu') - exact);  // it only ever says too often that they meet
+  expect(wrong).toBe(hits('projected_sat/f32/cpu') - exact); // it only ever says too often that they meet
   await expect(page.locator('#board svg polyline[style*="--bad"]')).toHaveCount(Math.min(wrong, 500));
   await page.locator('button', { hasText: 'Take a wrong one' }).click();
   await expect(page.locator('#why')).toContainText('logic');
@@ -205,7 +298,8 @@ test('every key does what the help says', async ({ viewer }) => {
   const looks = () => board.locator('svg').innerHTML();
   const value = (c: number) => coordinate(viewer, c).inputValue();
   // What was asked for before is drawn by now, or else two keys that undo each other would look like none.
-  const drawn = () => viewer.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  const drawn = () =>
+    viewer.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   const changes = (of: () => Promise<unknown>) => async (key: string) => {
     await drawn();
     const before = await of();
@@ -222,61 +316,116 @@ test('every key does what the help says', async ({ viewer }) => {
     await expect(coordinate(viewer, c), key).toHaveClass(/chosen/);
   };
   const shown = (what: string) => changes(() => viewer.locator(`[data-shows="${what}"]`).getAttribute('aria-pressed'));
-  const names = () => name(viewer), field = async () => (await viewer.locator('#field').textContent())!;
+  const names = () => name(viewer),
+    field = async () => (await viewer.locator('#field').textContent())!;
   const expected: [string, (key: string) => Promise<void>][] = [
-    ['t', changes(names)], ['←', changes(looks)], ['→', changes(looks)], ['↑', changes(looks)], ['↓', changes(looks)],
-    ['a', moves(0, -0.0625)], ['d', moves(3, 0.0625)], ['s', moves(1, -0.0625)], ['w', moves(4, 0.0625)], ['q', moves(2, -0.0625)], ['e', moves(8, 0.0625)],
-    ['o', shown('axes')], ['c', shown('coordinates')], ['i', shown('ids')], ['p', shown('planes')],
+    ['t', changes(names)],
+    ['←', changes(looks)],
+    ['→', changes(looks)],
+    ['↑', changes(looks)],
+    ['↓', changes(looks)],
+    ['a', moves(0, -0.0625)],
+    ['d', moves(3, 0.0625)],
+    ['s', moves(1, -0.0625)],
+    ['w', moves(4, 0.0625)],
+    ['q', moves(2, -0.0625)],
+    ['e', moves(8, 0.0625)],
+    ['o', shown('axes')],
+    ['c', shown('coordinates')],
+    ['i', shown('ids')],
+    ['p', shown('planes')],
     ['g', changes(() => viewer.locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'))],
-    ['+', changes(field)], ['-', changes(field)], ['space', changes(field)], ['n', changes(names)], ['b', changes(names)],
+    ['+', changes(field)],
+    ['-', changes(field)],
+    ['space', changes(field)],
+    ['n', changes(names)],
+    ['b', changes(names)],
     ...['0', '1', '2', '3', '4', '5'].map((key, v) => [key, chosen(3 * v)] as [string, (key: string) => Promise<void>]),
-    ['y', chosen(16)], ['z', chosen(17)], ['x', chosen(15)], ['[', changes(() => value(15))], [']', changes(() => value(15))],
-    ['f', changes(() => viewer.getByLabel('Centre').inputValue())], ['Home', changes(() => viewer.getByLabel('Centre').inputValue())],
-    ['u', changes(() => value(15))], ['r', changes(() => value(15))], ['Control+z', changes(() => value(15))], ['Control+y', changes(() => value(15))],
-    ['h', async (key) => { await viewer.keyboard.press(key); await expect(viewer.locator('#help')).toBeVisible(); await expect(viewer.locator('#help-title')).toBeFocused(); await viewer.keyboard.press(key); await expect(viewer.locator('#help')).toBeHidden(); }],
+    ['y', chosen(16)],
+    ['z', chosen(17)],
+    ['x', chosen(15)],
+    ['[', changes(() => value(15))],
+    [']', changes(() => value(15))],
+    ['f', changes(() => viewer.getByLabel('Centre').inputValue())],
+    ['Home', changes(() => viewer.getByLabel('Centre').inputValue())],
+    ['u', changes(() => value(15))],
+    ['r', changes(() => value(15))],
+    ['Control+z', changes(() => value(15))],
+    ['Control+y', changes(() => value(15))],
+    [
+      'h',
+      async (key) => {
+        await viewer.keyboard.press(key);
+        await expect(viewer.locator('#help')).toBeVisible();
+        await expect(viewer.locator('#help-title')).toBeFocused();
+        await viewer.keyboard.press(key);
+        await expect(viewer.locator('#help')).toBeHidden();
+      },
+    ],
   ];
-  const kNames: Record<string, string> = { '←': 'ArrowLeft', '→': 'ArrowRight', '↑': 'ArrowUp', '↓': 'ArrowDown', space: ' ' };
+  const kNames: Record<string, string> = {
+    '←': 'ArrowLeft',
+    '→': 'ArrowRight',
+    '↑': 'ArrowUp',
+    '↓': 'ArrowDown',
+    space: ' ',
+  };
   for (const [key, check] of expected) await check(kNames[key] ?? key);
   const listed = await viewer.locator('#help kbd').allTextContents();
-  expect(expected.map(([key]) => key).filter((key) => !key.startsWith('Control')).sort()).toEqual(listed.sort());
+  expect(
+    expected
+      .map(([key]) => key)
+      .filter((key) => !key.startsWith('Control'))
+      .sort(),
+  ).toEqual(listed.sort());
 });
 
 test('steps are of one ulp, of 256 with Shift, of 65,536 with Alt', async ({ viewer }) => {
   await coordinate(viewer, 0).fill('1');
   await coordinate(viewer, 0).blur();
-  for (const [key, expected] of [[']', 1 + 2 ** -23], ['[', 1], ['Shift+BracketRight', 1 + 2 ** -15], ['Shift+BracketLeft', 1], ['Alt+BracketRight', 1 + 2 ** -7], ['Alt+BracketLeft', 1]] as const) {
+  for (const [key, expected] of [
+    [']', 1 + 2 ** -23],
+    ['[', 1],
+    ['Shift+BracketRight', 1 + 2 ** -15],
+    ['Shift+BracketLeft', 1],
+    ['Alt+BracketRight', 1 + 2 ** -7],
+    ['Alt+BracketLeft', 1],
+  ] as const) {
     await viewer.keyboard.press(key);
-    await expect.poll(async () => Math.fround(Number(await coordinate(viewer, 0).inputValue()))).toBe(Math.fround(expected));
+    await expect
+      .poll(async () => Math.fround(Number(await coordinate(viewer, 0).inputValue())))
+      .toBe(Math.fround(expected));
   }
 });
 
 test.describe('by WebGL', () => {
-test.use({ webgl: true });
-test('dragging a vertex decides anew, says what changed, and is one step to undo', async ({ viewer }) => {
-  await viewer.setViewportSize({ width: 700, height: 450 });  // fewer places to try below
-  await viewer.keyboard.press('t');
-  await expect(coordinate(viewer, 9)).toHaveValue('-2');
-  const board = viewer.locator('#board'), box = (await board.boundingBox())!;
-  // A vertex is where the pointer takes hold of it: found by trying, as a person does by looking.
-  let held = false;
-  for (let x = 20; x < box.width - 20 && !held; x += 20) {
-    for (let y = 20; y < box.height - 20 && !held; y += 20) {
-      await viewer.mouse.move(box.x + x, box.y + y);
-      held = (await board.getAttribute('data-over')) === 'b[0]';
+  test.use({ webgl: true });
+  test('dragging a vertex decides anew, says what changed, and is one step to undo', async ({ viewer }) => {
+    await viewer.setViewportSize({ width: 700, height: 450 }); // fewer places to try below
+    await viewer.keyboard.press('t');
+    await expect(coordinate(viewer, 9)).toHaveValue('-2');
+    const board = viewer.locator('#board'),
+      box = (await board.boundingBox())!;
+    // A vertex is where the pointer takes hold of it: found by trying, as a person does by looking.
+    let held = false;
+    for (let x = 20; x < box.width - 20 && !held; x += 20) {
+      for (let y = 20; y < box.height - 20 && !held; y += 20) {
+        await viewer.mouse.move(box.x + x, box.y + y);
+        held = (await board.getAttribute('data-over')) === 'b[0]';
+      }
     }
-  }
-  expect(held).toBe(true);
-  await viewer.mouse.down();
-  await viewer.mouse.move(box.x + box.width - 5, box.y + 5, { steps: 5 });
-  await viewer.mouse.up();
-  await expect.poll(() => coordinate(viewer, 9).inputValue()).not.toBe('-2');
-  expect(await name(viewer)).toContain(', changed');
-  await viewer.keyboard.press('u');
-  await expect(coordinate(viewer, 9)).toHaveValue('-2');
-  expect(await name(viewer)).not.toContain('changed');
-  await expect(board).not.toHaveClass(/flat/);
-  expect((await pixels(board.locator('canvas'))).length).toBeGreaterThan(2000);  // something is drawn
-});
+    expect(held).toBe(true);
+    await viewer.mouse.down();
+    await viewer.mouse.move(box.x + box.width - 5, box.y + 5, { steps: 5 });
+    await viewer.mouse.up();
+    await expect.poll(() => coordinate(viewer, 9).inputValue()).not.toBe('-2');
+    expect(await name(viewer)).toContain(', changed');
+    await viewer.keyboard.press('u');
+    await expect(coordinate(viewer, 9)).toHaveValue('-2');
+    expect(await name(viewer)).not.toContain('changed');
+    await expect(board).not.toHaveClass(/flat/);
+    expect((await pixels(board.locator('canvas'))).length).toBeGreaterThan(2000); // something is drawn
+  });
 });
 
 test('a changed verdict is announced', async ({ viewer }) => {
@@ -297,11 +446,12 @@ test('coordinates are typed, pasted, refused; the pair is in the link', async ({
   await coordinate(viewer, 4).fill('three');
   await coordinate(viewer, 4).blur();
   await expect(viewer.locator('.message')).toHaveText("expected a number of float32 for a[1].y, found 'three'");
-  const paste = (text: string) => coordinate(viewer, 0).evaluate((field, pasted) => {
-    const data = new DataTransfer();
-    data.setData('text', pasted);
-    field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
-  }, text);
+  const paste = (text: string) =>
+    coordinate(viewer, 0).evaluate((field, pasted) => {
+      const data = new DataTransfer();
+      data.setData('text', pasted);
+      field.dispatchEvent(new ClipboardEvent('paste', { clipboardData: data, cancelable: true, bubbles: true }));
+    }, text);
   await paste('1 2 3');
   await expect(viewer.locator('.message')).toHaveText('expected the 18 coordinates of a pair, found 3 numbers');
   await paste(`[${Array.from({ length: 18 }, (_, i) => i + 0.5).join(', ')}]`);
@@ -313,7 +463,12 @@ test('coordinates are typed, pasted, refused; the pair is in the link', async ({
   await expect.poll(() => viewer.url()).not.toBe(link);
   await viewer.goto(link);
   await expect(coordinate(viewer, 17)).toHaveValue('17.5');
-  for (const [kind, text] of [['C', 'const float a[3][3]'], ['CUDA', '__constant__ float3'], ['Python', 'float.fromhex'], ['OBJ', 'f 4 5 6']]) {
+  for (const [kind, text] of [
+    ['C', 'const float a[3][3]'],
+    ['CUDA', '__constant__ float3'],
+    ['Python', 'float.fromhex'],
+    ['OBJ', 'f 4 5 6'],
+  ]) {
     await viewer.locator('#copies button').getByText(kind, { exact: true }).click();
     await expect(viewer.locator('.copied code')).toContainText(text);
   }
@@ -322,10 +477,21 @@ test('coordinates are typed, pasted, refused; the pair is in the link', async ({
 test('the ulp map is drawn whole, and a cell gives its pair', async ({ viewer }) => {
   const told = viewer.locator('#map-told');
   await viewer.locator('#map').scrollIntoViewIfNeeded();
-  await expect(told).toContainText(/^256 × 256 cells of \d lanes and the truth, decided in \d+ ms$/, { timeout: 20_000 });
+  await expect(told).toContainText(/^256 × 256 cells of \d lanes and the truth, decided in \d+ ms$/, {
+    timeout: 20_000,
+  });
   const lane = viewer.locator('#map canvas').last();
-  expect(await lane.evaluate((canvas: HTMLCanvasElement) => canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height).data.every((value, i) => i % 4 < 3 || value === 255))).toBe(true);
-  const chosen = viewer.locator('.pair input.chosen'), before = await chosen.inputValue(), box = (await lane.boundingBox())!;
+  expect(
+    await lane.evaluate((canvas: HTMLCanvasElement) =>
+      canvas
+        .getContext('2d')!
+        .getImageData(0, 0, canvas.width, canvas.height)
+        .data.every((value, i) => i % 4 < 3 || value === 255),
+    ),
+  ).toBe(true);
+  const chosen = viewer.locator('.pair input.chosen'),
+    before = await chosen.inputValue(),
+    box = (await lane.boundingBox())!;
   await lane.click({ position: { x: box.width / 4, y: box.height / 2 } });
   await expect.poll(() => chosen.inputValue()).not.toBe(before);
   expect(kCells).toBe(await lane.evaluate((canvas: HTMLCanvasElement) => canvas.width));
@@ -348,5 +514,9 @@ test('without WebGL it draws an SVG, a phone shows all of it, axe finds nothing'
   await page.reload();
   await expect(page.locator('#board svg polygon.triangle-b')).toHaveCount(1);
   expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(390);
-  expect((await new AxeBuilder({ page }).analyze()).violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`)).toEqual([]);
+  expect(
+    (await new AxeBuilder({ page }).analyze()).violations.map(
+      ({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`,
+    ),
+  ).toEqual([]);
 });

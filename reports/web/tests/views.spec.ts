@@ -8,10 +8,23 @@ import { compare_url, expect, open_card, test, url } from './page';
 const kPhone = { width: 390, height: 844 };
 
 const brightness = (page: Page, property: 'color' | 'backgroundColor') =>
-  page.evaluate((name) => getComputedStyle(document.body)[name].match(/[\d.]+/g)!.slice(0, 3).reduce((sum, c) => sum + Number(c) / 765, 0), property);
+  page.evaluate(
+    (name) =>
+      getComputedStyle(document.body)
+        [name].match(/[\d.]+/g)!
+        .slice(0, 3)
+        .reduce((sum, c) => sum + Number(c) / 765, 0),
+    property,
+  );
 
 const violations = async (page: Page) =>
-  (await new AxeBuilder({ page }).analyze()).violations.map((v) => `${v.id}: ${v.nodes.slice(0, 3).map((node) => node.target).join(', ')}`);
+  (await new AxeBuilder({ page }).analyze()).violations.map(
+    (v) =>
+      `${v.id}: ${v.nodes
+        .slice(0, 3)
+        .map((node) => node.target)
+        .join(', ')}`,
+  );
 
 test('opens, and says how long it took', async ({ page }) => {
   await page.goto('about:blank');
@@ -40,7 +53,9 @@ for (const viewport of [{ width: 1280, height: 800 }, kPhone]) {
 test('the picture beside the answer says what it shows, in numbers', async ({ page, report, costs }) => {
   const label = (await page.locator('#glance svg').first().getAttribute('aria-label'))!;
   const lane = report.lanes.findIndex((one) => one.id === 'moller_1997/f32/cpu');
-  const wrong = report.group_rates.find((rate) => rate.lane === lane && report.groups[rate.group].id === 'general')!.wrong;
+  const wrong = report.group_rates.find(
+    (rate) => rate.lane === lane && report.groups[rate.group].id === 'general',
+  )!.wrong;
   expect(label).toContain(`moller_1997/f32/cpu: wrong on ${percent(wrong.share)} of general`);
   expect(label).toContain('exact/f32/cpu: wrong on none of general');
   const cost = costs!.rows.find((row) => row.lane === lane && report.groups[row.group ?? -1]?.id === 'general')!;
@@ -56,7 +71,10 @@ test('every picture has words of its own', async ({ page, report }) => {
     expect(await image.getAttribute('alt')).toBe(`${name}: ${shows}`);
     expect(shows).toMatch(/\d|right everywhere/);
   }
-  await expect(page.locator(`#kind-${place + 1} .board`)).toHaveAttribute('aria-label', new RegExp(report.cards[place].truth.verdict));
+  await expect(page.locator(`#kind-${place + 1} .board`)).toHaveAttribute(
+    'aria-label',
+    new RegExp(report.cards[place].truth.verdict),
+  );
 });
 
 test('a phone shows it without scrolling sideways', async ({ page }) => {
@@ -81,17 +99,17 @@ test('dark where the reader wants it', async ({ page }) => {
 });
 
 test.describe('by WebGL', () => {
-test.use({ webgl: true });
-test('paper shows the drawing and hides what cannot be pressed, dark or not', async ({ page }) => {
-  await open_card(page, 1);
-  await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
-  expect(await brightness(page, 'backgroundColor')).toBeGreaterThan(0.9);
-  await expect(page.locator('nav')).toBeHidden();
-  await expect(page.locator('#kind-1 .copy').first()).toBeHidden();
-  await expect(page.locator('#kind-1 .paper svg')).toBeVisible();
-  await expect(page.locator('#kind-1 canvas')).toBeHidden();
-  expect((await page.pdf({ preferCSSPageSize: true, printBackground: true })).length).toBeGreaterThan(50_000);
-});
+  test.use({ webgl: true });
+  test('paper shows the drawing and hides what cannot be pressed, dark or not', async ({ page }) => {
+    await open_card(page, 1);
+    await page.emulateMedia({ media: 'print', colorScheme: 'dark' });
+    expect(await brightness(page, 'backgroundColor')).toBeGreaterThan(0.9);
+    await expect(page.locator('nav')).toBeHidden();
+    await expect(page.locator('#kind-1 .copy').first()).toBeHidden();
+    await expect(page.locator('#kind-1 .paper svg')).toBeVisible();
+    await expect(page.locator('#kind-1 canvas')).toBeHidden();
+    expect((await page.pdf({ preferCSSPageSize: true, printBackground: true })).length).toBeGreaterThan(50_000);
+  });
 });
 
 test('the keyboard reaches the answer first, and shows where it is', async ({ page }) => {
@@ -103,12 +121,17 @@ test('the keyboard reaches the answer first, and shows where it is', async ({ pa
 });
 
 // On the page that compares: it has all parts, and fewer rows, each of which costs axe its time.
-for (const [colorScheme, where] of [['light', 'desk'], ['dark', 'phone']] as const) {
+for (const [colorScheme, where] of [
+  ['light', 'desk'],
+  ['dark', 'phone'],
+] as const) {
   test(`axe finds nothing, ${colorScheme}, on a ${where}`, async ({ page }) => {
     test.slow();
     const sections = await page.locator('main > section').evaluateAll((all) => all.map(({ id }) => id));
     await page.goto(compare_url());
-    const parts = (await page.locator('main > section').evaluateAll((all) => all.map(({ id }) => id))).filter((id) => id !== 'compare');
+    const parts = (await page.locator('main > section').evaluateAll((all) => all.map(({ id }) => id))).filter(
+      (id) => id !== 'compare',
+    );
     expect(parts).toEqual(sections);
     if (where === 'phone') await page.setViewportSize(kPhone);
     await page.emulateMedia({ colorScheme });

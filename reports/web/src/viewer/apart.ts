@@ -10,7 +10,8 @@ import { intervals, projections } from './ranges';
 
 const kMostPlaces = 2;
 export function show_why() {
-  const section = document.getElementById('why')!, still = matchMedia('(prefers-reduced-motion: reduce)').matches;
+  const section = document.getElementById('why')!,
+    still = matchMedia('(prefers-reduced-motion: reduce)').matches;
   section.scrollIntoView({ block: 'start', behavior: still ? 'auto' : 'smooth' });
   if (!still) section.animate([{ background: 'var(--flip)' }, {}], { duration: 1200 });
 }
@@ -32,17 +33,31 @@ function parting(run: Step[], other: Step[]): [number, number] | null {
 
 // What is asked there, where that is known from what the algorithm asks its policy about.
 function meaning(runs: [Step[], number][], scalar: string): Child {
-  const [[run, at]] = runs, step = run[at];
-  if (step.site === 'separation') return 'It asks whether the two triangles’ ranges on a line overlap: the end of one against the end of the other. ';
-  const asked = run.slice(0, at).filter((before) => !before.relation && before.result >= 0 && before.result === step.result).at(-1)?.site;
-  if (asked === 'plane_distance') return 'The sign of this value says on which side of the other triangle’s plane a vertex lies. ';
-  if (asked === 'orientation') return 'The sign of this value says on which side of a line or plane through other vertices a vertex lies. ';
-  if (asked === 'parallel') return 'It is a part of the direction of the line that both planes share: zero for parallel planes. ';
+  const [[run, at]] = runs,
+    step = run[at];
+  if (step.site === 'separation')
+    return 'It asks whether the two triangles’ ranges on a line overlap: the end of one against the end of the other. ';
+  const asked = run
+    .slice(0, at)
+    .filter((before) => !before.relation && before.result >= 0 && before.result === step.result)
+    .at(-1)?.site;
+  if (asked === 'plane_distance')
+    return 'The sign of this value says on which side of the other triangle’s plane a vertex lies. ';
+  if (asked === 'orientation')
+    return 'The sign of this value says on which side of a line or plane through other vertices a vertex lies. ';
+  if (asked === 'parallel')
+    return 'It is a part of the direction of the line that both planes share: zero for parallel planes. ';
   if (step.relation !== '>' || step.right !== 0) return false;
   const round = scalar === 'f32' ? Math.fround : (x: number) => x;
-  const distances = runs.map(([steps, end]) => steps.slice(0, end).filter((before) => !before.relation && before.site === 'plane_distance').map(({ left }) => left));
+  const distances = runs.map(([steps, end]) =>
+    steps
+      .slice(0, end)
+      .filter((before) => !before.relation && before.site === 'plane_distance')
+      .map(({ left }) => left),
+  );
   for (const [which, [steps, end]] of runs.entries()) {
-    const d = distances[which], at_zero = steps[end].left === 0;
+    const d = distances[which],
+      at_zero = steps[end].left === 0;
     for (let i = 0; !at_zero && i < d.length; ++i) {
       const j = d.findIndex((y, k) => k > i && round(d[i] * y) === steps[end].left);
       if (j < 0) continue;
@@ -54,7 +69,8 @@ function meaning(runs: [Step[], number][], scalar: string): Child {
 }
 
 // Both sides of the comparison: on the CPU, on the GPU and with 113 bits.
-const six = (mine: Step, theirs: Step) => told_apart([theirs.left, mine.left, mine.exactLeft, theirs.right, mine.right, mine.exactRight]);
+const six = (mine: Step, theirs: Step) =>
+  told_apart([theirs.left, mine.left, mine.exactLeft, theirs.right, mine.right, mine.exactRight]);
 
 // Of a comparison of two ranges' ends, whose they are.
 function ends_of(run: Step[], { site, relation, left, right }: Step): [string, string] | null {
@@ -67,46 +83,186 @@ function ends_of(run: Step[], { site, relation, left, right }: Step): [string, s
   return ['one range', 'the other'];
 }
 
-function table(model: Model, run: Step[], [mine, theirs]: [Step, Step], last: [boolean, boolean], verdicts: [string, string]) {
+function table(
+  model: Model,
+  run: Step[],
+  [mine, theirs]: [Step, Step],
+  last: [boolean, boolean],
+  verdicts: [string, string],
+) {
   const texts = six(mine, theirs);
-  const sign = [theirs, mine].every(({ right, exactRight }) => right === 0 && exactRight === 0), right = model.decided.truth.verdict;
+  const sign = [theirs, mine].every(({ right, exactRight }) => right === 0 && exactRight === 0),
+    right = model.decided.truth.verdict;
   const ends = ends_of(run, mine);
-  const [one, other, asked] = sign ? ['value', '', `${mine.relation} 0?`] : ends ? [`${ends[0]} ends at`, `${ends[1]} begins at`, 'apart there?'] : ['left', 'right', `left ${mine.relation} right?`];
-  const so = (is_last: boolean, verdict: string) => [is_last ? 'says ' : 'goes on, says ', h('b', { class: verdict === right ? '' : 'bad' }, `${verdict === right ? '' : '✗ '}${verdict}`)];
-  const row = (name: string, i: number, held: boolean, then: Child) => h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, h('code', {}, texts[i])), !sign && h('td', {}, h('code', {}, texts[i + 3])), h('td', {}, outcome(held)), h('td', {}, then));
-  return h('table', { class: 'plain parting' },
-    h('thead', {}, h('tr', {}, h('td', {}), [one, other, asked, 'and so'].map((title) => title && h('th', { scope: 'col' }, title)))),
-    h('tbody', {}, row('CPU', 0, theirs.held, so(last[1], verdicts[1])), row('GPU', 1, mine.held, so(last[0], verdicts[0])),
-      row('with 113 bits', 2, mine.holds, `as the ${mine.holds === theirs.held ? 'CPU' : 'GPU'}`)));
+  const [one, other, asked] = sign
+    ? ['value', '', `${mine.relation} 0?`]
+    : ends
+      ? [`${ends[0]} ends at`, `${ends[1]} begins at`, 'apart there?']
+      : ['left', 'right', `left ${mine.relation} right?`];
+  const so = (is_last: boolean, verdict: string) => [
+    is_last ? 'says ' : 'goes on, says ',
+    h('b', { class: verdict === right ? '' : 'bad' }, `${verdict === right ? '' : '✗ '}${verdict}`),
+  ];
+  const row = (name: string, i: number, held: boolean, then: Child) =>
+    h(
+      'tr',
+      {},
+      h('th', { scope: 'row' }, name),
+      h('td', {}, h('code', {}, texts[i])),
+      !sign && h('td', {}, h('code', {}, texts[i + 3])),
+      h('td', {}, outcome(held)),
+      h('td', {}, then),
+    );
+  return h(
+    'table',
+    { class: 'plain parting' },
+    h(
+      'thead',
+      {},
+      h(
+        'tr',
+        {},
+        h('td', {}),
+        [one, other, asked, 'and so'].map((title) => title && h('th', { scope: 'col' }, title)),
+      ),
+    ),
+    h(
+      'tbody',
+      {},
+      row('CPU', 0, theirs.held, so(last[1], verdicts[1])),
+      row('GPU', 1, mine.held, so(last[0], verdicts[0])),
+      row('with 113 bits', 2, mine.holds, `as the ${mine.holds === theirs.held ? 'CPU' : 'GPU'}`),
+    ),
+  );
 }
 
 function places(sites: Site[]): Child {
   const all = [...new Map(sites.map((site) => [`${site.line} ${site.from}`, site])).values()];
-  return h('p', {}, `Fused ${all.length > 1 ? 'at these places' : 'here'} alone, the verdict is already the GPU’s: `, all.slice(0, kMostPlaces).map(({ line, from }, i) => [i ? ' and ' : '', quoted(line), from.startsWith('core/') ? [' called at ', quoted(from)] : '']),
-    all.length > kMostPlaces && ` and at ${all.length - kMostPlaces} more. `);
+  return h(
+    'p',
+    {},
+    `Fused ${all.length > 1 ? 'at these places' : 'here'} alone, the verdict is already the GPU’s: `,
+    all
+      .slice(0, kMostPlaces)
+      .map(({ line, from }, i) => [
+        i ? ' and ' : '',
+        quoted(line),
+        from.startsWith('core/') ? [' called at ', quoted(from)] : '',
+      ]),
+    all.length > kMostPlaces && ` and at ${all.length - kMostPlaces} more. `,
+  );
 }
 
 // brief: what each compares where they part, in one line.
 export function apart(model: Model, lane: string): { parts: Child[]; brief: Child } {
-  const { graze, pair, decided } = model, [subject, scalar] = lane.split('/'), cpu = model.counterpart(lane, 'cpu')!;
-  const known = graze.steps(pair, lane), other = graze.steps(pair, cpu), found = known && other && parting(known.steps, other.steps), sites = graze.contractions(pair, lane);
-  const [here, there] = [decided.verdicts[lane]!, decided.verdicts[cpu]!], judged = (verdict: string) => (verdict === decided.truth.verdict ? 'right' : 'wrong');
-  const parts: Child[] = [h('p', {}, bold(subject), ` in ${scalar === 'f32' ? 'float32' : 'float64'} says `, bold(there), ` on the CPU (${judged(there)}) and `, bold(here), ` on the GPU (${judged(here)}). `, sites.length
-    ? ['The cause is ', bold('contraction'), ': for the GPU nvcc fuses a multiplication and the addition after it, ', h('code', {}, 'a * b + c'), ', into one operation that rounds once; the CPU rounds twice, after each. So the last digits differ, and here they decide. Built with ', h('code', {}, '-fmad=false'), `, the GPU says ${decided.verdicts[lane.replace('cuda-fma', 'cuda-nofma')]}.`]
-    : ['Which operation makes the difference is ', bold('not settled'), '.'])];
+  const { graze, pair, decided } = model,
+    [subject, scalar] = lane.split('/'),
+    cpu = model.counterpart(lane, 'cpu')!;
+  const known = graze.steps(pair, lane),
+    other = graze.steps(pair, cpu),
+    found = known && other && parting(known.steps, other.steps),
+    sites = graze.contractions(pair, lane);
+  const [here, there] = [decided.verdicts[lane]!, decided.verdicts[cpu]!],
+    judged = (verdict: string) => (verdict === decided.truth.verdict ? 'right' : 'wrong');
+  const parts: Child[] = [
+    h(
+      'p',
+      {},
+      bold(subject),
+      ` in ${scalar === 'f32' ? 'float32' : 'float64'} says `,
+      bold(there),
+      ` on the CPU (${judged(there)}) and `,
+      bold(here),
+      ` on the GPU (${judged(here)}). `,
+      sites.length
+        ? [
+            'The cause is ',
+            bold('contraction'),
+            ': for the GPU nvcc fuses a multiplication and the addition after it, ',
+            h('code', {}, 'a * b + c'),
+            ', into one operation that rounds once; the CPU rounds twice, after each. So the last digits differ, and here they decide. Built with ',
+            h('code', {}, '-fmad=false'),
+            `, the GPU says ${decided.verdicts[lane.replace('cuda-fma', 'cuda-nofma')]}.`,
+          ]
+        : ['Which operation makes the difference is ', bold('not settled'), '.'],
+    ),
+  ];
   let brief: Child = null;
   if (found) {
-    const [mine, theirs] = [known.steps[found[0]], other.steps[found[1]]], last = (steps: Step[], at: number) => !steps.slice(at + 1).some((step) => step.relation);
-    parts.push(h('p', {}, 'Both run the same source on the same numbers. The first comparison that goes otherwise is at ', quoted(mine.line)),
-      table(model, known.steps, [mine, theirs], [last(known.steps, found[0]), last(other.steps, found[1])], [here, there]));
-    const [x, y, , z, w] = six(mine, theirs), whose = ends_of(known.steps, mine), step = ulp_of(scalar)(Math.max(Math.abs(mine.left), Math.abs(mine.right)));
-    brief = [h('code', {}, subject), ` in ${scalar} asks${whose ? ` whether ${whose[0]} ends before ${whose[1]} begins` : ''}: on the CPU `, h('code', {}, `${x} ${mine.relation} ${z}`), `, ${outcome(theirs.held)}; on the GPU `, h('code', {}, `${y} ${mine.relation} ${w}`), `, ${outcome(mine.held)}. `, h('a', { href: '#why', onclick: (event: Event) => { event.preventDefault(); show_why(); } }, 'Why?')];
+    const [mine, theirs] = [known.steps[found[0]], other.steps[found[1]]],
+      last = (steps: Step[], at: number) => !steps.slice(at + 1).some((step) => step.relation);
+    parts.push(
+      h(
+        'p',
+        {},
+        'Both run the same source on the same numbers. The first comparison that goes otherwise is at ',
+        quoted(mine.line),
+      ),
+      table(
+        model,
+        known.steps,
+        [mine, theirs],
+        [last(known.steps, found[0]), last(other.steps, found[1])],
+        [here, there],
+      ),
+    );
+    const [x, y, , z, w] = six(mine, theirs),
+      whose = ends_of(known.steps, mine),
+      step = ulp_of(scalar)(Math.max(Math.abs(mine.left), Math.abs(mine.right)));
+    brief = [
+      h('code', {}, subject),
+      ` in ${scalar} asks${whose ? ` whether ${whose[0]} ends before ${whose[1]} begins` : ''}: on the CPU `,
+      h('code', {}, `${x} ${mine.relation} ${z}`),
+      `, ${outcome(theirs.held)}; on the GPU `,
+      h('code', {}, `${y} ${mine.relation} ${w}`),
+      `, ${outcome(mine.held)}. `,
+      h(
+        'a',
+        {
+          href: '#why',
+          onclick: (event: Event) => {
+            event.preventDefault();
+            show_why();
+          },
+        },
+        'Why?',
+      ),
+    ];
     const [long, bits] = scalar === 'f32' ? ['float32', 24] : ['float64', 53];
-    parts.push(h('p', {}, h('span', { class: 'small' }, `113 bits: the same algorithm in numbers of 113 bits; ${long} has ${bits}.${Number.isFinite(step) && mine.right !== 0 ? ` Neighbouring numbers of ${long} are ${figure(step)} apart at this size.` : ''}`)));
-    const asked = meaning([[known.steps, found[0]], [other.steps, found[1]]], scalar);
-    const noise = mine.right === 0 && mine.exactRight === 0 && mine.exactLeft === 0 && 'With 113 bits the value is 0: anything else there is rounding, and its sign decides.';
+    parts.push(
+      h(
+        'p',
+        {},
+        h(
+          'span',
+          { class: 'small' },
+          `113 bits: the same algorithm in numbers of 113 bits; ${long} has ${bits}.${Number.isFinite(step) && mine.right !== 0 ? ` Neighbouring numbers of ${long} are ${figure(step)} apart at this size.` : ''}`,
+        ),
+      ),
+    );
+    const asked = meaning(
+      [
+        [known.steps, found[0]],
+        [other.steps, found[1]],
+      ],
+      scalar,
+    );
+    const noise =
+      mine.right === 0 &&
+      mine.exactRight === 0 &&
+      mine.exactLeft === 0 &&
+      'With 113 bits the value is 0: anything else there is rounding, and its sign decides.';
     if (asked || noise) parts.push(h('p', {}, asked, noise));
-    if (!known.own) parts.push(h('p', {}, 'The GPU’s numbers here are ', bold('not settled'), ': a rule of contraction gave them, and the lane’s verdict.'));
+    if (!known.own)
+      parts.push(
+        h(
+          'p',
+          {},
+          'The GPU’s numbers here are ',
+          bold('not settled'),
+          ': a rule of contraction gave them, and the lane’s verdict.',
+        ),
+      );
   } else {
     parts.push(h('p', {}, 'At which comparison they part is ', bold('not settled'), '.'));
   }

@@ -8,16 +8,30 @@ import { has_webgl, picture, type Picture } from '../view3d';
 import { kCentres, type Centre, type Model } from './model';
 import { placed, type Field, type Placed } from './shape';
 
-const kReach = 16;  // pixels around a vertex in which it is taken hold of
+const kReach = 16; // pixels around a vertex in which it is taken hold of
 const kTurn = Math.PI / 18;
-const kFine = 1 / 64;  // of a drag with Shift
-const kGapSeen = 0.5;  // half-widths of the board that "Show the gap" makes of it
-const kFlat: Vec[] = [[0, 0, 0], [1, 0, 0], [0, 1, 0]];  // where no triangle is
+const kFine = 1 / 64; // of a drag with Shift
+const kGapSeen = 0.5; // half-widths of the board that "Show the gap" makes of it
+const kFlat: Vec[] = [
+  [0, 0, 0],
+  [1, 0, 0],
+  [0, 1, 0],
+]; // where no triangle is
 
 export function board(model: Model, fields: () => Field | null) {
-  let magnified = 1, now: Placed, drawn: Picture | null = null, old: Picture | null = null;
-  const canvas = h('canvas', {}), paper = h('div', { class: 'paper' }), note = h('span', { class: 'scale-note' });
-  const ground = h('div', { class: 'board', id: 'board', tabindex: 0, role: 'application', 'aria-roledescription': 'turnable drawing' }, canvas, paper);
+  let magnified = 1,
+    now: Placed,
+    drawn: Picture | null = null,
+    old: Picture | null = null;
+  const canvas = h('canvas', {}),
+    paper = h('div', { class: 'paper' }),
+    note = h('span', { class: 'scale-note' });
+  const ground = h(
+    'div',
+    { class: 'board', id: 'board', tabindex: 0, role: 'application', 'aria-roledescription': 'turnable drawing' },
+    canvas,
+    paper,
+  );
   const surround = h('div', {}, ground);
   place();
   const { camera, set } = orbit(ground, best_view(), draw, draw);
@@ -36,17 +50,19 @@ export function board(model: Model, fields: () => Field | null) {
     if (!ground.clientWidth) return;
     const flat = !has_webgl();
     ground.classList.toggle('flat', flat);
-    if (flat) return paper.replaceChildren(svg_projection(now.shape, view_of(camera), ground.clientWidth, ground.clientHeight));
+    if (flat)
+      return paper.replaceChildren(svg_projection(now.shape, view_of(camera), ground.clientWidth, ground.clientHeight));
     drawn ??= picture(now.shape);
     drawn.draw(canvas, camera);
-    old?.dispose();  // only now: programs that nothing uses would be compiled anew
+    old?.dispose(); // only now: programs that nothing uses would be compiled anew
     old = null;
   }
 
   let last_name = '';
   function update() {
-    const { truth } = model.decided, name = model.name.replace(/, changed$/, '');
-    if (name !== last_name) magnified = 1;  // another pair, seen from where there is most to see
+    const { truth } = model.decided,
+      name = model.name.replace(/, changed$/, '');
+    if (name !== last_name) magnified = 1; // another pair, seen from where there is most to see
     place();
     if (name !== last_name) set(best_view());
     last_name = name;
@@ -63,7 +79,10 @@ export function board(model: Model, fields: () => Field | null) {
     shadow_key.hidden = fields() !== null || !model.lane.startsWith('projected_sat/');
     line_key.hidden = now.shape.line.length === 0;
     centre_choice.querySelector('select')!.value = model.centre;
-    ground.setAttribute('aria-label', `Two triangles, ${truth.verdict}, contact ${truth.contact}. Arrow keys turn and magnify; h lists all keys.`);
+    ground.setAttribute(
+      'aria-label',
+      `Two triangles, ${truth.verdict}, contact ${truth.contact}. Arrow keys turn and magnify; h lists all keys.`,
+    );
     draw();
   }
 
@@ -78,7 +97,10 @@ export function board(model: Model, fields: () => Field | null) {
   // The nearest points, or the shortest push, in the middle and so magnified that the distance is seen.
   function show_gap() {
     const [p, q] = model.graze.drawing(model.pair).witness;
-    magnified = Math.min(2 ** 60, Math.max(1, (magnified * kGapSeen) / Math.hypot(...p.map((c, k) => (q[k] - c) / now.unit[k]))));
+    magnified = Math.min(
+      2 ** 60,
+      Math.max(1, (magnified * kGapSeen) / Math.hypot(...p.map((c, k) => (q[k] - c) / now.unit[k]))),
+    );
     model.set({ centre: 'the contact or gap' });
   }
   function reset() {
@@ -98,69 +120,136 @@ export function board(model: Model, fields: () => Field | null) {
     let best: { v: number; away: number; depth: number } | null = null;
     for (let v = 0; v < (fields() ? 3 : 6); ++v) {
       const p = [0, 1, 2].map((k) => (model.pair[3 * v + k] - now.middle[k]) / now.unit[k]) as Vec;
-      const at = project(now.shape, p, view_of(camera), width, height), away = Math.hypot(at.x - x, at.y - y);
-      if (away < kReach && (!best || away < best.away - 2 || (away < best.away + 2 && at.depth > best.depth))) best = { v, away, depth: at.depth };
+      const at = project(now.shape, p, view_of(camera), width, height),
+        away = Math.hypot(at.x - x, at.y - y);
+      if (away < kReach && (!best || away < best.away - 2 || (away < best.away + 2 && at.depth > best.depth)))
+        best = { v, away, depth: at.depth };
     }
     return best && best.v;
   }
   // Before the orbit's own listener: a press on a vertex moves that, in the plane of the screen.
-  surround.addEventListener('pointerdown', (event) => {
-    const v = event.button === 0 ? taken(event) : null;
-    if (v === null) return;
-    event.stopPropagation();
-    event.preventDefault();
-    ground.focus({ preventScroll: true });
-    surround.setPointerCapture(event.pointerId);
-    const start = { x: event.clientX, y: event.clientY }, from = model.pair.slice(), placed_then = now, { height } = local(event);
-    model.set({ chosen: 3 * v + (model.chosen % 3) });
-    model.start_moving();
-    const { right, up } = axes(view_of(camera));
-    const pixel = (2 * framed_half_height(now.shape)) / height / camera.zoom;
-    const move = (next: PointerEvent) => {
-      const across = (next.clientX - start.x) * pixel, along = (start.y - next.clientY) * pixel;
-      model.change((pair) => {
-        const fine = next.shiftKey ? kFine : 1;
-        for (let k = 0; k < 3; ++k) pair[3 * v + k] = from[3 * v + k] + (right[k] * across + up[k] * along) * placed_then.unit[k] * fine;
-      });
-    };
-    surround.addEventListener('pointermove', move);
-    const end = () => {
-      surround.removeEventListener('pointermove', move);
-      model.stop_moving();
-    };
-    surround.addEventListener('pointerup', end, { once: true });
-    surround.addEventListener('pointercancel', end, { once: true });
-  }, { capture: true });
+  surround.addEventListener(
+    'pointerdown',
+    (event) => {
+      const v = event.button === 0 ? taken(event) : null;
+      if (v === null) return;
+      event.stopPropagation();
+      event.preventDefault();
+      ground.focus({ preventScroll: true });
+      surround.setPointerCapture(event.pointerId);
+      const start = { x: event.clientX, y: event.clientY },
+        from = model.pair.slice(),
+        placed_then = now,
+        { height } = local(event);
+      model.set({ chosen: 3 * v + (model.chosen % 3) });
+      model.start_moving();
+      const { right, up } = axes(view_of(camera));
+      const pixel = (2 * framed_half_height(now.shape)) / height / camera.zoom;
+      const move = (next: PointerEvent) => {
+        const across = (next.clientX - start.x) * pixel,
+          along = (start.y - next.clientY) * pixel;
+        model.change((pair) => {
+          const fine = next.shiftKey ? kFine : 1;
+          for (let k = 0; k < 3; ++k)
+            pair[3 * v + k] = from[3 * v + k] + (right[k] * across + up[k] * along) * placed_then.unit[k] * fine;
+        });
+      };
+      surround.addEventListener('pointermove', move);
+      const end = () => {
+        surround.removeEventListener('pointermove', move);
+        model.stop_moving();
+      };
+      surround.addEventListener('pointerup', end, { once: true });
+      surround.addEventListener('pointercancel', end, { once: true });
+    },
+    { capture: true },
+  );
   surround.addEventListener('pointermove', (event) => {
     const v = event.buttons ? null : taken(event);
     if (event.buttons) return;
     ground.toggleAttribute('data-over', v !== null);
     if (v !== null) ground.dataset.over = `${v < 3 ? 'a' : 'b'}[${v % 3}]`;
   });
-  ground.addEventListener('wheel', (event) => {
-    if (document.activeElement !== ground) return;  // else the page scrolls
-    event.preventDefault();
-    magnify(2 ** (-event.deltaY / 200));
-  }, { passive: false });
+  ground.addEventListener(
+    'wheel',
+    (event) => {
+      if (document.activeElement !== ground) return; // else the page scrolls
+      event.preventDefault();
+      magnify(2 ** (-event.deltaY / 200));
+    },
+    { passive: false },
+  );
   new ResizeObserver(draw).observe(ground);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
 
-  const button = (text: string, label: string, action: () => void) => h('button', { type: 'button', 'aria-label': label, title: label, onclick: action }, text);
-  const centre_choice = choice('Centre', kCentres.map((centre) => [centre, centre]), model.centre, (centre) => model.set({ centre: centre as Centre }));
+  const button = (text: string, label: string, action: () => void) =>
+    h('button', { type: 'button', 'aria-label': label, title: label, onclick: action }, text);
+  const centre_choice = choice(
+    'Centre',
+    kCentres.map((centre) => [centre, centre]),
+    model.centre,
+    (centre) => model.set({ centre: centre as Centre }),
+  );
   const toggles = (['planes', 'axes', 'ids', 'coordinates'] as const).map((what) => {
-    const box = h('button', { type: 'button', 'data-shows': what, onclick: () => model.set({ shows: { ...model.shows, [what]: !model.shows[what] } }) }, what);
+    const box = h(
+      'button',
+      {
+        type: 'button',
+        'data-shows': what,
+        onclick: () => model.set({ shows: { ...model.shows, [what]: !model.shows[what] } }),
+      },
+      what,
+    );
     return { what, box };
   });
-  const contact_key = h('span', { class: 'key-contact' }, 'contact'), line_key = h('span', { class: 'key-line' }, 'the planes’ line, with both sections');
-  const b_key = h('span', { class: 'key-b' }, 'b'), field_keys = [['hit', 'hit'], ['other', 'not hit'], ['bad', 'outlined: wrong']].map(([colour, text]) => h('span', { class: `key-${colour}` }, text));
+  const contact_key = h('span', { class: 'key-contact' }, 'contact'),
+    line_key = h('span', { class: 'key-line' }, 'the planes’ line, with both sections');
+  const b_key = h('span', { class: 'key-b' }, 'b'),
+    field_keys = [
+      ['hit', 'hit'],
+      ['other', 'not hit'],
+      ['bad', 'outlined: wrong'],
+    ].map(([colour, text]) => h('span', { class: `key-${colour}` }, text));
   const gap_button = button('Show the gap', 'Magnify what the margin measures', show_gap);
-  const witness_key = h('span', { class: 'key-witness' }), shadow_key = h('span', { class: 'key-shadow' }, 'b on the plane of a, as projected_sat sees it');
-  const element = h('figure', { class: 'stage' }, surround,
-    h('div', { class: 'stage-tools' }, centre_choice, gap_button, button('÷16', 'Magnify less', () => magnify(1 / 16)), button('×16', 'Magnify', () => magnify(16)), button('Reset', 'Reset the view', reset)),
-    h('div', { class: 'chips', role: 'group', 'aria-label': 'Shown in the drawing' }, toggles.map(({ box }) => box)),
-    h('figcaption', {}, h('span', { class: 'key-a' }, 'a'), b_key, field_keys, contact_key, line_key, witness_key, shadow_key, note, h('span', {}, 'Drag a vertex to move it (with Shift finely), the ground to turn.')));
+  const witness_key = h('span', { class: 'key-witness' }),
+    shadow_key = h('span', { class: 'key-shadow' }, 'b on the plane of a, as projected_sat sees it');
+  const element = h(
+    'figure',
+    { class: 'stage' },
+    surround,
+    h(
+      'div',
+      { class: 'stage-tools' },
+      centre_choice,
+      gap_button,
+      button('÷16', 'Magnify less', () => magnify(1 / 16)),
+      button('×16', 'Magnify', () => magnify(16)),
+      button('Reset', 'Reset the view', reset),
+    ),
+    h(
+      'div',
+      { class: 'chips', role: 'group', 'aria-label': 'Shown in the drawing' },
+      toggles.map(({ box }) => box),
+    ),
+    h(
+      'figcaption',
+      {},
+      h('span', { class: 'key-a' }, 'a'),
+      b_key,
+      field_keys,
+      contact_key,
+      line_key,
+      witness_key,
+      shadow_key,
+      note,
+      h('span', {}, 'Drag a vertex to move it (with Shift finely), the ground to turn.'),
+    ),
+  );
   return {
-    element, turn, magnify, reset,
+    element,
+    turn,
+    magnify,
+    reset,
     update: () => {
       toggles.forEach(({ what, box }) => box.setAttribute('aria-pressed', String(model.shows[what])));
       update();

@@ -4,8 +4,12 @@ import { h } from '../dom';
 import { coordinate_name, decimal, hex_float } from './data';
 import type { Model } from './model';
 
-export const kSteps = [['1 ulp', 1], ['256 ulps', 256], ['65,536 ulps', 65536]] as const;
-export const kMove = 0.0625;  // of the thesis's viewer
+export const kSteps = [
+  ['1 ulp', 1],
+  ['256 ulps', 256],
+  ['65,536 ulps', 65536],
+] as const;
+export const kMove = 0.0625; // of the thesis's viewer
 
 // 18 numbers in any notation, with whatever stands between them.
 export function numbers_in(text: string): string[] {
@@ -13,38 +17,55 @@ export function numbers_in(text: string): string[] {
 }
 
 export function coordinates(model: Model, say: (text: string) => void) {
-  const fields = Array.from({ length: 18 }, (_, c) => h('input', {
-    type: 'text', inputmode: 'decimal', spellcheck: 'false', autocomplete: 'off', 'aria-label': coordinate_name(c), 'data-coordinate': c,
-    onfocus: () => model.chosen !== c && model.set({ chosen: c }),
-    onchange: (event: Event) => {
-      const text = (event.target as HTMLInputElement).value, value = model.graze.parse(text.trim());
-      if (value === null) {
-        say(`expected a number of float32 for ${coordinate_name(c)}, found '${text}'`);
-        return show(c);
-      }
-      model.change((pair) => (pair[c] = value));
-      show(c);
-    },
-    onpaste: (event: ClipboardEvent) => {
-      const found = numbers_in(event.clipboardData?.getData('text') ?? '');
-      if (found.length < 2) return;  // one number: an ordinary paste
-      event.preventDefault();
-      take(found);
-    },
-  }));
+  const fields = Array.from({ length: 18 }, (_, c) =>
+    h('input', {
+      type: 'text',
+      inputmode: 'decimal',
+      spellcheck: 'false',
+      autocomplete: 'off',
+      'aria-label': coordinate_name(c),
+      'data-coordinate': c,
+      onfocus: () => model.chosen !== c && model.set({ chosen: c }),
+      onchange: (event: Event) => {
+        const text = (event.target as HTMLInputElement).value,
+          value = model.graze.parse(text.trim());
+        if (value === null) {
+          say(`expected a number of float32 for ${coordinate_name(c)}, found '${text}'`);
+          return show(c);
+        }
+        model.change((pair) => (pair[c] = value));
+        show(c);
+      },
+      onpaste: (event: ClipboardEvent) => {
+        const found = numbers_in(event.clipboardData?.getData('text') ?? '');
+        if (found.length < 2) return; // one number: an ordinary paste
+        event.preventDefault();
+        take(found);
+      },
+    }),
+  );
 
   function take(texts: string[]) {
     const values = texts.map((text) => model.graze.parse(text));
     if (texts.length !== 18 || values.some((value) => value === null))
-      return say(`expected the 18 coordinates of a pair, found ${texts.length} numbers${values.some((value) => value === null) ? ', not all of float32' : ''}`);
+      return say(
+        `expected the 18 coordinates of a pair, found ${texts.length} numbers${values.some((value) => value === null) ? ', not all of float32' : ''}`,
+      );
     model.show(new Float32Array(values as number[]), 'a pasted pair');
   }
 
   const exactly = h('p', { class: 'small', id: 'exactly' });
   const step = (label: string, action: () => void) => h('button', { type: 'button', onclick: action }, label);
-  const steps = h('div', { class: 'chips', role: 'group', 'aria-label': 'Step the chosen coordinate' },
-    kSteps.flatMap(([name, ulps]) => [step(`− ${name}`, () => model.step(-ulps)), step(`+ ${name}`, () => model.step(ulps))]),
-    step(`− ${kMove}`, () => model.change((pair) => (pair[model.chosen] -= kMove))), step(`+ ${kMove}`, () => model.change((pair) => (pair[model.chosen] += kMove))));
+  const steps = h(
+    'div',
+    { class: 'chips', role: 'group', 'aria-label': 'Step the chosen coordinate' },
+    kSteps.flatMap(([name, ulps]) => [
+      step(`− ${name}`, () => model.step(-ulps)),
+      step(`+ ${name}`, () => model.step(ulps)),
+    ]),
+    step(`− ${kMove}`, () => model.change((pair) => (pair[model.chosen] -= kMove))),
+    step(`+ ${kMove}`, () => model.change((pair) => (pair[model.chosen] += kMove))),
+  );
 
   const shown: number[] = [];
   function show(c: number) {
@@ -53,16 +74,53 @@ export function coordinates(model: Model, say: (text: string) => void) {
   }
   function update() {
     fields.forEach((field, c) => {
-      if (!Object.is(shown[c], model.pair[c])) show(c);  // what is being typed stays
+      if (!Object.is(shown[c], model.pair[c])) show(c); // what is being typed stays
       field.classList.toggle('chosen', c === model.chosen);
     });
-    exactly.replaceChildren(h('strong', {}, model.chosen_name), ' is exactly ', h('code', {}, hex_float(model.pair[model.chosen])), '; an ulp of it is ', h('code', {}, String(model.graze.nudged(Math.abs(model.pair[model.chosen]), 1) - Math.abs(model.pair[model.chosen]))));
+    exactly.replaceChildren(
+      h('strong', {}, model.chosen_name),
+      ' is exactly ',
+      h('code', {}, hex_float(model.pair[model.chosen])),
+      '; an ulp of it is ',
+      h(
+        'code',
+        {},
+        String(model.graze.nudged(Math.abs(model.pair[model.chosen]), 1) - Math.abs(model.pair[model.chosen])),
+      ),
+    );
   }
-  const row = (v: number) => h('tr', {}, h('th', { scope: 'row' }, `${v < 3 ? 'a' : 'b'}[${v % 3}]`), [0, 1, 2].map((k) => h('td', {}, fields[3 * v + k])));
+  const row = (v: number) =>
+    h(
+      'tr',
+      {},
+      h('th', { scope: 'row' }, `${v < 3 ? 'a' : 'b'}[${v % 3}]`),
+      [0, 1, 2].map((k) => h('td', {}, fields[3 * v + k])),
+    );
   return {
-    take, update,
-    element: h('section', { id: 'coordinates', 'aria-labelledby': 'coordinates-title' }, h('h2', { id: 'coordinates-title' }, 'Coordinates'),
-      h('table', { class: 'plain pair' }, h('caption', {}, 'In float32. Type one, or paste 18 numbers into any field.'), h('thead', {}, h('tr', {}, h('td', {}), ['x', 'y', 'z'].map((axis) => h('th', { scope: 'col' }, axis)))), h('tbody', {}, [0, 1, 2, 3, 4, 5].map(row))),
-      steps, exactly),
+    take,
+    update,
+    element: h(
+      'section',
+      { id: 'coordinates', 'aria-labelledby': 'coordinates-title' },
+      h('h2', { id: 'coordinates-title' }, 'Coordinates'),
+      h(
+        'table',
+        { class: 'plain pair' },
+        h('caption', {}, 'In float32. Type one, or paste 18 numbers into any field.'),
+        h(
+          'thead',
+          {},
+          h(
+            'tr',
+            {},
+            h('td', {}),
+            ['x', 'y', 'z'].map((axis) => h('th', { scope: 'col' }, axis)),
+          ),
+        ),
+        h('tbody', {}, [0, 1, 2, 3, 4, 5].map(row)),
+      ),
+      steps,
+      exactly,
+    ),
   };
 }

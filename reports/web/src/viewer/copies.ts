@@ -10,26 +10,49 @@ const float = (x: number) => `${hex_float(x)}f`;
 
 const kCopies: Record<string, (model: Model) => string> = {
   'check line': ({ pair }) => `${Array.from(pair, hex_float).join(' ')}\n`,
-  C: ({ pair, name }) => `/* ${name} */\nconst float a[3][3] = {${vectors(float, pair, '{', '}').slice(0, 3).join(', ')}};\nconst float b[3][3] = {${vectors(float, pair, '{', '}').slice(3).join(', ')}};\n`,
-  CUDA: ({ pair, name }) => `// ${name}\n__constant__ float3 a[3] = {${vectors(float, pair, '{', '}').slice(0, 3).join(', ')}};\n__constant__ float3 b[3] = {${vectors(float, pair, '{', '}').slice(3).join(', ')}};\n`,
+  C: ({ pair, name }) =>
+    `/* ${name} */\nconst float a[3][3] = {${vectors(float, pair, '{', '}').slice(0, 3).join(', ')}};\nconst float b[3][3] = {${vectors(float, pair, '{', '}').slice(3).join(', ')}};\n`,
+  CUDA: ({ pair, name }) =>
+    `// ${name}\n__constant__ float3 a[3] = {${vectors(float, pair, '{', '}').slice(0, 3).join(', ')}};\n__constant__ float3 b[3] = {${vectors(float, pair, '{', '}').slice(3).join(', ')}};\n`,
   Python: ({ pair, name }) => {
     const rows = vectors((x) => `float.fromhex("${hex_float(x)}")`, pair, '(', ')');
     return `# ${name}\na = [${rows.slice(0, 3).join(', ')}]\nb = [${rows.slice(3).join(', ')}]\n`;
   },
-  OBJ: ({ pair, name }) => `# ${name}\n${Array.from({ length: 6 }, (_, v) => `v ${[0, 1, 2].map((k) => decimal(pair[3 * v + k])).join(' ')}`).join('\n')}\nf 1 2 3\nf 4 5 6\n`,
+  OBJ: ({ pair, name }) =>
+    `# ${name}\n${Array.from({ length: 6 }, (_, v) => `v ${[0, 1, 2].map((k) => decimal(pair[3 * v + k])).join(' ')}`).join('\n')}\nf 1 2 3\nf 4 5 6\n`,
 };
 
 // link: the address that leads back to the pair.
 export function copies(model: Model, link: (model: Model) => string) {
   const shown = h('div', { class: 'copied' });
-  const buttons = Object.entries({ ...kCopies, link }).map(([name, text_of]) => h('button', {
-    type: 'button', onclick: () => {
-      const text = text_of(model);
-      shown.replaceChildren(h('div', { class: 'code' }, h('pre', { tabindex: 0, 'aria-label': name }, h('code', {}, text)), copy_button(text, `the ${name}`)));
-    },
-  }, name));
+  const buttons = Object.entries({ ...kCopies, link }).map(([name, text_of]) =>
+    h(
+      'button',
+      {
+        type: 'button',
+        onclick: () => {
+          const text = text_of(model);
+          shown.replaceChildren(
+            h(
+              'div',
+              { class: 'code' },
+              h('pre', { tabindex: 0, 'aria-label': name }, h('code', {}, text)),
+              copy_button(text, `the ${name}`),
+            ),
+          );
+        },
+      },
+      name,
+    ),
+  );
   return {
-    element: h('section', { id: 'copies', 'aria-labelledby': 'copies-title' }, h('h2', { id: 'copies-title' }, 'Copy as'), h('div', { class: 'chips' }, buttons), shown),
+    element: h(
+      'section',
+      { id: 'copies', 'aria-labelledby': 'copies-title' },
+      h('h2', { id: 'copies-title' }, 'Copy as'),
+      h('div', { class: 'chips' }, buttons),
+      shown,
+    ),
     update: () => shown.replaceChildren(),
   };
 }

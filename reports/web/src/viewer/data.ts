@@ -3,16 +3,23 @@
 import type { Graze, Verdict } from './graze.js';
 import { kVerdicts } from './graze.js';
 
-export type Coordinates = Float32Array;  // 18: a[0].x to b[2].z
+export type Coordinates = Float32Array; // 18: a[0].x to b[2].z
 
 // Bits: 18 words of 8 hex digits. Verdicts: a digit for each lane, 0 disjoint, 1 intersects, 2 declined.
-export interface Replay { lanes: string[]; pairs: { bits: string; truth: Verdict; contact: string; verdicts: string }[] }
-export interface Stored { evidence: string; replay: Replay }  // of the build; `graze report` writes these alone
+export interface Replay {
+  lanes: string[];
+  pairs: { bits: string; truth: Verdict; contact: string; verdicts: string }[];
+}
+export interface Stored {
+  evidence: string;
+  replay: Replay;
+} // of the build; `graze report` writes these alone
 export interface ViewData extends Stored {
-  format: number; title: string;
+  format: number;
+  title: string;
   pairs: { name: string; bits: string }[];
-  triangles: string[];  // of a mesh or a query, 9 words each; may be empty
-  opens?: 'pair' | 'triangles';  // with all of these at once, against the first of the pair
+  triangles: string[]; // of a mesh or a query, 9 words each; may be empty
+  opens?: 'pair' | 'triangles'; // with all of these at once, against the first of the pair
 }
 
 export function from_bits(bits: string): Coordinates {
@@ -43,7 +50,10 @@ export function hex_float(x: number): string {
   if (x === 0) return `${sign}0x0p+0`;
   let exponent = Math.floor(Math.log2(Math.abs(x)));
   if (2 ** exponent > Math.abs(x)) --exponent;
-  const digits = Math.round((Math.abs(x) / 2 ** exponent - 1) * 2 ** 24).toString(16).padStart(6, '0').replace(/0+$/, '');
+  const digits = Math.round((Math.abs(x) / 2 ** exponent - 1) * 2 ** 24)
+    .toString(16)
+    .padStart(6, '0')
+    .replace(/0+$/, '');
   return `${sign}0x1${digits ? `.${digits}` : ''}p${exponent < 0 ? '' : '+'}${exponent}`;
 }
 
@@ -52,10 +62,13 @@ export const coordinate_name = (c: number) => `${c < 9 ? 'a' : 'b'}[${Math.floor
 // Decides the stored pairs again.   Returns: what is not as the native build has it, in words; empty where all is.
 export function replay(graze: Graze, { lanes, pairs }: Replay): string[] {
   const apart: string[] = [];
-  const say = (i: number, what: string, here: unknown, native: unknown) => apart.push(`stored pair ${i + 1}, ${what}: here ${here}, natively ${native}`);
+  const say = (i: number, what: string, here: unknown, native: unknown) =>
+    apart.push(`stored pair ${i + 1}, ${what}: here ${here}, natively ${native}`);
   if (pairs.length === 0) apart.push('this page holds no stored verdicts');
   pairs.forEach((stored, i) => {
-    const pair = from_bits(stored.bits), truth = graze.truth(pair), verdicts = graze.decide(pair);
+    const pair = from_bits(stored.bits),
+      truth = graze.truth(pair),
+      verdicts = graze.decide(pair);
     if (truth.verdict !== stored.truth) say(i, 'truth', truth.verdict, stored.truth);
     if (truth.contact !== stored.contact) say(i, 'contact', truth.contact, stored.contact);
     lanes.forEach((lane, k) => {

@@ -7,21 +7,31 @@ import { from_bits, type Coordinates, type ViewData } from './data';
 import type { Model } from './model';
 import type { Field } from './shape';
 
-const kLeast = 16, kMost = 8192;
+const kLeast = 16,
+  kMost = 8192;
 
 export function field(model: Model, data: ViewData, changed: () => void) {
-  const { graze } = model, mesh = data.triangles.map(from_bits);
-  let shown = 0, seed = 1n, triangles: Coordinates[] = [], current: Field | null = null;
+  const { graze } = model,
+    mesh = data.triangles.map(from_bits);
+  let shown = 0,
+    seed = 1n,
+    triangles: Coordinates[] = [],
+    current: Field | null = null;
   const told = h('p', { class: 'small', id: 'field' });
 
   function draw_triangles() {
-    triangles = mesh.length ? mesh.slice(0, shown) : Array.from({ length: shown }, (_, i) => graze.generate('thesis', seed, BigInt(i)).slice(9));
+    triangles = mesh.length
+      ? mesh.slice(0, shown)
+      : Array.from({ length: shown }, (_, i) => graze.generate('thesis', seed, BigInt(i)).slice(9));
   }
 
   // By the chosen lane, and by the exact decision.
   function decide() {
     if (!shown) return (current = null);
-    const { exports } = graze, lane = graze.lanes.indexOf(model.lane), hit: boolean[] = [], wrong: boolean[] = [];
+    const { exports } = graze,
+      lane = graze.lanes.indexOf(model.lane),
+      hit: boolean[] = [],
+      wrong: boolean[] = [];
     for (let first = 0; first < triangles.length; first += graze.room) {
       const some = triangles.slice(first, first + graze.room);
       const room = new Float32Array(exports.memory.buffer, exports.pairs(), 18 * some.length);
@@ -43,12 +53,31 @@ export function field(model: Model, data: ViewData, changed: () => void) {
 
   function tell() {
     const sum = (all: boolean[]) => count(all.filter(Boolean).length);
-    told.replaceChildren(...(current ? [h('strong', {}, `${count(triangles.length)} ${mesh.length ? '' : 'random '}triangles against a, the reference: `), h('code', {}, model.lane), ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). The table is of the pair named above; press a verdict to see its lane here. `,
-      h('button', { type: 'button', onclick: take }, current.wrong.some(Boolean) ? 'Take a wrong one' : 'Take a hit'), ' ', h('button', { type: 'button', onclick: () => set_shown(0) }, 'Back to the pair')] : []));
+    told.replaceChildren(
+      ...(current
+        ? [
+            h(
+              'strong',
+              {},
+              `${count(triangles.length)} ${mesh.length ? '' : 'random '}triangles against a, the reference: `,
+            ),
+            h('code', {}, model.lane),
+            ` hits ${sum(current.hit)}, wrong on ${sum(current.wrong)} (outlined). The table is of the pair named above; press a verdict to see its lane here. `,
+            h(
+              'button',
+              { type: 'button', onclick: take },
+              current.wrong.some(Boolean) ? 'Take a wrong one' : 'Take a hit',
+            ),
+            ' ',
+            h('button', { type: 'button', onclick: () => set_shown(0) }, 'Back to the pair'),
+          ]
+        : []),
+    );
   }
 
   function take() {
-    const at = current!.wrong.indexOf(true), one = at < 0 ? current!.hit.indexOf(true) : at;
+    const at = current!.wrong.indexOf(true),
+      one = at < 0 ? current!.hit.indexOf(true) : at;
     if (one < 0) return;
     const triangle = triangles[one];
     set_shown(0);

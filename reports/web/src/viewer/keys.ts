@@ -3,27 +3,73 @@
 import { h } from '../dom';
 
 // keys: as KeyboardEvent.key, without Shift and Alt; shown: for people. of_2012: whether the thesis's viewer had it.
-export interface Key { keys: string[]; shown: string; does: string; of_2012?: boolean; on_board?: boolean; with_control?: string; press: (event: KeyboardEvent) => void }
+export interface Key {
+  keys: string[];
+  shown: string;
+  does: string;
+  of_2012?: boolean;
+  on_board?: boolean;
+  with_control?: string;
+  press: (event: KeyboardEvent) => void;
+}
 
 const kTyping = 'input:not([type=range]):not([type=checkbox]), textarea, select';
-const kPressed = 'button, summary, a, input';  // elements with a use of their own for Enter, space and arrows
+const kPressed = 'button, summary, a, input'; // elements with a use of their own for Enter, space and arrows
 
 // The key's own name, whatever Shift and Alt make of it.
-const base = (event: KeyboardEvent) => ({ BracketLeft: '[', BracketRight: ']' })[event.code] ?? (event.key.length === 1 ? event.key.toLowerCase() : event.key);
+const base = (event: KeyboardEvent) =>
+  ({ BracketLeft: '[', BracketRight: ']' })[event.code] ??
+  (event.key.length === 1 ? event.key.toLowerCase() : event.key);
 
 export function keys(all: Key[], active: () => boolean) {
-  const table = (rows: Key[]) => rows.map(({ shown, does }) => h('tr', {}, h('th', { scope: 'row' }, shown.split(' ').map((key, i) => [i ? ' ' : '', h('kbd', {}, key)])), h('td', {}, does)));
+  const table = (rows: Key[]) =>
+    rows.map(({ shown, does }) =>
+      h(
+        'tr',
+        {},
+        h(
+          'th',
+          { scope: 'row' },
+          shown.split(' ').map((key, i) => [i ? ' ' : '', h('kbd', {}, key)]),
+        ),
+        h('td', {}, does),
+      ),
+    );
   const on = h('input', { type: 'checkbox', checked: true });
-  const help = h('dialog', { id: 'help', 'aria-labelledby': 'help-title' }, h('form', { method: 'dialog', class: 'close' }, h('button', {}, 'Close')), h('h2', { id: 'help-title', tabindex: -1 }, 'Keys'),
-    h('p', {}, 'By mouse or finger: drag a vertex to move it, with Shift finely; drag the ground to turn. Keys act wherever the page has the focus, but in fields; arrows and space in the drawing.'),
-    h('table', { class: 'plain' }, h('tbody', {}, h('tr', {}, h('th', { colspan: 2, scope: 'colgroup' }, 'As in 2012')), table(all.filter((key) => key.of_2012)), h('tr', {}, h('th', { colspan: 2, scope: 'colgroup' }, 'New')), table(all.filter((key) => !key.of_2012)))),
-    h('label', {}, on, ' keys of one letter act'));
+  const help = h(
+    'dialog',
+    { id: 'help', 'aria-labelledby': 'help-title' },
+    h('form', { method: 'dialog', class: 'close' }, h('button', {}, 'Close')),
+    h('h2', { id: 'help-title', tabindex: -1 }, 'Keys'),
+    h(
+      'p',
+      {},
+      'By mouse or finger: drag a vertex to move it, with Shift finely; drag the ground to turn. Keys act wherever the page has the focus, but in fields; arrows and space in the drawing.',
+    ),
+    h(
+      'table',
+      { class: 'plain' },
+      h(
+        'tbody',
+        {},
+        h('tr', {}, h('th', { colspan: 2, scope: 'colgroup' }, 'As in 2012')),
+        table(all.filter((key) => key.of_2012)),
+        h('tr', {}, h('th', { colspan: 2, scope: 'colgroup' }, 'New')),
+        table(all.filter((key) => !key.of_2012)),
+      ),
+    ),
+    h('label', {}, on, ' keys of one letter act'),
+  );
   document.addEventListener('keydown', (event) => {
     if (!active() || event.defaultPrevented) return;
-    const target = event.target as Element, name = base(event), control = event.ctrlKey || event.metaKey;
-    const found = all.find((key) => (control ? key.with_control === (event.shiftKey && name === 'z' ? 'y' : name) : key.keys.includes(name)));
+    const target = event.target as Element,
+      name = base(event),
+      control = event.ctrlKey || event.metaKey;
+    const found = all.find((key) =>
+      control ? key.with_control === (event.shiftKey && name === 'z' ? 'y' : name) : key.keys.includes(name),
+    );
     if (!found || target.matches(kTyping) || (help.open && name !== 'h')) return;
-    if (found.on_board && (target.matches(kPressed) || !(target.matches('body, .board')))) return;
+    if (found.on_board && (target.matches(kPressed) || !target.matches('body, .board'))) return;
     if (name.length === 1 && name !== 'h' && !control && !on.checked) return;
     event.preventDefault();
     found.press(event);

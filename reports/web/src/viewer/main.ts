@@ -8,12 +8,18 @@ import { make_ready, no_verdicts, viewer, type First } from './viewer';
 
 function first_of({ pairs, opens }: ViewData): First {
   const linked = from_fragment();
-  return linked ? { name: 'the pair of a link', ...linked } : pairs.length ? { name: pairs[0].name, pair: from_bits(pairs[0].bits), lane: opens === 'triangles' ? 'exact/f32/cpu' : '' } : special_cases[0];
+  return linked
+    ? { name: 'the pair of a link', ...linked }
+    : pairs.length
+      ? { name: pairs[0].name, pair: from_bits(pairs[0].bits), lane: opens === 'triangles' ? 'exact/f32/cpu' : '' }
+      : special_cases[0];
 }
 
 async function start() {
-  const page = document.getElementById('page')!, text = document.getElementById('view')?.textContent?.trim() ?? '';
-  if (!text || text.startsWith('<!--')) return void (page.textContent = 'This is the empty page: graze view writes one with data.');
+  const page = document.getElementById('page')!,
+    text = document.getElementById('view')?.textContent?.trim() ?? '';
+  if (!text || text.startsWith('<!--'))
+    return void (page.textContent = 'This is the empty page: graze view writes one with data.');
   const data = JSON.parse(text) as ViewData;
   try {
     const shown = viewer(data, await make_ready(data.replay), first_of(data), {
@@ -21,7 +27,11 @@ async function start() {
       link: (model: Model) => `${location.href.split('#')[0]}${fragment_of(model)}`,
       active: () => true,
     });
-    page.replaceChildren(h('header', { class: 'viewer-head' }, shown.head), h('main', { class: 'viewer-body' }, shown.body), shown.help);
+    page.replaceChildren(
+      h('header', { class: 'viewer-head' }, shown.head),
+      h('main', { class: 'viewer-body' }, shown.body),
+      shown.help,
+    );
     addEventListener('hashchange', ({ newURL }) => {
       const next = from_fragment(newURL);
       if (next) shown.show({ name: 'the pair of a link', ...next });

@@ -7,18 +7,41 @@ import { kSide, type MapPart, type MapRequest } from './map_worker';
 import MapWorker from './map_worker?worker&inline';
 
 // As `graze map` has them (reports/ulp_map_picture.cpp).
-const kColours = { disjoint: '#eeeeee', intersects: '#aaaaaa', 'false positive': '#d55e00', 'false negative': '#0072b2', declined: '#f0e442', 'not finite': '#cc79a7' };
+const kColours = {
+  disjoint: '#eeeeee',
+  intersects: '#aaaaaa',
+  'false positive': '#d55e00',
+  'false negative': '#0072b2',
+  declined: '#f0e442',
+  'not finite': '#cc79a7',
+};
 const kPalette = Object.values(kColours).map((colour) => [1, 3, 5].map((i) => parseInt(colour.slice(i, i + 2), 16)));
-const kCells = [['1 ulp', 1], ['16 ulps', 16], ['256 ulps', 256], ['4,096 ulps', 4096], ['65,536 ulps', 65536]] as const;
-const kWait = 40;  // milliseconds of rest before a map is drawn anew
+const kCells = [
+  ['1 ulp', 1],
+  ['16 ulps', 16],
+  ['256 ulps', 256],
+  ['4,096 ulps', 4096],
+  ['65,536 ulps', 65536],
+] as const;
+const kWait = 40; // milliseconds of rest before a map is drawn anew
 
 // Place in kPalette of a lane's verdict where the truth is that.
-const cell_of = (verdict: number, truth: number) => (truth === 2 ? 5 : verdict === 2 ? 4 : verdict === truth ? truth : verdict === 1 ? 2 : 3);
+const cell_of = (verdict: number, truth: number) =>
+  truth === 2 ? 5 : verdict === 2 ? 4 : verdict === truth ? truth : verdict === 1 ? 2 : 3;
 
 export function map(model: Model, module: WebAssembly.Module) {
-  let x = 9, y = 10, step = 1, of = 'variants', number = 0, timer = 0, lanes: string[] = [], worker: Worker | null = null;
-  const panels = h('div', { class: 'panels' }), told = h('p', { class: 'small', id: 'map-told', 'data-number': 0 });
-  let canvases: HTMLCanvasElement[] = [], seen = false;
+  let x = 9,
+    y = 10,
+    step = 1,
+    of = 'variants',
+    number = 0,
+    timer = 0,
+    lanes: string[] = [],
+    worker: Worker | null = null;
+  const panels = h('div', { class: 'panels' }),
+    told = h('p', { class: 'small', id: 'map-told', 'data-number': 0 });
+  let canvases: HTMLCanvasElement[] = [],
+    seen = false;
 
   function start_worker() {
     const started = new MapWorker();
@@ -30,11 +53,14 @@ export function map(model: Model, module: WebAssembly.Module) {
   function paint({ row, every, rows, milliseconds, last }: MapPart) {
     const truth = rows[0]!;
     canvases.forEach((canvas, panel) => {
-      const context = canvas.getContext('2d')!, cells = rows[panel];
+      const context = canvas.getContext('2d')!,
+        cells = rows[panel];
       if (!cells) return context.clearRect(0, 0, kSide, kSide);
       const image = context.createImageData(kSide, every);
       for (let i = 0; i < kSide; ++i) {
-        const column = Math.floor(i / every), [r, g, b] = kPalette[panel === 0 ? (truth[column] === 2 ? 5 : truth[column]) : cell_of(cells[column], truth[column])];
+        const column = Math.floor(i / every),
+          [r, g, b] =
+            kPalette[panel === 0 ? (truth[column] === 2 ? 5 : truth[column]) : cell_of(cells[column], truth[column])];
         for (let j = 0; j < every; ++j) image.data.set([r, g, b, 255], 4 * (j * kSide + i));
       }
       context.putImageData(image, 0, row);
@@ -48,7 +74,8 @@ export function map(model: Model, module: WebAssembly.Module) {
   // Takes the pair of the cell that was pressed.
   function press(canvas: HTMLCanvasElement, event: MouseEvent) {
     const box = canvas.getBoundingClientRect();
-    const column = Math.floor(((event.clientX - box.left) / box.width) * kSide), row = Math.floor(((event.clientY - box.top) / box.height) * kSide);
+    const column = Math.floor(((event.clientX - box.left) / box.width) * kSide),
+      row = Math.floor(((event.clientY - box.top) / box.height) * kSide);
     model.change((pair) => {
       pair[x] = model.graze.nudged(pair[x], (column - kSide / 2) * step);
       pair[y] = model.graze.nudged(pair[y], (kSide / 2 - row) * step);
@@ -57,7 +84,13 @@ export function map(model: Model, module: WebAssembly.Module) {
 
   function request() {
     const [subject, scalar, variant] = model.lane.split('/');
-    const next = model.graze.lanes.filter((lane) => !lane.startsWith('exact/') && (of === 'variants' && subject !== 'exact' ? lane.startsWith(`${subject}/${scalar}/`) : lane.endsWith(`/${scalar}/${variant}`) || (subject === 'exact' && lane.endsWith('/f32/cpu'))));
+    const next = model.graze.lanes.filter(
+      (lane) =>
+        !lane.startsWith('exact/') &&
+        (of === 'variants' && subject !== 'exact'
+          ? lane.startsWith(`${subject}/${scalar}/`)
+          : lane.endsWith(`/${scalar}/${variant}`) || (subject === 'exact' && lane.endsWith('/f32/cpu'))),
+    );
     if (next.join() !== lanes.join() || !canvases.length) {
       lanes = next;
       canvases = ['truth', ...lanes].map((name) => {
@@ -65,7 +98,20 @@ export function map(model: Model, module: WebAssembly.Module) {
         canvas.onclick = (event) => press(canvas, event);
         return canvas;
       });
-      panels.replaceChildren(...canvases.map((canvas, i) => h('figure', {}, h('div', { class: 'map-frame' }, canvas), h('figcaption', {}, i ? lanes[i - 1].split('/').map((part, k) => [k ? '/' : '', k ? h('wbr', {}) : '', part]) : 'truth'))));
+      panels.replaceChildren(
+        ...canvases.map((canvas, i) =>
+          h(
+            'figure',
+            {},
+            h('div', { class: 'map-frame' }, canvas),
+            h(
+              'figcaption',
+              {},
+              i ? lanes[i - 1].split('/').map((part, k) => [k ? '/' : '', k ? h('wbr', {}) : '', part]) : 'truth',
+            ),
+          ),
+        ),
+      );
     }
     worker ??= start_worker();
     ++number;
@@ -77,23 +123,67 @@ export function map(model: Model, module: WebAssembly.Module) {
     if (seen) timer = window.setTimeout(request, kWait);
   };
   const names = Array.from({ length: 18 }, (_, c) => [String(c), coordinate_name(c)] as [string, string]);
-  const across = choice('To the right', names, String(x), (value) => { x = Number(value); again(); });
-  const upwards = choice('Upwards', names, String(y), (value) => { y = Number(value); again(); });
+  const across = choice('To the right', names, String(x), (value) => {
+    x = Number(value);
+    again();
+  });
+  const upwards = choice('Upwards', names, String(y), (value) => {
+    y = Number(value);
+    again();
+  });
   let last_chosen = -1;
-  const element = h('section', { id: 'map', 'aria-labelledby': 'map-title' }, h('h2', { id: 'map-title' }, 'Ulp map'),
+  const element = h(
+    'section',
+    { id: 'map', 'aria-labelledby': 'map-title' },
+    h('h2', { id: 'map-title' }, 'Ulp map'),
     h('p', { class: 'small' }, 'The pair is in the middle; press a cell to take its pair.'),
-    h('div', { class: 'controls' }, across, upwards,
-      choice('A cell is', kCells.map(([name, ulps]) => [String(ulps), name]), '1', (value) => { step = Number(value); again(); }),
-      choice('Lanes', [['variants', 'the chosen algorithm'], ['algorithms', 'all algorithms, so built']], of, (value) => { of = value; again(); })),
-    panels, h('p', { class: 'map-key small' }, Object.entries(kColours).map(([name, colour]) => h('span', {}, h('i', { style: `background:${colour}` }), name))), told);
-  new IntersectionObserver(([entry]) => {
-    seen = entry.isIntersecting;
-    if (seen) again();
-  }, { rootMargin: '200px' }).observe(element);
+    h(
+      'div',
+      { class: 'controls' },
+      across,
+      upwards,
+      choice(
+        'A cell is',
+        kCells.map(([name, ulps]) => [String(ulps), name]),
+        '1',
+        (value) => {
+          step = Number(value);
+          again();
+        },
+      ),
+      choice(
+        'Lanes',
+        [
+          ['variants', 'the chosen algorithm'],
+          ['algorithms', 'all algorithms, so built'],
+        ],
+        of,
+        (value) => {
+          of = value;
+          again();
+        },
+      ),
+    ),
+    panels,
+    h(
+      'p',
+      { class: 'map-key small' },
+      Object.entries(kColours).map(([name, colour]) => h('span', {}, h('i', { style: `background:${colour}` }), name)),
+    ),
+    told,
+  );
+  new IntersectionObserver(
+    ([entry]) => {
+      seen = entry.isIntersecting;
+      if (seen) again();
+    },
+    { rootMargin: '200px' },
+  ).observe(element);
   return {
     element,
     update() {
-      if (model.chosen !== last_chosen) {  // the chosen coordinate, and the next of its vertex
+      if (model.chosen !== last_chosen) {
+        // the chosen coordinate, and the next of its vertex
         last_chosen = x = model.chosen;
         y = model.vertex + ((model.chosen + 1) % 3);
         across.querySelector('select')!.value = String(x);

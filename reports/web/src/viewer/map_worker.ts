@@ -2,11 +2,26 @@
 // Ulp maps, coarse to fine, beside the page's own thread.
 import { load, type Graze } from './graze.js';
 
-export interface MapRequest { number: number; pair: Float32Array; x: number; y: number; step: number; lanes: string[]; policy: string }
-export interface MapPart { number: number; row: number; every: number; rows: (Uint8Array | null)[]; milliseconds: number; last: boolean }
+export interface MapRequest {
+  number: number;
+  pair: Float32Array;
+  x: number;
+  y: number;
+  step: number;
+  lanes: string[];
+  policy: string;
+}
+export interface MapPart {
+  number: number;
+  row: number;
+  every: number;
+  rows: (Uint8Array | null)[];
+  milliseconds: number;
+  last: boolean;
+}
 export const kSide = 256;
-const kLevels = [16, 4, 1];  // cells of so many columns and rows
-const kSlice = 12;           // milliseconds, after which a newer request gets its turn
+const kLevels = [16, 4, 1]; // cells of so many columns and rows
+const kSlice = 12; // milliseconds, after which a newer request gets its turn
 
 let wanted: MapRequest | null = null;
 let graze: Graze | undefined;
@@ -26,15 +41,31 @@ const ready = new Promise<void>((resolve) => {
 async function draw() {
   await ready;
   while (wanted) {
-    const request: MapRequest = wanted, start = performance.now();
+    const request: MapRequest = wanted,
+      start = performance.now();
     let pause = start;
     graze!.set_policy(request.policy);
     for (const every of kLevels) {
       for (let row = 0; row < kSide; row += every) {
         const up = (kSide / 2 - row) * request.step;
-        const rows = graze!.map_row(request.pair, request.x, request.y, up, kSide / every, every * request.step, request.lanes);
+        const rows = graze!.map_row(
+          request.pair,
+          request.x,
+          request.y,
+          up,
+          kSide / every,
+          every * request.step,
+          request.lanes,
+        );
         const last = every === 1 && row === kSide - 1;
-        postMessage({ number: request.number, row, every, rows, milliseconds: performance.now() - start, last } satisfies MapPart);
+        postMessage({
+          number: request.number,
+          row,
+          every,
+          rows,
+          milliseconds: performance.now() - start,
+          last,
+        } satisfies MapPart);
         if (performance.now() - pause > kSlice) {
           await new Promise((resolve) => setTimeout(resolve, 0));
           pause = performance.now();

@@ -6,47 +6,110 @@ import type { Model } from './model';
 const kMostSaid = 3;
 
 export function matrix(model: Model) {
-  const rows = new Map<string, string[]>(), variants: string[] = [];
+  const rows = new Map<string, string[]>(),
+    variants: string[] = [];
   for (const lane of model.graze.lanes) {
-    const [subject, scalar, variant] = lane.split('/'), column = variant === 'cuda' ? 'cuda-fma' : variant;
+    const [subject, scalar, variant] = lane.split('/'),
+      column = variant === 'cuda' ? 'cuda-fma' : variant;
     rows.set(`${subject}/${scalar}`, [...(rows.get(`${subject}/${scalar}`) ?? []), lane]);
     if (!variants.includes(column)) variants.push(column);
   }
-  const cells = new Map(model.graze.lanes.map((lane) => [lane, h('button', { type: 'button', 'data-lane': lane, onclick: () => model.set({ lane }) })]));
+  const cells = new Map(
+    model.graze.lanes.map((lane) => [
+      lane,
+      h('button', { type: 'button', 'data-lane': lane, onclick: () => model.set({ lane }) }),
+    ]),
+  );
   const told = h('p', { class: 'announced', 'aria-live': 'polite', id: 'flips' });
-  const cell = (lanes: string[], variant: string) => lanes.find((lane) => lane.endsWith(`/${variant}`) || (variant === 'cuda-fma' && lane.endsWith('/cuda')));
-  const titles: Record<string, Child> = { cpu: 'CPU', 'cuda-nofma': ['GPU, ', h('span', { class: 'whole' }, '-fmad=false')], 'cuda-fma': 'GPU, nvcc’s default' };
-  const table = h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' }, h('table', { class: 'plain lanes' },
-    h('caption', {}, 'Verdicts of all lanes'),
-    h('thead', {}, h('tr', {}, h('td', {}), variants.map((variant) => h('th', { scope: 'col' }, titles[variant] ?? variant, h('code', {}, variant))))),
-    h('tbody', {}, [...rows].map(([name, lanes]) => h('tr', { 'data-row': name }, h('th', { scope: 'row' }, breakable(name)),
-      variants.map((variant) => {
-        const lane = cell(lanes, variant);
-        return h('td', {}, lane ? cells.get(lane)! : h('span', { class: 'none' }, '–'));
-      }))))));
+  const cell = (lanes: string[], variant: string) =>
+    lanes.find((lane) => lane.endsWith(`/${variant}`) || (variant === 'cuda-fma' && lane.endsWith('/cuda')));
+  const titles: Record<string, Child> = {
+    cpu: 'CPU',
+    'cuda-nofma': ['GPU, ', h('span', { class: 'whole' }, '-fmad=false')],
+    'cuda-fma': 'GPU, nvcc’s default',
+  };
+  const table = h(
+    'div',
+    { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Verdicts' },
+    h(
+      'table',
+      { class: 'plain lanes' },
+      h('caption', {}, 'Verdicts of all lanes'),
+      h(
+        'thead',
+        {},
+        h(
+          'tr',
+          {},
+          h('td', {}),
+          variants.map((variant) => h('th', { scope: 'col' }, titles[variant] ?? variant, h('code', {}, variant))),
+        ),
+      ),
+      h(
+        'tbody',
+        {},
+        [...rows].map(([name, lanes]) =>
+          h(
+            'tr',
+            { 'data-row': name },
+            h('th', { scope: 'row' }, breakable(name)),
+            variants.map((variant) => {
+              const lane = cell(lanes, variant);
+              return h('td', {}, lane ? cells.get(lane)! : h('span', { class: 'none' }, '–'));
+            }),
+          ),
+        ),
+      ),
+    ),
+  );
   let before: typeof model.decided.verdicts | null = null;
 
   function update() {
-    const { verdicts } = model.decided, flipped: string[] = [];
+    const { verdicts } = model.decided,
+      flipped: string[] = [];
     for (const [lane, button] of cells) {
-      const verdict = verdicts[lane], wrong = model.wrong(lane), differs = model.differs(lane);
+      const verdict = verdicts[lane],
+        wrong = model.wrong(lane),
+        differs = model.differs(lane);
       const text = verdict === null ? '–' : `${wrong ? '✗ ' : ''}${verdict}${differs ? ' ≠' : ''}`;
       const flips = before !== null && before[lane] !== verdict;
       if (button.textContent !== text) button.textContent = text;
       button.className = `${wrong ? 'bad' : ''}${differs ? ' differs' : ''}`;
       if (flips) {
-        flipped.push(`${lane} ${verdict === null ? 'has no such policy' : `now says ${verdict}${wrong ? ', wrong' : ''}`}`);
+        flipped.push(
+          `${lane} ${verdict === null ? 'has no such policy' : `now says ${verdict}${wrong ? ', wrong' : ''}`}`,
+        );
         button.getAnimations().forEach((old) => old.cancel());
-        if (!matchMedia('(prefers-reduced-motion: reduce)').matches) button.animate([{ background: 'var(--flip)' }, {}], { duration: 900 });
+        if (!matchMedia('(prefers-reduced-motion: reduce)').matches)
+          button.animate([{ background: 'var(--flip)' }, {}], { duration: 900 });
       }
-      button.setAttribute('aria-label', `${lane}: ${verdict ?? 'no such policy'}${wrong ? ', wrong' : ''}${differs ? ', not what the CPU says' : ''}`);
+      button.setAttribute(
+        'aria-label',
+        `${lane}: ${verdict ?? 'no such policy'}${wrong ? ', wrong' : ''}${differs ? ', not what the CPU says' : ''}`,
+      );
       button.setAttribute('aria-pressed', String(lane === model.lane));
     }
-    for (const row of table.querySelectorAll<HTMLElement>('[data-row]')) row.classList.toggle('apart', rows.get(row.dataset.row!)!.some((lane) => model.differs(lane)));
+    for (const row of table.querySelectorAll<HTMLElement>('[data-row]'))
+      row.classList.toggle(
+        'apart',
+        rows.get(row.dataset.row!)!.some((lane) => model.differs(lane)),
+      );
     before = verdicts;
-    if (flipped.length) told.textContent = `${flipped.slice(0, kMostSaid).join('; ')}${flipped.length > kMostSaid ? `; and ${flipped.length - kMostSaid} more` : ''}.`;
+    if (flipped.length)
+      told.textContent = `${flipped.slice(0, kMostSaid).join('; ')}${flipped.length > kMostSaid ? `; and ${flipped.length - kMostSaid} more` : ''}.`;
   }
-  const key = h('p', { class: 'small' }, h('b', { class: 'bad' }, '✗'), ' wrong, ', h('u', {}, '≠'), ' not what the CPU says. Press a verdict to learn why.');
-  const asked = h('p', { class: 'small' }, 'Each lane says: an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU.');
+  const key = h(
+    'p',
+    { class: 'small' },
+    h('b', { class: 'bad' }, '✗'),
+    ' wrong, ',
+    h('u', {}, '≠'),
+    ' not what the CPU says. Press a verdict to learn why.',
+  );
+  const asked = h(
+    'p',
+    { class: 'small' },
+    'Each lane says: an algorithm in float32 (f32) or float64 (f64), built for CPU or GPU.',
+  );
   return { element: h('div', { class: 'verdicts-of-all' }, asked, table, key), told, update };
 }

@@ -9,20 +9,32 @@ export const kCentres: Centre[] = ['both triangles', 'the chosen vertex', 'the c
 // The thesis's special cases: B against the reference triangle, one for each placement of the vertices along the line.
 const kReference = [0, -2, 6, 0, 5, 0, 0, -3, 0];
 const kSpecial = [
-  ['across the line', -2, -2, 0, 2, -3, 0, 3, -1, 0], ['a vertex on the line', -2, 4.7, 0, 0, 3.7, 0, 2, 4.7, 0],
-  ['across the line, other side', 2, -1, 0, -2, -1.5, 0, -3, 0, 0], ['the reference pierces B', 1.5, -3, 5.5, -2, -2, 5.5, 1.5, 0, 5.5],
-  ['a vertex on the edge', 0, 0, 0, -2, 0.5, 0, -3, 2, 0], ['B pierces the reference', 2, 0, 0.5, -2, 0, 1.5, 1, 0, 4],
-  ['a vertex on the edge, other side', 0, 0.5, 0, 2, 0, 0, 3, 1, 0], ['in the same plane', 0, 3, 1, 0, 1, 1.5, 0, 4, 3],
-  ['an edge within the edge', 3, 1.5, 0, 0, 1, 0, 0, 2, 0], ['an edge within the edge, other side', -3, 3, 0, 0, 2.5, 0, 0, 3.5, 0],
+  ['across the line', -2, -2, 0, 2, -3, 0, 3, -1, 0],
+  ['a vertex on the line', -2, 4.7, 0, 0, 3.7, 0, 2, 4.7, 0],
+  ['across the line, other side', 2, -1, 0, -2, -1.5, 0, -3, 0, 0],
+  ['the reference pierces B', 1.5, -3, 5.5, -2, -2, 5.5, 1.5, 0, 5.5],
+  ['a vertex on the edge', 0, 0, 0, -2, 0.5, 0, -3, 2, 0],
+  ['B pierces the reference', 2, 0, 0.5, -2, 0, 1.5, 1, 0, 4],
+  ['a vertex on the edge, other side', 0, 0.5, 0, 2, 0, 0, 3, 1, 0],
+  ['in the same plane', 0, 3, 1, 0, 1, 1.5, 0, 4, 3],
+  ['an edge within the edge', 3, 1.5, 0, 0, 1, 0, 0, 2, 0],
+  ['an edge within the edge, other side', -3, 3, 0, 0, 2.5, 0, 0, 3.5, 0],
 ] as const;
-export const special_cases = kSpecial.map(([what, ...b], i) => ({ name: `special case ${i + 1} of 2012: ${what}`, pair: new Float32Array([...kReference, ...b]) }));
+export const special_cases = kSpecial.map(([what, ...b], i) => ({
+  name: `special case ${i + 1} of 2012: ${what}`,
+  pair: new Float32Array([...kReference, ...b]),
+}));
 
-export interface Decided { verdicts: Record<string, Verdict | null>; truth: Truth; margin: Margin }
+export interface Decided {
+  verdicts: Record<string, Verdict | null>;
+  truth: Truth;
+  margin: Margin;
+}
 
 export class Model {
   pair: Coordinates;
   name: string;
-  chosen = 9;  // coordinate
+  chosen = 9; // coordinate
   lane: string;
   policy = '';
   centre: Centre = 'both triangles';
@@ -33,7 +45,11 @@ export class Model {
   private moving = false;
 
   // changed: called after each change; `moved` says whether the pair or the policy did, not only what is shown of it.
-  constructor(readonly graze: Graze, first: { name: string; pair: Coordinates }, private changed: (moved: boolean) => void) {
+  constructor(
+    readonly graze: Graze,
+    first: { name: string; pair: Coordinates },
+    private changed: (moved: boolean) => void,
+  ) {
     this.pair = first.pair;
     this.name = first.name;
     this.lane = graze.lanes[0];
@@ -107,7 +123,8 @@ export class Model {
   }
 
   wrong(lane: string) {
-    const { verdicts, truth } = this.decided, verdict = verdicts[lane];
+    const { verdicts, truth } = this.decided,
+      verdict = verdicts[lane];
     return verdict !== null && truth.verdict !== 'declined' && verdict !== truth.verdict;
   }
   // The lane that a person will ask about first: of a GPU that differs from the CPU, or else wrong; or else the one chosen.
@@ -117,12 +134,14 @@ export class Model {
   }
   // The same subject and scalar in another variant; undefined for none.
   counterpart(lane: string, variant: string) {
-    const [subject, scalar] = lane.split('/'), other = `${subject}/${scalar}/${variant}`;
+    const [subject, scalar] = lane.split('/'),
+      other = `${subject}/${scalar}/${variant}`;
     return this.graze.lanes.includes(other) ? other : undefined;
   }
   // Whether the lane decides otherwise than the CPU does with every operation rounded as written.
   differs(lane: string) {
-    const cpu = this.counterpart(lane, 'cpu'), { verdicts } = this.decided;
+    const cpu = this.counterpart(lane, 'cpu'),
+      { verdicts } = this.decided;
     return cpu !== undefined && verdicts[lane] !== null && verdicts[cpu] !== null && verdicts[lane] !== verdicts[cpu];
   }
   get vertex() {
@@ -135,7 +154,8 @@ export class Model {
 
 // "#p=…&lane=…" of a link, if there is one and it holds a pair.
 export function from_fragment(url = location.href): { pair: Coordinates; lane: string } | null {
-  const values = new URLSearchParams(new URL(url).hash.slice(1)), bits = values.get('p') ?? '';
+  const values = new URLSearchParams(new URL(url).hash.slice(1)),
+    bits = values.get('p') ?? '';
   return /^[0-9a-f]{144}$/.test(bits) ? { pair: from_bits(bits), lane: values.get('lane') ?? '' } : null;
 }
 export const fragment_of = (model: Model) => `#p=${to_bits(model.pair)}&lane=${model.lane}`;

@@ -11,27 +11,68 @@ import { ulp_of } from './numbers';
 import { exact_gap, intervals, lane_gap, projections, telling, type Ends, type Ranges } from './ranges';
 
 const kIntervals: Record<string, string> = {
-  moller_1997: 'Its ends are positions along the largest axis of that line, all times one factor, as it divides by nothing.',
+  moller_1997:
+    'Its ends are positions along the largest axis of that line, all times one factor, as it divides by nothing.',
   interval_overlap: 'Its ends are positions along that line, from the point of it that the lane computed.',
 };
 
-const words = (gap: number, end: Ends[]) => (gap > 0 ? `are ${figure(gap)} apart` : gap < 0 ? `overlap by ${figure(-gap)}` : end.flat().every(Number.isFinite) ? 'meet in one point' : 'are not numbers');
+const words = (gap: number, end: Ends[]) =>
+  gap > 0
+    ? `are ${figure(gap)} apart`
+    : gap < 0
+      ? `overlap by ${figure(-gap)}`
+      : end.flat().every(Number.isFinite)
+        ? 'meet in one point'
+        : 'are not numbers';
 
 export function on_a_line(model: Model) {
-  let axis = -1, subject = '', rows: Row[] = [], scalar = 'f32', drawing: Drawing;
-  const picture = h('div', { class: 'chart' }), truth_picture = h('div', { class: 'chart' }), said = h('div', {}), truth_said = h('p', {}), choices = h('div', { class: 'controls' });
+  let axis = -1,
+    subject = '',
+    rows: Row[] = [],
+    scalar = 'f32',
+    drawing: Drawing;
+  const picture = h('div', { class: 'chart' }),
+    truth_picture = h('div', { class: 'chart' }),
+    said = h('div', {}),
+    truth_said = h('p', {}),
+    choices = h('div', { class: 'controls' });
   let truth_row: Row[] = [];
-  const draw = (into: HTMLElement, of: Row[]) => (width: number) => into.replaceChildren(...(of.length ? [chart(of, ulp_of(scalar), width).svg] : []));
+  const draw = (into: HTMLElement, of: Row[]) => (width: number) =>
+    into.replaceChildren(...(of.length ? [chart(of, ulp_of(scalar), width).svg] : []));
   const redraw = () => {
-    for (const [into, of] of [[picture, rows], [truth_picture, truth_row]] as const) if (into.clientWidth) draw(into, of)(into.clientWidth);
+    for (const [into, of] of [
+      [picture, rows],
+      [truth_picture, truth_row],
+    ] as const)
+      if (into.clientWidth) draw(into, of)(into.clientWidth);
   };
   on_width(picture, redraw);
 
   // beside: the same in the lane of the other processor, where the two differ.
   function show(ranges: Ranges, how: Child, beside: [string, Ranges | null | undefined] | null) {
-    const { a, b, exact_a, exact_b } = ranges, name = h('code', {}, model.lane);
-    rows = [...a, ...b, ...exact_a, ...exact_b].every(Number.isFinite) ? [...(beside?.[1] ? [{ name: `in ${beside[0]}`, a: beside[1].a, b: beside[1].b }] : []), { name: `in ${model.lane}`, a, b }, { name: 'with 113 bits', a: exact_a, b: exact_b }] : [];
-    said.replaceChildren(h('p', {}, how, h('span', { class: 'compared' }, `In `, name, ` the two ranges ${words(lane_gap(ranges), [a, b])}; with 113 bits they ${words(exact_gap(ranges), [exact_a, exact_b])}.`)));
+    const { a, b, exact_a, exact_b } = ranges,
+      name = h('code', {}, model.lane);
+    rows = [...a, ...b, ...exact_a, ...exact_b].every(Number.isFinite)
+      ? [
+          ...(beside?.[1] ? [{ name: `in ${beside[0]}`, a: beside[1].a, b: beside[1].b }] : []),
+          { name: `in ${model.lane}`, a, b },
+          { name: 'with 113 bits', a: exact_a, b: exact_b },
+        ]
+      : [];
+    said.replaceChildren(
+      h(
+        'p',
+        {},
+        how,
+        h(
+          'span',
+          { class: 'compared' },
+          `In `,
+          name,
+          ` the two ranges ${words(lane_gap(ranges), [a, b])}; with 113 bits they ${words(exact_gap(ranges), [exact_a, exact_b])}.`,
+        ),
+      ),
+    );
   }
 
   const beside = (lane: string) => {
@@ -41,29 +82,90 @@ export function on_a_line(model: Model) {
 
   // What the lane compared on a line, if it came to that.
   function of_the_lane() {
-    const { lane, pair, graze } = model, run = graze.steps(pair, lane)?.steps ?? [], [name] = lane.split('/');
-    const found = kIntervals[name] ? intervals(run) : null, axes = found ? [] : projections(run, name);
-    const other = beside(lane), other_run = other ? graze.steps(pair, other)?.steps ?? [] : [];
+    const { lane, pair, graze } = model,
+      run = graze.steps(pair, lane)?.steps ?? [],
+      [name] = lane.split('/');
+    const found = kIntervals[name] ? intervals(run) : null,
+      axes = found ? [] : projections(run, name);
+    const other = beside(lane),
+      other_run = other ? (graze.steps(pair, other)?.steps ?? []) : [];
     choices.replaceChildren();
     rows = [];
-    if (found) return show(found, ['Intervals on ', h('b', {}, 'L, the line of both planes'), `. ${kIntervals[name]} `], other ? [other, intervals(other_run)] : null);
-    if (!axes.length) return said.replaceChildren(h('p', {}, name === 'guigue_devillers_2003' ? 'This algorithm compares no ranges, it asks for signs alone.' : kIntervals[name] || name === 'projected_sat' || name === 'separating_axes' ? `The lane decided before it came to ${kIntervals[name] ? 'intervals' : 'projections'}.` : 'The exact decision compares no ranges.'));
+    if (found)
+      return show(
+        found,
+        ['Intervals on ', h('b', {}, 'L, the line of both planes'), `. ${kIntervals[name]} `],
+        other ? [other, intervals(other_run)] : null,
+      );
+    if (!axes.length)
+      return said.replaceChildren(
+        h(
+          'p',
+          {},
+          name === 'guigue_devillers_2003'
+            ? 'This algorithm compares no ranges, it asks for signs alone.'
+            : kIntervals[name] || name === 'projected_sat' || name === 'separating_axes'
+              ? `The lane decided before it came to ${kIntervals[name] ? 'intervals' : 'projections'}.`
+              : 'The exact decision compares no ranges.',
+        ),
+      );
     const at = axis >= 0 && axis < axes.length ? axis : telling(axes);
-    choices.replaceChildren(choice('Axis', axes.map((one, i) => [String(i), `${i + 1} of ${axes.length}: ${one.name}${lane_gap(one) > 0 ? ', separates' : ''}`]), String(at), (value) => { axis = Number(value); update(); }));
-    const parts = lane_gap(axes[at]) > 0 ? 'on which the lane finds them apart' : exact_gap(axes[at]) > 0 ? 'which separates with 113 bits, and not in the lane' : axis >= 0 ? '' : 'on which they overlap least';
-    show(axes[at], ['Projections on an axis', parts && ` ${parts}`, ': ', h('b', {}, axes[at].name), '. '], other ? [other, projections(other_run, name)[at]] : null);
+    choices.replaceChildren(
+      choice(
+        'Axis',
+        axes.map((one, i) => [
+          String(i),
+          `${i + 1} of ${axes.length}: ${one.name}${lane_gap(one) > 0 ? ', separates' : ''}`,
+        ]),
+        String(at),
+        (value) => {
+          axis = Number(value);
+          update();
+        },
+      ),
+    );
+    const parts =
+      lane_gap(axes[at]) > 0
+        ? 'on which the lane finds them apart'
+        : exact_gap(axes[at]) > 0
+          ? 'which separates with 113 bits, and not in the lane'
+          : axis >= 0
+            ? ''
+            : 'on which they overlap least';
+    show(
+      axes[at],
+      ['Projections on an axis', parts && ` ${parts}`, ': ', h('b', {}, axes[at].name), '. '],
+      other ? [other, projections(other_run, name)[at]] : null,
+    );
   }
 
   function of_the_margin() {
-    const { truth } = model.decided, [p] = drawing.witness, [a, b] = drawing.features;
+    const { truth } = model.decided,
+      [p] = drawing.witness,
+      [a, b] = drawing.features;
     truth_row = [];
     if (truth.verdict === 'declined') return truth_said.replaceChildren();
-    if (!p) return truth_said.replaceChildren(truth.verdict === 'disjoint' ? 'The gap is too small for 113 bits to draw a separating axis.' : 'They touch, or lie in one plane: no axis separates them, and any push, however short, can.');
+    if (!p)
+      return truth_said.replaceChildren(
+        truth.verdict === 'disjoint'
+          ? 'The gap is too small for 113 bits to draw a separating axis.'
+          : 'They touch, or lie in one plane: no axis separates them, and any push, however short, can.',
+      );
     truth_row = [{ name: 'with 113 bits', a: drawing.along[0], b: drawing.along[1] }];
-    const [, high] = drawing.along[0], [low] = drawing.along[1], normals = [a, b].filter((one) => one.startsWith('face'));
-    truth_said.replaceChildren(...(truth.verdict === 'disjoint'
-      ? [h('b', {}, 'A separating axis'), `, through the nearest points: of ${a} and of ${b}. On it a ends ${figure(low - high)} before b begins; that is the margin.`]
-      : [h('b', {}, 'The shortest push'), ` that parts them goes along ${normals.length ? `the normal of ${normals[0].slice(-1)}` : `the common normal of ${a} and ${b}`}, by ${figure(high - low)}; that is the margin.`]));
+    const [, high] = drawing.along[0],
+      [low] = drawing.along[1],
+      normals = [a, b].filter((one) => one.startsWith('face'));
+    truth_said.replaceChildren(
+      ...(truth.verdict === 'disjoint'
+        ? [
+            h('b', {}, 'A separating axis'),
+            `, through the nearest points: of ${a} and of ${b}. On it a ends ${figure(low - high)} before b begins; that is the margin.`,
+          ]
+        : [
+            h('b', {}, 'The shortest push'),
+            ` that parts them goes along ${normals.length ? `the normal of ${normals[0].slice(-1)}` : `the common normal of ${a} and ${b}`}, by ${figure(high - low)}; that is the margin.`,
+          ]),
+    );
   }
 
   function update() {
@@ -75,5 +177,17 @@ export function on_a_line(model: Model) {
     of_the_margin();
     redraw();
   }
-  return { update, element: h('section', { id: 'ranges', 'aria-labelledby': 'ranges-title' }, h('h2', { id: 'ranges-title' }, 'On a line'), said, choices, picture, truth_said, truth_picture) };
+  return {
+    update,
+    element: h(
+      'section',
+      { id: 'ranges', 'aria-labelledby': 'ranges-title' },
+      h('h2', { id: 'ranges-title' }, 'On a line'),
+      said,
+      choices,
+      picture,
+      truth_said,
+      truth_picture,
+    ),
+  };
 }

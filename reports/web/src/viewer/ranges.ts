@@ -3,23 +3,44 @@
 // projections on axes. Beside them the same with 113 bits.
 import type { Step } from './graze.js';
 
-export type Ends = [number, number];  // low, high
-export interface Ranges { name: string; a: Ends; b: Ends; exact_a: Ends; exact_b: Ends }
+export type Ends = [number, number]; // low, high
+export interface Ranges {
+  name: string;
+  a: Ends;
+  b: Ends;
+  exact_a: Ends;
+  exact_b: Ends;
+}
 
 const kEdges = ['[0] [1]', '[1] [2]', '[2] [0]'];
 const edge = (of: string, i: number) => `edge ${of}${kEdges[i]}`;
 // In the order in which the algorithms try them.
-const kSeventeen = ['normal of a', 'normal of b', ...[0, 1, 2].flatMap((i) => [0, 1, 2].map((j) => `${edge('a', i)} × ${edge('b', j)}`)), ...[0, 1, 2].flatMap((i) => [`across ${edge('a', i)} in its plane`, `across ${edge('b', i)} in its plane`])];
-const kSix = [0, 1, 2].flatMap((i) => [`across ${edge('a', i)}`, `across ${edge('b', i)}`]).map((name) => `${name}, in the plane of a`);
+const kSeventeen = [
+  'normal of a',
+  'normal of b',
+  ...[0, 1, 2].flatMap((i) => [0, 1, 2].map((j) => `${edge('a', i)} × ${edge('b', j)}`)),
+  ...[0, 1, 2].flatMap((i) => [`across ${edge('a', i)} in its plane`, `across ${edge('b', i)} in its plane`]),
+];
+const kSix = [0, 1, 2]
+  .flatMap((i) => [`across ${edge('a', i)}`, `across ${edge('b', i)}`])
+  .map((name) => `${name}, in the plane of a`);
 
 // As the algorithms select them, also of what is not a number.
 const sorted = (x: number, y: number): Ends => (x < y ? [x, y] : [y, x]);
-const span = ([first, ...rest]: number[]): Ends => rest.reduce(([low, high], t) => [t < low ? t : low, t > high ? t : high], [first, first]);
+const span = ([first, ...rest]: number[]): Ends =>
+  rest.reduce(([low, high], t) => [t < low ? t : low, t > high ? t : high], [first, first]);
 const same = (x: number, y: number) => x === y || (Number.isNaN(x) && Number.isNaN(y));
 
 // The two triangles' ends, from the comparisons that ordered them; the other way round if only that fits the step.
-function in_order(name: string, [one, other]: { lane: Ends; exact: Ends }[], fits: (a: Ends, b: Ends) => boolean): Ranges | null {
-  for (const [a, b] of [[one, other], [other, one]]) {
+function in_order(
+  name: string,
+  [one, other]: { lane: Ends; exact: Ends }[],
+  fits: (a: Ends, b: Ends) => boolean,
+): Ranges | null {
+  for (const [a, b] of [
+    [one, other],
+    [other, one],
+  ]) {
     if (fits(a.lane, b.lane)) return { name, a: a.lane, b: b.lane, exact_a: a.exact, exact_b: b.exact };
   }
   return null;
@@ -29,20 +50,40 @@ function in_order(name: string, [one, other]: { lane: Ends; exact: Ends }[], fit
 export function intervals(run: Step[]): Ranges | null {
   const at = run.findIndex((step) => step.site === 'separation' && step.relation);
   if (at < 0) return null;
-  const before = run.slice(0, at).filter((step) => step.relation), line = before.at(-1)?.line, { left, right, relation } = run[at];
-  const two = before.filter((step) => step.line === line).slice(-2).map((step) => ({ lane: sorted(step.left, step.right), exact: sorted(step.exactLeft, step.exactRight) }));
+  const before = run.slice(0, at).filter((step) => step.relation),
+    line = before.at(-1)?.line,
+    { left, right, relation } = run[at];
+  const two = before
+    .filter((step) => step.line === line)
+    .slice(-2)
+    .map((step) => ({ lane: sorted(step.left, step.right), exact: sorted(step.exactLeft, step.exactRight) }));
   // moller_1997 asks whether a ends before b begins; interval_overlap whether a begins before b does.
-  return two.length < 2 ? null : in_order('the line of both planes', two, (a, b) => same(relation === '<' ? a[1] : a[0], left) && same(b[0], right));
+  return two.length < 2
+    ? null
+    : in_order(
+        'the line of both planes',
+        two,
+        (a, b) => same(relation === '<' ? a[1] : a[0], left) && same(b[0], right),
+      );
 }
 
 // On each axis that the lane tried.
 export function projections(run: Step[], subject: string): Ranges[] {
-  const all: Ranges[] = [], names = subject === 'separating_axes' ? kSeventeen : kSix;
+  const all: Ranges[] = [],
+    names = subject === 'separating_axes' ? kSeventeen : kSix;
   let seen: Step[] = [];
   for (const step of run) {
-    if (step.site === 'separation' && seen.length === 8) {  // four comparisons order the three vertices of each
-      const two = [seen.slice(0, 4), seen.slice(4)].map((of) => ({ lane: span([of[0].right, of[0].left, of[2].left]), exact: span([of[0].exactRight, of[0].exactLeft, of[2].exactLeft]) }));
-      const found = in_order(names[all.length] ?? `axis ${all.length + 1}`, two, (a, b) => same(a[1], step.left) && same(b[0], step.right));
+    if (step.site === 'separation' && seen.length === 8) {
+      // four comparisons order the three vertices of each
+      const two = [seen.slice(0, 4), seen.slice(4)].map((of) => ({
+        lane: span([of[0].right, of[0].left, of[2].left]),
+        exact: span([of[0].exactRight, of[0].exactLeft, of[2].exactLeft]),
+      }));
+      const found = in_order(
+        names[all.length] ?? `axis ${all.length + 1}`,
+        two,
+        (a, b) => same(a[1], step.left) && same(b[0], step.right),
+      );
       if (!found) return [];
       all.push(found);
       seen = [];

@@ -7,10 +7,14 @@ import { decimal, type Coordinates } from './data';
 import type { Drawing } from './graze.js';
 import type { Model } from './model';
 
-const kFar = 40;  // half-widths of the board, beyond which polygons are cut
+const kFar = 40; // half-widths of the board, beyond which polygons are cut
 const kLongestToScale = 12;
 
-export interface Placed { shape: Shape; unit: Vec; middle: Vec }  // unit: of coordinates, that is 1 in the shape
+export interface Placed {
+  shape: Shape;
+  unit: Vec;
+  middle: Vec;
+} // unit: of coordinates, that is 1 in the shape
 
 const vertex = (pair: Coordinates, v: number) => [pair[3 * v], pair[3 * v + 1], pair[3 * v + 2]] as Vec;
 
@@ -19,11 +23,15 @@ function cut(polygon: Vec[]): Vec[] {
   let points = polygon;
   for (let axis = 0; axis < 3; ++axis) {
     for (const side of [1, -1]) {
-      const height = (p: Vec) => kFar - side * p[axis], kept: Vec[] = [];
+      const height = (p: Vec) => kFar - side * p[axis],
+        kept: Vec[] = [];
       points.forEach((p, i) => {
-        const q = points[(i + 1) % points.length], at = height(p), next = height(q);
+        const q = points[(i + 1) % points.length],
+          at = height(p),
+          next = height(q);
         if (at >= 0) kept.push(p);
-        if (at * next < 0 && !(points.length === 2 && i === 1)) kept.push(p.map((c, k) => c + (q[k] - c) * (at / (at - next))) as Vec);
+        if (at * next < 0 && !(points.length === 2 && i === 1))
+          kept.push(p.map((c, k) => c + (q[k] - c) * (at / (at - next))) as Vec);
       });
       points = kept;
     }
@@ -34,19 +42,33 @@ function cut(polygon: Vec[]): Vec[] {
 const fan = (points: Vec[]) => points.slice(2).flatMap((q, i) => [points[0], points[i + 1], q]);
 
 function plane(corners: Vec[]): Vec[] {
-  const [p, q, r] = corners, u = q.map((c, k) => c - p[k]), v = r.map((c, k) => c - p[k]);
+  const [p, q, r] = corners,
+    u = q.map((c, k) => c - p[k]),
+    v = r.map((c, k) => c - p[k]);
   const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-  const length = Math.hypot(...n), size = Math.hypot(...u);
+  const length = Math.hypot(...n),
+    size = Math.hypot(...u);
   if (!(length > 0) || !(size > 0)) return [];
-  const e = u.map((c) => (2.2 * c) / size), f = [n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]].map((c) => (2.2 * c) / (length * size));
+  const e = u.map((c) => (2.2 * c) / size),
+    f = [n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]].map(
+      (c) => (2.2 * c) / (length * size),
+    );
   const middle = corners[0].map((_, k) => (p[k] + q[k] + r[k]) / 3);
-  return [[1, 1], [1, -1], [-1, -1], [-1, 1]].map(([s, t]) => middle.map((c, k) => c + s * e[k] + t * f[k]) as Vec);
+  return [
+    [1, 1],
+    [1, -1],
+    [-1, -1],
+    [-1, 1],
+  ].map(([s, t]) => middle.map((c, k) => c + s * e[k] + t * f[k]) as Vec);
 }
 
 // b's vertices projected onto a's plane, which is all that projected_sat compares in the end; empty without a plane.
 function shadow_of(points: Vec[]): Vec[] {
-  const [p, q, r] = points, u = q.map((c, k) => c - p[k]), v = r.map((c, k) => c - p[k]);
-  const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], square = n.reduce((sum, c) => sum + c * c, 0);
+  const [p, q, r] = points,
+    u = q.map((c, k) => c - p[k]),
+    v = r.map((c, k) => c - p[k]);
+  const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]],
+    square = n.reduce((sum, c) => sum + c * c, 0);
   if (!(square > 0) || !Number.isFinite(square)) return [];
   return points.slice(3).map((b) => {
     const height = n.reduce((sum, c, k) => sum + c * (b[k] - p[k]), 0) / square;
@@ -54,61 +76,127 @@ function shadow_of(points: Vec[]): Vec[] {
   });
 }
 
-export interface Field { triangles: Coordinates[]; hit: boolean[]; wrong: boolean[] }  // of 9 coordinates each
+export interface Field {
+  triangles: Coordinates[];
+  hit: boolean[];
+  wrong: boolean[];
+} // of 9 coordinates each
 
 // magnified: by how much, beyond what fits.
 export function placed(model: Model, drawing: Drawing, magnified: number, field: Field | null): Placed {
-  const { pair, centre, shows } = model, points = [0, 1, 2, 3, 4, 5].map((v) => vertex(pair, v));
-  const all = field ? [...points, ...field.triangles.flatMap((t) => [0, 3, 6].map((i) => [t[i], t[i + 1], t[i + 2]] as Vec))] : points;
-  const low = [0, 1, 2].map((k) => all.reduce((least, p) => Math.min(least, p[k]), Infinity)), high = [0, 1, 2].map((k) => all.reduce((most, p) => Math.max(most, p[k]), -Infinity));
-  const extent = low.map((l, k) => high[k] - l), longest = Math.max(...extent) || Math.max(...pair.map(Math.abs)) || 1;
+  const { pair, centre, shows } = model,
+    points = [0, 1, 2, 3, 4, 5].map((v) => vertex(pair, v));
+  const all = field
+    ? [...points, ...field.triangles.flatMap((t) => [0, 3, 6].map((i) => [t[i], t[i + 1], t[i + 2]] as Vec))]
+    : points;
+  const low = [0, 1, 2].map((k) => all.reduce((least, p) => Math.min(least, p[k]), Infinity)),
+    high = [0, 1, 2].map((k) => all.reduce((most, p) => Math.max(most, p[k]), -Infinity));
+  const extent = low.map((l, k) => high[k] - l),
+    longest = Math.max(...extent) || Math.max(...pair.map(Math.abs)) || 1;
   const stretch = extent.some((e) => e > 0 && longest / e > kLongestToScale);
   const unit = extent.map((e) => (stretch && e > 0 ? e : longest) / 2 / magnified) as Vec;
-  const { contact, witness } = drawing, common = contact.length ? contact : witness;
-  const middle = (centre === 'the chosen vertex' ? vertex(pair, model.vertex / 3)
-    : centre === 'the contact or gap' && common.length ? [0, 1, 2].map((k) => common.reduce((sum, p) => sum + p[k] / common.length, 0))
-      : low.map((l, k) => l / 2 + high[k] / 2)) as Vec;
+  const { contact, witness } = drawing,
+    common = contact.length ? contact : witness;
+  const middle = (
+    centre === 'the chosen vertex'
+      ? vertex(pair, model.vertex / 3)
+      : centre === 'the contact or gap' && common.length
+        ? [0, 1, 2].map((k) => common.reduce((sum, p) => sum + p[k] / common.length, 0))
+        : low.map((l, k) => l / 2 + high[k] / 2)
+  ) as Vec;
   const place = (p: readonly number[]) => [0, 1, 2].map((k) => (p[k] - middle[k]) / unit[k]) as Vec;
   const marks: Mark[] = [];
   const [a, b] = [points.slice(0, 3).map(place), points.slice(3).map(place)];
   // So that all of it fits, however it is turned, before it is magnified.
-  const radius = Math.max(0.6, ...points.map((p) => Math.hypot(...p.map((c, k) => (c - (low[k] / 2 + high[k] / 2)) / unit[k] / magnified)))) * 0.95;
+  const radius =
+    Math.max(
+      0.6,
+      ...points.map((p) => Math.hypot(...p.map((c, k) => (c - (low[k] / 2 + high[k] / 2)) / unit[k] / magnified))),
+    ) * 0.95;
   if (shows.planes) {
-    [a, b].forEach((corners, i) => marks.push({ colour: i ? '--triangle-b' : '--triangle-a', triangles: fan(cut(plane(corners))), opacity: 0.18 }));
+    [a, b].forEach((corners, i) =>
+      marks.push({ colour: i ? '--triangle-b' : '--triangle-a', triangles: fan(cut(plane(corners))), opacity: 0.18 }),
+    );
   }
-  if (!field) drawing.sections.forEach((ends, i) => ends.length === 2 && marks.push({ colour: i ? '--triangle-b-edge' : '--triangle-a-edge', lines: [cut(ends.map(place))], width: i ? 3 : 7 }));
+  if (!field)
+    drawing.sections.forEach(
+      (ends, i) =>
+        ends.length === 2 &&
+        marks.push({
+          colour: i ? '--triangle-b-edge' : '--triangle-a-edge',
+          lines: [cut(ends.map(place))],
+          width: i ? 3 : 7,
+        }),
+    );
   if (!field && witness.length) marks.push({ colour: '--witness', lines: [cut(witness.map(place))], width: 3 });
   if (!field && model.lane.startsWith('projected_sat/')) {
     const shadow = shadow_of(points).map(place);
-    if (shadow.length) marks.push({ colour: '--triangle-b-edge', lines: [cut(shadow.concat([shadow[0]]))], width: 1.5, dashed: true });
+    if (shadow.length)
+      marks.push({ colour: '--triangle-b-edge', lines: [cut(shadow.concat([shadow[0]]))], width: 1.5, dashed: true });
   }
   if (shows.axes) {
     for (let k = 0; k < 3; ++k) {
-      const end = [0, 0, 0], origin = [0, 0, 0];
+      const end = [0, 0, 0],
+        origin = [0, 0, 0];
       end[k] = longest / 2;
       marks.push({ colour: `--series-${k}`, lines: [cut([place(origin), place(end)])], width: 2 });
     }
   }
   // Where the chosen coordinate can go next, once that can be seen.
-  const chosen = pair[model.chosen], at = points[model.vertex / 3], axis = model.chosen % 3;
+  const chosen = pair[model.chosen],
+    at = points[model.vertex / 3],
+    axis = model.chosen % 3;
   const moved = (ulps: number) => place(at.map((c, k) => (k === axis ? model.graze.nudged(chosen, ulps) : c)));
   if (Number.isFinite(chosen) && Math.abs(moved(1)[axis] - moved(0)[axis]) > 0.02) {
-    const steps = Array.from({ length: 17 }, (_, i) => moved(i - 8)), across = (axis + 1) % 3;
+    const steps = Array.from({ length: 17 }, (_, i) => moved(i - 8)),
+      across = (axis + 1) % 3;
     const tick = (p: Vec, by: number) => p.map((c, k) => (k === across ? c + by : c)) as Vec;
-    marks.push({ colour: '--soft', lines: [cut([steps[0], steps[16]]), ...steps.map((p) => cut([tick(p, -0.02), tick(p, 0.02)]))], width: 1.3 });
+    marks.push({
+      colour: '--soft',
+      lines: [cut([steps[0], steps[16]]), ...steps.map((p) => cut([tick(p, -0.02), tick(p, 0.02)]))],
+      width: 1.3,
+    });
   }
   if (field) {
-    for (const [colour, hit] of [['--other', false], ['--hit', true]] as const)
-      marks.push({ colour, triangles: field.triangles.flatMap((t, i) => (field.hit[i] === hit ? [0, 3, 6].map((k) => place([t[k], t[k + 1], t[k + 2]])) : [])) });
-    marks.push({ colour: '--bad', width: 3, lines: field.triangles.flatMap((t, i) => (field.wrong[i] ? [[0, 3, 6, 0].map((k) => place([t[k], t[k + 1], t[k + 2]]))] : [])) });
+    for (const [colour, hit] of [
+      ['--other', false],
+      ['--hit', true],
+    ] as const)
+      marks.push({
+        colour,
+        triangles: field.triangles.flatMap((t, i) =>
+          field.hit[i] === hit ? [0, 3, 6].map((k) => place([t[k], t[k + 1], t[k + 2]])) : [],
+        ),
+      });
+    marks.push({
+      colour: '--bad',
+      width: 3,
+      lines: field.triangles.flatMap((t, i) =>
+        field.wrong[i] ? [[0, 3, 6, 0].map((k) => place([t[k], t[k + 1], t[k + 2]]))] : [],
+      ),
+    });
   }
-  const factors = ['x', 'y', 'z'].flatMap((name, k) => (unit[k] < 0.99 * Math.max(...unit) ? [`${name} × ${figure(Math.max(...unit) / unit[k])}`] : []));
+  const factors = ['x', 'y', 'z'].flatMap((name, k) =>
+    unit[k] < 0.99 * Math.max(...unit) ? [`${name} × ${figure(Math.max(...unit) / unit[k])}`] : [],
+  );
   return {
-    unit, middle,
+    unit,
+    middle,
     shape: {
-      a: cut(a), b: field ? [] : cut(b), contact: field ? [] : cut(contact.map(place)), line: field ? [] : cut(drawing.line.map(place)), radius, marks,
+      a: cut(a),
+      b: field ? [] : cut(b),
+      contact: field ? [] : cut(contact.map(place)),
+      line: field ? [] : cut(drawing.line.map(place)),
+      radius,
+      marks,
       note: `${magnified > 1 ? `× ${figure(magnified)}, ` : ''}${factors.length ? `not to scale: ${factors.join(', ')}` : 'to scale'}`,
-      names: (shows.ids || shows.coordinates) ? [...a, ...(field ? [] : b)].map((p, i) => ({ p, name: `${shows.ids ? `${i < 3 ? 'a' : 'b'}${i % 3}` : ''}${shows.coordinates ? ` (${points[i].map(decimal).join(', ')})` : ''}` })) : [],
+      names:
+        shows.ids || shows.coordinates
+          ? [...a, ...(field ? [] : b)].map((p, i) => ({
+              p,
+              name: `${shows.ids ? `${i < 3 ? 'a' : 'b'}${i % 3}` : ''}${shows.coordinates ? ` (${points[i].map(decimal).join(', ')})` : ''}`,
+            }))
+          : [],
     },
   };
 }

@@ -4,16 +4,21 @@ import { choice, h } from '../dom';
 import { from_bits, type Coordinates, type ViewData } from './data';
 import { special_cases, type Model } from './model';
 
-const kSearched = 200_000;   // pairs of a stratum, at most, in one search
-const kSearchSlice = 30;     // milliseconds between signs of life
+const kSearched = 200_000; // pairs of a stratum, at most, in one search
+const kSearchSlice = 30; // milliseconds between signs of life
 
 export type Wanted = 'any' | 'apart' | 'wrong';
 
 export function sources(model: Model, data: ViewData, say: (text: string) => void) {
-  const { graze } = model, given = data.pairs.map(({ name, bits }) => ({ name, pair: from_bits(bits) }));
+  const { graze } = model,
+    given = data.pairs.map(({ name, bits }) => ({ name, pair: from_bits(bits) }));
   const lists: Record<string, { name: string; pair: Coordinates }[]> = { given, special: special_cases };
-  const named = /^([a-z_]+):(\d+):(\d+)$/.exec(data.pairs[0]?.name ?? ''), of_stratum = named && given.length === 1 && graze.strata.includes(named[1]) ? named : null;
-  let source = of_stratum ? of_stratum[1] : given.length ? 'given' : 'special', seed = BigInt(of_stratum?.[2] ?? 1), at = Number(of_stratum?.[3] ?? 0), searching = 0;
+  const named = /^([a-z_]+):(\d+):(\d+)$/.exec(data.pairs[0]?.name ?? ''),
+    of_stratum = named && given.length === 1 && graze.strata.includes(named[1]) ? named : null;
+  let source = of_stratum ? of_stratum[1] : given.length ? 'given' : 'special',
+    seed = BigInt(of_stratum?.[2] ?? 1),
+    at = Number(of_stratum?.[3] ?? 0),
+    searching = 0;
 
   // Next and Previous go on from there.
   function find(pair: Coordinates) {
@@ -25,7 +30,8 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
   }
 
   const length = () => lists[source]?.length ?? Infinity;
-  const pair_at = (i: number) => lists[source]?.[i] ?? { name: `${source}:${seed}:${i}`, pair: graze.generate(source, seed, BigInt(i)) };
+  const pair_at = (i: number) =>
+    lists[source]?.[i] ?? { name: `${source}:${seed}:${i}`, pair: graze.generate(source, seed, BigInt(i)) };
   const place = h('span', { class: 'small', id: 'place' });
 
   function show(i: number) {
@@ -42,7 +48,9 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
       const { verdict } = graze.truth(pair);
       return verdict !== 'declined' && Object.values(verdicts).some((said) => said !== null && said !== verdict);
     }
-    return graze.lanes.some((lane) => lane.endsWith('/cuda-fma') && verdicts[lane] !== verdicts[lane.replace('cuda-fma', 'cpu')]);
+    return graze.lanes.some(
+      (lane) => lane.endsWith('/cuda-fma') && verdicts[lane] !== verdicts[lane.replace('cuda-fma', 'cpu')],
+    );
   }
 
   async function go(by: 1 | -1, wanted: Wanted = 'any') {
@@ -64,15 +72,29 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
       }
     }
     update();
-    say(`no such pair among these ${Math.min(kSearched, length()).toLocaleString('en-US')}; choose a stratum at "Pairs of", such as thesis or near_edge_edge`);
+    say(
+      `no such pair among these ${Math.min(kSearched, length()).toLocaleString('en-US')}; choose a stratum at "Pairs of", such as thesis or near_edge_edge`,
+    );
   }
 
-  const options = [...(given.length && !of_stratum ? [['given', data.title]] : []), ['special', 'special cases of 2012'], ...graze.strata.map((id) => [id, `stratum ${id}`])] as [string, string][];
-  const select = choice('Pairs of', options, source, (value) => { source = value; seed = 1n; show(0); });
+  const options = [
+    ...(given.length && !of_stratum ? [['given', data.title]] : []),
+    ['special', 'special cases of 2012'],
+    ...graze.strata.map((id) => [id, `stratum ${id}`]),
+  ] as [string, string][];
+  const select = choice('Pairs of', options, source, (value) => {
+    source = value;
+    seed = 1n;
+    show(0);
+  });
   function next_special() {
     source = 'special';
     select.querySelector('select')!.value = source;
-    show(special_cases.findIndex(({ name }) => name === model.name) + 1 === special_cases.length ? 0 : special_cases.findIndex(({ name }) => name === model.name) + 1);
+    show(
+      special_cases.findIndex(({ name }) => name === model.name) + 1 === special_cases.length
+        ? 0
+        : special_cases.findIndex(({ name }) => name === model.name) + 1,
+    );
   }
   function update() {
     const of = Number.isFinite(length()) ? `${at + 1} of ${length()}` : `index ${at}, seed ${seed}`;
@@ -80,8 +102,23 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
   }
   const button = (text: string, action: () => void) => h('button', { type: 'button', onclick: action }, text);
   return {
-    go, update, next_special, find,
-    element: h('div', { class: 'controls sources' }, select, h('div', { class: 'chips' }, button('Previous', () => go(-1)), button('Next', () => go(1)),
-      button('Next where CPU and GPU differ', () => go(1, 'apart')), button('Next with a wrong verdict', () => go(1, 'wrong')), place)),
+    go,
+    update,
+    next_special,
+    find,
+    element: h(
+      'div',
+      { class: 'controls sources' },
+      select,
+      h(
+        'div',
+        { class: 'chips' },
+        button('Previous', () => go(-1)),
+        button('Next', () => go(1)),
+        button('Next where CPU and GPU differ', () => go(1, 'apart')),
+        button('Next with a wrong verdict', () => go(1, 'wrong')),
+        place,
+      ),
+    ),
   };
 }

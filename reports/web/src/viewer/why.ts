@@ -8,44 +8,139 @@ import { code, compared, outcome, quoted } from './numbers';
 
 function beside_exact(run: Step[], says: Verdict, with_113_bits: Verdict): Child[] {
   const wrong = run.find((step) => step.relation && step.held !== step.holds);
-  if (with_113_bits === says || !wrong) return ['With 113 bits the algorithm says ', h('strong', {}, with_113_bits), ' as well: its ', h('strong', {}, 'logic'), ' is wrong here, not rounding.'];
+  if (with_113_bits === says || !wrong)
+    return [
+      'With 113 bits the algorithm says ',
+      h('strong', {}, with_113_bits),
+      ' as well: its ',
+      h('strong', {}, 'logic'),
+      ' is wrong here, not rounding.',
+    ];
   const numbers = [wrong.left, wrong.right, wrong.exactLeft, wrong.exactRight];
-  const lost = numbers.slice(0, 2).some((x) => !Number.isFinite(x)) ? 'the numbers left their range, by overflow or underflow'
-    : numbers.slice(0, 2).every((x) => x === 0) && numbers.slice(2).some((x) => x !== 0) ? 'lost to zero, by underflow or in a difference' : 'rounding';
-  return ['In numbers of 113 bits, where float32 has 24 and float64 53, the algorithm says ', h('strong', {}, with_113_bits), '. The first comparison that goes otherwise in the lane is at ', quoted(wrong.line), 'The lane computes ', code(compared(wrong)), ` (${outcome(wrong.held)}), with 113 bits it is `,
-    code(compared(wrong, true)), ` (${outcome(wrong.holds)}): `, h('strong', {}, lost), '. ', code('graze explain'), ' says which comparison decides.'];
+  const lost = numbers.slice(0, 2).some((x) => !Number.isFinite(x))
+    ? 'the numbers left their range, by overflow or underflow'
+    : numbers.slice(0, 2).every((x) => x === 0) && numbers.slice(2).some((x) => x !== 0)
+      ? 'lost to zero, by underflow or in a difference'
+      : 'rounding';
+  return [
+    'In numbers of 113 bits, where float32 has 24 and float64 53, the algorithm says ',
+    h('strong', {}, with_113_bits),
+    '. The first comparison that goes otherwise in the lane is at ',
+    quoted(wrong.line),
+    'The lane computes ',
+    code(compared(wrong)),
+    ` (${outcome(wrong.held)}), with 113 bits it is `,
+    code(compared(wrong, true)),
+    ` (${outcome(wrong.holds)}): `,
+    h('strong', {}, lost),
+    '. ',
+    code('graze explain'),
+    ' says which comparison decides.',
+  ];
 }
 
 function steps_table(run: Step[]) {
-  return h('details', {}, h('summary', {}, `All ${run.length} steps`),
-    h('div', { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Steps' }, h('table', { class: 'plain steps' },
-      h('thead', {}, h('tr', {}, ['source line', 'what', 'in the lane', 'with 113 bits'].map((title) => h('th', { scope: 'col' }, title)))),
-      h('tbody', {}, run.map((step) => h('tr', { class: step.relation && step.held !== step.holds ? 'bad' : '' },
-        h('td', {}, code(step.line.replace('core/algorithms/', ''))), h('td', {}, step.site.replace('_', ' ') || 'comparison'),
-        [false, true].map((exact) => h('td', {}, code(compared(step, exact)), step.relation ? ` ${outcome(exact ? step.holds : step.held)}` : ''))))))));
+  return h(
+    'details',
+    {},
+    h('summary', {}, `All ${run.length} steps`),
+    h(
+      'div',
+      { class: 'scroller', tabindex: 0, role: 'group', 'aria-label': 'Steps' },
+      h(
+        'table',
+        { class: 'plain steps' },
+        h(
+          'thead',
+          {},
+          h(
+            'tr',
+            {},
+            ['source line', 'what', 'in the lane', 'with 113 bits'].map((title) => h('th', { scope: 'col' }, title)),
+          ),
+        ),
+        h(
+          'tbody',
+          {},
+          run.map((step) =>
+            h(
+              'tr',
+              { class: step.relation && step.held !== step.holds ? 'bad' : '' },
+              h('td', {}, code(step.line.replace('core/algorithms/', ''))),
+              h('td', {}, step.site.replace('_', ' ') || 'comparison'),
+              [false, true].map((exact) =>
+                h(
+                  'td',
+                  {},
+                  code(compared(step, exact)),
+                  step.relation ? ` ${outcome(exact ? step.holds : step.held)}` : '',
+                ),
+              ),
+            ),
+          ),
+        ),
+      ),
+    ),
+  );
 }
 
 export function why(model: Model) {
-  const text = h('div', { class: 'because' }), more = h('div', {}), title = h('h2', { id: 'why-title' }), brief = h('p', { id: 'brief' });
+  const text = h('div', { class: 'because' }),
+    more = h('div', {}),
+    title = h('h2', { id: 'why-title' }),
+    brief = h('p', { id: 'brief' });
 
   // Of a lane alone.
   function alone(known: ReturnType<Graze['steps']>): Child[] {
-    const { lane, decided, policy } = model, run = known?.steps, says = decided.verdicts[lane];
+    const { lane, decided, policy } = model,
+      run = known?.steps,
+      says = decided.verdicts[lane];
     if (says === null) return ['This lane has no such policy.'];
     if (decided.truth.verdict === 'declined') return ['A coordinate is not finite.'];
-    if (!run) return [lane.startsWith('exact/') ? 'It is the exact decision: integers of as many bits as it takes.' : 'Its steps are not known.'];
+    if (!run)
+      return [
+        lane.startsWith('exact/')
+          ? 'It is the exact decision: integers of as many bits as it takes.'
+          : 'Its steps are not known.',
+      ];
     const wrong = model.wrong(lane) && !policy;
-    return [policy ? 'Without the policy: ' : h('strong', { class: wrong ? 'bad' : '' }, `It is ${wrong ? 'wrong' : 'right'}. `),
-      wrong ? beside_exact(run, says, known!.with_113_bits) : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all go as they do with 113 bits, but the verdict stands.' : 'go as they do with 113 bits.'}`];
+    return [
+      policy
+        ? 'Without the policy: '
+        : h('strong', { class: wrong ? 'bad' : '' }, `It is ${wrong ? 'wrong' : 'right'}. `),
+      wrong
+        ? beside_exact(run, says, known!.with_113_bits)
+        : `Its ${run.filter((step) => step.relation).length} comparisons ${run.some((step) => step.relation && step.held !== step.holds) ? 'do not all go as they do with 113 bits, but the verdict stands.' : 'go as they do with 113 bits.'}`,
+    ];
   }
 
   function update() {
-    const { lane, graze, pair, decided, policy } = model, gpu = policy ? undefined : differing(model, lane), known = graze.steps(pair, lane);
+    const { lane, graze, pair, decided, policy } = model,
+      gpu = policy ? undefined : differing(model, lane),
+      known = graze.steps(pair, lane);
     const found = gpu ? apart(model, gpu) : null;
     brief.replaceChildren(h('span', {}, found?.brief ?? null));
-    title.replaceChildren(...(gpu ? ['Why do CPU and GPU differ?'] : ['Why does ', code(lane), ` say ${decided.verdicts[lane] ?? 'nothing'}?`]));
-    text.replaceChildren(h('div', {}, found ? found.parts : h('p', {}, alone(known),
-      known && !known.own && ' (The numbers are those of a rule of contraction that gives the lane’s verdict; they may not be the lane’s own.)')));
+    title.replaceChildren(
+      ...(gpu
+        ? ['Why do CPU and GPU differ?']
+        : ['Why does ', code(lane), ` say ${decided.verdicts[lane] ?? 'nothing'}?`]),
+    );
+    text.replaceChildren(
+      h(
+        'div',
+        {},
+        found
+          ? found.parts
+          : h(
+              'p',
+              {},
+              alone(known),
+              known &&
+                !known.own &&
+                ' (The numbers are those of a rule of contraction that gives the lane’s verdict; they may not be the lane’s own.)',
+            ),
+      ),
+    );
     const open = more.querySelector('details')?.open ?? false;
     more.replaceChildren(...(known ? [steps_table(known.steps)] : []));
     if (open) more.querySelector('details')!.open = true;

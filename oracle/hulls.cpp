@@ -40,7 +40,7 @@ int dimension(const Vec3<From> (&p)[3]) {
 }
 
 template <class Integer, class Integers>
-Shape shape_of(const Integers& pair) {
+Hulls hulls_of(const Integers& pair) {
   Vector<Integer> from_a0[5] = {difference<Integer>(pair.a[1], pair.a[0]), difference<Integer>(pair.a[2], pair.a[0]),
                                 difference<Integer>(pair.b[0], pair.a[0]), difference<Integer>(pair.b[1], pair.a[0]),
                                 difference<Integer>(pair.b[2], pair.a[0])};
@@ -62,10 +62,12 @@ Shape shape_of(const Integers& pair) {
 
 }  // namespace
 
-Shape shape(const Pair& pair) {
+Hulls hulls(const Pair& pair) {
   const Grid grid = grid_of(pair);
-  return grid.is_small() ? shape_of<std::int64_t>(small_integers(pair, grid))
-                         : shape_of<mpz_class>(large_integers(pair, grid));
+  return grid.is_small() ? hulls_of<std::int64_t>(small_integers(pair, grid))
+                         : hulls_of<mpz_class>(large_integers(pair, grid));
 }
+
+Hulls hulls(const LargePair& pair) { return hulls_of<mpz_class>(pair); }
 
 }  // namespace graze::oracle

@@ -34,7 +34,7 @@ std::string_view name_of(Site site) {
 }
 #pragma GCC diagnostic pop
 
-constexpr std::string_view kRelations[] = {"<", "<=", "==", ">", ">="};
+constexpr std::string_view kComparisons[] = {"<", "<=", "==", ">", ">="};
 
 // "core/vec3.h:46", wherever the compiler found the file.
 std::string line_of(const std::source_location& where) {
@@ -106,7 +106,7 @@ Cause refined(const LaneExplanation& lane, const Pair& pair) {
 Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
   return {line_of(seen.where),
           seen.site ? name_of(*seen.site) : "",
-          seen.compared ? kRelations[static_cast<int>(seen.relation)] : "",
+          seen.compared ? kComparisons[static_cast<int>(seen.comparison)] : "",
           exact.left,
           exact.right,
           exact.difference,

@@ -112,7 +112,7 @@ Trace<double> run_limited(int algorithm, Scalar scalar, const Pair& pair, Limits
   const Trace<Multi> run = run_multi(algorithm, pair, rule, lead);
   Trace<double> result{run.verdict, {}};
   for (const Seen<Multi>& s : run.seen) {
-    result.seen.push_back({s.where, s.site, s.compared, s.relation, mpfr_get_d(s.left.get(), MPFR_RNDN),
+    result.seen.push_back({s.where, s.site, s.compared, s.comparison, mpfr_get_d(s.left.get(), MPFR_RNDN),
                            mpfr_get_d(s.right.get(), MPFR_RNDN), s.left_result, s.right_result, s.held, s.taken});
   }
   return result;

@@ -81,7 +81,7 @@ TEST(Screen, FindsNothingThatIsNotSo) {
       const Finding found = portable::screen(c.a, c.b);
       if (found == Finding::unsure) continue;
       const bool intersects = AllNumbers::visit(grid_of(c.a, c.b), [&](auto numbers) {
-        return by_axes(triangles<decltype(numbers)>(c.a, c.b, grid_of(c.a, c.b).exponent)).intersects;
+        return by_axes(triangles<decltype(numbers)>(c.a, c.b, grid_of(c.a, c.b).exponent)).intersects();
       });
       ASSERT_EQ(found, intersects ? Finding::crosses : Finding::disjoint) << kind.name << ' ' << i;
     }

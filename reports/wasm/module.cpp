@@ -199,7 +199,7 @@ GRAZE_EXPORT(steps) int steps(int lane) {
     const bool alike = compare_numbers(right.left, right.right) == 0;
     steps_out.push_back({seen.where.file_name(), static_cast<std::int32_t>(seen.where.line()),
                          seen.site ? static_cast<std::int32_t>(*seen.site) : -1, seen.compared,
-                         static_cast<std::int32_t>(seen.relation), seen.held, right.held, seen.left_result, seen.left,
+                         static_cast<std::int32_t>(seen.comparison), seen.held, right.held, seen.left_result, seen.left,
                          seen.right, shown(right.left), alike ? shown(right.left) : shown(right.right)});
   }
   return static_cast<int>(steps_out.size());

@@ -252,10 +252,11 @@ TEST(Signature, NamesTheWrongLanesAndHowCloseTheCallWas) {
     if (lane.id == "moller_1997/f32/cpu" || lane.id == "moller_1997/f64/cpu-fma") run.push_back(&lane);
   }
   const std::vector wrong{Verdict::intersects, Verdict::declined}, right{Verdict::disjoint, Verdict::disjoint};
-  const Signature failure = signature(Contact::none, {2, 1, true}, make_bucket(1, -3), Verdict::disjoint, run, wrong);
+  const Relation truth{Verdict::disjoint, Contact::none, 1, {2, 1, true}};
+  const Signature failure = signature(truth, make_bucket(1, -3), run, wrong);
   EXPECT_TRUE(failure.wrong());
   EXPECT_EQ(key(failure), "none/21/coplanar/+2^-3/moller_1997:+f32/cpu;?f64/cpu-fma");
-  EXPECT_FALSE(signature(Contact::none, {}, make_bucket(1, -3), Verdict::disjoint, run, right).wrong());
+  EXPECT_FALSE(signature(truth, make_bucket(1, -3), run, right).wrong());
   EXPECT_EQ(mark(Verdict::disjoint, Verdict::intersects), '-');
   EXPECT_EQ(mark(Verdict::intersects, Verdict::intersects), '.');
 }

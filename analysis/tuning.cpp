@@ -108,10 +108,14 @@ class Tuner {
     }
   }
 
+  bool has_too_many(const PolicyErrors& errors) const {
+    return static_cast<double>(forbidden(errors, spec_.forbid)) > spec_.max_rate * static_cast<double>(errors.pairs);
+  }
+
   // Low enough first, then by the other errors, then by those forbidden.
   std::tuple<bool, std::uint64_t, std::uint64_t> rank(const PolicyErrors& errors) const {
     const std::uint64_t bad = forbidden(errors, spec_.forbid);
-    const bool too_many = static_cast<double>(bad) > spec_.max_rate * static_cast<double>(errors.pairs);
+    const bool too_many = has_too_many(errors);
     return {too_many, too_many ? bad : errors.wrong() - bad, too_many ? errors.wrong() - bad : bad};
   }
 
@@ -126,12 +130,11 @@ class Tuner {
     const std::vector<PolicyErrors> found = spec_.sweep(std::vector<std::string>{"", result_.chosen}, spec_.others);
     result_.zero_confirmed = found[0];
     result_.confirmed = found[1];
-    const std::uint64_t bad = forbidden(result_.confirmed, spec_.forbid), of = result_.confirmed.pairs;
-    result_.bound = upper_bound(bad, of);
-    result_.result = result_.bound <= spec_.max_rate ? TuneResult::satisfied
-                     : static_cast<double>(bad) <= spec_.max_rate * static_cast<double>(of)
-                         ? TuneResult::too_few_pairs
-                         : TuneResult::not_satisfiable;
+    result_.bound = upper_bound(forbidden(result_.confirmed, spec_.forbid), result_.confirmed.pairs);
+    result_.result = result_.bound <= spec_.max_rate    ? TuneResult::satisfied
+                     : !has_too_many(result_.confirmed) ? TuneResult::too_few_pairs
+                     : !has_too_many(*best)             ? TuneResult::not_confirmed
+                                                        : TuneResult::not_satisfiable;
   }
 
   void find_dead() {

@@ -56,8 +56,9 @@ struct Interaction {
 
 enum class TuneResult {
   satisfied,       // the rate's upper bound is below what is allowed
-  too_few_pairs,   // no error was seen, or few enough, but not on enough pairs to say so
-  not_satisfiable  // no policy is good enough; the choice is the best there is
+  too_few_pairs,   // few enough errors were seen, but not on enough pairs to say so
+  not_confirmed,   // few enough on the pairs that it was chosen on, too many on the others
+  not_satisfiable  // too many on the pairs of the choice under every policy; none has fewer there than the choice
 };
 
 struct Tuned {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "core/exact/exact.h"
 #include "strata/strata.h"
@@ -62,6 +63,45 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   EXPECT_EQ(neither.result, TuneResult::not_satisfiable);
   EXPECT_LE(neither.confirmed.wrong(), neither.zero_confirmed.wrong());
   EXPECT_EQ(tune(spec).chosen, neither.chosen);
+}
+
+// What is said of the policy chosen holds on the curves: where none is good enough, none has fewer of what is
+// forbidden.
+TEST(Tune, NoPolicyIsGoodEnoughOnlyWhereNoneOfTheCurvesIs) {
+  std::set<TuneResult> results;
+  for (const std::uint64_t pairs : {300u, 3000u}) {
+    for (const double rate : {1e-3, 0.05}) {
+      for (const std::uint64_t seed : {1u, 2u, 3u}) {
+        TuneSpec spec;
+        spec.sweep = host_sweep(moller());
+        spec.sources = drawn(seed, pairs, {"near_*"});
+        spec.others = drawn(seed + 100, pairs * 10, {"near_*"});
+        spec.sites = {"plane_distance"};
+        spec.forbid = seed == 3 ? Forbid::any : Forbid::miss;
+        spec.max_rate = rate;
+        const Tuned tuned = tune(spec);
+        results.insert(tuned.result);
+        const auto is_low = [&](const PolicyErrors& e) {
+          return static_cast<double>(forbidden(e, spec.forbid)) <= rate * static_cast<double>(e.pairs);
+        };
+        std::uint64_t fewest = forbidden(tuned.zero, spec.forbid);
+        bool any_low = is_low(tuned.zero);
+        for (const Curve& curve : tuned.curves) {
+          for (const PolicyErrors& point : curve.points) {
+            fewest = std::min(fewest, forbidden(point, spec.forbid));
+            any_low = any_low || is_low(point);
+          }
+        }
+        const std::uint64_t of_chosen =
+            forbidden(spec.sweep(std::vector<std::string>{tuned.chosen}, spec.sources).front(), spec.forbid);
+        if (tuned.result == TuneResult::not_satisfiable) EXPECT_EQ(of_chosen, fewest) << tuned.chosen;
+        EXPECT_EQ(tuned.result == TuneResult::not_satisfiable, !any_low && !is_low(tuned.confirmed)) << tuned.chosen;
+        EXPECT_EQ(tuned.result == TuneResult::not_confirmed, any_low && !is_low(tuned.confirmed)) << tuned.chosen;
+      }
+    }
+  }
+  EXPECT_TRUE(results.contains(TuneResult::not_confirmed));
+  EXPECT_TRUE(results.contains(TuneResult::not_satisfiable));
 }
 
 TEST(Tune, SaysWhenPairsAreTooFew) {

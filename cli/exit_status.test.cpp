@@ -63,11 +63,8 @@ class ExitStatus : public CommandTest {
                   "/2 --out s" + k);
   }
 
-  // Of the command when it is asked to stop, once it catches the signal: before, SIGTERM ends it with 143.
   int interrupted(const std::string& command) const {
-    const Ran ran = shell("graze " + command +
-                          " & p=$!; until [ $((0x$(awk '/SigCgt/ {print $2}' /proc/$p/status) >> 14 & 1)) = 1 ]; "
-                          "do sleep 0.02; kill -0 $p || exit 99; done; kill -TERM $p; wait $p");
+    const Ran ran = signalled("graze " + command, "TERM");
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
     return ran.status;
   }

@@ -44,7 +44,6 @@ TEST_F(Minimize, ACampaignTwiceIsTheSameBytesWhateverTheThreads) {
   const auto run = nlohmann::json::parse(contents(shell.folder / "one/timings.json"))["runs"].back();
   EXPECT_GT(run["processor_seconds_worst"], 0);
   EXPECT_LT(run["processor_seconds_worst"], 0.5 * run["processor_seconds"].get<double>());
-  EXPECT_LT(run["processor_seconds_worst"], 30);
   const auto summary = nlohmann::json::parse(contents(shell.folder / "one/summary.json"));
   ASSERT_GT(summary["signatures"].size(), 50u);
   for (const auto& row : summary["signatures"]) {
@@ -64,18 +63,15 @@ TEST_F(Minimize, ACampaignTwiceIsTheSameBytesWhateverTheThreads) {
 
 TEST_F(Minimize, KilledItGoesOn) {
   expect_done(std::string(kFuzz) + "--out whole > /dev/null && cp -r whole parts && graze minimize whole");
-  for (int i = 0; i < 3; ++i) shell("timeout -s KILL 0.3 graze minimize parts");
+  for (const int write : {1, 20, 200})
+    ASSERT_EQ(shell(signal_at_write(SIGKILL, write) + "graze minimize parts").status, 128 + SIGKILL) << write;
   expect_done("graze minimize parts && rm -f parts/cases/*.part && diff -r whole/cases parts/cases");
 }
 
 TEST_F(Minimize, CtrlCSaysWhatWasDoneAndTheSameCommandGoesOn) {
   expect_done(std::string(kFuzz) + "--out whole > /dev/null && cp -r whole parts && graze minimize whole");
-  for (const char* signal : {"INT", "TERM"}) {
-    Ran ran{};
-    for (double seconds = 0.3; ran.err.empty() && seconds < 60; seconds *= 2) {  // on a busy machine it begins late
-      ran = shell("timeout --preserve-status -s " + std::string(signal) + " " + std::to_string(seconds) +
-                  " graze minimize parts");
-    }
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const Ran ran = shell(signal_at_write(signal, 20) + "graze minimize parts");
     ASSERT_EQ(ran.status, 130) << ran.out << ran.err;
     EXPECT_TRUE(std::regex_search(ran.err, std::regex("graze: interrupted; minimised [0-9]+ of [0-9]+ signatures; "
                                                       "run the same command to go on\n$")))
@@ -91,7 +87,7 @@ TEST_F(Minimize, ACaseThatIsInterruptedIsNotWritten) {
       "graze fuzz --seed 2 --pairs 1000 --strata near_edge_edge --lanes '*/cpu' --out one > /dev/null && "
       "cat one/cases/*.pairs | grep -v '^#' > all && (head -n 1 $(ls one/cases/*.pairs | head -n 1); cat all) > "
       "many.pairs");
-  const Ran ran = shell("timeout --preserve-status -s INT 0.1 graze minimize many.pairs --out small.pairs");
+  const Ran ran = signalled("graze minimize many.pairs --out small.pairs", "TERM");
   EXPECT_EQ(ran.status, 130) << ran.out << ran.err;
   EXPECT_TRUE(std::regex_search(
       ran.err, std::regex("graze: interrupted; minimised [0-9]+ of [0-9]+ cases and wrote nothing\n$")))

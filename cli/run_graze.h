@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -51,6 +52,12 @@ class Shell {
   std::filesystem::path folder;
 };
 
+// To stand before a command: it gets the signal before its `write`-th write to a file (signal_at_write.cpp).
+inline std::string signal_at_write(int signal, int write) {
+  return "ASAN_OPTIONS=verify_asan_link_order=0 GRAZE_SIGNAL=" + std::to_string(signal) +
+         " GRAZE_AT_WRITE=" + std::to_string(write) + " LD_PRELOAD='" + GRAZE_SIGNAL_AT_WRITE + "' ";
+}
+
 // Each test has a shell of its own.
 class CommandTest : public testing::Test {
  protected:
@@ -60,6 +67,12 @@ class CommandTest : public testing::Test {
   void expect_done(const std::string& command) const {
     const Ran ran = shell(command);
     EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
+  }
+
+  // The command, sent `signal` once it catches SIGTERM, which would end it with 143 before.
+  Ran signalled(const std::string& command, const std::string& signal, const std::string& before = "true") const {
+    return shell(command + " & p=$!; until [ $((0x$(awk '/SigCgt/ {print $2}' /proc/$p/status) >> 14 & 1)) = 1 ] && " +
+                 before + "; do sleep 0.02; kill -0 $p || exit 99; done; kill -" + signal + " $p; wait $p");
   }
 
   // One line on stderr that holds `part`, and this exit status.

@@ -14,6 +14,7 @@
 #include <random>
 #include <sstream>
 
+#include "core/message_testing.h"
 #include "core/text.h"
 
 namespace graze::corpus {
@@ -51,6 +52,10 @@ std::string error_of(const std::string& text) {
   } catch (const FormatError& error) {
     return error.what();
   }
+}
+
+void expect_named(const std::string& text, const std::vector<std::string>& words) {
+  EXPECT_TRUE(names(error_of(text), words)) << text.substr(0, 200);
 }
 
 const std::string kZeros = "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0";  // 18 numbers
@@ -148,50 +153,44 @@ TEST(PairFormat, TheVersionLineMayBeMissingOrRepeated) {
 }
 
 TEST(PairFormat, AForeignVersionIsNamed) {
-  EXPECT_EQ(error_of("\ngraze-pairs 2\n"),
-            R"(in.pairs:2: expected the version line "graze-pairs 1", found "graze-pairs 2")");
-  EXPECT_EQ(error_of("graze-pairs\n"), R"(in.pairs:1: expected the version line "graze-pairs 1", found "graze-pairs")");
+  expect_named("\ngraze-pairs 2\n", {"in.pairs:2", "graze-pairs 1", "graze-pairs 2"});
+  expect_named("graze-pairs\n", {"in.pairs:1", "graze-pairs 1", "graze-pairs"});
 }
 
 TEST(PairFormat, AWrongCountIsNamed) {
-  EXPECT_EQ(error_of(kSeventeen), "in.pairs:1: expected 18 numbers, found 17");
-  EXPECT_EQ(error_of("\n" + kSeventeen + " # 0"), "in.pairs:2: expected 18 numbers, found 17");
-  EXPECT_EQ(error_of(kSeventeen + " | name=x"), "in.pairs:1: expected 18 numbers, found 17");
-  EXPECT_EQ(error_of("| name=x"), "in.pairs:1: expected 18 numbers, found 0");
-  EXPECT_EQ(error_of(kZeros + " 0 0"), "in.pairs:1: expected 18 numbers, found 20");
-  EXPECT_EQ(error_of(kZeros + " name=x"),
-            R"(in.pairs:1: expected '|' or the end of the line after 18 numbers, found "name=x")");
+  expect_named(kSeventeen, {"in.pairs:1", "18", "17"});
+  expect_named("\n" + kSeventeen + " # 0", {"in.pairs:2", "18", "17"});
+  expect_named(kSeventeen + " | name=x", {"in.pairs:1", "18", "17"});
+  expect_named("| name=x", {"in.pairs:1", "18", "0"});
+  expect_named(kZeros + " 0 0", {"in.pairs:1", "18", "20"});
+  expect_named(kZeros + " name=x", {"in.pairs:1", "18", "name=x"});
 }
 
 TEST(PairFormat, AWordThatIsNoFloat32IsNamed) {
-  EXPECT_EQ(error_of("0 0 0 0 one 0"), R"(in.pairs:1: expected a float32 as number 5 (a[1].y), found "one")");
-  EXPECT_EQ(error_of(kSeventeen + " 1e39"), R"(in.pairs:1: expected a float32 as number 18 (b[2].z), found "1e39")");
-  EXPECT_EQ(error_of("0,one,0"), R"(in.pairs:1: expected a float32 as number 2 (a[0].y), found "one")");
+  expect_named("0 0 0 0 one 0", {"in.pairs:1", "float32", "5", "a[1].y", "one"});
+  expect_named(kSeventeen + " 1e39", {"in.pairs:1", "float32", "18", "b[2].z", "1e39"});
+  expect_named("0,one,0", {"in.pairs:1", "float32", "2", "a[0].y", "one"});
 }
 
 TEST(PairFormat, ABrokenFieldIsNamed) {
   const std::string start = kZeros + " | name=x ";
-  EXPECT_EQ(error_of(start + "note"), R"(in.pairs:1: expected a field key=value, found "note")");
-  EXPECT_EQ(error_of(start + "=1"), R"(in.pairs:1: expected a field key=value, found "=1")");
-  EXPECT_EQ(error_of(start + "note= 1"), R"(in.pairs:1: expected a field key=value, found "note=")");
-  EXPECT_EQ(error_of(start + "no\"te=1"), R"(in.pairs:1: expected a field key=value, found "no\"te=1")");
-  EXPECT_EQ(error_of(start + "name=y"), "in.pairs:1: expected every field once, found a second name");
-  EXPECT_EQ(error_of(start + "note=\"a b"),
-            "in.pairs:1: expected a closing quote in the value of note, found the end of the line");
-  EXPECT_EQ(error_of(start + R"(note="a\n")"),
-            R"(in.pairs:1: expected \", \\ or \xHH in the value of note, found "\\n")");
-  EXPECT_EQ(error_of(start + "note=\"a\"b"), R"(in.pairs:1: expected white space after the value of note, found "b")");
+  expect_named(start + "note", {"in.pairs:1", "key=value", "note"});
+  expect_named(start + "=1", {"in.pairs:1", "key=value", "=1"});
+  expect_named(start + "note= 1", {"in.pairs:1", "key=value", "note="});
+  expect_named(start + "no\"te=1", {"in.pairs:1", "key=value", R"(no\"te=1)"});
+  expect_named(start + "name=y", {"in.pairs:1", "name"});
+  expect_named(start + "note=\"a b", {"in.pairs:1", "quote", "note"});
+  expect_named(start + R"(note="a\n")", {"in.pairs:1", R"(\xHH)", "note", R"(\\n)"});
+  expect_named(start + "note=\"a\"b", {"in.pairs:1", "note", "b"});
 }
 
 TEST(PairFormat, GarbageIsEscapedAndCutShort) {
-  EXPECT_EQ(error_of(std::string("\x7f"
-                                 "ELF\x02\x01\0\x1b[31m",
-                                 12)),
-            R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "\x7fELF\x02\x01\x00\x1b")");
-  EXPECT_EQ(error_of(std::string(1000, 'x')),
-            "in.pairs:1: expected a float32 as number 1 (a[0].x), found \"" + std::string(40, 'x') + "\"...");
-  EXPECT_EQ(error_of("\n" + std::string(1 << 20, '0')),
-            "in.pairs:2: expected a line of at most 65536 bytes, found a longer one");
+  expect_named(std::string("\x7f"
+                           "ELF\x02\x01\0\x1b[31m",
+                           12),
+               {"in.pairs:1", "float32", "1", "a[0].x", R"(\x7fELF\x02\x01\x00\x1b)"});
+  expect_named(std::string(1000, 'x'), {"in.pairs:1", "a[0].x", '"' + std::string(40, 'x') + "\"..."});
+  expect_named("\n" + std::string(1 << 20, '0'), {"in.pairs:2", "65536"});
 }
 
 // Without a version line the reader takes what people paste.
@@ -221,18 +220,16 @@ TEST(PairFormat, TakesWhatPeoplePaste) {
 }
 
 TEST(PairFormat, PastedTextThatIsNoPairIsNamed) {
-  EXPECT_EQ(error_of("0 0 0\n" + kZeros), "in.pairs:1: expected 18 numbers, found 21");
-  EXPECT_EQ(error_of("\n0 0 0\n0 0 0\n"), "in.pairs:2: expected 18 numbers, found 6");
-  EXPECT_EQ(error_of("0 0\n0 0 0 0\n"), "in.pairs:1: expected 18 numbers, found 2");
-  EXPECT_EQ(error_of("graze-pairs 1\n0 0 0\n" + kZeros), "in.pairs:2: expected 18 numbers, found 3");
-  EXPECT_EQ(error_of("0 0 0\ngraze-pairs 1\n"), "in.pairs:1: expected 18 numbers, found 3");
-  EXPECT_EQ(error_of("1.5g 0 0"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "1.5g")");
-  EXPECT_EQ(error_of("point 7 (0 0 0)"), R"(in.pairs:1: expected a float32 as number 1 (a[0].x), found "point")");
-  EXPECT_EQ(error_of("0x1ff 0 0"), "in.pairs:1: expected 18 numbers, found 3");  // a number in hex, not a suffix
-  EXPECT_EQ(error_of("\nv 0 0 0\nv 1 0\n"),
-            "in.pairs:3: expected a coordinate that is finite in float32, found the end of the line");
-  EXPECT_EQ(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
-            "in.pairs:1: expected two triangles, or six vertices without a face; found 1 triangles and 3 vertices");
+  expect_named("0 0 0\n" + kZeros, {"in.pairs:1", "18", "21"});
+  expect_named("\n0 0 0\n0 0 0\n", {"in.pairs:2", "18", "6"});
+  expect_named("0 0\n0 0 0 0\n", {"in.pairs:1", "18", "2"});
+  expect_named("graze-pairs 1\n0 0 0\n" + kZeros, {"in.pairs:2", "18", "3"});
+  expect_named("0 0 0\ngraze-pairs 1\n", {"in.pairs:1", "18", "3"});
+  expect_named("1.5g 0 0", {"in.pairs:1", "float32", "1", "a[0].x", "1.5g"});
+  expect_named("point 7 (0 0 0)", {"in.pairs:1", "float32", "1", "a[0].x", "point"});
+  expect_named("0x1ff 0 0", {"in.pairs:1", "18", "3"});  // a number in hex, not a suffix
+  expect_named("\nv 0 0 0\nv 1 0\n", {"in.pairs:3", "coordinate", "float32"});
+  expect_named("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", {"in.pairs:1", "triangles", "vertices", "1", "3"});
 }
 
 TEST(PairFormat, KeepsWhatWasTyped) {
@@ -265,9 +262,9 @@ TEST(ReadPairs, NamesTheFile) {
       return std::string(e.what());
     }
   };
-  EXPECT_EQ(error(file), file.string() + ":2: expected 18 numbers, found 3");
-  EXPECT_EQ(error(folder), folder.string() + ": expected a file of pairs, found a folder");
-  EXPECT_EQ(error(folder / "none"), (folder / "none").string() + ": expected a file of pairs, found none");
+  EXPECT_TRUE(names(error(file), {file.string() + ":2", "18", "3"}));
+  EXPECT_TRUE(names(error(folder), {folder.string(), "folder"}));
+  EXPECT_TRUE(names(error(folder / "none"), {(folder / "none").string()}));
   std::filesystem::remove_all(folder);
 }
 

@@ -50,6 +50,12 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
       return fmt::format(
           "Not settled: {}; {}, and {} was asked for. Without an error it takes {} pairs to say so (--pairs).", of,
           trust, q.max_rate, grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
+    case TuneResult::not_confirmed:
+      return fmt::format(
+          "Not settled: {}. On the pairs of the choice it keeps {} under {}, and here it does not. More pairs to "
+          "choose "
+          "on (--pairs) or a stricter --max-rate may find one that does.",
+          of, words(q.forbid), q.max_rate);
     case TuneResult::not_satisfiable:
       break;
   }
@@ -117,7 +123,7 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
 }
 
 Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
-  constexpr std::string_view kResults[] = {"satisfied", "too few pairs", "not satisfiable"};
+  constexpr std::string_view kResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable"};
   constexpr std::string_view kForbid[] = {"miss", "false", "any"};
   Json json = {{"lane", question.lane},
                {"forbid", kForbid[static_cast<int>(question.forbid)]},

@@ -91,7 +91,7 @@ TEST(SignatureCounts, AreThoseOfEachFailureAlone) {
   std::map<analysis::Signature, SignatureCount> found;
   for (const std::uint64_t index : {9, 3, 5}) {
     const Verdict verdicts[] = {yes, index == 5 ? no : yes, Verdict::declined, no};
-    counts.add(Contact::none, {2, 1, true}, 7, no, verdicts, {index, 2});
+    counts.add(Relation{no, Contact::none, 1, {2, 1, true}}, 7, verdicts, {index, 2});
     if (index == 3) counts.move_to(found);
   }
   counts.move_to(found);

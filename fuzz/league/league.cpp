@@ -127,7 +127,7 @@ struct Counting {
   // On how many of the pairs the verdict changes with the order, or breaks another law; those within the contract.
   void count_orders(std::span<const Pair> pairs, const std::vector<Relation>& truths) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (is_outside(*row.lane, pairs[i], truths[i])) continue;
+      if (analysis::is_outside(*row.lane, pairs[i], truths[i])) continue;
       ++row.order_sample;
       const std::vector<Verdict> said = verdicts_of(*decide, analysis::orders(pairs[i]));
       row.order_dependent += std::adjacent_find(said.begin(), said.end(), std::not_equal_to<>()) != said.end();

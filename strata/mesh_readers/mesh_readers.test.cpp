@@ -7,6 +7,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "core/message_testing.h"
 #include "strata/mesh_readers/soup.h"
 
 namespace graze::strata {
@@ -26,11 +27,12 @@ std::string error_of(Reader read, const std::string& bytes) {
 }
 
 struct Misfit {
-  std::string bytes, error;
+  std::string bytes;
+  std::vector<std::string> named;  // by the error: the place, what belongs there, what stands there
 };
 
 void expect_errors(Reader read, const std::vector<Misfit>& misfits) {
-  for (const Misfit& misfit : misfits) EXPECT_EQ(error_of(read, misfit.bytes), misfit.error) << misfit.bytes;
+  for (const Misfit& misfit : misfits) EXPECT_TRUE(names(error_of(read, misfit.bytes), misfit.named)) << misfit.bytes;
 }
 
 const std::string kOff = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n";
@@ -61,39 +63,32 @@ TEST(ReadOff, RoundsDecimalsOnce) {
 }
 
 TEST(ReadOff, NamesLineExpectedAndFound) {
-  expect_errors(
-      read_off,
-      {{"", "m:0: expected OFF, found the end of the file"},
-       {"solid x\n", "m:1: expected OFF, or COFF, NOFF, CNOFF, STOFF, found \"solid\""},
-       {"4OFF\n", "m:1: expected OFF, or COFF, NOFF, CNOFF, STOFF, found \"4OFF\""},
-       {"OFF BINARY\n", "m:1: expected OFF in text, found \"BINARY\""},
-       {"OFF\n-3 1 0\n", "m:2: expected the number of vertices, found \"-3\""},
-       {"OFF\n3 1.0 0\n", "m:2: expected the number of faces, found \"1.0\""},
-       {"OFF\n4000000000 1 0\n0 0 0\n",
-        "m:2: expected at most 1 vertices and 3 faces in the 6 bytes that follow, found 4000000000 and 1"},
-       {"OFF\n99999999999999999999 1 0\n", "m:2: expected the number of vertices, found \"99999999999999999999\""},
-       {kOff + "3 0 1 99999999999999999999\n", "m:6: expected a vertex from 0 to 2, found \"99999999999999999999\""},
-       {kOff + "3 0 1 4294967297\n", "m:6: expected a vertex from 0 to 2, found \"4294967297\""},
-       {kOff + "3 0.5 1 2\n", "m:6: expected a vertex from 0 to 2, found \"0.5\""},
-       {kOff + "3 0 1 -1\n", "m:6: expected a vertex from 0 to 2, found \"-1\""},
-       {kOff + "3 0 1 3\n", "m:6: expected a vertex from 0 to 2, found \"3\""},
-       {kOff + "3 0 1\n", "m:6: expected 3 vertices of a face, found 2 numbers"},
-       {kOff + "18446744073709551615 0 1\n", "m:6: expected 18446744073709551615 vertices of a face, found 2 numbers"},
-       {kOff + "3 0 1 2 0 0\n", "m:6: expected 3 vertices of a face, and at most a colour, found 5 numbers"},
-       {kOff + "3 0 1 2 red\n", "m:6: expected a number or the end of the line, found \"red\""},
-       {kOff, "m:5: expected 1 faces, found the end of the file"},
-       {kOff + "3 0 1 2\n3 0 1 2\n", "m:7: expected the end of the file after 3 vertices and 1 faces, found \"3\""},
-       {"OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n",
-        "m:4: expected a coordinate that is finite in float32, found \"x\""},
-       {"OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n",
-        "m:4: expected a coordinate that is finite in float32, found \"nan\""},
-       {"OFF\n3 1 0\n0 0 0\n1 1e39 0\n0 1 0\n3 0 1 2\n",
-        "m:4: expected a coordinate that is finite in float32, found \"1e39\""},
-       {"OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n",
-        "m:4: expected a coordinate that is finite in float32, found the end of the line"},
-       {"OFF\n3 1 0\n0 0 0\n1 0 0 0\n0 1 0\n3 0 1 2\n", "m:4: expected three coordinates, found 4 numbers"},
-       {"NOFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
-        "m:3: expected three coordinates and what the header announces, found 3 numbers"}});
+  expect_errors(read_off,
+                {{"", {"m:0", "OFF", "end"}},
+                 {"solid x\n", {"m:1", "OFF", "COFF", "STOFF", "solid"}},
+                 {"4OFF\n", {"m:1", "OFF", "COFF", "STOFF", "4OFF"}},
+                 {"OFF BINARY\n", {"m:1", "OFF", "BINARY"}},
+                 {"OFF\n-3 1 0\n", {"m:2", "vertices", "-3"}},
+                 {"OFF\n3 1.0 0\n", {"m:2", "faces", "1.0"}},
+                 {"OFF\n4000000000 1 0\n0 0 0\n", {"m:2", "1", "vertices", "3", "faces", "6", "4000000000"}},
+                 {"OFF\n99999999999999999999 1 0\n", {"m:2", "vertices", "99999999999999999999"}},
+                 {kOff + "3 0 1 99999999999999999999\n", {"m:6", "vertex", "0", "2", "99999999999999999999"}},
+                 {kOff + "3 0 1 4294967297\n", {"m:6", "vertex", "0", "2", "4294967297"}},
+                 {kOff + "3 0.5 1 2\n", {"m:6", "vertex", "0", "2", "0.5"}},
+                 {kOff + "3 0 1 -1\n", {"m:6", "vertex", "0", "2", "-1"}},
+                 {kOff + "3 0 1 3\n", {"m:6", "vertex", "0", "2", "3"}},
+                 {kOff + "3 0 1\n", {"m:6", "3", "vertices", "face", "2"}},
+                 {kOff + "18446744073709551615 0 1\n", {"m:6", "18446744073709551615", "vertices", "face", "2"}},
+                 {kOff + "3 0 1 2 0 0\n", {"m:6", "3", "vertices", "face", "colour", "5"}},
+                 {kOff + "3 0 1 2 red\n", {"m:6", "end", "red"}},
+                 {kOff, {"m:5", "1", "faces", "end"}},
+                 {kOff + "3 0 1 2\n3 0 1 2\n", {"m:7", "end", "3", "vertices", "1", "faces"}},
+                 {"OFF\n3 1 0\n0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n", {"m:4", "coordinate", "finite", "float32", "x"}},
+                 {"OFF\n3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", {"m:4", "coordinate", "finite", "float32", "nan"}},
+                 {"OFF\n3 1 0\n0 0 0\n1 1e39 0\n0 1 0\n3 0 1 2\n", {"m:4", "coordinate", "finite", "float32", "1e39"}},
+                 {"OFF\n3 1 0\n0 0 0\n1 0\n0 1 0\n3 0 1 2\n", {"m:4", "coordinate", "finite", "float32", "end"}},
+                 {"OFF\n3 1 0\n0 0 0\n1 0 0 0\n0 1 0\n3 0 1 2\n", {"m:4", "coordinates", "4"}},
+                 {"NOFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", {"m:3", "coordinates", "3"}}});
 }
 
 const std::string kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -120,24 +115,21 @@ TEST(ReadObj, TakesEveryNotationOfAFace) {
 }
 
 TEST(ReadObj, NamesLineExpectedAndFound) {
-  const std::string corner = "a vertex as 1, 1/2, 1//3 or 1/2/3, or one of the last 3 as -1, found ";
-  expect_errors(
-      read_obj,
-      {{kObj + "f 1 3 x\n", "m:4: expected " + corner + "\"x\""},
-       {kObj + "f 1 2\n", "m:4: expected a face of three vertices or more, found 2"},
-       {kObj + "f\n", "m:4: expected a face of three vertices or more, found 0"},
-       {kObj + "f 1 2 4294967297\n", "m:4: expected " + corner + "\"4294967297\""},
-       {kObj + "f 1 2 0\n", "m:4: expected " + corner + "\"0\""},
-       {kObj + "f 1 2 -4\n", "m:4: expected " + corner + "\"-4\""},
-       {kObj + "f 1 2 3.0\n", "m:4: expected " + corner + "\"3.0\""},
-       {kObj + "f 1 2 3/\n", "m:4: expected " + corner + "\"3/\""},
-       {kObj + "f 1 2 3//\n", "m:4: expected " + corner + "\"3//\""},
-       {kObj + "f 1 2 3/1/1/1\n", "m:4: expected " + corner + "\"3/1/1/1\""},
-       {kObj + "f 1 2 4\nf 1 2 3\n", "m:4: expected faces of the file's 3 vertices, found vertex 4"},
-       {kObj + "v 1 2\n", "m:4: expected a coordinate that is finite in float32, found the end of the line"},
-       {kObj + "v 1 2 3 4 5\n", "m:4: expected three coordinates, a weight or a colour, found 5 numbers"},
-       {kObj + "vector 1 2\n", "m:4: expected v, f, vt, vn, l, p, g, o, s, usemtl or mtllib, found \"vector\""},
-       {kObj + "\x1b[2J\n", "m:4: expected v, f, vt, vn, l, p, g, o, s, usemtl or mtllib, found \"\\x1b[2J\""}});
+  expect_errors(read_obj, {{kObj + "f 1 3 x\n", {"m:4", "vertex", "-1", "x"}},
+                           {kObj + "f 1 2\n", {"m:4", "face", "vertices", "2"}},
+                           {kObj + "f\n", {"m:4", "face", "vertices", "0"}},
+                           {kObj + "f 1 2 4294967297\n", {"m:4", "vertex", "-1", "4294967297"}},
+                           {kObj + "f 1 2 0\n", {"m:4", "vertex", "-1", "0"}},
+                           {kObj + "f 1 2 -4\n", {"m:4", "vertex", "-1", "-4"}},
+                           {kObj + "f 1 2 3.0\n", {"m:4", "vertex", "-1", "3.0"}},
+                           {kObj + "f 1 2 3/\n", {"m:4", "vertex", "-1", "3/"}},
+                           {kObj + "f 1 2 3//\n", {"m:4", "vertex", "-1", "3//"}},
+                           {kObj + "f 1 2 3/1/1/1\n", {"m:4", "vertex", "-1", "3/1/1/1"}},
+                           {kObj + "f 1 2 4\nf 1 2 3\n", {"m:4", "faces", "3", "vertices", "vertex", "4"}},
+                           {kObj + "v 1 2\n", {"m:4", "coordinate", "finite", "float32", "end"}},
+                           {kObj + "v 1 2 3 4 5\n", {"m:4", "coordinates", "colour", "5"}},
+                           {kObj + "vector 1 2\n", {"m:4", "v", "f", "usemtl", "vector"}},
+                           {kObj + "\x1b[2J\n", {"m:4", "v", "f", "usemtl", "\\x1b[2J"}}});
 }
 
 const std::string kStl =
@@ -165,20 +157,16 @@ TEST(ReadStl, NamesPlaceExpectedAndFound) {
   std::memcpy(&not_finite[84 + 16], &nan, sizeof nan);
   std::string broken = kStl;
   broken.replace(broken.find("vertex 1"), 8, "vertex x");
-  expect_errors(
-      read_stl,
-      {{"garbage",
-        "m:1: expected solid, or a binary file of 84 bytes and 50 for each facet that they count, found \"garbage\""},
-       {kStl, "m:8: expected endsolid, found the end of the file"},
-       {broken, "m:5: expected a coordinate that is finite in float32, found \"x\""},
-       {"solid\nfacet normal 0 0\n", "m:2: expected three numbers of a normal, found the end of the line"},
-       {"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
-        "m:6: expected vertex and three numbers, found \"endloop\""},
-       {"solid\nvertex 0 0 0\n", "m:2: expected facet or endsolid, found \"vertex\""},
-       {binary_stl(2, 99), "m: byte 80: expected 2 facets, for which the file has 184 bytes, found 183 bytes"},
-       {binary_stl(4294967295u, 50),
-        "m: byte 80: expected 4294967295 facets, for which the file has 214748364834 bytes, found 134 bytes"},
-       {not_finite, "m: byte 84: expected a facet with finite coordinates, found one without"}});
+  expect_errors(read_stl, {{"garbage", {"m:1", "solid", "84", "50", "facet", "garbage"}},
+                           {kStl, {"m:8", "endsolid", "end"}},
+                           {broken, {"m:5", "coordinate", "finite", "float32", "x"}},
+                           {"solid\nfacet normal 0 0\n", {"m:2", "normal", "end"}},
+                           {"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\n",
+                            {"m:6", "vertex", "endloop"}},
+                           {"solid\nvertex 0 0 0\n", {"m:2", "facet", "endsolid", "vertex"}},
+                           {binary_stl(2, 99), {"byte 80", "2", "facets", "184", "183"}},
+                           {binary_stl(4294967295u, 50), {"byte 80", "4294967295", "facets", "214748364834", "134"}},
+                           {not_finite, {"byte 84", "facet", "finite", "coordinates"}}});
 }
 
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
@@ -229,49 +217,34 @@ TEST(ReadPly, TakesTextAndBothByteOrders) {
 
 TEST(ReadPly, NamesPlaceExpectedAndFound) {
   const std::string little = ply_header("binary_little_endian", "3", "1"), body = ply_body(false);
-  const std::string at = "m: byte " + std::to_string(little.size());
   std::string negative_list = body, far = body, not_finite = body;
   negative_list[36] = '\xff';
   far[37] = 3;
   not_finite.replace(4, 4, std::string("\0\0\xc0\x7f", 4));
   expect_errors(
       read_ply,
-      {{"", "m:0: expected ply, found the end of the file"},
-       {"ply\nformat ascii 2.0\n",
-        "m:2: expected ascii, binary_little_endian or binary_big_endian, and 1.0, found \"ascii\""},
-       {"ply\nformat ascii 1.0\nproperty float x\n",
-        "m:3: expected an element before its properties, found a property"},
-       {"ply\nformat ascii 1.0\nelement vertex -1\n", "m:3: expected a count of elements, found \"-1\""},
-       {"ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\n",
-        "m:4: expected float or double as the type of a coordinate, found \"int\""},
+      {{"", {"m:0", "ply", "end"}},
+       {"ply\nformat ascii 2.0\n", {"m:2", "ascii", "binary_little_endian", "1.0"}},
+       {"ply\nformat ascii 1.0\nproperty float x\n", {"m:3", "element", "properties", "property"}},
+       {"ply\nformat ascii 1.0\nelement vertex -1\n", {"m:3", "elements", "-1"}},
+       {"ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\n", {"m:4", "float", "double", "coordinate", "int"}},
        {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nend_header\n",
-        "m:6: expected coordinates x, y and z of the element vertex, found none"},
-       {"ply\nformat ascii 1.0\nelement face 1\nproperty list float int vertex_indices\n",
-        "m:4: expected an integer type, found \"float\""},
-       {ply_header("ascii", "4294967295", "1") + "0 0 0\n",
-        "m:10: expected at most 1 elements vertex in the 7 bytes that are left, found 4294967295"},
+        {"m:6", "coordinates", "x", "y", "z", "element", "vertex"}},
+       {"ply\nformat ascii 1.0\nelement face 1\nproperty list float int vertex_indices\n", {"m:4", "integer", "float"}},
+       {ply_header("ascii", "4294967295", "1") + "0 0 0\n", {"m:10", "1", "elements", "vertex", "7", "4294967295"}},
        {ply_header("binary_little_endian", "4294967295", "1") + body,
-        at.substr(0, 8) + std::to_string(little.size() + 9) +
-            ": expected at most 4 elements vertex in the 49 bytes that are left, found 4294967295"},
+        {"byte " + std::to_string(little.size() + 9), "4", "elements", "vertex", "49", "4294967295"}},
        {ply_header("binary_little_endian", "3", "4294967295") + body,
-        at.substr(0, 8) + std::to_string(little.size() + 9 + 36) +
-            ": expected at most 13 elements face in the 13 bytes that are left, found 4294967295"},
-       {ply_header("binary_little_endian", "-3", "1") + body, "m:4: expected a count of elements, found \"-3\""},
-       {little + negative_list,
-        "m: byte " + std::to_string(little.size() + 37) + ": expected at most 3 numbers of vertex_indices, found 255"},
-       {little + far, "m: byte " + std::to_string(little.size() + 41) + ": expected a vertex below 3, found 3"},
-       {little + not_finite, "m: byte " + std::to_string(little.size() + 8) +
-                                 ": expected a coordinate that is finite in float32, found one that is not"},
-       {little + body + '\n', "m: byte " + std::to_string(little.size() + 49) +
-                                  ": expected the end of the file after its elements, found 1 bytes more"},
-       {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3\n",
-        "m:14: expected the end of the line, found \"3\""},
-       {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1\n",
-        "m:14: expected at most 2 numbers of vertex_indices, found 3"},
-       {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 0.5\n",
-        "m:14: expected a vertex below 3, found \"0.5\""},
-       {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n",
-        "m:15: expected the end of the file after its elements, found \"3\""}});
+        {"byte " + std::to_string(little.size() + 9 + 36), "13", "elements", "face", "4294967295"}},
+       {ply_header("binary_little_endian", "-3", "1") + body, {"m:4", "elements", "-3"}},
+       {little + negative_list, {"byte " + std::to_string(little.size() + 37), "3", "vertex_indices", "255"}},
+       {little + far, {"byte " + std::to_string(little.size() + 41), "vertex", "3"}},
+       {little + not_finite, {"byte " + std::to_string(little.size() + 8), "coordinate", "finite", "float32"}},
+       {little + body + '\n', {"byte " + std::to_string(little.size() + 49), "end", "elements", "1"}},
+       {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3\n", {"m:14", "end", "3"}},
+       {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1\n", {"m:14", "2", "vertex_indices", "3"}},
+       {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 0.5\n", {"m:14", "vertex", "3", "0.5"}},
+       {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n", {"m:15", "end", "elements", "3"}}});
 }
 
 // Whatever the damage: an error of one line, or triangles of vertices that exist.

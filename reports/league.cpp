@@ -150,6 +150,10 @@ std::string nanoseconds_text(const Json& league, const Json& row) {
   return fmt::format("{:.{}f}", value.get<double>(), value.get<double>() < 100 ? 1 : 0);
 }
 
+std::string count_of_sample(const Json& share) {
+  return share.at("of") == 0 ? "-" : count_text(share.at("count")) + " of " + count_text(share.at("of"));
+}
+
 // The columns behind the groups, and what each row has there.
 struct Extra {
   const char* title;
@@ -166,16 +170,8 @@ constexpr Extra kExtras[] = {
      [](const Json&, const Json& row) {
        return row.at("total").at("outside") == 0 ? "-" : count_text(row.at("total").at("by_convention"));
      }},
-    {"order",
-     [](const Json&, const Json& row) {
-       const Json& order = row.at("order_dependent");
-       return count_text(order.at("count")) + " of " + count_text(order.at("of"));
-     }},
-    {"laws",
-     [](const Json&, const Json& row) {
-       const Json& lawless = row.at("lawless");
-       return count_text(lawless.at("count")) + " of " + count_text(lawless.at("of"));
-     }},
+    {"order", [](const Json&, const Json& row) { return count_of_sample(row.at("order_dependent")); }},
+    {"laws", [](const Json&, const Json& row) { return count_of_sample(row.at("lawless")); }},
     {"flips",
      [](const Json&, const Json& row) { return row.at("flips").is_null() ? "-" : count_text(row.at("flips")); }},
     {"ns a pair", nanoseconds_text},
@@ -365,13 +361,22 @@ std::string league_page(const Json& league, const std::string& command) {
   return fmt::format(
       R"(# League: triangle-triangle tests of libraries, side by side
 
-Made by `{command}`; do not edit. All rows saw the same {pairs} pairs (strata with seed {seed}, in equal shares), but those that are slow, which took the first of each stratum: then, and where pairs are outside its contract, the count is "of" so many. Rows with the fewest clearly wrong verdicts stand first.
+Made by `{command}`; do not edit. The same {pairs} pairs went to all lanes: strata with seed {seed}, in equal shares. Lanes with the fewest clearly wrong verdicts stand first.
 
-The truth of every pair is CGAL's exact decision and that of `core/exact`; of every pair on which a row is wrong, GMP's as well. Every wrong verdict was asked again in a process that was new for it, and counts only where that said the same ("not again": the others). Touching counts, and a degenerate triangle is a segment or a point. What a library's documentation leaves out of its contract is counted apart ("by convention") and is no error; where it states nothing, every difference counts.
+CGAL's exact decision and that of `core/exact` are the truth of every pair, and GMP's as well where a lane is wrong. Touching counts, and a degenerate triangle is a segment or a point. Where a library's documentation states nothing, every difference counts. Columns:
+
+- **general** to **extreme**: misses / false hits in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of" precedes the number of pairs where a lane did not count on all: slow lanes took the first pairs of each stratum, and pairs outside a lane's contract do not count.
+- **clear**: wrong verdicts, outside "extreme", on proper triangles that are not coplanar and whose margin is at least 2^{exponent} ulps of the largest coordinate. Neither a convention nor rounding of the input excuses them.
+- **declined**, **crashed**, **timed out**, **unstable**: pairs on which the lane gave no answer, or not always the same one.
+- **not again**: wrong verdicts that a new process did not repeat. They count as no error.
+- **by convention**: wrong verdicts on pairs that the library's documentation leaves out of its contract. They are no errors.
+- **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders, the same truth).
+- **laws**: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that rounds nothing, or on which a part of a triangle intersects and the whole does not.
+- **flips**: pairs on which the build with contraction gives another verdict, where there is source.
+- **ns a pair**: median of {repetitions} repetitions in turn on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
+- "-": not measured.
 
 {counts}
-Columns: misses / false hits by group of strata ("near": near and exact contacts; "extreme": needles, extreme coordinates, far from the origin). *clear*: of the wrong verdicts outside "extreme" those on proper, not coplanar triangles whose margin is at least 2^{exponent} ulps of the largest coordinate: neither a convention nor rounding of the input excuses them. *order*: pairs, of a sample, on which the verdict changes with the order of triangles and vertices (72 orders, the same truth). *laws*: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that round nothing, or on which a part of a triangle intersects and the whole does not. *flips*: pairs on which the build with contraction says otherwise, where there is source. *ns a pair*: median of {repetitions} repetitions in turn on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
-
 ## Shares
 Wrong within the contract (misses, false hits, declined, crashed, timed out and unstable), in per cent of the pairs within it, with 95 % intervals.
 

@@ -75,7 +75,7 @@ TEST(Terminal, PairFitsItsScreen) {
   const Pair pair{{{0.1f, -1.23456e-30f, 3}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
   const auto first_lines = [&](int columns) {
     std::ostringstream out;
-    print_pair(out, pair, {Verdict::disjoint, Contact::none, 0.1234567891, 1}, {}, {}, {columns, false});
+    print_pair(out, pair, {{Verdict::disjoint, Contact::none, 1, {}}, 0.1234567891, 1}, {}, {}, {columns, false});
     const std::string text = out.str();
     return text.substr(0, text.find("a[1]"));
   };

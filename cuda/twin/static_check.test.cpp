@@ -147,7 +147,11 @@ class RandomPrograms : public testing::TestWithParam<const char*> {
     const std::string type = GetParam();
     std::mt19937 random(5);
     std::string ptx = ".version 9.0\n.target sm_75\n.address_size 64\n";
-    for (int i = 0; i < kPrograms; ++i) ptx += random_program(random, "k" + std::to_string(i), type);
+    for (int i = 0; i < kPrograms; ++i) {
+      std::string name = "k";
+      name += std::to_string(i);
+      ptx += random_program(random, name, type);
+    }
     std::istringstream in(ptx);
     twin::Module module = twin::read_ptx(in, "random.ptx");
     std::ostringstream out;

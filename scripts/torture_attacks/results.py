@@ -99,7 +99,11 @@ def begin(turn, verb, out):
 def without_times(value):
     if isinstance(value, dict):
         return {key: without_times(inner) for key, inner in value.items() if key not in TIMED}
-    return [without_times(inner) for inner in value] if isinstance(value, list) else value
+    if not isinstance(value, list):
+        return value
+    if all(isinstance(inner, dict) and "lane" in inner for inner in value):  # by what they cost
+        value = sorted(value, key=lambda inner: str(inner["lane"]))
+    return [without_times(inner) for inner in value]
 
 
 def snapshot(out):

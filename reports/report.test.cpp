@@ -271,10 +271,6 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   fs::remove_all(root_ / "forged");
 }
 
-TEST(Report, PublishedOnesCheck) {
-  EXPECT_EQ(read_report(fs::path(GRAZE_SOURCE_DIR) / "reports/published/default.json")["format"], 2);
-}
-
 TEST_F(ReportTest, TablesHaveARowAHeaderAndTheSameCellsEach) {
   const Json report = make_report(root_ / "one");
   std::map<std::string, std::size_t> rows;

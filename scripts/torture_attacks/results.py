@@ -339,7 +339,9 @@ def forged_cases(turn):
             numbers[turn.random.randrange(18)] = turn.random.choice(["0x1.5p+3", "-0x1p+20", "0x1.234568p-3"])
             file.write_text("".join([*lines[:place], " ".join(numbers), *lines[place + 1 :]]))
         else:
-            file.write_text("".join([*lines[:place], lines[place].replace(row["key"], other["key"]), *lines[place + 1 :]]))
+            file.write_text(
+                "".join([*lines[:place], lines[place].replace(row["key"], other["key"]), *lines[place + 1 :]])
+            )
         changed_file = file.read_text() != "".join(lines)
         ran = turn.run(turn.random.choice(["report", "kinds", "minimize"]), campaign)
         if changed_file and not turn.is_refused(ran, file.name):

@@ -102,6 +102,15 @@ std::string shares(const Bench& bench) {
   return text;
 }
 
+// Of the lanes that were asked for, those of CUDA, where there is no device.
+std::vector<fuzz::LaneLeftOut> without_device(const std::vector<std::string>& lanes) {
+  std::vector<fuzz::LaneLeftOut> left_out;
+  for (const std::string& lane : lanes) {
+    if (graze_devices() == 0 && lane.find("/cuda") != lane.npos) left_out.push_back({lane, "no CUDA device"});
+  }
+  return left_out;
+}
+
 void bench(const Options& options, int& status) {
   BenchOptions wanted;
   for (const std::string& size : options.sizes) wanted.sizes.push_back(std::stoull(size));
@@ -175,7 +184,10 @@ void add_bench(CLI::App& app, int& status) {
       ->check(not_empty())
       ->option_text("FILE.svg");
   command->add_flag("--json", options->json, "One JSON object");
-  command->callback([options, &status] { bench(*options, status); });
+  command->callback([options, command, &status] {
+    if (command->count("--lanes") > 0) say_left_out(without_device(options->lanes));
+    bench(*options, status);
+  });
 }
 
 }  // namespace graze::cli

@@ -64,6 +64,9 @@ void open_subjects_of(const std::filesystem::path& name);
 fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::filesystem::path& about = {},
                                       bool require_device = false);
 
+// Names these lanes on standard error, each with the reason.
+void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
+
 // Patterns, separated by commas, in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 

@@ -80,9 +80,8 @@ std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path
   for (const Json& row : summary["signatures"]) {
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
     if (!signature || signature->subject != subject) continue;
-    const std::filesystem::path file = fuzz::case_file(campaign, row);
-    const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
-    if (!entries.empty()) kept.emplace_back(fuzz::simplicity(entries[0].pair), file);
+    const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, campaign, row);
+    kept.emplace_back(fuzz::simplicity(entries[0].pair), fuzz::case_file(campaign, row));
   }
   std::sort(kept.begin(), kept.end());
   if (kept.size() > kMostShrunk) kept.resize(kMostShrunk);

@@ -106,6 +106,13 @@ int league(const LeagueOptions& options) {
   std::vector<reports::LeagueSubject> subjects = read_subjects(options.subjects, most);
   for (reports::LeagueSubject& subject : subjects) open(subject, options.timeout);
   const fuzz::LanesUnderTest lanes = fuzz::league_lanes({"*/cpu", "*/cpu-fma"});
+  say_left_out(lanes.left_out);
+  for (const reports::LeagueSubject& subject : subjects) {
+    if (std::none_of(lanes.lanes.begin(), lanes.lanes.end(),
+                     [&](auto* lane) { return lane->info->id == subject.name; }))
+      throw std::runtime_error(fmt::format("{}: expected a subject with a lane of this processor, found none: {}",
+                                           options.subjects, subject.name));
+  }
   const strata::SceneSources drawn_pairs = drawn(options.scene, options.seed, options.pairs, options.strata);
   const std::vector<strata::PairSource>& sources = drawn_pairs.sources;
   const ResultFolder folder(options.out, "league.json");

@@ -30,6 +30,7 @@
 #include "fuzz/cost_estimate.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimised_cases.h"
+#include "fuzz/own_files.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
@@ -150,11 +151,11 @@ struct Done {
   double processor = 0;     // seconds of one core for the file's cases
 };
 
-Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& file, bool again) {
+Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& directory, const Json& row, bool again) {
   const auto start = Clock::now();
   const double before = processor_seconds();
-  std::vector<corpus::Entry> entries = corpus::read_pairs(file);
-  if (entries.empty()) throw std::runtime_error(file.string() + ": expected at least one case, found none");
+  const fs::path file = fuzz::case_file(directory, row);
+  const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, directory, row);
   if (!again && has_result(under_test, entries)) return {true, fuzz::nontrivial_magnitudes(entries.front().pair), 0};
   const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries);
   if (results.empty()) return {};
@@ -203,26 +204,24 @@ int minimize_directory(MinimizeOptions options) {
                               whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
   if (fuzz::read_whole(directory / "summary.json") != text)
     throw std::runtime_error(options.name + ": expected to be alone, found that another process changed it");
-  std::vector<fs::path> files;
+  std::vector<Json> rows;
   for (std::size_t i = 0; i < summary["signatures"].size(); ++i) {  // the commonest first: each shard gets some of them
-    if (i % options.shard.of == options.shard.number - 1)
-      files.push_back(fuzz::case_file(directory, summary["signatures"][i]));
+    if (i % options.shard.of == options.shard.number - 1) rows.push_back(summary["signatures"][i]);
   }
-
-  fs::remove(directory / "kinds.json");  // of the cases as they were
-
+  expect_writable(directory);
+  if (whole) fuzz::expect_own(directory / "kinds.json", Json{{"summary", ""}}.dump(1));
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const std::atomic<bool>& interrupted = catch_interrupts();
-  Progress progress("signatures", files.size(), isatty(STDERR_FILENO), error_screen());
-  fuzz::CostEstimate work({files.size()});
+  Progress progress("signatures", rows.size(), isatty(STDERR_FILENO), error_screen());
+  fuzz::CostEstimate work({rows.size()});
   const auto start = Clock::now();
-  std::vector<Done> all(files.size());
+  std::vector<Done> all(rows.size());
   std::size_t count = 0;
   std::mutex mutex;
-  tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
     if (interrupted) return;
-    all[i] = minimize_file(under_test, files[i], options.again);
+    all[i] = minimize_file(under_test, directory, rows[i], options.again);
     const std::lock_guard lock(mutex);
     ++count;
     all[i].seconds > 0 ? work.add(0, 1, all[i].seconds) : work.skip(0, 1);  // 0: it was there before
@@ -243,12 +242,12 @@ int minimize_directory(MinimizeOptions options) {
   });
   if (interrupted) {
     fmt::print(stderr, "graze: interrupted; minimised {} of {} signatures; run the same command to go on\n",
-               reports::grouped(count), reports::grouped(files.size()));
+               reports::grouped(count), reports::grouped(rows.size()));
     return kInterrupted;
   }
   if (!whole) {
     fmt::print("shard {}: {} of {} signatures looked at\nNext, when all shards are done: graze minimize {}\n",
-               options.shard.name(), reports::grouped(files.size()), reports::grouped(summary["signatures"].size()),
+               options.shard.name(), reports::grouped(rows.size()), reports::grouped(summary["signatures"].size()),
                shell_word(options.name));
     return 0;
   }

@@ -115,6 +115,82 @@ TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   EXPECT_NE(some.out.find("no selected lane is wrong on the others"), std::string::npos) << some.out;
 }
 
+// Each file of cases says its signature; one that another wrote or moved there is not believed.
+TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
+  expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp -r c whole");
+  const auto rows = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["signatures"];
+  const std::string first = "c/" + rows.front()["case"].get<std::string>(), key = rows.front()["key"],
+                    last = "c/" + rows.back()["case"].get<std::string>();
+  const std::string refused = first + ": expected the cases of the signature " + key + ", found ";
+  for (const auto& [edit, found] : {std::pair("cp " + last + ' ' + first, "another head"),
+                                    {"sed -i '$d' " + first, "3 of them"},
+                                    {"sed -i '$s/^[^ ]*/0x1.5p+3/' " + first, "another pair in line "},
+                                    {"sed -i '3s/^[^ ]*/0x1.5p+3/' " + first, "another pair in line 3"},
+                                    {"sed -i '$s/margin=[^ ]*/margin=7/' " + first, "another pair in line "},
+                                    {"sed -i '$s/signature=/signature=area/' " + first, "another signature in line "},
+                                    {"rm " + first, "none"},
+                                    {"echo 1 2 3 > " + first, "other text: "}}) {
+    expect_done(edit);
+    for (const char* reader : {"kinds", "minimize"})
+      expect_error(std::string("graze ") + reader + " c", 1, refused + found);
+    const Ran report = shell("graze report c");
+    EXPECT_EQ(report.status, 1) << edit;
+    ASSERT_TRUE(report.err.starts_with("graze: " + refused + found)) << report.err;
+    const std::string again = report.err.substr(report.err.find("then: ") + 6);
+    expect_done("rm -f " + first + " && " + again.substr(0, again.size() - 1) + " > /dev/null && graze minimize c && " +
+                "diff -r whole/cases c/cases && cmp whole/kinds.json c/kinds.json");
+  }
+}
+
+// A pair whose truth fits and on which other lanes are wrong: only the lanes can tell.
+TEST_F(Minimize, CasesOnWhichOtherLanesAreWrongAreRefused) {
+  expect_done(std::string(kFuzz) + "--out c > /dev/null");
+  const auto rows = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["signatures"];
+  int forged = 0;
+  for (const auto& one : rows) {
+    for (const auto& other : rows) {
+      const std::string key = one["key"], other_key = other["key"];
+      const std::size_t lanes = key.find(':');
+      if (forged > 0 || key == other_key || key.substr(0, lanes) != other_key.substr(0, lanes)) continue;
+      const std::string file = contents(shell.folder / "c" / one["case"]);
+      std::string text = contents(shell.folder / "c" / other["case"]);
+      for (std::size_t at = 0; (at = text.find(other_key, at)) != text.npos; at += key.size())
+        text.replace(at, other_key.size(), key);
+      const std::size_t head = text.find('#'), end = text.find('\n', head);
+      text.replace(head, end - head, file.substr(head, file.find('\n', head) - head));
+      if (std::count(text.begin(), text.end(), '\n') != std::count(file.begin(), file.end(), '\n')) continue;
+      ++forged;
+      std::ofstream(shell.folder / "c" / one["case"]) << text;
+      for (const char* reader : {"kinds", "minimize"})
+        expect_error(std::string("graze ") + reader + " c", 1, ", found another verdict of ");
+    }
+  }
+  EXPECT_EQ(forged, 1);
+}
+
+TEST_F(Minimize, KindsAreTheOldOnesOrTheNewOnes) {
+  expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c && cp c/kinds.json whole");
+  for (const char* seconds : {"0.05", "0.1", "0.2", "0.4"}) {
+    shell(std::string("timeout -s KILL ") + seconds + " graze minimize c --again");
+    expect_done("cmp whole c/kinds.json");
+  }
+  // Those of cases that have changed since are not believed.
+  expect_done(std::string(kFuzz) + "--out d > /dev/null && graze kinds d > /dev/null && cp d/kinds.json of_originals");
+  expect_done("graze minimize d --shard 1/1000 && graze report d > said");
+  EXPECT_NE(contents(shell.folder / "said").find("The kinds of failure are not known yet"), std::string::npos)
+      << contents(shell.folder / "said");
+  expect_done("cmp d/kinds.json of_originals && graze kinds d > /dev/null && ! cmp -s d/kinds.json of_originals");
+}
+
+TEST_F(Minimize, WhereNothingCanBeWrittenItSaysSoAtOnce) {
+  const std::string read_only = "unshare -rm sh -c 'mount --bind c c && mount -o remount,bind,ro c && ";
+  expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp c/kinds.json before");
+  if (shell(read_only + "true'").status != 0) GTEST_SKIP() << "no mount namespaces here";
+  expect_error(read_only + "graze minimize c'", 1,
+               "c: expected a folder that can be written, found: Read-only file system");
+  expect_done("cmp before c/kinds.json");
+}
+
 TEST_F(Minimize, BadInputGetsOneLine) {
   expect_error("graze minimize", 2, "case");
   expect_error("graze minimize missing.pairs", 1, "missing.pairs: expected");

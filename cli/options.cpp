@@ -193,8 +193,12 @@ fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::fil
   if (!about.empty()) open_subjects_of(about);
   fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, options.executor, require_device);
   fuzz::expect_each_runs(under_test);
-  for (const std::string& line : fuzz::left_out_in_words(under_test.left_out)) fmt::print(stderr, "graze: {}\n", line);
+  say_left_out(under_test.left_out);
   return under_test;
+}
+
+void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {
+  for (const std::string& line : fuzz::left_out_in_words(left_out)) fmt::print(stderr, "graze: {}\n", line);
 }
 
 std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair) {

@@ -59,9 +59,9 @@ void write_report(const fs::path& directory, const Json& report, const char* nam
 // With what lanes cost, and what was tuned and traded, if that lies beside the report.
 std::string page_of(const std::string& file) {
   try {
-    const Json costs = Json::parse(fuzz::read_whole(fs::path(file).replace_filename("costs.json")), nullptr, false);
-    return reports::page(reports::read_report(file), costs.is_object() ? costs : Json(),
-                         reports::make_choices(fs::path(file).parent_path()));
+    const Json report = reports::read_report(file);
+    const Json costs = reports::stored_costs(fs::path(file).replace_filename("costs.json"), report);
+    return reports::page(report, costs, reports::make_choices(fs::path(file).parent_path()));
   } catch (const Json::exception&) {
     throw std::runtime_error(file + ": expected a report of `graze report`, found something else");
   }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 
 #include "core/error.h"
 #include "fuzz/own_files.h"
@@ -22,14 +21,17 @@ void refuse_folder(const fs::path& out, const std::string& own) {
                   out.string(), own));
 }
 
+[[noreturn]] void refuse_unwritable(const fs::path& out, std::error_code error) {
+  throw std::runtime_error(out.string() + ": expected a folder that can be written, found: " + error.message());
+}
+
 fs::path made(const fs::path& out, const char* own) {
   if (!fuzz::may_replace_foreign && !fuzz::may_fill(out, {own}) && !fuzz::may_hold_campaign(out))
     refuse_folder(out, fmt::format("one with {} or a campaign", own));
   std::error_code error;
   fs::create_directories(out, error);
-  if (!error && access(out.c_str(), W_OK | X_OK) != 0) error = {errno, std::generic_category()};
-  if (error)
-    throw std::runtime_error(out.string() + ": expected a folder that can be written, found: " + error.message());
+  if (error) refuse_unwritable(out, error);
+  expect_writable(out);
   return out;
 }
 
@@ -57,6 +59,10 @@ void write_result(const fs::path& file, const std::string& text) {
 
 void remove_result(const fs::path& file, const std::string& text) {
   if (fs::is_regular_file(file) && fuzz::may_replace(file, text)) fs::remove(file);
+}
+
+void expect_writable(const fs::path& folder) {
+  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse_unwritable(folder, {errno, std::generic_category()});
 }
 
 void expect_campaign_folder(const fs::path& out) {

@@ -28,6 +28,9 @@ void remove_result(const std::filesystem::path& file, const std::string& text);
 // Throws: UsageError for a folder that a campaign may not go into.
 void expect_campaign_folder(const std::filesystem::path& out);
 
+// Throws: std::runtime_error, with the system's reason, for a folder that cannot be written to.
+void expect_writable(const std::filesystem::path& folder);
+
 // A folder for a verb's results: made where it is missing, and locked, so that two runs at once do not mix theirs.
 struct ResultFolder {
   // own: the file by which the folder is known as this verb's; a campaign's folder will do as well.

@@ -69,6 +69,24 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   expect_same("whole", "again");
 }
 
+TEST_F(Shards, MergingGoesThroughLinksAndSaysFirstWhereItCannotGo) {
+  const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
+  for (const char* k : {"1", "2"}) ASSERT_EQ(shell(fuzz + "--shard " + k + "/2 --out p-" + k).status, 0);
+  const std::string merge = "graze merge $OLDPWD/p-1 $OLDPWD/p-2 --out ";
+  expect_done("mkdir a empty && ln -s ../empty a/link && ln -s ../new a/dangling && ln -s loop a/loop");
+  expect_done("cd a && " + merge + "link && test -s ../empty/summary.json && test -L link");
+  expect_done("cd a && " + merge + "dangling && cmp ../new/summary.json ../empty/summary.json && test -L dangling");
+  expect_done("cd a && " + merge + "./b/../c/ && cmp c/summary.json ../empty/summary.json");
+  expect_error("cd a && " + merge + "loop", 2, "loop: expected a new or an empty directory, found: ");
+  expect_error("mkdir here && cd here && " + merge + ".", 2, ".: is the working directory, which cannot be replaced");
+  expect_done("test -z \"$(ls *.part a/*.part 2> /dev/null)\" && test -z \"$(ls -A here)\"");
+  const std::string mounted = "mkdir -p m && cd a && unshare -rm sh -c 'mount -t tmpfs none ../m && ";
+  if (shell(mounted + "true'").status != 0) GTEST_SKIP() << "no mount namespaces here";
+  expect_error(mounted + merge + "../m'", 2,
+               "../m: is a mount point, which cannot be replaced; use a new directory in");
+  expect_done(mounted + merge + "../m/campaign && cmp ../m/campaign/summary.json ../empty/summary.json'");
+}
+
 TEST_F(Shards, MinimizingTakesShardsOfTheSignatures) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
   ASSERT_EQ(shell(fuzz + "--out whole && cp -r whole parts && graze minimize whole").status, 0);

@@ -37,17 +37,19 @@ struct Measured {
   analysis::Sweep sweep;
 };
 
-// Twins and processes are left out: what they take is not what the code takes.
+// Why the lane's time cannot be measured: what twins and processes take is not what the code takes.
+std::string why_not_timed(const Lane& lane, bool device) {
+  if (lane.foreign) return "trade times no foreign code";
+  if (device) return lane.is_cuda() ? "" : "--device times only CUDA lanes";
+  return lane.decide ? "" : "only --device times CUDA lanes";
+}
+
 Measured measured(const TradeOptions& options, const fuzz::LanesUnderTest& under_test) {
   Measured result;
   for (const Lane* lane : under_test.lanes) {
-    if (lane->foreign || (options.device ? !lane->is_cuda() : !lane->decide)) continue;
     result.ids.push_back(lane->id);
     result.lanes.push_back(lane);
   }
-  if (result.ids.empty())
-    throw std::runtime_error(options.device ? "expected a lane of the device, found only others"
-                                            : "expected a lane of this processor, found only others");
   const Lane* exact = find_lane(options.device ? "exact/f32/cuda" : "exact/f32/cpu");
   const auto lane_of = [exact](const std::string& id) { return id.empty() ? exact : find_lane(id); };
   if (options.device) {
@@ -112,7 +114,8 @@ int trade(TradeOptions options) {
     if (!cuda::open_device(why_not)) throw std::runtime_error("--device: expected a CUDA device, found " + why_not);
     options.lanes.executor = fuzz::Executor::device;
   }
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  say_left_out(leave_out(under_test, [&](const Lane& lane) { return why_not_timed(lane, options.device); }));
   const Measured lanes = measured(options, under_test);
   const strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
   const ResultFolder folder(options.out, "trade.json");
@@ -142,6 +145,7 @@ int trade(TradeOptions options) {
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
+  if (const auto left_out = fuzz::left_out_json(under_test); !left_out.is_null()) json["lanes_left_out"] = left_out;
   json.update(reports::trade_json(trade));
   write_result(out / "trade.json", json.dump(1) + "\n");
   write_result(out / "front.svg", reports::trade_figure(trade));

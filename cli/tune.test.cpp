@@ -169,6 +169,26 @@ TEST_F(TradeCommand, SetsErrorsAgainstCosts) {
       "cmp t/scale.svg u/scale.svg && cmp t/offset.svg u/offset.svg");
 }
 
+TEST_F(TradeCommand, NamesTheLanesThatItLeavesOut) {
+  std::ofstream(shell.folder / "mine.c")
+      << "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n";
+  const std::string trade = "graze trade --strata near_edge_edge --pairs 1000 ";
+  const Ran ran = shell(trade + "--lanes 'moller_1997/f32/c*fma,moller_1997/f32/cpu' --out t");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  EXPECT_NE(ran.err.find("graze: left out (only --device times CUDA lanes): moller_1997/f32/cuda-"), std::string::npos)
+      << ran.err;
+  const auto json = json_of(shell.folder / "t/trade.json");
+  EXPECT_EQ(json["lanes_left_out"]["why"]["moller_1997/f32/cuda-fma"], "only --device times CUDA lanes");
+  expect_error(trade + "--lanes 'moller_1997/f32/cpu,moller_1997/f32/cuda-fma' --out u", 2,
+               "'moller_1997/f32/cuda-fma': expected a lane that runs here, found only some left out");
+  const Ran foreign = shell(trade + "--subject mine=mine.c --lanes '*/f32/cpu' --out v");
+  ASSERT_EQ(foreign.status, 0) << foreign.err;
+  EXPECT_EQ(foreign.err, "graze: left out (trade times no foreign code): mine/f32/cpu\n");
+  if (shell("graze lanes | grep -q 'available (device)'").status == 0) return;
+  EXPECT_EQ(shell("graze bench --triangles 100 --lanes interval_overlap/f32/cuda-fma").err,
+            "graze: left out (no CUDA device): interval_overlap/f32/cuda-fma\n");
+}
+
 TEST_F(TradeCommand, DrawsWithinAScene) {
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
   const Ran ran =

@@ -44,13 +44,6 @@ bool write_all(int handle, const std::string& text) {
   return true;
 }
 
-// The file that the name leads to through symbolic links, also where there is none yet.
-fs::path behind_links(fs::path file) {
-  for (int links = 0; links < 40 && fs::is_symlink(fs::symlink_status(file)); ++links)
-    file = file.parent_path() / fs::read_symlink(file);
-  return file;
-}
-
 bool same_file(const struct stat& one, const struct stat& other) {
   return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
 }
@@ -101,6 +94,12 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
 }
 
 }  // namespace
+
+fs::path behind_links(fs::path file) {
+  for (int links = 0; links < 40 && fs::is_symlink(fs::symlink_status(file)); ++links)
+    file = file.parent_path() / fs::read_symlink(file);
+  return file;
+}
 
 std::string read_whole(const fs::path& file) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rbe"), &std::fclose);

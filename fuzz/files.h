@@ -16,6 +16,9 @@ std::string read_whole(const std::filesystem::path& file);
 // Throws: std::runtime_error for a folder, and when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
+// The file or folder that the name leads to through symbolic links, also where there is none yet.
+std::filesystem::path behind_links(std::filesystem::path file);
+
 // Held as long as it lives: no other process, and no other part of this one, holds the folder's lock; where it is
 // shared, only others that share it.
 class FolderLock {

@@ -87,6 +87,25 @@ void expect_each_runs(const LanesUnderTest& under_test) {
   }
 }
 
+std::vector<LaneLeftOut> leave_out(LanesUnderTest& under_test, const std::function<std::string(const Lane&)>& why) {
+  std::vector<LaneLeftOut> taken;
+  std::vector<const Lane*> lanes;
+  std::vector<DecideBlock> on_host;
+  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
+    if (const std::string reason = why(*under_test.lanes[l]); !reason.empty()) {
+      taken.push_back({under_test.lanes[l]->id, reason});
+    } else {
+      lanes.push_back(under_test.lanes[l]);
+      on_host.push_back(under_test.on_host[l]);
+    }
+  }
+  under_test.lanes = std::move(lanes);
+  under_test.on_host = std::move(on_host);
+  under_test.left_out.insert(under_test.left_out.end(), taken.begin(), taken.end());
+  expect_each_runs(under_test);
+  return taken;
+}
+
 std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_out) {
   std::vector<std::pair<std::string, std::string>> by_reason;
   for (const LaneLeftOut& row : left_out) {

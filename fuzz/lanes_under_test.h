@@ -3,6 +3,7 @@
 // and twin.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -45,6 +46,9 @@ LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor exec
 
 // Throws: UsageError, with the reasons, when of a pattern no lane runs here; without patterns, of a user's own code.
 void expect_each_runs(const LanesUnderTest& under_test);
+
+// Takes those out for which `why` has a reason.   Returns: these.   Throws: as expect_each_runs.
+std::vector<LaneLeftOut> leave_out(LanesUnderTest& under_test, const std::function<std::string(const Lane&)>& why);
 
 // Those left out in words, a line for each reason: "left out (no device, and no twin): moller_1997/f32/cuda-fast".
 std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_out);

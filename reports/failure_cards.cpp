@@ -36,11 +36,10 @@ Json signature_row(const CampaignCounts& counts, const Json& found) {
   for (const ReportLane& lane : counts.lanes) {
     if (lane.name.subject == signature.subject) marks += signature.mark_of(lane.name.within_subject());
   }
-  const double share = found.at("count").get<double>() / static_cast<double>(counts.total.pairs);
   return {{"key", key},
           {"algorithm", signature.subject},
           {"count", found.at("count")},
-          {"share", std::stod(fmt::format("{:.5g}", share))},
+          {"share", rounded_share(found.at("count"), counts.total.pairs)},
           {"contact", name(signature.contact)},
           {"dimensions", fmt::format("{}{}", signature.hulls.dimension_a, signature.hulls.dimension_b)},
           {"coplanar", signature.hulls.coplanar},
@@ -160,9 +159,9 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
 }
 
 // The names of the pairs that the campaign kept of a signature: "near_edge_edge:1:42".
-Json kept_pairs(const std::filesystem::path& case_file) {
+Json kept_pairs(const std::filesystem::path& directory, const Json& found) {
   Json names = Json::array();
-  for (const corpus::Entry& entry : corpus::read_pairs(case_file)) {
+  for (const corpus::Entry& entry : fuzz::read_cases(directory, found)) {
     if (!corpus::field(entry, "kind")) names.push_back(corpus::origin_of(entry));
   }
   return names;
@@ -222,6 +221,10 @@ void say_what_is_missing(Json& missing, const Lacking& lacking, std::size_t card
 
 }  // namespace
 
+double rounded_share(std::uint64_t count, std::uint64_t of) {
+  return std::stod(fmt::format("{:.5g}", static_cast<double>(count) / static_cast<double>(of)));
+}
+
 Json signature_rows(const CampaignCounts& counts, const Json& summary) {
   Json rows = Json::array();
   for (const Json& found : summary.at("signatures")) {
@@ -256,7 +259,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   const std::size_t count = summary.at("signatures").size();
   for (std::size_t place = 0; place < std::min(count, kMostSignatures); ++place) {
     rows.push_back(signature_row(counts, summary.at("signatures")[place]));
-    rows.back()["pairs"] = kept_pairs(fuzz::case_file(directory, summary.at("signatures")[place]));
+    rows.back()["pairs"] = kept_pairs(directory, summary.at("signatures")[place]);
     rows.back()["cards"] = cards_of[place];
   }
   if (rows.size() < count) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,6 +18,9 @@ inline constexpr std::size_t kMostMapBytes = 7 << 18;
 
 // Stands in a card's program for the source of its algorithm, which the report holds once, in `sources`.
 inline constexpr std::string_view kSourceMark = "@SOURCE@";
+
+// The share as a row of a signature has it.
+double rounded_share(std::uint64_t count, std::uint64_t of);
 
 // One row for each signature, the commonest first.
 nlohmann::ordered_json signature_rows(const CampaignCounts& counts, const nlohmann::ordered_json& summary);

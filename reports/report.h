@@ -17,7 +17,7 @@ nlohmann::ordered_json make_report(const std::filesystem::path& directory);
 nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
 // {"tuned", "trade"}: the tune.json and trade.json in the directory, null where they are not.
-// Throws: FormatError for one that is something else.
+// Throws: FormatError for one of another shape, or with counts that cannot be.
 nlohmann::ordered_json make_choices(const std::filesystem::path& directory);
 
 // The command that runs the whole campaign again.   Requires: what summary.json holds.
@@ -28,5 +28,8 @@ std::string report_text(const nlohmann::ordered_json& report);
 
 // A report that was written before.   Throws: FormatError, also for counts that cannot be.
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
+
+// The costs.json of that report; null where there is none.   Throws: as read_report.
+nlohmann::ordered_json stored_costs(const std::filesystem::path& file, const nlohmann::ordered_json& report);
 
 }  // namespace graze::reports

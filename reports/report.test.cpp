@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 #include <sstream>
@@ -17,6 +18,8 @@
 #include "reports/page.h"
 #include "reports/tables.h"
 #include "reports/test_campaign.h"
+#include "reports/trade.h"
+#include "reports/tuning.h"
 
 namespace graze::reports {
 namespace {
@@ -154,6 +157,118 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
   EXPECT_FALSE(worse["compare"]["lost"].empty());
   for (const Json& lost : worse["compare"]["lost"])
     EXPECT_TRUE(lost["key"].get<std::string>().starts_with("moller_1997/")) << lost;
+}
+
+// One place for each name: of the elements of a list the first.
+void collect(const Json& value, const Json::json_pointer& at, std::vector<Json::json_pointer>& places) {
+  if (!at.empty()) places.push_back(at);
+  if (value.is_object()) {
+    for (const auto& [name, inner] : value.items()) collect(inner, at / name, places);
+  } else if (value.is_array() && !value.empty()) {
+    collect(value[0], at / 0, places);
+  }
+}
+
+// Puts values of another type, and numbers that cannot be, at each place in turn.
+// possible: names of numbers that may be any.
+void expect_all_refused(const Json& whole, const std::set<std::string>& possible,
+                        const std::function<std::string(const Json&)>& error_of) {
+  ASSERT_EQ(error_of(whole), "");
+  std::vector<Json::json_pointer> places;
+  collect(whole, Json::json_pointer(), places);
+  ASSERT_GT(places.size(), 40u);
+  for (const Json::json_pointer& place : places) {
+    std::vector<Json> instead = {whole[place].is_array() ? Json::object() : Json::array()};
+    if (!whole[place].is_number()) instead.push_back(5);
+    if (!whole[place].is_string()) instead.push_back("x");
+    if (whole[place].is_number_unsigned() && !possible.contains(place.to_string()) && !possible.contains(place.back()))
+      instead.insert(instead.end(), {1'000'000'000'000, -1});
+    for (const Json& value : instead) {
+      Json other = whole;
+      if (other[place] == value) continue;
+      other[place] = value;
+      const std::string error = error_of(other);
+      EXPECT_NE(error, "") << place.to_string() << " was taken as " << value;
+      EXPECT_EQ(error.find('\n'), error.npos) << error;
+    }
+  }
+}
+
+TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
+  const fs::path file = root_ / "forged" / "report.json";
+  fs::create_directories(file.parent_path());
+  const auto error_of = [&](const auto& read, const fs::path& forged, const Json& json) -> std::string {
+    fuzz::write_whole(forged, json.dump());
+    try {
+      read();
+    } catch (const corpus::FormatError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(forged.string() + ": ")) << error.what();
+      return error.what();
+    }
+    return "";
+  };
+  Json report = make_report(root_ / "one");
+  add_comparison(report, Json(report), fuzz::read_kinds(root_ / "one"), fuzz::read_kinds(root_ / "one"));
+  report["cards"].erase(report["cards"].begin() + 1, report["cards"].end());
+  for (Json& row : report["signatures"]) row["cards"] = {0};
+  expect_all_refused(report, {"seed", "exponent", "largest", "step", "size", "/compare/other/pairs"},
+                     [&](const Json& json) { return error_of([&] { read_report(file); }, file, json); });
+  const Json costs = make_costs(root_ / "one");
+  expect_all_refused({{"costs", costs}}, {"passes", "pairs", "low", "middle", "high"}, [&](const Json& json) {
+    return error_of([&] { stored_costs(root_ / "forged" / "costs.json", report); }, root_ / "forged" / "costs.json",
+                    json.is_object() ? json.value("costs", Json()) : json);
+  });
+
+  const auto errors = [](std::uint64_t pairs, std::uint64_t misses, const char* policy) {
+    analysis::PolicyErrors result;
+    result.policy = policy;
+    result.pairs = pairs;
+    result.misses = misses;
+    result.mended = result.broken = misses;
+    return result;
+  };
+  analysis::Tuned tuned;
+  tuned.chosen = "rel:8";
+  tuned.confirmed = errors(4000, 552, "rel:8");
+  tuned.zero_confirmed = errors(4000, 600, "");
+  tuned.bound = analysis::upper_bound(552, 4000);
+  tuned.zero = errors(400, 60, "");
+  tuned.curves = {{"", true, {errors(400, 50, "rel:1"), errors(400, 30, "rel:8")}}};
+  tuned.dead = {"parallel"};
+  tuned.scale.down = -4;
+  tuned.scale.at_down = errors(4000, 2000, "rel:8");
+  tuned.interactions = {{"a", "b", errors(400, 1, "a"), errors(400, 2, "b"), errors(400, 3, "c")}};
+  const Json tune = tuning_json({"moller_1997/f32/cpu", analysis::Forbid::miss, 1e-3}, tuned);
+  const fs::path tune_file = root_ / "forged" / "tune.json", trade_file = root_ / "forged" / "trade.json";
+  const auto tune_error = [&](const Json& json) {
+    return error_of([&] { make_choices(root_ / "forged"); }, tune_file, json);
+  };
+  expect_all_refused(tune,
+                     {"log2", "/scale_break/down/errors/pairs", "/interactions/0/first/pairs",
+                      "/interactions/0/second/pairs", "/interactions/0/together/pairs"},
+                     tune_error);
+  for (const auto& [place, value] :
+       {std::pair<const char*, Json>("/bound", 0), {"/bound", 2}, {"/scale_break", Json::object()}}) {
+    Json other = tune;
+    other[Json::json_pointer(place)] = value;
+    EXPECT_NE(tune_error(other), "") << place;
+  }
+  fs::remove(tune_file);
+
+  analysis::Trade trade{"a machine", false, 0, {}, {}};
+  trade.offers = {{"moller_1997/f32/cpu", errors(400, 20, ""), {1, 2, 3}, {2, 3, 4}},
+                  {"exact/f32/cpu", errors(400, 0, ""), {1, 2, 3}, {2, 3, 4}}};
+  trade.curves = {
+      {"moller_1997/f32/cpu", analysis::Extreme::scale, {{-4, errors(400, 20, "")}, {4, errors(400, 20, "")}}}};
+  Json traded = {{"pairs", 400}, {"seed", 1}};
+  traded.update(trade_json(trade));
+  const auto trade_error = [&](const Json& json) {
+    return error_of([&] { make_choices(root_ / "forged"); }, trade_file, json);
+  };
+  expect_all_refused(traded, {"/pairs", "seed", "log2", "/extremes/0/points/0/pairs"}, trade_error);
+  traded["lanes"][0]["bound"] = 0.01;
+  EXPECT_NE(trade_error(traded), "");
+  fs::remove_all(root_ / "forged");
 }
 
 TEST_F(ReportTest, TablesHaveARowAHeaderAndTheSameCellsEach) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/campaign/merge.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <map>
@@ -114,12 +116,27 @@ void expect_new(const fs::path& out) {
     throw UsageError(out.string() + ": expected a new or an empty directory, found other things; choose another --out");
 }
 
-// The folder beside `out` in which the campaign grows. A merge that was killed may have left it.
-fs::path folder_beside(const fs::path& out) {
+// The folder that `out` means, without links; the finished campaign is renamed to it.
+// Throws: UsageError where that cannot be.
+fs::path place_of(const fs::path& out) {
   std::error_code error;
+  fs::path place = fs::weakly_canonical(behind_links(out), error);
+  if (error) throw UsageError(out.string() + ": expected a new or an empty directory, found: " + error.message());
   expect_new(out);
-  fs::path part = fs::absolute(out).lexically_normal();
-  if (!part.has_filename()) part = part.parent_path();
+  if (!place.has_filename()) place = place.parent_path();
+  if (place == fs::current_path(error))
+    throw UsageError(out.string() + ": is the working directory, which cannot be replaced; run the command elsewhere");
+  struct statx found {};
+  if (statx(AT_FDCWD, place.c_str(), 0, STATX_TYPE, &found) == 0 && (found.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
+    throw UsageError(fmt::format("{}: is a mount point, which cannot be replaced; use a new directory in it: --out {}",
+                                 out.string(), shell_word((out / "campaign").string())));
+  return place;
+}
+
+// The folder beside the place in which the campaign grows. A merge that was killed may have left it.
+fs::path folder_beside(const fs::path& place) {
+  std::error_code error;
+  fs::path part = place;
   part += ".part";
   fs::create_directories(part, error);
   if (error)
@@ -240,7 +257,7 @@ Outcome merge(const MergeOptions& options) {
                                          printable(campaign.build["commit"].get<std::string>())));
   const LanesUnderTest under_test = recorded_lanes(campaign.spec);
   campaign.under_test = &under_test;
-  const fs::path beside = folder_beside(options.out);
+  const fs::path place = place_of(options.out), beside = folder_beside(place);
   const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // up to the end, so that no other merge empties it
   campaign.directory = beside / "campaign.part";
 
@@ -277,7 +294,9 @@ Outcome merge(const MergeOptions& options) {
     Outcome outcome = partial ? write_results(campaign, *partial, sums.gaps().empty()) : write_merged(campaign, sums);
     partial.reset();
     for (const auto& [machine, run] : timings_of(stores)) append_timing(campaign.directory, run, outcome.oracle);
-    fs::rename(campaign.directory, options.out);  // over an empty folder too
+    std::error_code error;
+    fs::rename(campaign.directory, place, error);  // over an empty folder too
+    if (error) throw std::runtime_error(options.out.string() + ": cannot put the campaign there: " + error.message());
     fs::remove(beside, unimportant);
     return outcome;
   } catch (...) {

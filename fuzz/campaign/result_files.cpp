@@ -4,13 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
+#include <optional>
 #include <sstream>
 
 #include "analysis/signature.h"
 #include "analysis/tally.h"
 #include "core/fnv1a.h"
-#include "corpus/pair_format.h"
+#include "core/text.h"
+#include "fuzz/campaign/checked_summary.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/minimise/minimised_cases.h"
+#include "strata/strata.h"
 
 namespace graze::fuzz {
 namespace {
@@ -18,10 +23,36 @@ namespace {
 // A name for the signature's file.
 std::string case_name(const std::string& key) { return fmt::format("cases/{:016x}.pairs", fnv1a(key)); }
 
+std::string signature_line(const std::string& key, std::uint64_t count) {
+  return fmt::format("# {}: {} pairs\n", key, count);
+}
+
+// Whether the entry's truth, and what its signature says of it, are those of its pair.
+bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signature) {
+  const oracle::Truth truth = oracle::truth(entry.pair);
+  for (const auto& [name, value] : truth_fields(truth)) {
+    if (corpus::text_of(entry, name) != value) return false;
+  }
+  return truth.verdict != Verdict::declined && signature.contact == truth.contact && signature.hulls == truth.hulls &&
+         signature.bucket == oracle::margin_bucket(entry.pair, truth.verdict);
+}
+
+// Whether it is the pair that its stratum draws; also where that is not known: in a scene, of a mesh, of a hunt.
+bool is_drawn(const corpus::Entry& entry) {
+  const std::string id = corpus::text_of(entry, "stratum");
+  const auto row =
+      std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata), [&](auto& s) { return s.id == id; });
+  const auto seed = parse_whole(corpus::text_of(entry, "seed")), index = parse_whole(corpus::text_of(entry, "index"));
+  if (row == std::end(strata::kStrata) || corpus::field(entry, "scene")) return true;
+  if (!seed || !index) return false;
+  const Pair drawn = strata::generate(*seed, row->stratum, *index);
+  return std::memcmp(&drawn, &entry.pair, sizeof drawn) == 0;
+}
+
 std::string case_text(const Campaign& campaign, const std::string& key, const SignatureCount& found) {
   std::ostringstream out;
   corpus::write_header(out);
-  out << "# " << key << ": " << found.count << " pairs\n";
+  out << signature_line(key, found.count);
   for (const CaseKey& c : found.cases) {
     const strata::PairSource& source = campaign.sources[static_cast<std::size_t>(c.source)];
     const Pair pair = source.pair(c.index);
@@ -113,6 +144,51 @@ std::filesystem::path case_file(const std::filesystem::path& directory, const Js
     throw std::runtime_error(fmt::format("{}: expected cases of the form cases/NAME.pairs, found '{}'",
                                          (directory / "summary.json").string(), file.string()));
   return directory / file;
+}
+
+corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Json& row, const std::string& found) {
+  const std::string again = has_database(directory)
+                                ? "remove this file, then: " + command_of(recorded_spec(directory), {}, directory)
+                                : "take this file from a copy of the campaign";
+  return corpus::FormatError(fmt::format("{}: expected the cases of the signature {}, found {}; {}",
+                                         case_file(directory, row).string(), row.at("key").get<std::string>(), found,
+                                         again));
+}
+
+std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row) {
+  const std::string key = row.at("key");
+  const std::uint64_t count = row.at("count");
+  const std::optional<analysis::Signature> recorded = analysis::parse_signature(key);
+  const auto refuse = [&](const std::string& found) -> corpus::FormatError {
+    return wrong_cases(directory, row, found);
+  };
+  if (!recorded || row.at("case") != case_name(key))
+    throw corpus::FormatError(fmt::format("{}: expected a signature and the name of its file, found {} and {}",
+                                          (directory / "summary.json").string(), row.at("key").dump(),
+                                          row.at("case").dump()));
+  const std::filesystem::path file = case_file(directory, row);
+  const std::string text = read_whole(file);
+  if (text.empty()) throw refuse("none");
+  std::vector<corpus::Entry> entries;
+  try {
+    entries = corpus::read_pairs(file);
+  } catch (const corpus::FormatError& error) {
+    throw refuse("other text: " + std::string(error.what()));
+  }
+  if (text.substr(text.find('\n') + 1).compare(0, signature_line(key, count).size(), signature_line(key, count)) != 0)
+    throw refuse("another head");
+  std::size_t kept = 0;
+  for (const corpus::Entry& entry : entries) {
+    const bool result = corpus::field(entry, "kind") != nullptr;
+    const std::optional<analysis::Signature> own = analysis::parse_signature(corpus::text_of(entry, "signature"));
+    kept += !result;
+    if (!own || own->subject != recorded->subject || (!result && *own != *recorded))
+      throw refuse(fmt::format("another signature in line {}", entry.line));
+    if (!has_its_truth(entry, *own) || (!result && !is_drawn(entry)))
+      throw refuse(fmt::format("another pair in line {}", entry.line));
+  }
+  if (kept != std::min<std::uint64_t>(count, kKeptCases)) throw refuse(fmt::format("{} of them", kept));
+  return entries;
 }
 
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle) {

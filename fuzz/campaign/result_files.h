@@ -3,7 +3,9 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
+#include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/files.h"
 #include "oracle/truth.h"
@@ -28,6 +30,14 @@ Json shard_summary(const Shard& shard, const Store& store, bool complete, std::u
 // The file of a signature's cases, by its row in the summary.
 // Throws: std::runtime_error where that is not within cases/: what reads a summary also writes these files.
 std::filesystem::path case_file(const std::filesystem::path& directory, const Json& row);
+
+// A signature's cases, by its row in the summary, and the minimiser's results before them. Checked: the file's name,
+// its head and its cases are those of the signature, no case is missing, and each pair has the truth that stands beside
+// it. Throws: FormatError, in one line, with the command that writes the file again.
+std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row);
+
+// The error of a file of cases that does not check.   found: "another pair".
+corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Json& row, const std::string& found);
 
 // Adds a run to timings.json, the only file that depends on when, where and by which engine the campaign ran.
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle = {});

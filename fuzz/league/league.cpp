@@ -181,6 +181,7 @@ LeagueCounts& LeagueCounts::operator+=(const LeagueCounts& other) {
 
 LanesUnderTest league_lanes(const std::vector<std::string>& globs) {
   LanesUnderTest all = select_lanes(globs, Executor::twin), result;
+  result.left_out = all.left_out;
   for (std::size_t l = 0; l < all.lanes.size(); ++l) {
     if (all.lanes[l]->variant != Variant::cpu && all.lanes[l]->variant != Variant::cpu_fma) continue;
     result.lanes.push_back(all.lanes[l]);

@@ -46,9 +46,7 @@ Case read_case(const LanesUnderTest& under_test, const std::filesystem::path& di
     throw corpus::FormatError((directory / "summary.json").string() + ": expected the key of a signature, found " +
                               row.at("key").dump());
   Case c{*signature, row.at("case"), row.at("count"), {}, {}};
-  c.entries = corpus::read_pairs(case_file(directory, row));
-  if (c.entries.empty())
-    throw corpus::FormatError((directory / c.file).string() + ": expected at least one case, found none");
+  c.entries = checked_cases(under_test, directory, row);
   for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
   c.reasons = reasons_of(under_test, c.signature.subject, c.shown().pair, truth_of(c.shown()));
   return c;
@@ -239,6 +237,14 @@ std::string hash_of_summary(const std::filesystem::path& directory) {
   return fmt::format("{:016x}", fnv1a(read_whole(directory / "summary.json")));
 }
 
+// Of the case files of all signatures, as they are now.   Throws: Json::exception.
+std::string hash_of_cases(const std::filesystem::path& directory) {
+  std::uint64_t hash = fnv1a("");
+  const Json summary = Json::parse(read_whole(directory / "summary.json"));
+  for (const Json& row : summary.at("signatures")) hash = fnv1a(read_whole(case_file(directory, row)), hash);
+  return fmt::format("{:016x}", hash);
+}
+
 }  // namespace
 
 std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string_view subject, const Pair& pair,
@@ -307,6 +313,7 @@ Json read_kinds(const std::filesystem::path& directory) {
   const Json stored = Json::parse(read_whole(file), nullptr, false);
   if (!stored.is_object() || stored.value("summary", Json()) != hash_of_summary(directory)) return nullptr;
   try {
+    if (stored.value("cases", Json()) != hash_of_cases(directory)) return nullptr;
     const Json& kinds = stored.at("kinds");
     if (!kinds.is_array()) throw std::runtime_error("");
     const Json signatures = Json::parse(read_whole(directory / "summary.json")).at("signatures");
@@ -334,7 +341,8 @@ Json kinds_of(const std::filesystem::path& directory, const Json& summary, const
 }
 
 void write_kinds(const std::filesystem::path& directory, const Json& kinds) {
-  write_whole(directory / "kinds.json", Json{{"summary", hash_of_summary(directory)}, {"kinds", kinds}}.dump(1) + "\n");
+  const Json stored = {{"summary", hash_of_summary(directory)}, {"cases", hash_of_cases(directory)}, {"kinds", kinds}};
+  write_whole(directory / "kinds.json", stored.dump(1) + "\n");
 }
 
 }  // namespace graze::fuzz

@@ -56,7 +56,8 @@ Json find_kinds(
     const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
 
-// The kinds stored, whole as find_kinds makes them; null without them, and where the campaign has changed since.
+// The kinds stored, whole as find_kinds makes them; null without them, and where the summary or a case has changed
+// since.
 // Throws: FormatError.
 Json read_kinds(const std::filesystem::path& directory);
 // The same, or those of the campaign's lanes, found now and stored.   Throws: as find_kinds; UsageError for lanes that

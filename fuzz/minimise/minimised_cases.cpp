@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/relation_of.h"
+#include "cuda/twin/twin.h"
 #include "fuzz/campaign/result_files.h"
 #include "oracle/truth.h"
 
@@ -49,6 +51,28 @@ corpus::Entry result_entry(const MinimisedCase& result, const Pair& pair, const 
 }  // namespace
 
 bool is_minimised(const corpus::Entry& entry) { return has_kind(entry, "minimised"); }
+
+std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const std::filesystem::path& directory,
+                                         const Json& row) {
+  std::vector<corpus::Entry> entries = read_cases(directory, row);
+  for (const corpus::Entry& entry : entries) {
+    const auto signature = analysis::parse_signature(corpus::text_of(entry, "signature")).value();
+    const Verdict truth = relation_of(entry.pair).verdict;
+    for (const Lane* lane : under_test.lanes) {
+      const DecideBlock on_host = cuda::block_on_host(*lane);
+      if (lane->info->id != signature.subject || lane->foreign || !on_host) continue;
+      const char recorded = signature.mark_of(lane->lane_name().within_subject());
+      // A result may be of some lanes only.
+      if (recorded == analysis::mark(decide_one(on_host, entry.pair), truth) || (is_result(entry) && recorded == '.'))
+        continue;
+      throw wrong_cases(
+          directory, row,
+          fmt::format("another verdict of {} in line {} (the file is not the campaign's, or {} has changed)", lane->id,
+                      entry.line, lane->id));
+    }
+  }
+  return entries;
+}
 
 std::vector<MinimisedCase> minimise_cases(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries,
                                           const std::function<bool()>& stop) {

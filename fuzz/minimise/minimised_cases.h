@@ -3,11 +3,13 @@
 // (kind=minimised) and the worst pair met on the way (kind=worst).
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/store_file.h"
 #include "fuzz/minimise/minimise.h"
 
 namespace graze::fuzz {
@@ -19,6 +21,11 @@ struct MinimisedCase {
   std::string from, worst_from;  // the originals that the two pairs came from: "near_edge_edge:1:42", or empty
   Pair original;
 };
+
+// As read_cases; and the lanes under test, but for foreign code, say of each pair what its signature says.
+// Throws: as read_cases.
+std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const std::filesystem::path& directory,
+                                         const Json& row);
 
 // Whether the entry is what a case was minimised to.
 bool is_minimised(const corpus::Entry& entry);

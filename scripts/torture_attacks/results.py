@@ -316,6 +316,40 @@ def forged_summaries(turn):
         shutil.rmtree(campaign)
 
 
+def forged_cases(turn):
+    """A file of cases that is another signature's, lacks a pair or has another one: refused by its name, and brought back
+    by the command that the message has."""
+    minimised = turn.bench.reference("tiny", minimised=True)
+    rows = json.loads((minimised / "summary.json").read_text())["signatures"]
+    for attempt in range(4):
+        campaign = turn.folder / f"campaign-{attempt}"
+        shutil.copytree(minimised, campaign)
+        row, other = turn.random.sample(rows, 2)
+        file = campaign / row["case"]
+        lines = file.read_text().splitlines(keepends=True)
+        entries = [place for place, line in enumerate(lines) if not line.startswith(("#", "graze-pairs"))]
+        choice = turn.random.randrange(4)
+        place = turn.random.choice([place for place in entries if "kind=" not in lines[place]])
+        if choice == 0:
+            shutil.copy(campaign / other["case"], file)
+        elif choice == 1:
+            file.write_text("".join(lines[:-1]))
+        elif choice == 2:
+            numbers = lines[place].split(" ")
+            numbers[turn.random.randrange(18)] = turn.random.choice(["0x1.5p+3", "-0x1p+20", "0x1.234568p-3"])
+            file.write_text("".join([*lines[:place], " ".join(numbers), *lines[place + 1 :]]))
+        else:
+            file.write_text(
+                "".join([*lines[:place], lines[place].replace(row["key"], other["key"]), *lines[place + 1 :]])
+            )
+        changed_file = file.read_text() != "".join(lines)
+        ran = turn.run(turn.random.choice(["report", "kinds", "minimize"]), campaign)
+        if changed_file and not turn.is_refused(ran, file.name):
+            raise Violation(f"expected {file.name}, changed in way {choice}, to be refused, found status {ran.status}")
+        turn.count("refused" if changed_file else "same")
+        shutil.rmtree(campaign)
+
+
 def foreign_places(turn):
     """Where a person's own files are: refused in one line, and they stay; with --force the results go there."""
     folder = turn.folder / "mine"

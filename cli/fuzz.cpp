@@ -80,7 +80,7 @@ std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path
   for (const Json& row : summary["signatures"]) {
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
     if (!signature || signature->subject != subject) continue;
-    const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, campaign, row);
+    const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, summary["spec"], campaign, row);
     kept.emplace_back(fuzz::simplicity(entries[0].pair), fuzz::case_file(campaign, row));
   }
   std::sort(kept.begin(), kept.end());

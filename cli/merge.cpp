@@ -16,7 +16,8 @@ struct MergeOptions {
   bool partial = false, json = false;
 };
 
-int merge(const MergeOptions& options) {
+int merge(MergeOptions options) {
+  options.out = std::filesystem::path(options.out).lexically_normal().string();  // "./b/../c" without b, too
   fuzz::MergeOptions wanted{{}, options.out, options.partial};
   for (const std::string& part : options.parts) {
     wanted.parts.emplace_back(part);

@@ -151,11 +151,12 @@ struct Done {
   double processor = 0;     // seconds of one core for the file's cases
 };
 
-Done minimize_file(const fuzz::LanesUnderTest& under_test, const fs::path& directory, const Json& row, bool again) {
+Done minimize_file(const fuzz::LanesUnderTest& under_test, const Json& spec, const fs::path& directory, const Json& row,
+                   bool again) {
   const auto start = Clock::now();
   const double before = processor_seconds();
   const fs::path file = fuzz::case_file(directory, row);
-  const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, directory, row);
+  const std::vector<corpus::Entry> entries = fuzz::checked_cases(under_test, spec, directory, row);
   if (!again && has_result(under_test, entries)) return {true, fuzz::nontrivial_magnitudes(entries.front().pair), 0};
   const std::vector<fuzz::MinimisedCase> results = fuzz::minimise_cases(under_test, entries);
   if (results.empty()) return {};
@@ -221,7 +222,7 @@ int minimize_directory(MinimizeOptions options) {
   std::mutex mutex;
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
     if (interrupted) return;
-    all[i] = minimize_file(under_test, directory, rows[i], options.again);
+    all[i] = minimize_file(under_test, summary["spec"], directory, rows[i], options.again);
     const std::lock_guard lock(mutex);
     ++count;
     all[i].seconds > 0 ? work.add(0, 1, all[i].seconds) : work.skip(0, 1);  // 0: it was there before

@@ -219,7 +219,6 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   const Json run = Json::parse(contents(shell.folder / "ranks/timings.json"))["runs"].back();
   EXPECT_EQ(run["ranks"], 4);
   // All that was committed stays; of the killed rank only the block is missing in which it was, one of 256 at least.
-  EXPECT_GT(run["pairs"], 0);
   EXPECT_LE(run["pairs"], 200'000 / 128);
   expect_same("whole", "ranks");
   const Ran wrong = shell(mpirun + fuzz + "--shard 1/2 --out x");

@@ -176,11 +176,11 @@ void expect_all_refused(const Json& whole, const std::set<std::string>& possible
   ASSERT_EQ(error_of(whole), "");
   std::vector<Json::json_pointer> places;
   collect(whole, Json::json_pointer(), places);
-  ASSERT_GT(places.size(), 40u);
+  ASSERT_GT(places.size(), 10u);
   for (const Json::json_pointer& place : places) {
     std::vector<Json> instead = {whole[place].is_array() ? Json::object() : Json::array()};
     if (!whole[place].is_number()) instead.push_back(5);
-    if (!whole[place].is_string()) instead.push_back("x");
+    if (!whole[place].is_string() && !whole[place].is_null()) instead.push_back("x");  // null: no text
     if (whole[place].is_number_unsigned() && !possible.contains(place.to_string()) && !possible.contains(place.back()))
       instead.insert(instead.end(), {1'000'000'000'000, -1});
     for (const Json& value : instead) {

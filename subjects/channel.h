@@ -88,9 +88,6 @@ inline void put_answer(std::uint64_t* words, const Question& question, bool seco
 
 inline constexpr std::size_t kPairsBytes = kMostAsked * 18 * sizeof(double);
 
-// The longest that a program must write nothing after its last answer, in seconds.
-inline constexpr double kMostSilence = 10;
-
 // Descriptors: of the supervisor, and of the worker.
 inline constexpr int kControlFd = 3, kSupervisorPairsFd = 4;
 inline constexpr int kPairsFd = 3, kWordsFd = 4, kTalkFd = 5;

@@ -21,7 +21,7 @@ namespace graze::subjects {
 namespace {
 
 constexpr double kDescribeSeconds = 10;  // to start, and to answer
-constexpr double kLeastSilence = 0.02;   // seconds
+constexpr int kSilence = 2;              // milliseconds after the last answer
 
 std::string line_of(const float* pair) {
   std::string line;
@@ -104,23 +104,18 @@ void LineProtocol::send(const std::string& lines) {
 }
 
 std::string LineProtocol::line() {
-  const auto start = std::chrono::steady_clock::now();
   std::string line;
   while (!lines_.take(line)) read_some();
-  const bool starts = !std::exchange(has_answered_, true);  // its start is no measure of its answers
-  if (!starts)
-    slowest_ = std::max(slowest_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   return line;
 }
 
-void LineProtocol::expect_silence(double seconds) {
+void LineProtocol::expect_silence(int milliseconds) {
   pollfd more{from_, POLLIN, 0};
-  if (!lines_.empty() || (poll(&more, 1, static_cast<int>(1000 * seconds)) > 0 && more.revents & POLLIN))
+  if (!lines_.empty() || (poll(&more, 1, milliseconds) > 0 && more.revents & POLLIN))
     throw std::runtime_error("the program writes more than it was asked for");
 }
 
 void LineProtocol::ask(const Question& question, const float* pairs, std::uint64_t* words) {
-  slowest_ = 0;
   for (const bool second : {false, true}) {
     const Chosen& chosen = second ? question.second : question.first;
     std::string asked;
@@ -142,7 +137,7 @@ void LineProtocol::ask(const Question& question, const float* pairs, std::uint64
       if (is_chosen(chosen, i)) put_answer(words, question, second, i, answer_of_line(line()));
     }
   }
-  expect_silence(std::clamp(2 * slowest_, kLeastSilence, kMostSilence));
+  expect_silence(kSilence);
 }
 
 std::string LineProtocol::first_line(const std::string& in_answer_to, double seconds) {

@@ -37,7 +37,7 @@ class LineProtocol {
   explicit LineProtocol(const std::string& command);
 
   // Asks about the question's pairs, forward and then backward, and writes each answer into memory when it comes.
-  // Then waits 20 ms, or twice as long as the slowest answer took, whether more comes.
+  // Then waits 2 ms, whether more comes.
   // Throws: std::runtime_error where the program ends, answers something else, or writes what was not asked for.
   void ask(const Question& question, const float* pairs, std::uint64_t* words);
 
@@ -50,10 +50,8 @@ class LineProtocol {
   void read_some();
   std::string line();  // waits for it
   // Throws: std::runtime_error where there is output that was not asked for, or comes in this time.
-  void expect_silence(double seconds);
+  void expect_silence(int milliseconds);
 
-  bool has_answered_ = false;
-  double slowest_ = 0;  // seconds until a line came, of the last question
   int to_ = -1, from_ = -1;
   Lines lines_;
 };

@@ -133,7 +133,7 @@ class Supervisor {
       if (questions.take(words_) > 0) {
         before = worker_seconds();
         times = 0;
-        until = after(limits_.seconds + (questions.answered() && limits_.program ? kMostSilence : 0));
+        until = after(limits_.seconds);
       }
       if (told) return questions.answered() ? kDeclined : kCrashed;  // it says that it has answered all
       if (over_limits_) return kCrashed;

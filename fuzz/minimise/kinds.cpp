@@ -40,13 +40,14 @@ Verdict truth_of(const corpus::Entry& entry) {
   return corpus::text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
 }
 
-Case read_case(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& row) {
+Case read_case(const LanesUnderTest& under_test, const Json& spec, const std::filesystem::path& directory,
+               const Json& row) {
   const auto signature = analysis::parse_signature(row.at("key").get<std::string>());
   if (!signature)
     throw corpus::FormatError((directory / "summary.json").string() + ": expected the key of a signature, found " +
                               row.at("key").dump());
   Case c{*signature, row.at("case"), row.at("count"), {}, {}};
-  c.entries = checked_cases(under_test, directory, row);
+  c.entries = checked_cases(under_test, spec, directory, row);
   for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
   c.reasons = reasons_of(under_test, c.signature.subject, c.shown().pair, truth_of(c.shown()));
   return c;
@@ -293,7 +294,7 @@ Json find_kinds(const LanesUnderTest& under_test, const std::filesystem::path& d
   const Json& rows = summary.at("signatures");
   std::vector<Case> cases(rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
-    if (!stop()) cases[i] = read_case(under_test, directory, rows[i]);
+    if (!stop()) cases[i] = read_case(under_test, summary.at("spec"), directory, rows[i]);
   });
   if (stop()) return nullptr;
   const std::vector<Kind> kinds = grouped(cases);

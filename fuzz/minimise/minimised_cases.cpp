@@ -52,8 +52,9 @@ corpus::Entry result_entry(const MinimisedCase& result, const Pair& pair, const 
 
 bool is_minimised(const corpus::Entry& entry) { return has_kind(entry, "minimised"); }
 
-std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const std::filesystem::path& directory,
-                                         const Json& row) {
+std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const Json& spec,
+                                         const std::filesystem::path& directory, const Json& row) {
+  const auto& ran = spec.at("lanes");
   std::vector<corpus::Entry> entries = read_cases(directory, row);
   for (const corpus::Entry& entry : entries) {
     const auto signature = analysis::parse_signature(corpus::text_of(entry, "signature")).value();
@@ -61,6 +62,7 @@ std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const
     for (const Lane* lane : under_test.lanes) {
       const DecideBlock on_host = cuda::block_on_host(*lane);
       if (lane->info->id != signature.subject || lane->foreign || !on_host) continue;
+      if (std::find(ran.begin(), ran.end(), lane->id) == ran.end()) continue;
       const char recorded = signature.mark_of(lane->lane_name().within_subject());
       // A result may be of some lanes only.
       if (recorded == analysis::mark(decide_one(on_host, entry.pair), truth) || (is_result(entry) && recorded == '.'))

@@ -22,10 +22,10 @@ struct MinimisedCase {
   Pair original;
 };
 
-// As read_cases; and the lanes under test, but for foreign code, say of each pair what its signature says.
-// Throws: as read_cases.
-std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const std::filesystem::path& directory,
-                                         const Json& row);
+// As read_cases; and those lanes under test that the campaign ran too, but for foreign code, say of each pair what its
+// signature says. spec: the campaign's.   Throws: as read_cases.
+std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const Json& spec,
+                                         const std::filesystem::path& directory, const Json& row);
 
 // Whether the entry is what a case was minimised to.
 bool is_minimised(const corpus::Entry& entry);

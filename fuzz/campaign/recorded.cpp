@@ -93,12 +93,9 @@ std::string command_of(const Json& spec, const Shard& shard, const std::filesyst
   if (spec.contains("lanes_left_out")) lanes = spec["lanes_left_out"].at("patterns");
   if (!lanes.empty() && lanes != all_lanes) add("--lanes", fmt::format("{}", fmt::join(lanes, ",")));
   // The reasons are recorded as well: without a look for a device they are shorter.
-  for (const auto& [lane, why] :
-       (spec.contains("lanes_left_out") ? spec["lanes_left_out"]["why"] : Json::object()).items()) {
-    if (why != "no twin") continue;
+  const Json why = spec.value("lanes_left_out", Json::object()).value("why", Json::object());
+  if (std::any_of(why.begin(), why.end(), [](const Json& reason) { return reason == "no twin"; }))
     add("--executor", "twin");
-    break;
-  }
   if (!shard.whole()) add("--shard", shard.name());
   add("--out", out.string());
   return command;

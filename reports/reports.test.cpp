@@ -64,7 +64,7 @@ TEST(Terminal, PairMarksWrongLanes) {
   const Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
   const std::vector<const Lane*> run{&lanes()[0], &lanes()[1]};
   std::ostringstream out;
-  print_pair(out, pair, {Verdict::disjoint, Contact::none, 1, 8388608}, run,
+  print_pair(out, pair, {{Verdict::disjoint, Contact::none, 1, {}}, 1, 8388608}, run,
              std::vector{Verdict::disjoint, Verdict::intersects});
   EXPECT_NE(out.str().find("margin 1 (8388608 ulps)"), std::string::npos);
   EXPECT_NE(out.str().find("\n  projected_sat/f32  disjoint  intersects !\n"), std::string::npos) << out.str();

@@ -18,7 +18,6 @@ struct ProjectedSat {
                                        "depends: projects onto the first triangle's plane",
                                        false,
                                        false};
-
   template <class Real, class Policy = ExactZero>
   GRAZE_HD static Verdict decide(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Policy& policy = {}) {
     Real distance[3];

@@ -200,7 +200,7 @@ TEST_F(MergeTest, CommandsAskForTheLanesThatWereLeftOutToo) {
                                            R"("why":{"moller_1997/f32/cuda-fast":"no twin"}})");
   EXPECT_EQ(command_of(spec, {}, "o"),
             "graze fuzz --pairs 9 --seed 3 --strata thesis --lanes "
-            "'moller_1997/f32/cuda-*,exact/f32/cpu' --out o");
+            "'moller_1997/f32/cuda-*,exact/f32/cpu' --executor twin --out o");
   // All that run here, without a pattern: nobody asked for the others.
   EXPECT_TRUE(select_lanes({}, Executor::twin).left_out.empty());
   EXPECT_TRUE(left_out_json(select_lanes({"moller_1997/f32/cuda-*fma"}, Executor::twin)).is_null());

@@ -161,7 +161,7 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
 // The names of the pairs that the campaign kept of a signature: "near_edge_edge:1:42".
 Json kept_pairs(const std::filesystem::path& directory, const Json& found) {
   Json names = Json::array();
-  for (const corpus::Entry& entry : corpus::read_pairs(fuzz::case_file(directory, found))) {
+  for (const corpus::Entry& entry : fuzz::read_cases(directory, found)) {
     if (!corpus::field(entry, "kind")) names.push_back(corpus::origin_of(entry));
   }
   return names;

@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <set>
 
+#include "core/fnv1a.h"
 #include "core/margin/bucket.h"
+#include "fuzz/campaign/result_files.h"
+#include "oracle/truth.h"
 #include "reports/comparison.h"
 #include "reports/failure_cards.h"
 #include "reports/report.h"
@@ -134,12 +137,20 @@ TEST(Page, OfManySignaturesIsUnderNineMebibytes) {
   fs::create_directories(directory / "cases");
   const Pair pair{{{0.1f, 0.2f, 0.3f}, {1.7f, 0.3f, 0.7f}, {0.3f, 1.9f, 1e-30f}},
                   {{0.11f, 1e30f, 3.7e-9f}, {1.3f, 0.19f, 0.123456f}, {0.7f, 1.1f, 2.3f}}};
+  const oracle::Truth truth = oracle::truth(pair);
+  std::string fields;
+  for (const auto& [name, value] : fuzz::truth_fields(truth)) fields += name + '=' + value + ' ';
   for (int i = 0; i < 12'000; ++i) {
-    const std::string key =
-        "segment/22/skew/+2^-1/guigue_devillers_2003:+f32/cpu;+f32/cpu-fma;+f32/cpu-fast;-f32/cuda-nofma;"
-        "-f32/cuda-fma;-f32/cuda-fast;+f64/cpu;+f64/cpu-fma;+f64/cpu-fast;+f64/cuda-nofma;+f64/cuda-fma/abs:" +
-        std::to_string(i);
-    summary["signatures"].push_back({{"key", key}, {"count", kPairs}, {"case", "cases/1.pairs"}});
+    const std::string key = fmt::format(
+        "{}/22/skew/{}/guigue_devillers_2003:+f32/cpu;+f32/cpu-fma;+f32/cpu-fast;-f32/cuda-nofma;-f32/cuda-fma;"
+        "-f32/cuda-fast;+f64/cpu;+f64/cpu-fma;+f64/cpu-fast;+f64/cuda-nofma;+f64/cuda-fma/abs:{}",
+        name(truth.contact), name_of_bucket(oracle::margin_bucket(pair, truth.verdict)), i);
+    const std::string file = fmt::format("cases/{:016x}.pairs", fnv1a(key));
+    std::string text = fmt::format("graze-pairs 1\n# {}: {} pairs\n", key, kPairs);
+    for (std::size_t k = 0; k < fuzz::kKeptCases; ++k)
+      text += fmt::format("{} | stratum=s seed=1 index={} {}signature={}\n", fuzz::pair_text(pair), k, fields, key);
+    fuzz::write_whole(directory / file, text);
+    summary["signatures"].push_back({{"key", key}, {"count", kPairs}, {"case", file}});
   }
   fuzz::write_whole(directory / "cases/1.pairs", "graze-pairs 1\n" + fuzz::pair_text(pair) +
                                                      " | stratum=s seed=1 index=1 truth=disjoint contact=none "
@@ -147,7 +158,7 @@ TEST(Page, OfManySignaturesIsUnderNineMebibytes) {
   Json pair_hex = Json::array(), kinds = Json::array();
   for (int i = 0; i < kCoordinates; ++i) pair_hex.push_back(fmt::format("{:a}", coordinates(pair)[i]));
   fuzz::write_whole(directory / "cases/1.maps.json",
-                    Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump());
+                    Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(90'000, 'A')}}})}}).dump());
   fuzz::write_whole(directory / "summary.json", summary.dump());
   Json kind = {
       {"subject", "guigue_devillers_2003"},

@@ -44,7 +44,7 @@ int laws(const LawsOptions& options) {
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
   if (!options.scene.empty()) json["scene"] = options.scene;
-  if (const auto left_out = fuzz::left_out_json(under_test); !left_out.is_null()) json["lanes_left_out"] = left_out;
+  fuzz::add_left_out(json, under_test);
   json.update(reports::laws_json(spec, found));
   write_result(out / "laws.json", json.dump(1) + "\n");
   const std::map<std::string, std::string> cases = reports::laws_cases(spec, found);

@@ -16,15 +16,16 @@ struct MergeOptions {
   bool partial = false, json = false;
 };
 
-int merge(MergeOptions options) {
-  options.out = std::filesystem::path(options.out).lexically_normal().string();  // "./b/../c" without b, too
+int merge(const MergeOptions& options) {
   fuzz::MergeOptions wanted{{}, options.out, options.partial};
   for (const std::string& part : options.parts) {
     wanted.parts.emplace_back(part);
     if (!wanted.parts.back().has_filename()) wanted.parts.back() = wanted.parts.back().parent_path();  // "shard-1/"
   }
   const fuzz::Outcome outcome = fuzz::merge(wanted);
-  print_campaign(options.out, outcome, options.json);
+  const std::filesystem::path out = options.out;
+  // "b/../c" leads nowhere where there is no b.
+  print_campaign(std::filesystem::exists(out) ? options.out : out.lexically_normal().string(), outcome, options.json);
   if (!outcome.complete) {
     std::fflush(stdout);
     fmt::print(stderr, "graze: not all pairs are there; graze fuzz with --out {} goes on from there\n", options.out);

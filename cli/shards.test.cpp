@@ -77,6 +77,8 @@ TEST_F(Shards, MergingGoesThroughLinksAndSaysFirstWhereItCannotGo) {
   expect_done("cd a && " + merge + "link && test -s ../empty/summary.json && test -L link");
   expect_done("cd a && " + merge + "dangling && cmp ../new/summary.json ../empty/summary.json && test -L dangling");
   expect_done("cd a && " + merge + "./b/../c/ && cmp c/summary.json ../empty/summary.json");
+  expect_done("cd a && mkdir -p x/y && ln -s x/y into && " + merge +
+              "into/../c && cmp x/c/summary.json ../empty/summary.json");
   expect_error("cd a && " + merge + "loop", 2, "loop: expected a new or an empty directory, found: ");
   expect_error("mkdir here && cd here && " + merge + ".", 2, ".: is the working directory, which cannot be replaced");
   expect_done("test -z \"$(ls *.part a/*.part 2> /dev/null)\" && test -z \"$(ls -A here)\"");

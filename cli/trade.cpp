@@ -145,7 +145,7 @@ int trade(TradeOptions options) {
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
-  if (const auto left_out = fuzz::left_out_json(under_test); !left_out.is_null()) json["lanes_left_out"] = left_out;
+  fuzz::add_left_out(json, under_test);
   json.update(reports::trade_json(trade));
   write_result(out / "trade.json", json.dump(1) + "\n");
   write_result(out / "front.svg", reports::trade_figure(trade));

@@ -128,6 +128,10 @@ nlohmann::ordered_json left_out_json(const LanesUnderTest& under_test) {
   return {{"patterns", under_test.asked}, {"why", why}};
 }
 
+void add_left_out(nlohmann::ordered_json& object, const LanesUnderTest& under_test) {
+  if (!under_test.left_out.empty()) object["lanes_left_out"] = left_out_json(under_test);
+}
+
 std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded) {
   std::vector<LaneLeftOut> rows;
   for (const auto& [id, why] : recorded.at("why").items()) rows.push_back({id, why});

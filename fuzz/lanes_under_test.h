@@ -55,6 +55,8 @@ std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_
 
 // {"patterns": those asked for, "why": {lane: reason}}, as a campaign's spec records it; null where none is left out.
 nlohmann::ordered_json left_out_json(const LanesUnderTest& under_test);
+// The same as the object's "lanes_left_out", where some are.
+void add_left_out(nlohmann::ordered_json& object, const LanesUnderTest& under_test);
 
 // The inverse.   Throws: nlohmann::json::exception.
 std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded);

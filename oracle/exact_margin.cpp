@@ -2,9 +2,10 @@
 // Exact squares of distances and depths; see exact_margin.h.
 #include "oracle/exact_margin.h"
 
-#include <algorithm>
-
 #include <mpfr.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace graze::oracle {
 namespace {
@@ -135,6 +136,13 @@ double rounded(const SquaredMargin& margin) {
   const double result = mpfr_get_d(value, MPFR_RNDN);
   mpfr_clear(value);
   return result;
+}
+
+Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, double size, int log2_ulp) {
+  const double margin = verdict == Verdict::disjoint ? size : -size;
+  const int sign = (margin > 0) - (margin < 0);
+  // Adding zero turns -0 into 0; the power of two is exact, for margins stay far from the ends of double.
+  return {{verdict, contact, sign, hulls}, margin + 0.0, std::ldexp(margin, -log2_ulp) + 0.0};
 }
 
 }  // namespace graze::oracle

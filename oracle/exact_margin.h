@@ -8,6 +8,7 @@
 
 #include "core/margin/directions.h"
 #include "oracle/integer_pair.h"
+#include "oracle/truth.h"
 
 namespace graze::oracle {
 
@@ -35,6 +36,9 @@ int floor_log2(const SquaredMargin& margin);
 
 // |margin|, rounded to nearest once. Nonzero margins lie in [2^-705, 2^130], so the double is always normal.
 double rounded(const SquaredMargin& margin);
+
+// The truth of a pair whose distance or depth this is. log2_ulp: that of its largest coordinate.
+Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, double size, int log2_ulp);
 
 // Direction d as in core/margin/directions.h, exactly; generic in the integer.
 template <class Int>

@@ -2,7 +2,6 @@
 // Verdict, contact and margin of one pair, each decision confirmed by the other.
 #include "oracle/truth.h"
 
-#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <string>
@@ -37,11 +36,9 @@ Truth truth(const Pair& pair) {
   const Grid grid = grid_of(pair);
   const LargePair large = large_integers(pair, grid);
   constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
-  const double margin = verdict == Verdict::disjoint ? rounded(exact_distance(large, grid.exponent))
-                                                     : -rounded(exact_depth(large, grid.exponent, kAllAxes));
-  // Adding zero turns -0 into 0; the power of two is exact, for margins stay far from the ends of double.
-  const int sign = (margin > 0) - (margin < 0);
-  return {{verdict, contact, sign, hulls(pair)}, margin + 0.0, std::ldexp(margin, -log2_ulp(pair)) + 0.0};
+  const SquaredMargin squared =
+      verdict == Verdict::disjoint ? exact_distance(large, grid.exponent) : exact_depth(large, grid.exponent, kAllAxes);
+  return truth_of(verdict, contact, hulls(pair), rounded(squared), log2_ulp(pair));
 }
 
 }  // namespace graze::oracle

@@ -86,9 +86,7 @@ std::optional<Truth> truth_as_written(std::span<const std::string> numbers, cons
   constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
   SquaredMargin squared = verdict == Verdict::disjoint ? exact_distance(large, 0) : exact_depth(large, 0, kAllAxes);
   squared.denominator *= denominator * denominator;
-  const double margin = verdict == Verdict::disjoint ? rounded(squared) : -rounded(squared);
-  const int sign = (margin > 0) - (margin < 0);
-  return Truth{{verdict, contact, sign, hulls(large)}, margin + 0.0, std::ldexp(margin, -log2_ulp(stored)) + 0.0};
+  return truth_of(verdict, contact, hulls(large), rounded(squared), log2_ulp(stored));
 }
 
 }  // namespace graze::oracle

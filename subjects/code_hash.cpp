@@ -62,6 +62,17 @@ fs::path on_path(const std::string& program) {
   return {};
 }
 
+// What stands between these characters.
+std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
+  std::set<std::string> parts;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(ends, begin), text.size());
+    if (end > begin) parts.insert(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
 std::uint64_t add_number(std::uint64_t number, std::uint64_t hash) {
   return fnv1a({reinterpret_cast<const char*>(&number), sizeof number}, hash);
 }
@@ -94,14 +105,8 @@ CodeHash hash_of_command(const std::string& command) {
     if (const fs::path file = on_path(*program); !file.empty()) code.hash = add_number(hash_of_file(file), code.hash);
   }
   // Also within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
-  std::set<std::string> files;
-  for (const std::string& word : words) files.insert(word);
-  constexpr std::string_view kEnds = " \t\n;|&<>()'\"`=:,{}[]$\\";
-  for (std::size_t begin = 0; begin < command.size();) {
-    const std::size_t end = std::min(command.find_first_of(kEnds, begin), command.size());
-    if (end > begin) files.insert(command.substr(begin, end - begin));
-    begin = end + 1;
-  }
+  std::set<std::string> files = parts_of(command, " \t\n;|&<>()'\"`=:,{}[]$\\");
+  files.insert(words.begin(), words.end());
   for (const std::string& file : files) {
     if (is_file(file)) code.hash = add_number(hash_of_file(file), fnv1a(file, code.hash));
   }
@@ -112,12 +117,8 @@ std::uint64_t hash_of_flags(const std::vector<std::string>& flags, std::uint64_t
   for (const std::string& flag : flags) {
     hash = fnv1a(flag + '\n', hash);
     // Also within words: -Wl,FILE and -Wl,--script=FILE, @FILE.
-    std::set<std::string> files{flag};
-    for (std::size_t begin = 0; begin < flag.size();) {
-      const std::size_t end = std::min(flag.find_first_of(",=@", begin), flag.size());
-      files.insert(flag.substr(begin, end - begin));
-      begin = end + 1;
-    }
+    std::set<std::string> files = parts_of(flag, ",=@");
+    files.insert(flag);
     for (const std::string& file : files) {
       if (is_file(file)) hash = add_number(hash_of_file(file), hash);
     }

@@ -7,13 +7,11 @@
 #include <sys/prctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
-#include <utility>
 
 #include "core/text.h"
 
@@ -91,6 +89,7 @@ void LineProtocol::read_some() {
 
 // Writes while it reads, so that neither side waits for the other with a full pipe.
 void LineProtocol::send(const std::string& lines) {
+  expect_silence(0);
   std::size_t sent = 0;
   while (sent < lines.size()) {
     pollfd ready[] = {{to_, POLLOUT, 0}, {from_, POLLIN, 0}};
@@ -124,13 +123,11 @@ void LineProtocol::ask(const Question& question, const float* pairs, std::uint64
       if (!is_chosen(chosen, i)) continue;
       asked += line_of(pairs + 18 * i);
       if (!question.singly) continue;
-      expect_silence(0);
       send(asked);
       asked.clear();
       put_answer(words, question, second, i, answer_of_line(line()));
     }
     if (question.singly) continue;
-    expect_silence(0);
     send(asked);
     for (std::size_t k = 0; k < question.count; ++k) {
       const std::size_t i = second ? question.count - 1 - k : k;

@@ -77,8 +77,7 @@ Json campaign_spec(const Campaign& campaign) {
   }
   for (const Lane* lane : campaign.under_test->lanes) lane_ids.push_back(lane->id);
   Json spec{{"seed", campaign.seed}, {"pairs", pairs}, {"strata", strata}, {"lanes", lane_ids}};
-  const Json left_out = left_out_json(*campaign.under_test);
-  if (!left_out.is_null()) spec["lanes_left_out"] = left_out;
+  add_left_out(spec, *campaign.under_test);
   return spec;
 }
 

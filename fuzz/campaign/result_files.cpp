@@ -175,8 +175,8 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   } catch (const corpus::FormatError& error) {
     throw refuse("other text: " + std::string(error.what()));
   }
-  if (text.substr(text.find('\n') + 1).compare(0, signature_line(key, count).size(), signature_line(key, count)) != 0)
-    throw refuse("another head");
+  const std::string head = signature_line(key, count);
+  if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("another head");
   std::size_t kept = 0;
   for (const corpus::Entry& entry : entries) {
     const bool result = corpus::field(entry, "kind") != nullptr;

@@ -290,8 +290,7 @@ Json hunt_spec(const Hunt& hunt) {
   Json spec = {{"seed", hunt.campaign.seed}, {"pairs", hunt.pairs}, {"strata", {"hunt"}}, {"lanes", Json::array()}};
   for (const Lane* lane : hunt.campaign.under_test->lanes) spec["lanes"].push_back(lane->id);
   for (const strata::PairSource& source : hunt.drawn.sources) spec["hunt"]["strata"].push_back(source.id);
-  const Json left_out = left_out_json(*hunt.campaign.under_test);
-  if (!left_out.is_null()) spec["lanes_left_out"] = left_out;
+  add_left_out(spec, *hunt.campaign.under_test);
   return spec;
 }
 

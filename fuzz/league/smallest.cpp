@@ -33,9 +33,8 @@ LanesUnderTest alone(const Lane& lane) {
   return result;
 }
 
-bool is_clear(const Pair& pair, const oracle::Truth& truth) {
-  return shape_name(oracle::hulls(pair)) == "general" &&
-         std::fabs(truth.margin_ulps) >= std::ldexp(1.0, kClearExponent);
+bool is_clear(const oracle::Truth& truth) {
+  return shape_name(truth.hulls) == "general" && std::fabs(truth.margin_ulps) >= std::ldexp(1.0, kClearExponent);
 }
 
 LeagueFailure minimised(const Candidate& candidate) {
@@ -47,7 +46,7 @@ LeagueFailure minimised(const Candidate& candidate) {
     if (failures.empty()) return result;
     const Minimised found = minimise(failures.front(), candidate.pair, {}, most_moved(candidate));
     confirm(under_test, failures.front(), found.pair);
-    if (candidate.shape == kClear && !is_clear(found.pair, oracle::truth(found.pair))) return result;
+    if (candidate.shape == kClear && !is_clear(oracle::truth(found.pair))) return result;
     result.pair = found.pair;
     result.minimised = true;
   } catch (const oracle::OracleApart&) {
@@ -61,8 +60,7 @@ LeagueFailure minimised(const Candidate& candidate) {
 bool fails_so(const LeagueFailure& failure, const Pair& pair) {
   const Verdict verdict = decide_one(failure.lane->decide, pair);
   const oracle::Truth truth = oracle::truth(pair);
-  const bool shaped =
-      failure.shape == kClear ? is_clear(pair, truth) : shape_name(oracle::hulls(pair)) == failure.shape;
+  const bool shaped = failure.shape == kClear ? is_clear(truth) : shape_name(truth.hulls) == failure.shape;
   return shaped && verdict != truth.verdict && wrong_by(verdict) == failure.by &&
          !analysis::by_convention(*failure.lane, verdict, pair, truth);
 }

@@ -238,11 +238,15 @@ std::string hash_of_summary(const std::filesystem::path& directory) {
   return fmt::format("{:016x}", fnv1a(read_whole(directory / "summary.json")));
 }
 
-// Of the case files of all signatures, as they are now.   Throws: Json::exception.
-std::string hash_of_cases(const std::filesystem::path& directory) {
+// The rows of all signatures.   Throws: Json::exception.
+Json signatures_of(const std::filesystem::path& directory) {
+  return Json::parse(read_whole(directory / "summary.json")).at("signatures");
+}
+
+// Of the case files of all signatures, as they are now.
+std::string hash_of_cases(const std::filesystem::path& directory, const Json& signatures) {
   std::uint64_t hash = fnv1a("");
-  const Json summary = Json::parse(read_whole(directory / "summary.json"));
-  for (const Json& row : summary.at("signatures")) hash = fnv1a(read_whole(case_file(directory, row)), hash);
+  for (const Json& row : signatures) hash = fnv1a(read_whole(case_file(directory, row)), hash);
   return fmt::format("{:016x}", hash);
 }
 
@@ -314,10 +318,10 @@ Json read_kinds(const std::filesystem::path& directory) {
   const Json stored = Json::parse(read_whole(file), nullptr, false);
   if (!stored.is_object() || stored.value("summary", Json()) != hash_of_summary(directory)) return nullptr;
   try {
-    if (stored.value("cases", Json()) != hash_of_cases(directory)) return nullptr;
+    const Json signatures = signatures_of(directory);
+    if (stored.value("cases", Json()) != hash_of_cases(directory, signatures)) return nullptr;
     const Json& kinds = stored.at("kinds");
     if (!kinds.is_array()) throw std::runtime_error("");
-    const Json signatures = Json::parse(read_whole(directory / "summary.json")).at("signatures");
     for (const Json& kind : kinds) {
       expect_kind(kind);
       expect_counts(kind, signatures);
@@ -342,7 +346,9 @@ Json kinds_of(const std::filesystem::path& directory, const Json& summary, const
 }
 
 void write_kinds(const std::filesystem::path& directory, const Json& kinds) {
-  const Json stored = {{"summary", hash_of_summary(directory)}, {"cases", hash_of_cases(directory)}, {"kinds", kinds}};
+  const Json stored = {{"summary", hash_of_summary(directory)},
+                       {"cases", hash_of_cases(directory, signatures_of(directory))},
+                       {"kinds", kinds}};
   write_whole(directory / "kinds.json", stored.dump(1) + "\n");
 }
 

@@ -224,8 +224,9 @@ Drawing drawing_of(const Pair& pair) {
   }
   Drawing result{};
   const Relation relation = relation_of(pair);
-  if (!relation.intersects()) add_witness(result, nearest(a, b), {}, a, b);
-  if (relation.intersects()) {
+  if (!relation.intersects()) {
+    add_witness(result, nearest(a, b), {}, a, b);
+  } else {
     Polygon common = hull_of(a);
     for (const HalfSpace& half : half_spaces(hull_of(b))) common = clipped(common, half);
     const auto points = static_cast<std::size_t>(relation.contact);  // a point has one, a segment two

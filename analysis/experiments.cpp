@@ -9,6 +9,7 @@
 
 #include "analysis/scales.h"
 #include "core/relation_of.h"
+#include "core/verdicts.h"
 #include "cuda/twin/twin.h"
 
 namespace graze::analysis {
@@ -25,12 +26,10 @@ std::vector<bool> right_on(const Lane& lane, const std::vector<Pair>& pairs, Ver
   const DecideBlock block = block_of(lane);
   for (std::size_t begin = 0; begin < pairs.size() && late < kMostLate; begin += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, pairs.size() - begin);
-    std::uint64_t intersects = 0, declined = 0;
-    block(&pairs[begin], count, &intersects, &declined);
+    const std::vector<Verdict> said = verdicts_of(block, std::span(pairs).subspan(begin, count));
     for (std::size_t i = 0; i < count; ++i) {
-      const bool yes = intersects >> i & 1, none = declined >> i & 1;
-      right[begin + i] = !none && yes == (truth == Verdict::intersects);
-      late += yes && none && block.verdict_of(true, true, pairs[begin + i]) == Verdict::timed_out;
+      right[begin + i] = said[i] == truth;
+      late += said[i] == Verdict::timed_out;
     }
   }
   return right;

@@ -16,6 +16,7 @@
 #include "analysis/scales.h"
 #include "analysis/tally.h"
 #include "core/relation_of.h"
+#include "core/verdicts.h"
 
 namespace graze::analysis {
 namespace {
@@ -83,15 +84,6 @@ struct Asked {
       }
     }
   }
-
-  std::vector<Verdict> verdicts(const DecideBlock& decide) const {
-    std::vector<std::uint64_t> intersects((all.size() + 63) / 64), declined(intersects.size());
-    decide(all.data(), all.size(), intersects.data(), declined.data());
-    std::vector<Verdict> result(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i)
-      result[i] = decide.verdict_of(test_bit(intersects, i), test_bit(declined, i), all[i]);
-    return result;
-  }
 };
 
 bool is_outside(const Lane& lane, const Pair& pair) {
@@ -110,7 +102,7 @@ struct Run {
 
   // The exact decision on every image; the oracle on those of some pairs.
   void expect_truth(const Asked& asked, const strata::PairSource& source, std::uint64_t first, Laws& counts) const {
-    const std::vector<Verdict> exactly = asked.verdicts(spec.exact);
+    const std::vector<Verdict> exactly = verdicts_of(spec.exact, asked.all);
     const auto by_oracle = [&](std::size_t i) {
       return spec.intersects(asked.all[i]) ? Verdict::intersects : Verdict::disjoint;
     };
@@ -153,7 +145,7 @@ struct Run {
   void count(std::size_t l, const Asked& asked, const PairPlace& first, LawsOfLane& result) const {
     const Lane& lane = *spec.lanes[l];
     const strata::PairSource& source = spec.sources[static_cast<std::size_t>(first.source)];
-    const std::vector<Verdict> said = asked.verdicts(spec.on_host[l]);
+    const std::vector<Verdict> said = verdicts_of(spec.on_host[l], asked.all);
     std::vector<bool> outside(asked.pairs);
     for (std::size_t p = 0; p < asked.pairs; ++p) outside[p] = is_outside(lane, asked.all[p]);
     for (const Group& group : asked.groups) {

@@ -54,6 +54,10 @@ char mark(Verdict lane, Verdict truth) {
   return lane == truth ? '.' : lane == Verdict::intersects ? '+' : '-';
 }
 
+bool Signature::wrong() const {
+  return std::any_of(wrong_lanes.begin(), wrong_lanes.end(), [](const WrongLane& lane) { return lane.mark != '?'; });
+}
+
 char Signature::mark_of(std::string_view lane_within_subject) const {
   for (const WrongLane& wrong : wrong_lanes) {
     if (wrong.lane == lane_within_subject) return wrong.mark;

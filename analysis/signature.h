@@ -20,7 +20,7 @@ namespace graze::analysis {
 // foreign code '!' crashed, '@' timed out, '%' unstable.
 char mark(Verdict lane, Verdict truth);
 
-// A lane that is wrong: its mark, and its name within the subject, such as "f32/cpu-fma".
+// A lane whose verdict is not the truth: its mark, and its name within the subject, such as "f32/cpu-fma".
 struct WrongLane {
   std::string lane;
   char mark;
@@ -36,7 +36,7 @@ struct Signature {
   std::string subject;
   std::vector<WrongLane> wrong_lanes;  // in the order of the lane table
 
-  bool wrong() const { return !wrong_lanes.empty(); }
+  bool wrong() const;  // some lane is; one that declined is not
   // Of a lane of the subject; '.' also for one that is right, or did not run.
   char mark_of(std::string_view lane_within_subject) const;
   auto operator<=>(const Signature&) const = default;

@@ -49,11 +49,11 @@ void add(const SourceBlock& block, const Verdicts& truth, const Verdicts& withou
     const std::uint64_t none = declined[w] & judged, was_none = without.declined[w] & judged;
     const std::uint64_t off = (intersects[w] ^ truth.intersects[w]) & judged & ~none;
     const std::uint64_t was_off = (without.intersects[w] ^ truth.intersects[w]) & judged & ~was_none;
-    errors.misses += static_cast<std::uint64_t>(std::popcount(off & truth.intersects[w]));
-    errors.false_hits += static_cast<std::uint64_t>(std::popcount(off & ~truth.intersects[w]));
+    errors.false_negative += static_cast<std::uint64_t>(std::popcount(off & truth.intersects[w]));
+    errors.false_positive += static_cast<std::uint64_t>(std::popcount(off & ~truth.intersects[w]));
     errors.declined += static_cast<std::uint64_t>(std::popcount(none));
     const PairPlace word{block.source, block.first + w * 64};
-    add((was_off | was_none) & ~(off | none), word, errors.mended, errors.first_mended);
+    add((was_off | was_none) & ~(off | none), word, errors.fixed, errors.first_fixed);
     add(~(was_off | was_none) & (off | none), word, errors.broken, errors.first_broken);
   }
   errors.pairs += block.count;
@@ -142,13 +142,11 @@ std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most) {
 }
 
 PolicyErrors& PolicyErrors::operator+=(const PolicyErrors& other) {
+  Counts::operator+=(other);
   pairs += other.pairs;
-  misses += other.misses;
-  false_hits += other.false_hits;
-  declined += other.declined;
-  mended += other.mended;
+  fixed += other.fixed;
   broken += other.broken;
-  keep_first(first_mended, other.first_mended);
+  keep_first(first_fixed, other.first_fixed);
   keep_first(first_broken, other.first_broken);
   return *this;
 }
@@ -182,14 +180,12 @@ Sweep device_sweep(std::function<Lane(const std::string& policy)> lane_of) {
         const auto place = [s](std::uint64_t index) {
           return index == ~std::uint64_t{0} ? std::nullopt : std::optional<PairPlace>({static_cast<int>(s), index});
         };
-        errors[p] += {policies[p],
+        errors[p] += {found[p],
+                      policies[p],
                       sources[s].pairs,
-                      found[p].misses,
-                      found[p].false_hits,
-                      found[p].declined,
-                      found[p].mended,
+                      found[p].fixed,
                       found[p].broken,
-                      place(found[p].first_mended),
+                      place(found[p].first_fixed),
                       place(found[p].first_broken)};
       }
     }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/counts.h"
 #include "core/lanes.h"
 #include "strata/pair_source.h"
 
@@ -21,14 +22,13 @@ struct PairPlace {
   friend auto operator<=>(const PairPlace&, const PairPlace&) = default;
 };
 
-struct PolicyErrors {
+struct PolicyErrors : Counts {
   std::string policy;  // empty: zero
-  std::uint64_t pairs = 0, misses = 0, false_hits = 0, declined = 0;
-  std::uint64_t mended = 0, broken = 0;  // right, and the lane under no policy wrong; the other way round
-  std::optional<PairPlace> first_mended, first_broken;
+  std::uint64_t pairs = 0;
+  std::uint64_t fixed = 0, broken = 0;  // right, and the lane under no policy wrong or without an answer; or otherwise
+  std::optional<PairPlace> first_fixed, first_broken;
 
-  std::uint64_t wrong() const { return misses + false_hits; }
-  bool changes_nothing() const { return mended == 0 && broken == 0; }
+  bool changes_nothing() const { return fixed == 0 && broken == 0; }
   PolicyErrors& operator+=(const PolicyErrors& other);
   bool operator==(const PolicyErrors&) const = default;
 };

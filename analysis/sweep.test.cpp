@@ -32,32 +32,32 @@ TEST(Sweep, CountsWhatEachPolicyGetsWrong) {
         const Verdict with = decide_one(under, pair), without = decide_one(zero, pair);
         ++expected.pairs;
         expected.declined += with == Verdict::declined;
-        expected.misses += with == Verdict::disjoint && truth == Verdict::intersects;
-        expected.false_hits += with == Verdict::intersects && truth == Verdict::disjoint;
+        expected.false_negative += with == Verdict::disjoint && truth == Verdict::intersects;
+        expected.false_positive += with == Verdict::intersects && truth == Verdict::disjoint;
         const PairPlace place{static_cast<int>(s), i};
-        if (with == truth && without != truth && expected.mended++ == 0) expected.first_mended = place;
+        if (with == truth && without != truth && expected.fixed++ == 0) expected.first_fixed = place;
         if (with != truth && without == truth && expected.broken++ == 0) expected.first_broken = place;
       }
     }
     EXPECT_EQ(found[p].policy, policies[p]);
     EXPECT_EQ(found[p].pairs, expected.pairs);
-    EXPECT_EQ(found[p].misses, expected.misses) << policies[p];
-    EXPECT_EQ(found[p].false_hits, expected.false_hits) << policies[p];
+    EXPECT_EQ(found[p].false_negative, expected.false_negative) << policies[p];
+    EXPECT_EQ(found[p].false_positive, expected.false_positive) << policies[p];
     EXPECT_EQ(found[p].declined, expected.declined) << policies[p];
-    EXPECT_EQ(found[p].mended, expected.mended) << policies[p];
+    EXPECT_EQ(found[p].fixed, expected.fixed) << policies[p];
     EXPECT_EQ(found[p].broken, expected.broken) << policies[p];
-    EXPECT_EQ(found[p].first_mended, expected.first_mended) << policies[p];
+    EXPECT_EQ(found[p].first_fixed, expected.first_fixed) << policies[p];
     EXPECT_EQ(found[p].first_broken, expected.first_broken) << policies[p];
   }
   EXPECT_TRUE(found[0].changes_nothing());
-  EXPECT_GT(found[1].mended, 0u);  // relocation: an epsilon mends some and breaks others
+  EXPECT_GT(found[1].fixed, 0u);  // relocation: an epsilon fixes some and breaks others
   EXPECT_GT(found[1].broken, 0u);
   EXPECT_EQ(found[3].wrong(), 0u);
   EXPECT_GT(found[3].declined, 0u);
   for (const int threads : {1, 3}) {
     const std::vector<PolicyErrors> again = host_sweep(moller(), threads)(policies, sources);
     for (std::size_t p = 0; p < policies.size(); ++p) {
-      EXPECT_EQ(again[p].false_hits, found[p].false_hits);
+      EXPECT_EQ(again[p].false_positive, found[p].false_positive);
       EXPECT_EQ(again[p].first_broken, found[p].first_broken);
     }
   }
@@ -82,7 +82,7 @@ TEST(Sweep, ManyTolerancesAtOnceAreEachAlone) {
     std::uint64_t changed = 0;
     for (std::size_t p = 0; p < policies.size(); ++p) {
       EXPECT_EQ(together[p], alone[p]) << lane.id << " " << policies[p];
-      changed += alone[p].mended + alone[p].broken;
+      changed += alone[p].fixed + alone[p].broken;
     }
     EXPECT_GT(changed, 1000u) << lane.id;
   }

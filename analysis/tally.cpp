@@ -37,7 +37,7 @@ void Tally::add(const JudgedBlock& block) {
       for_each_bit(yes & ~truth & ~none, [&](std::size_t i) { ++at(i).false_positive; });
       for_each_bit(~yes & truth & ~none, [&](std::size_t i) { ++at(i).false_negative; });
       for_each_bit(none & ~failed, [&](std::size_t i) { ++at(i).declined; });
-      for_each_bit(failed, [&](std::size_t i) { at(i).count(lane.at(w * 64 + i), 1); });
+      for_each_bit(failed, [&](std::size_t i) { ++at(i).of(lane.at(w * 64 + i)); });
       if (cpu_twin_[l] >= 0) {
         const LaneVerdicts& cpu = block.verdicts[static_cast<std::size_t>(cpu_twin_[l])];
         for_each_bit((yes ^ cpu.intersects[w]) | (none ^ cpu.declined[w]),
@@ -66,11 +66,11 @@ void Tally::add(Bucket b, int lane, const LaneCounts& counts) {
 
 void Tally::excuse(Bucket b, int lane, Verdict verdict) {
   LaneCounts& counts = lanes_[static_cast<std::size_t>(lane) * kBucketCount + row(b)];
-  counts.count(verdict, ~std::uint64_t{0});  // one less
+  --counts.of(verdict);
   ++counts.by_convention;
 }
 
-Bits disagreements(const JudgedBlock& block) {
+Bits not_right(const JudgedBlock& block) {
   Bits any((block.count + 63) / 64);
   for (const LaneVerdicts& lane : block.verdicts) {
     for (std::size_t w = 0; w < any.size(); ++w) any[w] |= (lane.intersects[w] ^ block.truth[w]) | lane.declined[w];

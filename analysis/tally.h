@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/counts.h"
 #include "core/lanes.h"
 #include "core/margin/bucket.h"
 
@@ -35,38 +36,16 @@ struct JudgedBlock {
   std::span<const LaneVerdicts> verdicts;  // of each lane under test
 };
 
-struct LaneCounts {
-  std::uint64_t false_positive = 0;
-  std::uint64_t false_negative = 0;
-  std::uint64_t declined = 0;
+struct LaneCounts : Counts {
   std::uint64_t differs_from_cpu = 0;  // another verdict than the cpu lane of the same algorithm and scalar
-  // Of foreign code alone:
-  std::uint64_t crashed = 0, timed_out = 0, unstable = 0;
-  std::uint64_t by_convention = 0;  // another verdict than the truth's where its convention leaves that open
 
-  std::uint64_t failed() const { return crashed + timed_out + unstable; }
-  std::uint64_t wrong() const { return false_positive + false_negative + declined + failed(); }
-  bool any_foreign() const { return failed() || by_convention; }
-  bool any() const { return wrong() || differs_from_cpu || by_convention; }
-  void count(Verdict verdict, std::uint64_t pairs) {  // one that is not the truth
-    (verdict == Verdict::intersects  ? false_positive
-     : verdict == Verdict::disjoint  ? false_negative
-     : verdict == Verdict::declined  ? declined
-     : verdict == Verdict::crashed   ? crashed
-     : verdict == Verdict::timed_out ? timed_out
-                                     : unstable) += pairs;
-  }
+  bool any() const { return *this != LaneCounts{}; }
   LaneCounts& operator+=(const LaneCounts& other) {
-    false_positive += other.false_positive;
-    false_negative += other.false_negative;
-    declined += other.declined;
+    Counts::operator+=(other);
     differs_from_cpu += other.differs_from_cpu;
-    crashed += other.crashed;
-    timed_out += other.timed_out;
-    unstable += other.unstable;
-    by_convention += other.by_convention;
     return *this;
   }
+  friend bool operator==(const LaneCounts&, const LaneCounts&) = default;
 };
 
 // Counts by margin bucket, of pairs and of each lane's errors. Tallies add; order never matters.
@@ -80,7 +59,7 @@ class Tally {
   void add(const Tally& other);
   void add(Bucket b, std::uint64_t pairs, std::uint64_t intersects);
   void add(Bucket b, int lane, const LaneCounts& counts);
-  // Of a verdict counted as wrong that the lane's convention leaves open.
+  // Counts by convention what was counted as that verdict: the lane's convention leaves it open.
   void excuse(Bucket b, int lane, Verdict verdict);
 
   int lane_count() const { return static_cast<int>(cpu_twin_.size()); }
@@ -96,8 +75,8 @@ class Tally {
   std::vector<LaneCounts> lanes_;
 };
 
-// The pairs on which some lane does not give the true verdict.
-Bits disagreements(const JudgedBlock& block);
+// The pairs on which some lane does not give the true verdict: it is wrong, or declines.
+Bits not_right(const JudgedBlock& block);
 
 // For each of these lanes, the place among them of its cpu lane; see Tally.
 std::vector<int> cpu_twins(std::span<const Lane* const> lanes);

@@ -9,10 +9,8 @@
 namespace graze::analysis {
 namespace {
 
-std::uint64_t without_right_verdict(const PolicyErrors& errors) { return errors.wrong() + errors.declined; }
-
 double share(const PolicyErrors& errors) {
-  return errors.pairs == 0 ? 0 : static_cast<double>(without_right_verdict(errors)) / static_cast<double>(errors.pairs);
+  return errors.pairs == 0 ? 0 : static_cast<double>(errors.not_right()) / static_cast<double>(errors.pairs);
 }
 
 Pair moved(const Pair& pair, Extreme extreme, int k) {

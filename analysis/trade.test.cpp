@@ -11,7 +11,7 @@ namespace {
 Offer offer(std::uint64_t wrong, double nanoseconds, std::uint64_t declined = 0) {
   Offer result;
   result.errors.pairs = 1000;
-  result.errors.misses = wrong;
+  result.errors.false_negative = wrong;
   result.errors.declined = declined;
   result.near = {nanoseconds, nanoseconds, nanoseconds};
   return result;
@@ -63,12 +63,12 @@ TEST(Extremes, RightToIsTheLastOrdinaryShare) {
   for (const auto& [k, wrong] : {std::pair{-16, 300}, {-8, 15}, {0, 10}, {8, 20}, {16, 21}, {24, 0}}) {
     PolicyErrors errors;
     errors.pairs = 1000;
-    errors.misses = static_cast<std::uint64_t>(wrong);
+    errors.false_negative = static_cast<std::uint64_t>(wrong);
     curve.points.emplace_back(k, errors);
   }
   EXPECT_EQ(curve.right_to(1), 8);
   EXPECT_EQ(curve.right_to(-1), -8);
-  curve.points[4].second.misses = 5;
+  curve.points[4].second.false_negative = 5;
   EXPECT_EQ(curve.right_to(1), std::nullopt);
 }
 

@@ -214,7 +214,9 @@ double upper_bound(std::uint64_t count, std::uint64_t of) {
 }
 
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid) {
-  return forbid == Forbid::miss ? errors.misses : forbid == Forbid::false_hit ? errors.false_hits : errors.wrong();
+  return forbid == Forbid::false_negative   ? errors.false_negative
+         : forbid == Forbid::false_positive ? errors.false_positive
+                                            : errors.wrong();
 }
 
 Tuned tune(const TuneSpec& spec) { return Tuner(spec).run(); }

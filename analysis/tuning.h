@@ -22,7 +22,7 @@ std::vector<strata::PairSource> scaled(Sources sources, int k);
 double upper_bound(std::uint64_t count, std::uint64_t of);
 
 // What may not happen more often than a rate.
-enum class Forbid { miss, false_hit, any };
+enum class Forbid { false_negative, false_positive, any };
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid);
 
 struct TuneSpec {

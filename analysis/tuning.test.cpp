@@ -48,12 +48,12 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   spec.sites = sites_asked(moller(), spec.sources);
   EXPECT_EQ(spec.sites, (std::vector<std::string>{"plane_distance", "separation"}));
   spec.max_rate = 1e-3;
-  spec.forbid = Forbid::miss;
-  const Tuned no_miss = tune(spec);
-  EXPECT_EQ(no_miss.result, TuneResult::satisfied) << no_miss.chosen << " " << no_miss.bound;
-  EXPECT_GT(no_miss.zero_confirmed.misses, 100u);
-  EXPECT_LE(no_miss.bound, 1e-3);
-  EXPECT_LT(no_miss.confirmed.false_hits, 20'000u * 3 / 4);  // not simply all of them
+  spec.forbid = Forbid::false_negative;
+  const Tuned no_negative = tune(spec);
+  EXPECT_EQ(no_negative.result, TuneResult::satisfied) << no_negative.chosen << " " << no_negative.bound;
+  EXPECT_GT(no_negative.zero_confirmed.false_negative, 100u);
+  EXPECT_LE(no_negative.bound, 1e-3);
+  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // not simply all of them
   spec.forbid = Forbid::false_hit;
   const Tuned no_false_hit = tune(spec);
   EXPECT_EQ(no_false_hit.result, TuneResult::not_satisfiable);  // a tolerance takes none away
@@ -77,7 +77,7 @@ TEST(Tune, NoPolicyIsGoodEnoughOnlyWhereNoneOfTheCurvesIs) {
         spec.sources = drawn(seed, pairs, {"near_*"});
         spec.others = drawn(seed + 100, pairs * 10, {"near_*"});
         spec.sites = {"plane_distance"};
-        spec.forbid = seed == 3 ? Forbid::any : Forbid::miss;
+        spec.forbid = seed == 3 ? Forbid::any : Forbid::false_negative;
         spec.max_rate = rate;
         const Tuned tuned = tune(spec);
         results.insert(tuned.result);
@@ -161,8 +161,8 @@ TEST(Tune, FindsWhereTheScaleBreaksAPolicy) {
   EXPECT_EQ(tuned.scale.up, 0);
   EXPECT_GE(tuned.scale.down, -12);
   EXPECT_LE(tuned.scale.down, -9);
-  EXPECT_GT(tuned.scale.at_down.false_hits, 10u);
-  EXPECT_EQ(tuned.scale.at_down.misses, 0u);
+  EXPECT_GT(tuned.scale.at_down.false_positive, 10u);
+  EXPECT_EQ(tuned.scale.at_down.false_negative, 0u);
 }
 
 }  // namespace

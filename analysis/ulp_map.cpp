@@ -9,6 +9,7 @@
 
 #include "analysis/lane_trace.h"
 #include "core/exact/exact.h"
+#include "core/verdicts.h"
 #include "oracle/truth.h"
 #include "strata/draws.h"
 
@@ -33,58 +34,51 @@ class Panels {
 
   // Writes, for each panel that is not given up, the cells of these pairs one after the other.
   void judge(std::span<const Pair> pairs, std::span<std::vector<Cell>> cells) {
-    const std::size_t words = (pairs.size() + 63) / 64;
     std::vector<Cell>& truth = cells.front();
     const std::size_t first = truth.size();
     for (const Pair& pair : pairs) truth.push_back(truth_of(pair));
     for (std::size_t p = 1; p < blocks_.size(); ++p) {
-      intersects_.resize(words);
-      declined_.resize(words);
-      if (lanes_[p]->foreign && !ask_foreign(p, pairs)) continue;
-      if (!lanes_[p]->foreign) blocks_[p](pairs.data(), pairs.size(), intersects_.data(), declined_.data());
-      for (std::size_t i = 0; i < pairs.size(); ++i) {
-        const bool says = intersects_[i / 64] >> i % 64 & 1, none = declined_[i / 64] >> i % 64 & 1;
-        const Cell right = truth[first + i];
-        cells[p].push_back(right == Cell::not_finite             ? right
-                           : says && none                        ? cell_of(failures_[i])
-                           : none                                ? Cell::declined
-                           : says == (right == Cell::intersects) ? right
-                           : says                                ? Cell::false_positive
-                                                                 : Cell::false_negative);
-      }
+      if (!(lanes_[p]->foreign ? ask_foreign(p, pairs) : ask(p, pairs))) continue;
+      for (std::size_t i = 0; i < pairs.size(); ++i) cells[p].push_back(cell_of(said_[i], truth[first + i]));
     }
   }
 
  private:
   static constexpr int kMostFailures = 3000, kOfALate = 1000;  // three that took all of their time are enough
 
-  static Cell cell_of(Verdict failure) {
-    return failure == Verdict::crashed     ? Cell::crashed
-           : failure == Verdict::timed_out ? Cell::timed_out
-                                           : Cell::unstable;
+  static Cell cell_of(Verdict said, Cell truth) {
+    if (truth == Cell::not_finite) return truth;
+    switch (said) {
+      case Verdict::intersects:
+        return truth == Cell::intersects ? truth : Cell::false_positive;
+      case Verdict::disjoint:
+        return truth == Cell::disjoint ? truth : Cell::false_negative;
+      case Verdict::declined:
+        return Cell::declined;
+      case Verdict::crashed:
+        return Cell::crashed;
+      case Verdict::timed_out:
+        return Cell::timed_out;
+      case Verdict::unstable:
+        break;
+    }
+    return Cell::unstable;
   }
 
-  // Word by word; writes what failures are.   Returns: false where the panel is given up.
+  bool ask(std::size_t p, std::span<const Pair> pairs) {
+    said_ = verdicts_of(blocks_[p], pairs);
+    return true;
+  }
+
+  // Eight pairs at a time.   Returns: false where the panel is given up.
   bool ask_foreign(std::size_t p, std::span<const Pair> pairs) {
-    failures_.resize(pairs.size());
-    for (std::size_t begin = 0; begin < pairs.size(); begin += 64) {
+    said_.clear();
+    for (std::size_t begin = 0; begin < pairs.size(); begin += 8) {
       if (given_up(p)) return false;
-      const std::size_t count = std::min<std::size_t>(64, pairs.size() - begin);
-      std::uint64_t &yes = intersects_[begin / 64], &none = declined_[begin / 64];
-      for (std::size_t i = 0; i < count; i += 8) {  // a byte at a time
-        if (given_up(p)) return false;
-        std::uint64_t own_yes = 0, own_none = 0;
-        const std::size_t some = std::min<std::size_t>(8, count - i);
-        blocks_[p](&pairs[begin + i], some, &own_yes, &own_none);
-        if (i == 0) yes = none = 0;
-        yes |= own_yes << i;
-        none |= own_none << i;
-        for (std::size_t j = 0; j < some; ++j) {
-          if (!((own_yes & own_none) >> j & 1)) continue;
-          const Verdict failure = blocks_[p].verdict_of(true, true, pairs[begin + i + j]);
-          failures_[begin + i + j] = failure;
-          failed_[p] += failure == Verdict::timed_out ? kOfALate : 1;
-        }
+      for (const Verdict said :
+           verdicts_of(blocks_[p], pairs.subspan(begin, std::min<std::size_t>(8, pairs.size() - begin)))) {
+        said_.push_back(said);
+        failed_[p] += said == Verdict::timed_out ? kOfALate : is_failure(said) ? 1 : 0;
       }
     }
     return true;
@@ -99,8 +93,7 @@ class Panels {
   std::vector<const Lane*> lanes_;
   std::vector<DecideBlock> blocks_;
   std::vector<int> failed_;
-  std::vector<std::uint64_t> intersects_, declined_;
-  std::vector<Verdict> failures_;  // of the pairs on which foreign code fails
+  std::vector<Verdict> said_;  // by the lane of one panel
 };
 
 // Throws: OracleApart.

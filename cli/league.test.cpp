@@ -54,13 +54,13 @@ TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
     EXPECT_EQ(row["total"]["pairs"], slow ? 200 : 1000) << row["lane"];
     EXPECT_EQ(row["total"]["wrong"]["of"], slow ? 200 : 1000);
     if (slow) {
-      EXPECT_EQ(row["total"]["false hit"], 0);
+      EXPECT_EQ(row["total"]["false_positive"], 0);
     }
     if (row["subject"] == "exact") {
       EXPECT_EQ(row["total"]["wrong"]["count"], 0);
     }
     if (row["subject"] == "spoken") {
-      EXPECT_EQ(row["total"]["miss"], 0);
+      EXPECT_EQ(row["total"]["false_negative"], 0);
       EXPECT_TRUE(league["timings"]["nanoseconds"][row["lane"].get<std::string>()].is_null());
     }
     EXPECT_NE(page.find("| `" + row["lane"].get<std::string>() + "` |"), std::string::npos);

@@ -210,7 +210,7 @@ std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& 
 
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth) {
   return truth != Verdict::declined &&
-         std::any_of(verdicts.begin(), verdicts.end(), [&](Verdict verdict) { return verdict != truth; });
+         std::any_of(verdicts.begin(), verdicts.end(), [&](Verdict verdict) { return is_wrong(verdict, truth); });
 }
 
 std::string cuda_evidence(const fuzz::LanesUnderTest& under_test) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person's own code: its failures as programs, which fail while the code is wrong and pass when it is mended; and
+// A person's own code: its failures as programs, which fail while the code is wrong and pass when it is fixed; and
 // `graze fuzz --fail-above`.
 #include <gtest/gtest.h>
 
@@ -106,9 +106,9 @@ TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
     EXPECT_EQ(ran.status, 1) << does << ran.out;
     EXPECT_NE(ran.out.find(" 1 FAILED TEST"), std::string::npos) << does << ran.out << ran.err;
     shell("echo 'int intersects(const float a[9], const float b[9]) { return 1; }' > own.c");
-    const Ran mended = shell("bash run.sh");
-    EXPECT_EQ(mended.status, 0) << does << mended.out;
-    EXPECT_NE(mended.out.find("[  PASSED  ] 1 test."), std::string::npos) << mended.out;
+    const Ran fixed = shell("bash run.sh");
+    EXPECT_EQ(fixed.status, 0) << does << fixed.out;
+    EXPECT_NE(fixed.out.find("[  PASSED  ] 1 test."), std::string::npos) << fixed.out;
   }
 }
 

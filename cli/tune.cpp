@@ -111,7 +111,7 @@ int tune(const TuneOptions& options) {
   write_result(out / "curves.svg", reports::tuning_figure(question, tuned));
   write_result(out / "policy.h", reports::policy_header(chosen));
   for (const auto& [place, name] :
-       {std::pair{tuned.confirmed.first_mended, "mended.pairs"}, {tuned.confirmed.first_broken, "broken.pairs"}}) {
+       {std::pair{tuned.confirmed.first_fixed, "fixed.pairs"}, {tuned.confirmed.first_broken, "broken.pairs"}}) {
     if (!place) remove_result(out / name, kPairs);
     if (!place) continue;
     const Pair pair = spec.others[static_cast<std::size_t>(place->source)].pair(place->index);
@@ -134,7 +134,7 @@ void add_tune(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "tune", "Find the epsilon policy that serves a lane: sweep tolerances on some pairs, judge the best on others");
   command->footer(
-      "Example: graze tune moller_1997/f32/cpu --strata 'near_*' --forbid miss --max-rate 1e-3 --pairs 20k");
+      "Example: graze tune moller_1997/f32/cpu --strata 'near_*' --forbid false-negative --max-rate 1e-3 --pairs 20k");
   const auto options = std::make_shared<TuneOptions>();
   command->add_option("lane", options->lane, "The lane, without a policy")->required()->option_text("LANE");
   add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
@@ -148,9 +148,11 @@ void add_tune(CLI::App& app, int& status) {
       ->transform(whole_number(0, kMostWhole - 1))
       ->capture_default_str()
       ->option_text("N");
-  command->add_option("--forbid", options->forbid, "What must not be: misses, false hits, or any wrong verdict")
-      ->transform(one_of({"miss", "false", "any"}, Chosen::place))
-      ->option_text("miss|false|any");
+  command
+      ->add_option("--forbid", options->forbid,
+                   "What must not be: false negatives, false positives, or any wrong verdict")
+      ->transform(one_of({"false-negative", "false-positive", "any"}, Chosen::place))
+      ->option_text("false-negative|false-positive|any");
   command->add_option("--max-rate", options->max_rate, "How often it may be at most")
       ->check(number(1e-15, 1.0))
       ->capture_default_str()

@@ -54,7 +54,7 @@ TEST_F(Policies, RefusedOnesGetOneLine) {
 
 TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   const std::string tune =
-      "graze tune moller_1997/f32/cpu --strata 'near_*' --pairs 20k --forbid miss --max-rate 1e-3 ";
+      "graze tune moller_1997/f32/cpu --strata 'near_*' --pairs 20k --forbid false-negative --max-rate 1e-3 ";
   const Ran ran = shell(tune + "--out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_EQ(ran.out.find("Use "), 0u) << ran.out;
@@ -64,15 +64,15 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   // Ten times the pairs, another seed: the rate stays under the bound that was stated.
   expect_done("graze fuzz --strata 'near_*' --pairs 200k --seed 99 --lanes 'moller_1997/f32/cpu/" + policy +
               "' --out c > /dev/null");
-  double misses = 0;
+  double negatives = 0;
   const auto summary = json_of(shell.folder / "c/summary.json");
   for (const auto& [stratum, row] : summary["strata"].items())
-    misses += row["lanes"]["moller_1997/f32/cpu/" + policy]["false_negative"].get<double>();
-  EXPECT_LE(misses / 200'000, json["bound"].get<double>());
+    negatives += row["lanes"]["moller_1997/f32/cpu/" + policy]["false_negative"].get<double>();
+  EXPECT_LE(negatives / 200'000, json["bound"].get<double>());
   // The same bytes again, whatever the threads.
   expect_done(tune + "--threads 1 --out u > /dev/null && diff -r t u");
   // Smallest cases of what it mends and breaks, as it says.
-  for (const auto& [file, zero_wrong] : {std::pair{"mended", true}, {"broken", false}}) {
+  for (const auto& [file, zero_wrong] : {std::pair{"fixed", true}, {"broken", false}}) {
     const Ran check = shell(std::string("graze check t/") + file +
                             ".pairs --lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/" + policy + "' | grep moller");
     const std::string first = check.out.substr(0, check.out.find('\n')), second = check.out.substr(first.size() + 1);
@@ -82,8 +82,8 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
 }
 
 TEST_F(TuneCommand, NextIsACommandThatRuns) {
-  // Something is mended and broken; then, in the same folder, nothing is.
-  for (const char* lane : {"moller_1997/f32/cpu --strata near_vertex_face --forbid miss --max-rate 1e-2",
+  // Something is fixed and broken; then, in the same folder, nothing is.
+  for (const char* lane : {"moller_1997/f32/cpu --strata near_vertex_face --forbid false-negative --max-rate 1e-2",
                            "guigue_devillers_2003/f64/cpu --strata uniform --max-rate 1e-2"}) {
     const Ran ran = shell(std::string("graze tune --pairs 3k --out t ") + lane);
     EXPECT_EQ(ran.status, 0) << ran.err;
@@ -91,13 +91,14 @@ TEST_F(TuneCommand, NextIsACommandThatRuns) {
     ASSERT_NE(at, std::string::npos) << ran.out;
     expect_done(ran.out.substr(at + 7));
   }
-  EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/mended.pairs"));
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/fixed.pairs"));
 }
 
 // The header decides as the lane: compiled by itself, on the smallest cases.
 TEST_F(TuneCommand, TheHeaderDecidesAsTheLane) {
   expect_done(
-      "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 5k --forbid miss --max-rate 1e-2 --out t > "
+      "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 5k --forbid false-negative --max-rate 1e-2 "
+      "--out t > "
       "/dev/null");
   std::ofstream(shell.folder / "main.cpp") << R"(#include "t/policy.h"
 #include <cstdio>
@@ -153,8 +154,8 @@ TEST_F(TradeCommand, SetsErrorsAgainstCosts) {
     before = row["in_cache"]["middle"];
     EXPECT_EQ(row["errors"]["pairs"], 3000);
     if (row["lane"] == "exact/f32/cpu") {
-      EXPECT_EQ(row["errors"]["misses"], 0);
-      EXPECT_EQ(row["errors"]["false_hits"], 0);
+      EXPECT_EQ(row["errors"]["false_negative"], 0);
+      EXPECT_EQ(row["errors"]["false_positive"], 0);
       EXPECT_FALSE(row["dominated"].get<bool>());
     }
   }

@@ -68,7 +68,7 @@ bool some_lane_is_wrong(const Pair& pair) {
   const Verdict truth = decide_one(exact->decide, pair);
   return std::any_of(lanes().begin(), lanes().end(), [&](const Lane& lane) {
     const DecideBlock block = runs_on_this_cpu(lane) || lane.is_cuda() ? cuda::block_on_host(lane) : nullptr;
-    return block && decide_one(block, pair) != truth;
+    return block && is_wrong(decide_one(block, pair), truth);
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "fuzz/counts_json.h"
 #include "strata/groups.h"
 
 namespace graze::reports {
@@ -37,11 +38,7 @@ void add(StratumCounts& counts, const Json& row, const std::map<std::string, std
   counts.intersects += row.at("intersects").get<std::uint64_t>();
   for (const auto& [lane, found] : row.at("lanes").items()) {
     const Json& differs = found.at("differs_from_cpu");  // null where nothing was compared
-    const auto foreign = [&](const char* field) { return found.value(field, std::uint64_t{0}); };
-    counts.lanes[place.at(lane)] += {found.at("false_positive"), found.at("false_negative"),
-                                     found.at("declined"),       differs.is_null() ? 0 : differs.get<std::uint64_t>(),
-                                     foreign("crashed"),         foreign("timed_out"),
-                                     foreign("unstable"),        foreign("by_convention")};
+    counts.lanes[place.at(lane)] += {fuzz::counts_of(found), differs.is_null() ? 0 : differs.get<std::uint64_t>()};
   }
   for (const auto& [bucket, found] : row.at("margins").items()) add(counts.margins[buckets.at(bucket)], found, place);
   if (!row.contains("extremes")) return;

@@ -74,7 +74,7 @@ Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     if (!stored.contains(counts.lanes[l].id)) continue;
     const Verdict verdict = verdict_of(stored[counts.lanes[l].id].get<std::string>());
-    rows.push_back({{"lane", l}, {"verdict", name(verdict)}, {"wrong", verdict != truth}});
+    rows.push_back({{"lane", l}, {"verdict", name(verdict)}, {"wrong", is_wrong(verdict, truth)}});
   }
   return rows;
 }

@@ -12,6 +12,7 @@
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "fuzz/counts_json.h"
 #include "fuzz/minimise/kinds.h"
 #include "reports/plain_figures.h"
 #include "reports/terminal.h"
@@ -35,12 +36,11 @@ Json share_json(std::uint64_t count, std::uint64_t of) {
 
 Json counts_json(const fuzz::LeagueCounts& counts) {
   Json row{{"pairs", counts.pairs}};
-  for (std::size_t by = 0; by < fuzz::kWrongByCount; ++by) row[std::string(fuzz::kWrongBy[by])] = counts.wrong[by];
+  row.update(fuzz::counts_json(counts, true));
   row["clear"] = counts.clear;
   row["outside"] = counts.outside;
-  row["by_convention"] = counts.by_convention;
-  row["not_again"] = counts.not_again;
-  row["wrong"] = share_json(counts.all_wrong(), counts.pairs);
+  row["not_repeated"] = counts.not_repeated;
+  row["wrong"] = share_json(counts.wrong(), counts.pairs);
   return row;
 }
 
@@ -103,7 +103,6 @@ Json failure_json(const fuzz::LeagueFailure& failure, const std::vector<LeagueSu
   return {{"subject", subject},
           {"lane", failure.lane->id},
           {"shape", failure.shape},
-          {"by", fuzz::kWrongBy[static_cast<std::size_t>(failure.by)]},
           {"truth", name(failure.truth.verdict)},
           {"contact", name(failure.truth.contact)},
           {"margin", failure.truth.margin},
@@ -140,8 +139,10 @@ void choose_drawings(Json& failures, const Json& rows) {
 
 std::string count_text(const Json& count) { return grouped(count.get<std::uint64_t>()); }
 
-std::string misses_and_false_hits(const Json& counts) {
-  return counts.at("pairs") == 0 ? "-" : count_text(counts.at("miss")) + " / " + count_text(counts.at("false hit"));
+std::string negatives_and_positives(const Json& counts) {
+  return counts.at("pairs") == 0
+             ? "-"
+             : count_text(counts.at("false_negative")) + " / " + count_text(counts.at("false_positive"));
 }
 
 std::string nanoseconds_text(const Json& league, const Json& row) {
@@ -163,9 +164,9 @@ constexpr Extra kExtras[] = {
     {"clear", [](const Json&, const Json& row) { return count_text(row.at("clear")); }},
     {"declined", [](const Json&, const Json& row) { return count_text(row.at("total").at("declined")); }},
     {"crashed", [](const Json&, const Json& row) { return count_text(row.at("total").at("crashed")); }},
-    {"timed out", [](const Json&, const Json& row) { return count_text(row.at("total").at("timed out")); }},
+    {"timed out", [](const Json&, const Json& row) { return count_text(row.at("total").at("timed_out")); }},
     {"unstable", [](const Json&, const Json& row) { return count_text(row.at("total").at("unstable")); }},
-    {"not again", [](const Json&, const Json& row) { return count_text(row.at("total").at("not_again")); }},
+    {"not repeated", [](const Json&, const Json& row) { return count_text(row.at("total").at("not_repeated")); }},
     {"by convention",
      [](const Json&, const Json& row) {
        return row.at("total").at("outside") == 0 ? "-" : count_text(row.at("total").at("by_convention"));
@@ -206,7 +207,7 @@ std::string page_counts(const Json& league) {
     std::vector<std::string> cells{fmt::format("`{}`", row.at("lane").get<std::string>())};
     for (const auto& [group, pairs] : league.at("groups").items()) {
       const Json& counts = row.at("groups").at(group);
-      cells.push_back(misses_and_false_hits(counts));
+      cells.push_back(negatives_and_positives(counts));
       if (counts.at("pairs") != pairs && counts.at("pairs") != 0)
         cells.back() += " of " + count_text(counts.at("pairs"));
     }
@@ -249,6 +250,13 @@ std::string page_subjects(const Json& league) {
   return text;
 }
 
+std::string wrong_in_words(const std::string& says) {
+  return says == "disjoint"     ? "false negative"
+         : says == "intersects" ? "false positive"
+         : says == "timed_out"  ? "timed out"
+                                : says;
+}
+
 std::string page_failures(const Json& league) {
   std::string text, subject;
   for (const Json& failure : league.at("failures")) {
@@ -260,7 +268,7 @@ std::string page_failures(const Json& league) {
         failure.at("contact") == "none" ? "" : fmt::format(" (contact: {})", failure.at("contact").get<std::string>());
     const double ulps = failure.at("margin_ulps");
     text += fmt::format("\n**{}, {}**: `{}` says {}; the truth is {}{}, margin {:.4g}{}.{}\n",
-                        failure.at("shape").get<std::string>(), failure.at("by").get<std::string>(),
+                        failure.at("shape").get<std::string>(), wrong_in_words(failure.at("says")),
                         failure.at("lane").get<std::string>(), failure.at("says").get<std::string>(),
                         failure.at("truth").get<std::string>(), contact, failure.at("margin").get<double>(),
                         ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
@@ -307,7 +315,7 @@ Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& s
   return {{"seed", league.seed},     {"pairs", league.pairs},
           {"strata", league.strata}, {"groups", groups},
           {"subjects", own},         {"rows", rows},
-          {"failures", failures},    {"failures_not_again", league.failures_not_again},
+          {"failures", failures},    {"failures_not_repeated", league.failures_not_repeated},
           {"timings", timings}};
 }
 
@@ -341,19 +349,19 @@ std::string league_table(const Json& league, const Screen& screen) {
   for (const Json& row : league.at("rows")) {
     std::vector<Cell> cells{row.at("lane").get<std::string>()};
     for (const auto& [group, pairs] : league.at("groups").items())
-      cells.emplace_back(misses_and_false_hits(row.at("groups").at(group)));
+      cells.emplace_back(negatives_and_positives(row.at("groups").at(group)));
     for (const Extra* extra : extras) cells.emplace_back(extra->text(league, row));
     table.add(std::move(cells));
   }
   std::string pairs;
   for (const auto& [group, count] : league.at("groups").items())
     pairs += fmt::format("{}{} {}", pairs.empty() ? "" : ", ", group, count_text(count));
-  return wrapped(fmt::format("Misses / false hits within each one's contract, on the same {} pairs ({}).",
+  return wrapped(fmt::format("False negatives / false positives within each one's contract, on the same {} pairs ({}).",
                              count_text(league.at("pairs")), pairs),
                  screen.columns) +
          table.text(screen) +
-         wrapped(fmt::format("{} smallest failures, each shown again by a fresh process; {} were not.",
-                             league.at("failures").size(), count_text(league.at("failures_not_again"))),
+         wrapped(fmt::format("{} smallest failures, each repeated by a fresh process; {} were not.",
+                             league.at("failures").size(), count_text(league.at("failures_not_repeated"))),
                  screen.columns);
 }
 
@@ -365,10 +373,11 @@ Made by `{command}`; do not edit. The same {pairs} pairs went to all lanes: stra
 
 CGAL's exact decision and that of `core/exact` are the truth of every pair, and GMP's as well where a lane is wrong. Touching counts, and a degenerate triangle is a segment or a point. Where a library's documentation states nothing, every difference counts. Columns:
 
-- **general** to **extreme**: misses / false hits in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of" precedes the number of pairs where a lane did not count on all: slow lanes took the first pairs of each stratum, and pairs outside a lane's contract do not count.
+- **general** to **extreme**: false negatives / false positives in each group of strata. "near" has near pairs and exact contacts; "extreme" has needles, extreme coordinates and pairs far from the origin. "of" precedes the number of pairs where a lane did not count on all: slow lanes took the first pairs of each stratum, and pairs outside a lane's contract do not count.
 - **clear**: wrong verdicts, outside "extreme", on proper triangles that are not coplanar and whose margin is at least 2^{exponent} ulps of the largest coordinate. Neither a convention nor rounding of the input excuses them.
-- **declined**, **crashed**, **timed out**, **unstable**: pairs on which the lane gave no answer, or not always the same one.
-- **not again**: wrong verdicts that a new process did not repeat. They count as no error.
+- **declined**: pairs on which the lane gave no answer. They are not wrong.
+- **crashed**, **timed out**, **unstable**: pairs on which the lane failed, or did not always give the same verdict. They are wrong.
+- **not repeated**: verdicts other than the truth that a fresh process did not repeat. They count as no error.
 - **by convention**: wrong verdicts on pairs that the library's documentation leaves out of its contract. They are no errors.
 - **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders, the same truth).
 - **laws**: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that rounds nothing, or on which a part of a triangle intersects and the whole does not.
@@ -378,13 +387,13 @@ CGAL's exact decision and that of `core/exact` are the truth of every pair, and 
 
 {counts}
 ## Shares
-Wrong within the contract (misses, false hits, declined, crashed, timed out and unstable), in per cent of the pairs within it, with 95 % intervals.
+Wrong within the contract (false negatives, false positives, crashed, timed out and unstable), in per cent of the pairs within it, with 95 % intervals.
 
 {shares}
 ## Subjects
 {subjects}
 ## Smallest failures
-The simplest pair found of each subject, shape ("clear": as above) and way to be wrong; from the folder in which `scripts/league` ran. `graze repro --emit` makes a program of a pair. Confirmed by CGAL and GMP, and shown by a fresh process; {not_again} were not shown again and are not here. Orange is the second triangle, red where the two meet, dashed the line in both planes.
+The simplest pair found of each subject, shape ("clear": as above) and wrong verdict; from the folder in which `scripts/league` ran. `graze repro --emit` makes a program of a pair. Confirmed by CGAL and GMP, and shown by a fresh process; {not_repeated} were not repeated and are not here. Orange is the second triangle, red where the two meet, dashed the line in both planes.
 {failures})",
       fmt::arg("command", command), fmt::arg("pairs", count_text(league.at("pairs"))),
       fmt::arg("seed", league.at("seed").get<std::uint64_t>()), fmt::arg("counts", page_counts(league)),
@@ -392,7 +401,8 @@ The simplest pair found of each subject, shape ("clear": as above) and way to be
       fmt::arg("timed", fuzz::kLeagueTimedPairs),
       fmt::arg("machine", league.at("timings").at("machine").get<std::string>()),
       fmt::arg("date", league.at("timings").at("date").get<std::string>()), fmt::arg("shares", page_shares(league)),
-      fmt::arg("subjects", page_subjects(league)), fmt::arg("not_again", count_text(league.at("failures_not_again"))),
+      fmt::arg("subjects", page_subjects(league)),
+      fmt::arg("not_repeated", count_text(league.at("failures_not_repeated"))),
       fmt::arg("failures", page_failures(league)));
 }
 

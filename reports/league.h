@@ -23,7 +23,8 @@ struct LeagueSubject {
 inline constexpr std::size_t kMostDrawings = 40;
 
 // {"seed", "pairs", "strata", "groups": {group: pairs}, "subjects": [...], "rows": [...], "failures": [...],
-//  "failures_not_again", "timings"}: rows with the fewest clearly wrong verdicts first, then the fewest wrong ones. All
+//  "failures_not_repeated", "timings"}: rows with the fewest clearly wrong verdicts first, then the fewest wrong ones.
+//  All
 // but the timings depends on the pairs and the code alone.
 // Requires: nanoseconds of each row of the league.
 nlohmann::ordered_json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& subjects,

@@ -41,7 +41,7 @@ std::string empty_page(const std::string& command, const std::string& machine, c
                       {"subjects", none},
                       {"rows", none},
                       {"failures", none},
-                      {"failures_not_again", 0},
+                      {"failures_not_repeated", 0},
                       {"timings", {{"machine", machine}, {"date", date}}}},
                      command);
 }

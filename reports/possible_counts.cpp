@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 
 #include "core/pair.h"
 #include "core/text.h"
+#include "fuzz/counts_json.h"
 #include "reports/failure_cards.h"
 #include "reports/shapes.h"
 #include "reports/tables.h"
@@ -66,17 +66,18 @@ Drawn drawn_of(const Json& report, const Json& stratum, const Json& group = {}) 
 void expect_possible_rates(const Json& report) {
   for (const Json& row : report.at("rates")) {
     const Drawn of = drawn_of(report, row.at("stratum"));
-    std::uint64_t wrong = 0;
-    for (const char* field : {"declined", "crashed", "timed_out", "unstable"})
-      wrong += row.value(field, std::uint64_t{0});
-    for (const char* field : {"false_positive", "false_negative"})
-      wrong += row.at(field).at("count").get<std::uint64_t>();
+    Counts counts{row.at("false_positive").at("count"), row.at("false_negative").at("count")};
+    bool few = true;
+    for (const fuzz::CountField& field : fuzz::kCountFields) {
+      if (row.contains(field.key) && row[field.key].is_number()) counts.*field.count = row[field.key];
+      few = few && counts.*field.count <= of.pairs;
+    }
     const Json& differs = row.at("differs_from_cpu");
-    expect(row.at("wrong").at("count") == wrong && row["wrong"].at("of") == of.pairs &&
+    expect(few && row.at("wrong").at("count") == counts.wrong() && row["wrong"].at("of") == of.pairs &&
                row["false_negative"].at("of") == of.intersects &&
                row["false_positive"].at("of") == of.pairs - of.intersects &&
                (differs.is_null() || differs.at("of") == of.pairs) &&
-               row.value("by_convention", std::uint64_t{0}) <= of.pairs - wrong,
+               counts.not_right() + counts.by_convention <= of.pairs,
            fmt::format("rates of {} pairs that add up", of.pairs), row);
   }
   for (const Json& row : report.at("group_rates"))
@@ -158,21 +159,15 @@ void expect_lanes(const Json& part, std::size_t lanes) {
   }
 }
 
-std::uint64_t sum_of(const Json& errors, std::initializer_list<const char*> fields) {
-  std::uint64_t sum = 0;
-  for (const char* field : fields) sum += errors.at(field).get<std::uint64_t>();
-  return sum;
-}
-
 // Of `graze tune` and `graze trade`: no lane errs on more pairs than there were, and quartiles are in order.
 void expect_possible_errors(const Json& part) {
-  if (part.is_object() && part.contains("misses") && part.contains("pairs")) {
+  if (part.is_object() && part.contains("declined") && part.contains("pairs")) {
     const std::uint64_t pairs = part["pairs"];
     bool possible = true;
-    for (const char* field : {"misses", "false_hits", "declined", "mended", "broken"})
+    for (const char* field : {"false_positive", "false_negative", "declined", "fixed", "broken"})
       possible = possible && part.value(field, std::uint64_t{0}) <= pairs;
-    expect(possible && sum_of(part, {"misses", "false_hits", "declined"}) <= pairs,
-           fmt::format("errors on at most {} pairs", pairs), part);
+    expect(possible && fuzz::counts_of(part).not_right() <= pairs, fmt::format("errors on at most {} pairs", pairs),
+           part);
   } else if (part.is_object() && part.contains("middle")) {
     expect(0 <= part.at("low") && part["low"] <= part["middle"] && part["middle"] <= part.at("high"),
            "quartiles in their order", part);
@@ -208,9 +203,10 @@ void expect_possible_tuned(const Json& tuned) {
   expect_shape(tuned, "tuned");
   expect_possible_errors(tuned);
   const Json &confirmed = tuned.at("confirmed"), &forbid = tuned.at("forbid");
-  const std::uint64_t forbidden = forbid == "miss"    ? sum_of(confirmed, {"misses"})
-                                  : forbid == "false" ? sum_of(confirmed, {"false_hits"})
-                                                      : sum_of(confirmed, {"misses", "false_hits"});
+  const Counts counts = fuzz::counts_of(confirmed);
+  const std::uint64_t forbidden = forbid == "false_negative"   ? counts.false_negative
+                                  : forbid == "false_positive" ? counts.false_positive
+                                                               : counts.wrong();
   expect_bound(tuned.at("bound"), forbidden, confirmed.at("pairs"), tuned["bound"]);
   expect(tuned.at("zero_confirmed").at("pairs") == confirmed["pairs"], "the pairs of `confirmed`",
          tuned["zero_confirmed"]);
@@ -233,7 +229,7 @@ void expect_possible_trade(const Json& trade) {
   for (const Json& row : trade.at("lanes")) {
     const Json& errors = row.at("errors");
     expect(errors.at("pairs") == trade["lanes"][0].at("errors").at("pairs"), "the pairs of the first lane", row);
-    expect_bound(row.at("bound"), sum_of(errors, {"misses", "false_hits", "declined"}), errors.at("pairs"), row);
+    expect_bound(row.at("bound"), fuzz::counts_of(errors).not_right(), errors.at("pairs"), row);
   }
 }
 

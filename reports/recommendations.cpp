@@ -135,16 +135,28 @@ std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Plac
                      nanoseconds(costs->of(place, ground.strata)->middle), ground.pair);
 }
 
+// "; bound declines 1,200 pairs": of those lanes that give no answer on some pairs.
+std::string declining(const CampaignCounts& counts, const Places& lanes) {
+  std::string text;
+  for (const std::size_t l : lanes) {
+    if (const std::uint64_t declined = counts.total.lanes[l].declined; declined > 0)
+      text += fmt::format("; {} declines {} pairs", counts.lanes[l].id, grouped(declined));
+  }
+  return text;
+}
+
 }  // namespace
 
 Sentence lane_to_use(const CampaignCounts& counts, const Costs* costs) {
   const Places exact = exact_lanes(counts);
   if (exact.empty()) return {"No exact lane ran, so there is none to recommend for every pair.", false};
   for (const std::size_t l : exact) {
-    if (counts.total.wrong(l) == 0) continue;
+    const std::uint64_t not_right = counts.total.lanes[l].not_right();
+    if (not_right == 0) continue;
     return {
-        fmt::format("{} is wrong on {} of {} pairs, which must not be: trust no exact lane before that is explained.",
-                    counts.lanes[l].id, grouped(counts.total.wrong(l)), grouped(counts.total.pairs))};
+        fmt::format("{} is not right on {} of {} pairs, which must not be: trust no exact lane before that is "
+                    "explained.",
+                    counts.lanes[l].id, grouped(not_right), grouped(counts.total.pairs))};
   }
   return {fmt::format("Use {}: right on all {} pairs{}", ids(counts, exact), grouped(counts.total.pairs),
                       price(counts, costs, exact))};
@@ -194,10 +206,11 @@ Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const std::size_t most = *std::max_element(lanes.begin(), lanes.end(), less);
   const std::string bound = rate_words(bound_of_none(total.pairs), Bound::upper);
   if (total.wrong(most) == 0) {
-    return {fmt::format("{} wrong on none of {} pairs, so with 95 % confidence {} on fewer than {} of such pairs.",
+    return {fmt::format("{} wrong on none of {} pairs, so with 95 % confidence {} on fewer than {} of such pairs{}.",
                         lanes.size() == 1 ? fmt::format("The only published lane, {}, is", counts.lanes[least].id)
                                           : fmt::format("All {} published lanes are", lanes.size()),
-                        grouped(total.pairs), lanes.size() == 1 ? "it errs" : "each errs", bound)};
+                        grouped(total.pairs), lanes.size() == 1 ? "it errs" : "each errs", bound,
+                        declining(counts, lanes))};
   }
   const int next = first_of_others(counts, lanes, least, std::less<>());
   if (next >= 0 && !wrong_share(counts, least).apart(wrong_share(counts, static_cast<std::size_t>(next))))
@@ -209,9 +222,10 @@ Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
   const Places best = those_wrong(counts, lanes, total.wrong(least));
   const std::string cost = at_cost(counts, costs, best);
   if (lanes.size() == 1)
-    return {fmt::format("The only published lane, {}, is wrong on {}{}.", counts.lanes[least].id, found, cost)};
-  return {fmt::format("Of the {} published lanes the least wrong {} {}: on {}{}.", lanes.size(),
-                      best.size() == 1 ? "is" : "are", ids(counts, best), found, cost)};
+    return {fmt::format("The only published lane, {}, is wrong on {}{}{}.", counts.lanes[least].id, found, cost,
+                        declining(counts, lanes))};
+  return {fmt::format("Of the {} published lanes the least wrong {} {}: on {}{}{}.", lanes.size(),
+                      best.size() == 1 ? "is" : "are", ids(counts, best), found, cost, declining(counts, best))};
 }
 
 }  // namespace graze::reports

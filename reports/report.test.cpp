@@ -219,12 +219,12 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
                     json.is_object() ? json.value("costs", Json()) : json);
   });
 
-  const auto errors = [](std::uint64_t pairs, std::uint64_t misses, const char* policy) {
+  const auto errors = [](std::uint64_t pairs, std::uint64_t false_negatives, const char* policy) {
     analysis::PolicyErrors result;
     result.policy = policy;
     result.pairs = pairs;
-    result.misses = misses;
-    result.mended = result.broken = misses;
+    result.false_negative = false_negatives;
+    result.fixed = result.broken = false_negatives;
     return result;
   };
   analysis::Tuned tuned;
@@ -238,7 +238,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   tuned.scale.down = -4;
   tuned.scale.at_down = errors(4000, 2000, "rel:8");
   tuned.interactions = {{"a", "b", errors(400, 1, "a"), errors(400, 2, "b"), errors(400, 3, "c")}};
-  const Json tune = tuning_json({"moller_1997/f32/cpu", analysis::Forbid::miss, 1e-3}, tuned);
+  const Json tune = tuning_json({"moller_1997/f32/cpu", analysis::Forbid::false_negative, 1e-3}, tuned);
   const fs::path tune_file = root_ / "forged" / "tune.json", trade_file = root_ / "forged" / "trade.json";
   const auto tune_error = [&](const Json& json) {
     return error_of([&] { make_choices(root_ / "forged"); }, tune_file, json);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/text.h"
+#include "fuzz/counts_json.h"
 
 namespace graze::reports {
 
@@ -55,10 +56,9 @@ Json rates(const CampaignCounts& counts) {
       if (counts.lanes[l].cpu >= 0)
         rows.back()["differs_from_cpu"] = to_json(share_of(lane.differs_from_cpu, stratum.pairs));
       if (!lane.any_foreign()) return;
-      rows.back()["crashed"] = lane.crashed;
-      rows.back()["timed_out"] = lane.timed_out;
-      rows.back()["unstable"] = lane.unstable;
-      rows.back()["by_convention"] = lane.by_convention;
+      for (const fuzz::CountField& field : fuzz::kCountFields) {
+        if (field.foreign) rows.back()[field.key] = lane.*field.count;
+      }
     });
   }
   return rows;

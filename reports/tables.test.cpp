@@ -45,7 +45,7 @@ TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   analysis::Tuned tuned;
   tuned.chosen = "rel:8";
   tuned.confirmed.pairs = 1610;
-  tuned.confirmed.misses = 23;
+  tuned.confirmed.false_negative = 23;
   tuned.bound = analysis::upper_bound(23, 1610);
   ASSERT_GT(tuned.bound, 0.02);
   ASSERT_LT(tuned.bound, 0.0204);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <initializer_list>
 #include <numeric>
 #include <optional>
 #include <ostream>
@@ -12,26 +11,13 @@
 
 #include "analysis/convention.h"
 #include "corpus/pair_format.h"
+#include "fuzz/counts_json.h"
 #include "reports/text_table.h"
 
 namespace graze::reports {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// Of a lane's counts, those that are there.
-std::uint64_t sum(const Json& counts, std::initializer_list<const char*> fields) {
-  std::uint64_t total = 0;
-  for (const char* field : fields) {
-    const auto found = counts.find(field);
-    if (found != counts.end() && !found->is_null()) total += found->get<std::uint64_t>();
-  }
-  return total;
-}
-
-std::uint64_t errors(const Json& counts) {
-  return sum(counts, {"false_positive", "false_negative", "declined", "crashed", "timed_out", "unstable"});
-}
 
 void print_strata(std::ostream& out, const Json& summary, const Screen& screen) {
   std::vector<std::string> lanes;
@@ -50,50 +36,44 @@ void print_strata(std::ostream& out, const Json& summary, const Screen& screen) 
   for (const auto& [stratum, row] : summary["strata"].items()) {
     const std::uint64_t pairs = row["pairs"];
     std::vector<Cell> cells{stratum, grouped(pairs), bare_percent(row["intersects"], pairs)};
-    for (const std::string& id : lanes) cells.push_back(bare_percent(errors(row["lanes"][id]), pairs));
+    for (const std::string& id : lanes) cells.push_back(bare_percent(fuzz::counts_of(row["lanes"][id]).wrong(), pairs));
     table.add(std::move(cells));
   }
   out << table.text(screen);
 }
 
 void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
-  struct Kind {
-    const char *field, *title;
-    bool foreign;  // of foreign code alone
-  };
-  constexpr Kind kKinds[] = {{"false_positive", "false positive", false},
-                             {"false_negative", "false negative", false},
-                             {"declined", "declined", false},
-                             {"crashed", "crashed", true},
-                             {"timed_out", "timed out", true},
-                             {"unstable", "unstable", true},
-                             {"by_convention", "by convention", true},
-                             {"differs_from_cpu", "differs from cpu", false}};
-  const auto over_strata = [&](const std::string& id, const char* field) {
-    std::uint64_t total = 0;
-    bool any = false;
-    for (const auto& [stratum, row] : summary["strata"].items()) {
-      total += sum(row["lanes"][id], {field});
-      any = any || !row["lanes"][id].value(field, Json()).is_null();
-    }
-    return any ? std::optional(total) : std::nullopt;
-  };
   const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
-  std::vector<Column> columns{{"lane, over all strata", Align::left}};
-  std::vector<Kind> kinds;
-  for (const Kind& kind : kKinds) {
-    const auto has = [&](const std::string& id) { return over_strata(id, kind.field).value_or(0) > 0; };
-    if (kind.foreign && std::none_of(lanes.begin(), lanes.end(), has)) continue;
-    kinds.push_back(kind);
-    columns.push_back({kind.title});
-  }
-  TextTable table(columns);
-  for (const std::string& id : lanes) {
-    std::vector<Cell> cells{id};
-    for (const Kind& kind : kinds) {
-      const std::optional<std::uint64_t> count = over_strata(id, kind.field);
-      cells.push_back(count ? grouped(*count) : "-");
+  std::vector<Counts> counts(lanes.size());
+  std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // from cpu; nothing where nothing was compared
+  for (const auto& [stratum, row] : summary["strata"].items()) {
+    for (std::size_t l = 0; l < lanes.size(); ++l) {
+      const Json& of = row["lanes"][lanes[l]];
+      counts[l] += fuzz::counts_of(of);
+      const Json& apart = of.at("differs_from_cpu");
+      if (!apart.is_null()) differs[l] = differs[l].value_or(0) + apart.get<std::uint64_t>();
     }
+  }
+  std::vector<Column> columns{{"lane, over all strata", Align::left}};
+  std::vector<fuzz::CountField> fields;
+  for (const fuzz::CountField& field : fuzz::kCountFields) {
+    const auto has = [&](const Counts& lane) { return lane.*field.count > 0; };
+    if (field.foreign && std::none_of(counts.begin(), counts.end(), has)) continue;
+    fields.push_back(field);
+    std::string title = field.key;
+    std::replace(title.begin(), title.end(), '_', ' ');
+    columns.push_back({title});
+  }
+  columns.push_back({"differs from cpu"});
+  TextTable table(columns);
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    std::vector<Cell> cells{lanes[l]};
+    for (const fuzz::CountField& field : fields) {
+      const bool known = !field.foreign || summary["strata"].empty() ||
+                         summary["strata"].front()["lanes"][lanes[l]].contains(field.key);
+      cells.push_back(known ? grouped(counts[l].*field.count) : "-");
+    }
+    cells.push_back(differs[l] ? grouped(*differs[l]) : "-");
     table.add(std::move(cells));
   }
   out << '\n' << table.text(screen);
@@ -176,7 +156,7 @@ void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& tr
       Cell& cell = cells.emplace_back("-");
       for (std::size_t l = first; l < end && cell.text == "-"; ++l) {
         if (!belongs(*lanes[l], *variant)) continue;
-        const bool wrong = truth != Verdict::declined && verdicts[l] != truth;
+        const bool wrong = truth != Verdict::declined && is_wrong(verdicts[l], truth);
         const bool convention = wrong && analysis::by_convention(*lanes[l], verdicts[l], pair, true_of_pair);
         cell = {fmt::format("{}{}", name(verdicts[l]),
                             convention ? " (convention)"

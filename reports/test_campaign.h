@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fuzz/campaign/campaign.h"
+#include "fuzz/counts_json.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/kinds.h"
 
@@ -35,10 +36,8 @@ inline Json summary_of(const std::vector<std::string>& lanes, const std::vector<
     Json& row = summary["strata"][stratum] = {
         {"pairs", 1000}, {"intersects", 400}, {"lanes", Json::object()}, {"margins", Json::object()}};
     for (const std::string& lane : lanes) {
-      row["lanes"][lane] = {{"false_positive", counts.false_positive},
-                            {"false_negative", counts.false_negative},
-                            {"declined", counts.declined},
-                            {"differs_from_cpu", lane.ends_with("/cpu") ? 0 : counts.differs_from_cpu}};
+      row["lanes"][lane] = fuzz::counts_json(counts);
+      row["lanes"][lane]["differs_from_cpu"] = lane.ends_with("/cpu") ? 0 : counts.differs_from_cpu;
     }
   }
   return summary;

@@ -9,6 +9,7 @@
 
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "fuzz/counts_json.h"
 #include "reports/findings.h"
 #include "reports/svg.h"
 #include "reports/terminal.h"
@@ -27,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7, kLegend = 240;
 double share(const PolicyErrors& e) {
-  return e.pairs == 0 ? 0 : static_cast<double>(e.wrong() + e.declined) / static_cast<double>(e.pairs);
+  return e.pairs == 0 ? 0 : static_cast<double>(e.not_right()) / static_cast<double>(e.pairs);
 }
 
 double y_of(double rate) {
@@ -60,7 +61,9 @@ Json cost_json(const Cost& cost) {
 }
 
 Json errors_json(const PolicyErrors& e) {
-  return {{"pairs", e.pairs}, {"misses", e.misses}, {"false_hits", e.false_hits}, {"declined", e.declined}};
+  Json row = {{"pairs", e.pairs}};
+  row.update(fuzz::counts_json(e));
+  return row;
 }
 
 std::string nanoseconds(double ns) { return fmt::format("{:.{}f}", ns, ns < 1 ? 4 : 1); }
@@ -77,8 +80,8 @@ std::string trade_table(const Trade& trade, const Screen& screen) {
   std::vector<Column> columns = {{"lane", Align::left},
                                  {"ns a pair", Align::point},
                                  {trade.on_device ? "with copies" : "from memory", Align::point},
-                                 {"misses"},
-                                 {"false hits"},
+                                 {"false negatives"},
+                                 {"false positives"},
                                  {"declined"},
                                  {"", Align::left}};
   if (trade.on_device) columns.insert(columns.begin() + 3, {{"registers"}, {"local bytes"}, {"threads"}});
@@ -91,8 +94,8 @@ std::string trade_table(const Trade& trade, const Screen& screen) {
     std::vector<Cell> cells = {{offer.lane},
                                {nanoseconds(offer.near.middle)},
                                {nanoseconds(offer.far.middle)},
-                               {grouped(e.misses), e.misses > 0},
-                               {grouped(e.false_hits), e.false_hits > 0},
+                               {grouped(e.false_negative), e.false_negative > 0},
+                               {grouped(e.false_positive), e.false_positive > 0},
                                {grouped(e.declined)},
                                {words}};
     if (offer.needs) {
@@ -132,7 +135,7 @@ Json trade_json(const Trade& trade) {
   for (const Offer& offer : cheapest_first(trade.offers)) {
     rows.push_back({{"lane", offer.lane},
                     {"errors", errors_json(offer.errors)},
-                    {"bound", analysis::upper_bound(offer.errors.wrong() + offer.errors.declined, offer.errors.pairs)},
+                    {"bound", analysis::upper_bound(offer.errors.not_right(), offer.errors.pairs)},
                     {trade.on_device ? "resident" : "in_cache", cost_json(offer.near)},
                     {trade.on_device ? "with_copies" : "from_memory", cost_json(offer.far)},
                     {"dominated", offer.dominated},
@@ -186,7 +189,7 @@ std::string trade_figure(const Trade& trade) {
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {} ns, {} of {} "
         "pairs</title></circle>\n",
         x, y, offer.dominated ? 3 : 5, colour, offer.lane, nanoseconds(offer.near.middle),
-        grouped(offer.errors.wrong() + offer.errors.declined), grouped(offer.errors.pairs));
+        grouped(offer.errors.not_right()), grouped(offer.errors.pairs));
     if (offer.dominated) continue;
     front += fmt::format("{:.1f},{:.1f} ", x, y);
     svg += svg_text(x + 8, y - 6, "start", offer.lane, " fill=\"#d55e00\"");

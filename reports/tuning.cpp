@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "fuzz/counts_json.h"
 #include "reports/findings.h"
 #include "reports/svg.h"
 #include "reports/terminal.h"
@@ -21,7 +22,9 @@ using analysis::TuneResult;
 using Json = nlohmann::ordered_json;
 
 std::string_view words(Forbid forbid) {
-  return forbid == Forbid::miss ? "misses" : forbid == Forbid::false_hit ? "false hits" : "wrong verdicts";
+  return forbid == Forbid::false_negative   ? "false negatives"
+         : forbid == Forbid::false_positive ? "false positives"
+                                            : "wrong verdicts";
 }
 
 std::string policy_words(const std::string& policy) { return policy.empty() ? "no policy" : policy; }
@@ -30,13 +33,13 @@ std::string rate(std::uint64_t count, std::uint64_t of) {
   return rate_words(of == 0 ? 0 : static_cast<double>(count) / static_cast<double>(of));
 }
 
-// "12 misses (0.012 %) and 0 false hits of 100,000 pairs"
+// "12 false negatives (0.012 %) and 0 false positives of 100,000 pairs"
 std::string errors(const PolicyErrors& e) {
   const auto part = [&](std::uint64_t count, std::string_view what) {
     return fmt::format("{} {}{}", grouped(count), what, count == 0 ? "" : fmt::format(" ({})", rate(count, e.pairs)));
   };
-  return fmt::format("{} and {} of {} pairs", part(e.misses, "misses"), part(e.false_hits, "false hits"),
-                     grouped(e.pairs));
+  return fmt::format("{} and {} of {} pairs", part(e.false_negative, "false negatives"),
+                     part(e.false_positive, "false positives"), grouped(e.pairs));
 }
 
 std::string answer(const TuneQuestion& q, const Tuned& t) {
@@ -77,8 +80,7 @@ struct Frame {
   }
 };
 
-std::string line(const Frame& frame, const analysis::Curve& curve, const char* colour,
-                 std::uint64_t PolicyErrors::*count) {
+std::string line(const Frame& frame, const analysis::Curve& curve, const char* colour, std::uint64_t Counts::*count) {
   std::string points;
   for (const PolicyErrors& e : curve.points)
     points +=
@@ -88,8 +90,11 @@ std::string line(const Frame& frame, const analysis::Curve& curve, const char* c
 }
 
 Json errors_json(const PolicyErrors& e) {
-  return {{"policy", e.policy},     {"pairs", e.pairs},   {"misses", e.misses}, {"false_hits", e.false_hits},
-          {"declined", e.declined}, {"mended", e.mended}, {"broken", e.broken}};
+  Json row = {{"policy", e.policy}, {"pairs", e.pairs}};
+  row.update(fuzz::counts_json(e));
+  row["fixed"] = e.fixed;
+  row["broken"] = e.broken;
+  return row;
 }
 
 }  // namespace
@@ -99,8 +104,8 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
   if (!tuned.chosen.empty()) {
     result.push_back(fmt::format("Without a policy the same pairs show {}.", errors(tuned.zero_confirmed)));
     const PolicyErrors& e = tuned.confirmed;
-    result.push_back(fmt::format("Relocation: {} mends {} of these pairs and breaks {} others.", tuned.chosen,
-                                 grouped(e.mended), grouped(e.broken)));
+    result.push_back(fmt::format("Relocation: {} fixes {} of these pairs and breaks {} others.", tuned.chosen,
+                                 grouped(e.fixed), grouped(e.broken)));
   }
   for (const std::string& site : tuned.dead)
     result.push_back(fmt::format("Dead knob: at {} no tolerance changes any verdict here.", site));
@@ -123,7 +128,7 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
 
 Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
   constexpr std::string_view kResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable"};
-  constexpr std::string_view kForbid[] = {"miss", "false", "any"};
+  constexpr std::string_view kForbid[] = {"false_negative", "false_positive", "any"};
   Json json = {{"lane", question.lane},
                {"forbid", kForbid[static_cast<int>(question.forbid)]},
                {"max_rate", question.max_rate},
@@ -157,7 +162,7 @@ Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
 }
 
 std::string tuning_figure(const TuneQuestion& question, const Tuned& tuned) {
-  constexpr const char *kMiss = "#0072b2", *kFalseHit = "#d55e00";
+  constexpr const char *kNegative = "#0072b2", *kPositive = "#d55e00";
   std::string svg = svg_begin(fmt::format("Errors of {} against its tolerance", question.lane));
   for (int power = -7; power <= 0; ++power) {
     const double y = Frame::y(std::pow(10.0, power));
@@ -169,7 +174,8 @@ std::string tuning_figure(const TuneQuestion& question, const Tuned& tuned) {
     const double low = std::log2(analysis::tolerance_of(curve.points.front().policy)),
                  high = std::log2(analysis::tolerance_of(curve.points.back().policy));
     const Frame frame = curve.relative ? Frame{64, 460, low, high} : Frame{484, 880, low, high};
-    svg += line(frame, curve, kMiss, &PolicyErrors::misses) + line(frame, curve, kFalseHit, &PolicyErrors::false_hits);
+    svg +=
+        line(frame, curve, kNegative, &Counts::false_negative) + line(frame, curve, kPositive, &Counts::false_positive);
     for (const PolicyErrors& point : curve.points) {
       if (point.policy == tuned.chosen)
         svg += fmt::format(
@@ -193,8 +199,8 @@ std::string tuning_figure(const TuneQuestion& question, const Tuned& tuned) {
                        x + 16, colour);
     svg += svg_text(x + 21, 40, "start", what);
   };
-  legend(64, kMiss, "misses");
-  legend(232, kFalseHit, "false hits");
+  legend(64, kNegative, "false negatives");
+  legend(232, kPositive, "false positives");
   return svg + "</svg>\n";
 }
 

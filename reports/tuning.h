@@ -23,8 +23,8 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const an
 
 nlohmann::ordered_json tuning_json(const TuneQuestion& question, const analysis::Tuned& tuned);
 
-// An SVG of 900 x 420: misses and false hits against the tolerance at all sites, relative to the left, absolute to the
-// right; readable on light and dark ground.
+// An SVG of 900 x 420: false negatives and false positives against the tolerance at all sites, relative to the left,
+// absolute to the right; readable on light and dark ground.
 std::string tuning_figure(const TuneQuestion& question, const analysis::Tuned& tuned);
 
 }  // namespace graze::reports

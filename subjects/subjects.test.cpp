@@ -13,6 +13,7 @@
 #include "core/algorithms/algorithms.h"
 #include "core/error.h"
 #include "core/lanes.h"
+#include "core/verdicts.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 #include "subjects/process.h"
@@ -91,15 +92,7 @@ struct Subjects : testing::Test {
     return pair.a[0].x < pair.b[0].x ? Verdict::intersects : Verdict::disjoint;
   }
 
-  // Every pair's verdict, by blocks of all of them.
-  static std::vector<Verdict> verdicts(const DecideBlock& block) {
-    std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
-    block(pairs.data(), pairs.size(), yes.data(), none.data());
-    std::vector<Verdict> result;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      result.push_back(block.verdict_of(yes[i / 64] >> i % 64 & 1, none[i / 64] >> i % 64 & 1, pairs[i]));
-    return result;
-  }
+  static std::vector<Verdict> verdicts(const DecideBlock& block) { return verdicts_of(block, pairs); }
   // Of the bad pairs this, of the others what `good` says.
   static void expect(ForeignProcesses& subject, Verdict of_bad) {
     const std::vector<Verdict> found = verdicts(subject);

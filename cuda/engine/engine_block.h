@@ -90,6 +90,10 @@ GRAZE_HD inline Mark mark_of(const LaneWords& lane, std::uint32_t i, bool truth)
   return says == truth ? Mark::right : says ? Mark::false_positive : Mark::false_negative;
 }
 
+// Whether some mark of a key's word is a wrong verdict's; a declined one is not.
+GRAZE_HD constexpr bool any_wrong(std::uint64_t marks) { return ((marks ^ marks >> 1) & 0x5555555555555555u) != 0; }
+static_assert(static_cast<int>(Mark::right) == 0 && static_cast<int>(Mark::declined) == 3);
+
 constexpr Verdict verdict_of(Mark mark, Verdict truth) {
   return mark == Mark::declined         ? Verdict::declined
          : mark == Mark::right          ? truth
@@ -144,8 +148,9 @@ struct SignatureKey {
         first_marks(marks(b, group, 0, pair, truth)) {}
 
   GRAZE_HD bool any_wrong() const {
-    bool any = first_marks != 0;
-    for (std::uint32_t w = 1; !any && w * kMarksOfWord < group.count; ++w) any = marks(block, group, w, i, truth) != 0;
+    bool any = graze::cuda::any_wrong(first_marks);
+    for (std::uint32_t w = 1; !any && w * kMarksOfWord < group.count; ++w)
+      any = graze::cuda::any_wrong(marks(block, group, w, i, truth));
     return any;
   }
   GRAZE_HD std::uint64_t word(std::uint32_t k) const {

@@ -22,7 +22,7 @@ struct MarkWrong {
     std::uint32_t wrong = 0;
     for (std::uint32_t l = 0; l < block.lanes.count; ++l) {
       const LaneWords& lane = block.lanes.lanes[l];
-      wrong |= (lane.intersects[word] ^ block.truth[word]) | lane.declined[word];
+      wrong |= (lane.intersects[word] ^ block.truth[word]) & ~lane.declined[word];
     }
     block.wrong[word] = wrong;
   }

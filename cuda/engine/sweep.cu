@@ -47,11 +47,11 @@ __global__ void __launch_bounds__(kThreads)
     was_wrong = (zero.declined[w] | (zero.intersects[w] ^ is)) & judged;
   }
   const std::uint32_t wrong = off | none;
-  add(&counts->misses, static_cast<std::uint32_t>(__popc(off & is)));
-  add(&counts->false_hits, static_cast<std::uint32_t>(__popc(off & ~is)));
+  add(&counts->false_negative, static_cast<std::uint32_t>(__popc(off & is)));
+  add(&counts->false_positive, static_cast<std::uint32_t>(__popc(off & ~is)));
   add(&counts->declined, static_cast<std::uint32_t>(__popc(none)));
   const std::uint64_t index = first + std::uint64_t{w} * 32;
-  add(&counts->mended, &counts->first_mended, was_wrong & ~wrong, index);
+  add(&counts->fixed, &counts->first_fixed, was_wrong & ~wrong, index);
   add(&counts->broken, &counts->first_broken, judged & ~was_wrong & wrong, index);
 }
 

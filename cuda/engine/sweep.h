@@ -7,16 +7,16 @@
 #include <span>
 #include <vector>
 
+#include "core/counts.h"
 #include "core/lanes.h"
 #include "strata/pair_source.h"
 
 namespace graze::cuda {
 
 // Of one lane. Pairs that are not finite are counted nowhere.
-struct ErrorCounts {
-  std::uint64_t misses = 0, false_hits = 0, declined = 0;
-  std::uint64_t mended = 0, broken = 0;  // right, and the lane to compare with wrong or without an answer; or otherwise
-  std::uint64_t first_mended = ~std::uint64_t{0}, first_broken = ~std::uint64_t{0};  // indices; at first none
+struct ErrorCounts : Counts {
+  std::uint64_t fixed = 0, broken = 0;  // right, and the lane to compare with wrong or without an answer; or otherwise
+  std::uint64_t first_fixed = ~std::uint64_t{0}, first_broken = ~std::uint64_t{0};  // indices; at first none
 };
 
 // Of each lane, on all pairs of the source.

@@ -201,7 +201,7 @@ void measure_sweep(benchmark::State& state, const Lane& lane, const std::string&
   std::uint64_t wrong = 0;
   for (auto _ : state) {
     const auto start = std::chrono::steady_clock::now();
-    for (const ErrorCounts& counts : count_errors(lane, under, source)) wrong += counts.misses + counts.false_hits;
+    for (const ErrorCounts& counts : count_errors(lane, under, source)) wrong += counts.wrong();
     state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
   if (wrong == 0) state.SkipWithError("expected wrong verdicts, found none");

@@ -97,7 +97,7 @@ TEST_F(CampaignTest, CountsExtremesWhereAStratumVariesThem) {
       for (std::size_t l = 0; l < under_test_.lanes.size(); ++l) {
         std::uint64_t intersects = 0, declined = 0;
         under_test_.on_host[l](&pair, 1, &intersects, &declined);
-        if (declined || (intersects != 0) != truth) ++cell[under_test_.lanes[l]->id];
+        if (!declined && (intersects != 0) != truth) ++cell[under_test_.lanes[l]->id];
       }
     }
     const Json& extremes = strata[source.id]["extremes"];

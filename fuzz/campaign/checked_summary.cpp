@@ -8,6 +8,7 @@
 
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/counts_json.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -31,13 +32,6 @@ std::uint64_t count(const Json& row, const char* field) {
   return value.get<std::uint64_t>();
 }
 
-std::uint64_t wrong_of(const Json& lane) {
-  std::uint64_t wrong = 0;
-  for (const char* field : {"false_positive", "false_negative", "declined", "crashed", "timed_out", "unstable"})
-    wrong += lane.contains(field) ? count(lane, field) : 0;
-  return wrong;
-}
-
 // Rows {"pairs", "wrong": {lane: count}}, which split the stratum's pairs.
 void expect_split(const std::string& where, const Json& rows, const Json& stratum) {
   std::uint64_t pairs = 0;
@@ -53,7 +47,8 @@ void expect_split(const std::string& where, const Json& rows, const Json& stratu
   }
   expect(pairs == count(stratum, "pairs"), fmt::format("{} pairs by {}", count(stratum, "pairs"), where), pairs);
   for (const auto& [lane, row] : stratum.at("lanes").items())
-    expect(wrong[lane] == wrong_of(row), fmt::format("{} wrong of {} by {}", wrong_of(row), lane, where), wrong[lane]);
+    expect(wrong[lane] == counts_of(row).wrong(),
+           fmt::format("{} wrong of {} by {}", counts_of(row).wrong(), lane, where), wrong[lane]);
 }
 
 void expect_possible(const Json& stratum) {
@@ -65,8 +60,12 @@ void expect_possible(const Json& stratum) {
     };
     most("false_positive", pairs - intersects);
     most("false_negative", intersects);
+    for (const CountField& field : kCountFields) {
+      if (!field.foreign || row.contains(field.key)) most(field.key, pairs);
+    }
     if (!row.at("differs_from_cpu").is_null()) most("differs_from_cpu", pairs);
-    const std::uint64_t judged = wrong_of(row) + (row.contains("by_convention") ? count(row, "by_convention") : 0);
+    const Counts counts = counts_of(row);
+    const std::uint64_t judged = counts.not_right() + counts.by_convention;
     expect(judged <= pairs, fmt::format("at most {} verdicts of {} that are not the truth's", pairs, lane), judged);
   }
   expect_split("margin", stratum.at("margins"), stratum);

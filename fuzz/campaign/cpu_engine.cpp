@@ -105,19 +105,19 @@ class BlockJudge {
       for (std::size_t i = 0; i < pairs.size(); ++i) extremes_[i] = place_on_axis(pairs[i], axis);
       result.extremes.add(analysis::JudgedBlock{pairs.size(), truth_, extremes_, views_});
     }
-    const analysis::Bits wrong = analysis::disagreements(block);
+    const analysis::Bits not_right = analysis::not_right(block);
     const std::uint64_t sample = exact_ ? kSample : kGmpSample;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool disagreement = analysis::test_bit(wrong, i), sampled = indices[i] % sample == 0;
-      if (!disagreement && !sampled) continue;
+      const bool some_not_right = analysis::test_bit(not_right, i), sampled = indices[i] % sample == 0;
+      if (!some_not_right && !sampled) continue;
       const Relation relation = exact_ ? relation_by_exact_lane(pairs[i], indices[i], i, sampled, result)
                                        : relation_by_oracle(pairs[i], indices[i], i, result);
-      if (disagreement) add_failures(pairs[i], CaseKey{indices[i], source_}, i, relation, result, found);
+      if (some_not_right) add_failures(pairs[i], CaseKey{indices[i], source_}, i, relation, result, found);
     }
     if (!found) return;
     found->truth = truth(0);
     found->bucket = buckets_[0];
-    if (!analysis::test_bit(wrong, 0)) verdicts_.assign(views_.size(), found->truth);
+    if (!analysis::test_bit(not_right, 0)) verdicts_.assign(views_.size(), found->truth);
     found->verdicts = verdicts_;
   }
 
@@ -190,7 +190,7 @@ class BlockJudge {
         verdicts_[l] = truth(i);
         continue;
       }
-      any_wrong = true;
+      any_wrong = any_wrong || is_wrong(verdicts_[l], truth(i));
     }
     if (!any_wrong) return;
     ++result.disagreements;

@@ -10,7 +10,7 @@ void SignatureCounts::add(const Relation& truth, Bucket bucket, std::span<const 
                           const CaseKey& pair) {
   analysis::for_each_subject(lanes_, [&](std::size_t first, std::size_t count) {
     const std::span<const Verdict> of_subject = verdicts.subspan(first, count);
-    if (std::all_of(of_subject.begin(), of_subject.end(), [&](Verdict verdict) { return verdict == truth.verdict; }))
+    if (std::none_of(of_subject.begin(), of_subject.end(), [&](Verdict said) { return is_wrong(said, truth.verdict); }))
       return;
     const Head head{packed(truth), bucket, static_cast<std::uint16_t>(first)};
     key_.assign(reinterpret_cast<const char*>(&head), sizeof head);

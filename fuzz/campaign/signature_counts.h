@@ -18,7 +18,7 @@ class SignatureCounts {
   // Requires: lanes in table order.
   explicit SignatureCounts(std::vector<const Lane*> lanes) : lanes_(std::move(lanes)) {}
 
-  // Counts the pair for each subject of which a lane's verdict is not the truth.
+  // Counts the pair for each subject of which a lane's verdict is wrong.
   void add(const Relation& truth, Bucket bucket, std::span<const Verdict> verdicts, const CaseKey& pair);
 
   // Adds all that was counted, and begins anew.

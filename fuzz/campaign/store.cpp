@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/margin/axis.h"
+#include "fuzz/counts_json.h"
 
 namespace graze::fuzz {
 namespace {
@@ -53,15 +54,8 @@ Json source_results(const strata::PairSource& source, const StoreSpec& spec, con
   }
   Json row = {{"pairs", pairs}, {"intersects", intersects}, {"lanes", Json::object()}, {"margins", margins}};
   for (std::size_t l = 0; l < lanes.size(); ++l) {
-    Json& of = row["lanes"][lanes[l]] = {{"false_positive", of_lane[l].false_positive},
-                                         {"false_negative", of_lane[l].false_negative},
-                                         {"declined", of_lane[l].declined},
-                                         {"differs_from_cpu", of_lane[l].differs_from_cpu}};
-    if (!is_foreign(spec, lanes[l])) continue;
-    of["crashed"] = of_lane[l].crashed;
-    of["timed_out"] = of_lane[l].timed_out;
-    of["unstable"] = of_lane[l].unstable;
-    of["by_convention"] = of_lane[l].by_convention;
+    Json& of = row["lanes"][lanes[l]] = counts_json(of_lane[l], is_foreign(spec, lanes[l]));
+    of["differs_from_cpu"] = of_lane[l].differs_from_cpu;
   }
   if (source.axis != Axis::none) row["extremes"][std::string(name(source.axis))] = extremes;
   return row;

@@ -83,15 +83,10 @@ std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally&
       expect(l > last_lane, what);
       last_lane = l;
       const auto foreign = [&](std::size_t i) { return lane.size() == 9 ? whole(lane[i], here, what) : 0; };
-      const analysis::LaneCounts counts{whole(lane[1], here - intersects, what),
-                                        whole(lane[2], intersects, what),
-                                        whole(lane[3], here, what),
-                                        whole(lane[4], here, what),
-                                        foreign(5),
-                                        foreign(6),
-                                        foreign(7),
-                                        foreign(8)};
-      expect(counts.wrong() + counts.by_convention <= here && (lane.size() == 5 || counts.any_foreign()), what);
+      const analysis::LaneCounts counts{{whole(lane[1], here - intersects, what), whole(lane[2], intersects, what),
+                                         whole(lane[3], here, what), foreign(5), foreign(6), foreign(7), foreign(8)},
+                                        whole(lane[4], here, what)};
+      expect(counts.not_right() + counts.by_convention <= here && (lane.size() == 5 || counts.any_foreign()), what);
       tally.add(bucket, l, counts);
     }
   }

@@ -296,8 +296,8 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
       << damaged;
   EXPECT_NE(damaged.find("--shard 2/3"), std::string::npos) << damaged;
   run_shard("part-2", {2, 3});  // that round again
-  merge({parts, root_ / "mended", false});
-  expect_same_hunt("merged", "mended");
+  merge({parts, root_ / "repaired", false});
+  expect_same_hunt("merged", "repaired");
   EXPECT_THROW(run("merged", 1), UsageError);
 }
 

@@ -16,6 +16,7 @@
 #include "analysis/neighbours.h"
 #include "analysis/tally.h"
 #include "core/relation_of.h"
+#include "core/verdicts.h"
 #include "fuzz/league/smallest.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimise.h"
@@ -37,15 +38,6 @@ Relation true_of(const Pair& pair) {
   return found;
 }
 
-std::vector<Verdict> verdicts_of(const DecideBlock& decide, std::span<const Pair> pairs) {
-  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
-  if (!pairs.empty()) decide(pairs.data(), pairs.size(), intersects.data(), declined.data());
-  std::vector<Verdict> verdicts(pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    verdicts[i] = decide.verdict_of(analysis::test_bit(intersects, i), analysis::test_bit(declined, i), pairs[i]);
-  return verdicts;
-}
-
 // One row as it is counted.
 struct Counting {
   LeagueRow row;
@@ -54,7 +46,7 @@ struct Counting {
   std::uint64_t of_source;  // it takes so many pairs of each source, the first ones
   Smallest smallest;
 
-  // GMP's word on a verdict that counts as wrong.
+  // GMP's word on a verdict that is not the truth.
   void confirm(const Pair& pair, const Relation& truth) const {
     const Contact contact = oracle::gmp_contact(pair);
     if (contact != truth.contact) {
@@ -65,7 +57,7 @@ struct Counting {
 
   void count(std::span<const Pair> pairs, const std::vector<Relation>& truths, LeagueCounts& counts) {
     const std::vector<Verdict> said = verdicts_of(*decide, pairs);
-    std::vector<std::size_t> wrong;
+    std::vector<std::size_t> not_right;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const bool outside = analysis::is_outside(*row.lane, pairs[i], truths[i]);
       ++(outside ? counts.outside : counts.pairs);
@@ -73,36 +65,37 @@ struct Counting {
       if (outside && !is_failure(said[i])) {
         ++counts.by_convention;
       } else {
-        wrong.push_back(i);
+        not_right.push_back(i);
       }
     }
-    count_wrong(pairs, truths, said, wrong, counts);
+    count_not_right(pairs, truths, said, not_right, counts);
     if (!fused) return;
     const std::vector<Verdict> other = verdicts_of(fused->decide, pairs);
     for (std::size_t i = 0; i < pairs.size(); ++i) *row.flips += said[i] != other[i];
   }
 
-  void count_wrong(std::span<const Pair> pairs, const std::vector<Relation>& truths, const std::vector<Verdict>& said,
-                   const std::vector<std::size_t>& wrong, LeagueCounts& counts) {
+  void count_not_right(std::span<const Pair> pairs, const std::vector<Relation>& truths,
+                       const std::vector<Verdict>& said, const std::vector<std::size_t>& not_right,
+                       LeagueCounts& counts) {
     std::vector<Pair> again_of;
-    for (const std::size_t i : wrong) again_of.push_back(pairs[i]);
+    for (const std::size_t i : not_right) again_of.push_back(pairs[i]);
     const std::vector<Verdict> again = said_afresh(*row.lane, again_of);
-    for (std::size_t k = 0; k < wrong.size(); ++k) {
-      const std::size_t i = wrong[k];
+    for (std::size_t k = 0; k < not_right.size(); ++k) {
+      const std::size_t i = not_right[k];
       confirm(pairs[i], truths[i]);
       if (again[k] != said[i]) {
-        ++counts.not_again;
+        ++counts.not_repeated;
         continue;
       }
-      const WrongBy by = wrong_by(said[i]);
-      ++counts.wrong[static_cast<std::size_t>(by)];
+      ++counts.of(said[i]);
+      if (!is_wrong(said[i], truths[i].verdict)) continue;
       const std::string_view shape = shape_name(truths[i].hulls);
       if (shape == "general" && truths[i].margin_sign != 0) {
         const int exponent = std::abs(int{oracle::margin_bucket(pairs[i], truths[i].verdict)}) + kBucketLowest - 1;
         counts.clear += exponent >= kClearExponent;
-        if (exponent >= kClearExponent) smallest.add(kClear, by, pairs[i]);
+        if (exponent >= kClearExponent) smallest.add(kClear, said[i], pairs[i]);
       }
-      smallest.add(shape, by, pairs[i]);
+      smallest.add(shape, said[i], pairs[i]);
     }
   }
 
@@ -167,15 +160,12 @@ LeagueGroup league_group(std::string_view stratum) {
   }
 }
 
-std::uint64_t LeagueCounts::all_wrong() const { return std::accumulate(wrong.begin(), wrong.end(), std::uint64_t{0}); }
-
 LeagueCounts& LeagueCounts::operator+=(const LeagueCounts& other) {
+  Counts::operator+=(other);
   pairs += other.pairs;
-  for (std::size_t i = 0; i < kWrongByCount; ++i) wrong[i] += other.wrong[i];
   clear += other.clear;
   outside += other.outside;
-  by_convention += other.by_convention;
-  not_again += other.not_again;
+  not_repeated += other.not_repeated;
   return *this;
 }
 
@@ -238,7 +228,7 @@ League run_league(const LanesUnderTest& under_test, std::vector<strata::PairSour
     league.rows.push_back(counting.row);
     counting.smallest.add_candidates(*counting.row.lane, candidates);
   }
-  if (!stopped) league.failures = smallest_failures(candidates, league.failures_not_again);
+  if (!stopped) league.failures = smallest_failures(candidates, league.failures_not_repeated);
   return league;
 }
 

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/counts.h"
 #include "fuzz/lanes_under_test.h"
 #include "oracle/truth.h"
 #include "strata/pair_source.h"
@@ -25,25 +26,17 @@ inline constexpr std::string_view kLeagueGroups[] = {"general", "near", "coplana
 inline constexpr std::size_t kLeagueGroupCount = std::size(kLeagueGroups);
 LeagueGroup league_group(std::string_view stratum);
 
-// How a verdict is wrong.
-enum class WrongBy : std::uint8_t { miss, false_hit, declined, crashed, timed_out, unstable };
-inline constexpr std::string_view kWrongBy[] = {"miss", "false hit", "declined", "crashed", "timed out", "unstable"};
-inline constexpr std::size_t kWrongByCount = std::size(kWrongBy);
-
 // From this many ulps of the largest coordinate on, no rounding of an input to float32 excuses a verdict.
 inline constexpr int kClearExponent = 12;
 inline constexpr std::string_view kClear = "clear";  // what such a failure has for its shape
 
-// Of one row and group. Wrong is what a fresh process said again.
-struct LeagueCounts {
-  std::uint64_t pairs = 0;  // within its contract
-  std::array<std::uint64_t, kWrongByCount> wrong{};
-  std::uint64_t clear = 0;  // wrong ones with both triangles proper, not coplanar, |margin| >= 2^kClearExponent ulps
-  std::uint64_t outside = 0,
-                by_convention = 0;  // pairs that its convention leaves open; those of them not as the truth
-  std::uint64_t not_again = 0;      // wrong at first, and not, or otherwise, in a fresh process
+// Of one row and group, for its pairs within the lane's contract. Wrong is what a fresh process said again.
+struct LeagueCounts : Counts {
+  std::uint64_t pairs = 0;    // within its contract
+  std::uint64_t clear = 0;    // wrong ones with both triangles proper, not coplanar, |margin| >= 2^kClearExponent ulps
+  std::uint64_t outside = 0;  // pairs that its convention leaves open
+  std::uint64_t not_repeated = 0;  // not right at first, and right or otherwise in a fresh process
 
-  std::uint64_t all_wrong() const;
   LeagueCounts& operator+=(const LeagueCounts& other);
 };
 
@@ -51,10 +44,9 @@ struct LeagueCounts {
 struct LeagueFailure {
   const Lane* lane;  // the first of its subject that fails so
   std::string shape;
-  WrongBy by;
+  Verdict verdict;  // in a fresh process; it is the way in which the lane is wrong
   Pair pair;
   oracle::Truth truth;  // by CGAL and GMP
-  Verdict verdict;      // in a fresh process
   bool minimised;       // otherwise as it was met: a failure that would cost too much, or comes and goes
 };
 
@@ -71,8 +63,8 @@ struct League {
   std::uint64_t seed = 1, pairs = 0;
   std::vector<std::string> strata;
   std::vector<LeagueRow> rows;
-  std::vector<LeagueFailure> failures;   // of subjects in the rows' order
-  std::uint64_t failures_not_again = 0;  // smallest failures that a fresh process did not show
+  std::vector<LeagueFailure> failures;      // of subjects in the rows' order
+  std::uint64_t failures_not_repeated = 0;  // smallest failures that a fresh process did not show
 };
 
 // The lanes of the league: those of these patterns that are built as cpu, and their cpu-fma counterparts.

@@ -9,6 +9,7 @@
 
 #include "analysis/convention.h"
 #include "analysis/tally.h"
+#include "core/verdicts.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimise.h"
@@ -22,7 +23,7 @@ constexpr std::size_t kMostMovedHere = 150'000;  // there may be hundreds; where
 // A pair on which a process dies costs another one, a pair on which it does not return its time; what comes and goes
 // cannot be walked along.
 std::size_t most_moved(const Candidate& candidate) {
-  if (candidate.by == WrongBy::timed_out || candidate.by == WrongBy::unstable) return 0;
+  if (candidate.says == Verdict::timed_out || candidate.says == Verdict::unstable) return 0;
   return candidate.lane_dies ? kLeastMoved + 10'000 : kMostMovedHere;
 }
 
@@ -38,7 +39,7 @@ bool is_clear(const oracle::Truth& truth) {
 }
 
 LeagueFailure minimised(const Candidate& candidate) {
-  LeagueFailure result{candidate.lane, candidate.shape, candidate.by, candidate.pair, {}, Verdict::declined, false};
+  LeagueFailure result{candidate.lane, candidate.shape, candidate.says, candidate.pair, {}, false};
   if (most_moved(candidate) == 0) return result;
   try {
     const LanesUnderTest under_test = alone(*candidate.lane);
@@ -61,44 +62,21 @@ bool fails_so(const LeagueFailure& failure, const Pair& pair) {
   const Verdict verdict = decide_one(failure.lane->decide, pair);
   const oracle::Truth truth = oracle::truth(pair);
   const bool shaped = failure.shape == kClear ? is_clear(truth) : shape_name(truth.hulls) == failure.shape;
-  return shaped && verdict != truth.verdict && wrong_by(verdict) == failure.by &&
+  return shaped && verdict != truth.verdict && verdict == failure.verdict &&
          !analysis::by_convention(*failure.lane, verdict, pair, truth);
 }
 
 }  // namespace
 
-WrongBy wrong_by(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::disjoint:
-      return WrongBy::miss;
-    case Verdict::intersects:
-      return WrongBy::false_hit;
-    case Verdict::crashed:
-      return WrongBy::crashed;
-    case Verdict::timed_out:
-      return WrongBy::timed_out;
-    case Verdict::unstable:
-      return WrongBy::unstable;
-    default:
-      return WrongBy::declined;
-  }
-}
-
 std::vector<Verdict> said_afresh(const Lane& lane, const std::vector<Pair>& pairs) {
   if (pairs.empty()) return {};
   std::unique_ptr<subjects::ForeignProcesses> fresh;
   if (lane.foreign) fresh = subjects::processes_of(lane).anew();
-  const DecideBlock decide = fresh ? DecideBlock(*fresh) : lane.decide;
-  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
-  decide(pairs.data(), pairs.size(), intersects.data(), declined.data());
-  std::vector<Verdict> verdicts;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    verdicts.push_back(decide.verdict_of(analysis::test_bit(intersects, i), analysis::test_bit(declined, i), pairs[i]));
-  return verdicts;
+  return verdicts_of(fresh ? DecideBlock(*fresh) : lane.decide, pairs);
 }
 
-void Smallest::add(std::string_view shape, WrongBy by, const Pair& pair) {
-  const std::pair<std::string, WrongBy> key{shape, by};
+void Smallest::add(std::string_view shape, Verdict says, const Pair& pair) {
+  const std::pair<std::string, Verdict> key{shape, says};
   const auto found = pairs_.find(key);
   if (found == pairs_.end()) {
     pairs_.emplace(key, std::pair(simplicity(pair), pair));
@@ -109,16 +87,16 @@ void Smallest::add(std::string_view shape, WrongBy by, const Pair& pair) {
 
 void Smallest::add_candidates(const Lane& lane, std::vector<Candidate>& candidates) const {
   const bool dies = std::any_of(pairs_.begin(), pairs_.end(), [](const auto& row) {
-    return row.first.second == WrongBy::crashed || row.first.second == WrongBy::timed_out;
+    return row.first.second == Verdict::crashed || row.first.second == Verdict::timed_out;
   });
   for (const auto& [key, pair] : pairs_) candidates.push_back({&lane, key.first, key.second, pair.second, dies});
 }
 
-std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_again) {
+std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_repeated) {
   std::vector<const Candidate*> first;
-  std::set<std::tuple<const AlgorithmInfo*, std::string, WrongBy>> seen;
+  std::set<std::tuple<const AlgorithmInfo*, std::string, Verdict>> seen;
   for (const Candidate& candidate : candidates) {
-    if (seen.emplace(candidate.lane->info, candidate.shape, candidate.by).second) first.push_back(&candidate);
+    if (seen.emplace(candidate.lane->info, candidate.shape, candidate.says).second) first.push_back(&candidate);
   }
   std::vector<LeagueFailure> failures(first.size());
   tbb::parallel_for(std::size_t{0}, first.size(), [&](std::size_t i) { failures[i] = minimised(*first[i]); });
@@ -128,7 +106,7 @@ std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candi
     if (!failures[i].minimised) return;
     Simplicity least = simplicity(failures[i].pair);
     for (const LeagueFailure& other : failures) {
-      if (!other.minimised || other.shape != failures[i].shape || other.by != failures[i].by) continue;
+      if (!other.minimised || other.shape != failures[i].shape || other.verdict != failures[i].verdict) continue;
       const Simplicity its = simplicity(other.pair);
       if (!(its < least) || !fails_so(failures[i], other.pair)) continue;
       least = its;
@@ -140,14 +118,14 @@ std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candi
   tbb::parallel_for(std::size_t{0}, shared.size(), [&](std::size_t i) {
     LeagueFailure& failure = shared[i];
     failure.truth = oracle::truth(failure.pair);
-    failure.verdict = said_afresh(*failure.lane, {failure.pair}).front();
-    shown[i] = failure.verdict != failure.truth.verdict && wrong_by(failure.verdict) == failure.by;
+    const Verdict again = said_afresh(*failure.lane, {failure.pair}).front();
+    shown[i] = again == failure.verdict && again != failure.truth.verdict;
   });
   std::vector<LeagueFailure> result;
   for (std::size_t i = 0; i < shared.size(); ++i) {
     if (shown[i]) result.push_back(shared[i]);
   }
-  not_again = shared.size() - result.size();
+  not_repeated = shared.size() - result.size();
   return result;
 }
 

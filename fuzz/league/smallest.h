@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The league's smallest failures: of each subject, shape and way to be wrong one pair, minimised, and shown again by a
+// The league's smallest failures: one pair of each subject, shape and wrong verdict, minimised, and shown again by a
 // process that has seen no other pair.
 #pragma once
 
@@ -14,33 +14,30 @@
 
 namespace graze::fuzz {
 
-// Requires: a verdict that is wrong.
-WrongBy wrong_by(Verdict verdict);
-
 // What the lane says in a process that has seen no pair before these.
 std::vector<Verdict> said_afresh(const Lane& lane, const std::vector<Pair>& pairs);
 
 struct Candidate {
   const Lane* lane;
   std::string shape;
-  WrongBy by;
+  Verdict says;  // wrong
   Pair pair;
   bool lane_dies;  // it crashed or did not return on some pair of the league
 };
 
-// Of one lane the simplest pair of each shape and way to be wrong. The order of adding does not matter.
+// Of one lane the simplest pair of each shape and wrong verdict. The order of adding does not matter.
 class Smallest {
  public:
-  void add(std::string_view shape, WrongBy by, const Pair& pair);
+  void add(std::string_view shape, Verdict says, const Pair& pair);
   void add_candidates(const Lane& lane, std::vector<Candidate>& candidates) const;
 
  private:
-  std::map<std::pair<std::string, WrongBy>, std::pair<Simplicity, Pair>> pairs_;
+  std::map<std::pair<std::string, Verdict>, std::pair<Simplicity, Pair>> pairs_;
 };
 
-// Minimises the first candidate of each subject, shape and way; where another subject's pair is simpler and fails
+// Minimises the first candidate of each subject, shape and verdict; where another subject's pair is simpler and fails
 // alike, that is the subject's too. Candidates are in the order of lanes. Returns: those that a fresh process shows
-// again; not_again: how many it does not. Throws: OracleApart.
-std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_again);
+// again; not_repeated: how many it does not. Throws: OracleApart.
+std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_repeated);
 
 }  // namespace graze::fuzz

@@ -9,6 +9,7 @@
 #include "analysis/convention.h"
 #include "core/margin/margin.h"
 #include "core/relation_of.h"
+#include "core/verdicts.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/minimise/moves.h"
 #include "oracle/truth.h"
@@ -26,25 +27,11 @@ constexpr int kMostLate = 3;                  // after so many a case ends
 std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs, int* late = nullptr) {
   for (const bool wrong : {true, false}) {
     for (std::size_t l = 0; l < failure.lanes.size() && !pairs.empty(); ++l) {
-      if ((failure.verdicts[l] != failure.truth.verdict) != wrong) continue;
-      std::uint64_t intersects = 0, declined = 0;
-      failure.on_host[l](pairs.data(), pairs.size(), &intersects, &declined);
-      const std::uint64_t alike = is_failure(failure.verdicts[l])              ? intersects & declined
-                                  : failure.verdicts[l] == Verdict::declined   ? ~intersects & declined
-                                  : failure.verdicts[l] == Verdict::intersects ? intersects & ~declined
-                                                                               : ~intersects & ~declined;
-      if (failure.lanes[l]->foreign && late) {
-        for (std::size_t p = 0; p < pairs.size(); ++p) {
-          *late += (intersects & declined) >> p & 1u &&
-                   failure.on_host[l].verdict_of(true, true, pairs[p]) == Verdict::timed_out;
-        }
-      }
+      if (is_wrong(failure.verdicts[l], failure.truth.verdict) != wrong) continue;
+      const std::vector<Verdict> said = verdicts_of(failure.on_host[l], pairs);
+      if (late) *late += static_cast<int>(std::count(said.begin(), said.end(), Verdict::timed_out));
       std::size_t i = 0;
-      std::erase_if(pairs, [&](const Pair& pair) {
-        const bool other = is_failure(failure.verdicts[l]) && (alike >> i & 1u) != 0 &&
-                           failure.on_host[l].verdict_of(true, true, pair) != failure.verdicts[l];
-        return (alike >> i++ & 1u) == 0 || other;
-      });
+      std::erase_if(pairs, [&](const Pair&) { return said[i++] != failure.verdicts[l]; });
     }
   }
   return pairs;
@@ -137,7 +124,7 @@ std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t
 std::size_t wrong_at(const Failure& failure, const Pair& pair) {
   const Relation& truth = failure.truth;
   std::size_t l = 0;
-  while (l < failure.lanes.size() && (failure.verdicts[l] == truth.verdict ||
+  while (l < failure.lanes.size() && (!is_wrong(failure.verdicts[l], truth.verdict) ||
                                       analysis::by_convention(*failure.lanes[l], failure.verdicts[l], pair, truth)))
     ++l;
   return l;

@@ -11,7 +11,7 @@ import { go_to } from './state';
 
 type Offer = Trade['lanes'][number];
 
-const without_answer = (e: Errors) => e.misses + e.false_hits + e.declined;
+const without_answer = (e: Errors) => e.false_negative + e.false_positive + e.declined;
 const share = (e: Errors) => (e.pairs ? without_answer(e) / e.pairs : 0);
 const cost = (offer: Offer) => (offer.resident ?? offer.in_cache)!;
 const far = (offer: Offer) => (offer.with_copies ?? offer.from_memory)!;
@@ -173,8 +173,8 @@ export function trade_section(report: Report, trade: Trade) {
         cell: (o) => nanoseconds(far(o).middle),
         order: (o) => far(o).middle,
       },
-      errors('Misses', (e) => e.misses),
-      errors('False hits', (e) => e.false_hits),
+      errors('False negatives', (e) => e.false_negative),
+      errors('False positives', (e) => e.false_positive),
       errors('Declined', (e) => e.declined),
       ...(on_device
         ? [
@@ -265,7 +265,7 @@ export function tuned_section(tuned: Tuned) {
   function tell() {
     const point = curve().points[at];
     const part = (n: number, what: string) => `${count(n)} ${what} (${percent(n / point.pairs)})`;
-    readout.textContent = `${point.policy}: ${part(point.misses, 'misses')}, ${part(point.false_hits, 'false hits')} of ${count(point.pairs)} pairs; mends ${count(point.mended)} and breaks ${count(point.broken)}${point.policy === tuned.chosen ? '. This one is chosen' : ''}.`;
+    readout.textContent = `${point.policy}: ${part(point.false_negative, 'false negatives')}, ${part(point.false_positive, 'false positives')} of ${count(point.pairs)} pairs; fixes ${count(point.fixed)} and breaks ${count(point.broken)}${point.policy === tuned.chosen ? '. This one is chosen' : ''}.`;
     slider.setAttribute('aria-valuetext', readout.textContent);
     policy.replaceChildren(code_block(policy_of(tuned, point), 'the lane under this policy'));
   }
@@ -273,11 +273,11 @@ export function tuned_section(tuned: Tuned) {
   function draw(width: number) {
     const points = curve().points,
       x = (point: PolicyErrors) => Math.log2(tolerance(point));
-    const axis = shares_axis(points.flatMap((e) => [e.misses / e.pairs, e.false_hits / e.pairs]));
+    const axis = shares_axis(points.flatMap((e) => [e.false_negative / e.pairs, e.false_positive / e.pairs]));
     const lines = (
       [
-        ['misses', 'var(--series-1)'],
-        ['false_hits', 'var(--series-0)'],
+        ['false_negative', 'var(--series-1)'],
+        ['false_positive', 'var(--series-0)'],
       ] as const
     ).map(([kind, stroke]) =>
       Plot.line(points, {
@@ -285,7 +285,7 @@ export function tuned_section(tuned: Tuned) {
         y: (e: PolicyErrors) => axis.y(e[kind] / e.pairs),
         stroke,
         strokeWidth: 2,
-        strokeDasharray: kind === 'misses' ? '6 3' : '',
+        strokeDasharray: kind === 'false_negative' ? '6 3' : '',
       }),
     );
     const chosen = points.filter((point) => point.policy === tuned.chosen);
@@ -318,7 +318,7 @@ export function tuned_section(tuned: Tuned) {
     element.replaceChildren(
       named(
         plot,
-        `Misses and false hits of ${tuned.lane} against its tolerance, ${title(curve())}. ${readout.textContent}`,
+        `False negatives and false positives of ${tuned.lane} against its tolerance, ${title(curve())}. ${readout.textContent}`,
       ),
     );
   }
@@ -363,9 +363,9 @@ export function tuned_section(tuned: Tuned) {
       'p',
       { class: 'key' },
       h('span', { style: 'color:var(--series-1)' }, '╌╌'),
-      ' misses, ',
+      ' false negatives, ',
       h('span', { style: 'color:var(--series-0)' }, '──'),
-      ' false hits, on the pairs that the tolerance was chosen on; dashed upright line: chosen.',
+      ' false positives, on the pairs that the tolerance was chosen on; dashed upright line: chosen.',
     ),
   );
 }

@@ -32,21 +32,21 @@ export interface Costs {
 
 export interface Errors {
   pairs: number;
-  misses: number;
-  false_hits: number;
+  false_negative: number;
+  false_positive: number;
   declined: number;
 }
-// Under one policy; mended and broken: against the lane without one.
+// Under one policy; fixed and broken: against the lane without one.
 export interface PolicyErrors extends Errors {
   policy: string;
-  mended: number;
+  fixed: number;
   broken: number;
 }
 
 // tune.json and trade.json, where they lie in the campaign's folder; docs/formats.md describes them.
 export interface Tuned {
   lane: string;
-  forbid: 'miss' | 'false' | 'any';
+  forbid: 'false_negative' | 'false_positive' | 'any';
   max_rate: number;
   chosen: string;
   result: string;

@@ -19,7 +19,7 @@ test('the front is the first picture: a dot for each lane, and a press leads to 
   await dot.hover();
   await dot.click({ force: true });
   await expect(page).toHaveURL(/#trade-/);
-  const wrong = trade.lanes.filter((lane) => lane.errors.misses + lane.errors.false_hits > 0);
+  const wrong = trade.lanes.filter((lane) => lane.errors.false_negative + lane.errors.false_positive > 0);
   expect(wrong.length).toBeGreaterThan(3);
   for (const lane of wrong) expect(lane.failure).toMatch(/^(\S+ ){17}\S+$/);
   await expect(
@@ -37,8 +37,8 @@ test('the slider tells what each tolerance does, and names the lane under it', a
   const curve = tuned.curves.find((one) => one.points.some((point) => point.policy === tuned.chosen))!;
   await slider.fill(String(curve.points.length - 1));
   const last = curve.points.at(-1)!;
-  await expect(readout).toContainText(`${last.policy}: ${count(last.misses)} misses`);
-  await expect(readout).toContainText(`${count(last.false_hits)} false hits`);
+  await expect(readout).toContainText(`${last.policy}: ${count(last.false_negative)} false negatives`);
+  await expect(readout).toContainText(`${count(last.false_positive)} false positives`);
   await expect(page.locator('#tuning pre')).toHaveText(`${tuned.lane}/${last.policy}`);
   expect(await pixels(page.locator('#tuning-chart'))).not.toBe(first);
   await page.locator('#tuning select').selectOption({ label: 'absolute, at all sites' });

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/verdicts.h"
+
+namespace graze {
+
+std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs) {
+  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
+  if (!pairs.empty()) block(pairs.data(), pairs.size(), intersects.data(), declined.data());
+  std::vector<Verdict> verdicts;
+  verdicts.reserve(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    verdicts.push_back(block.verdict_of(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1, pairs[i]));
+  return verdicts;
+}
+
+}  // namespace graze

@@ -8,8 +8,8 @@
 #include <cstdlib>
 
 #include "analysis/scales.h"
+#include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
-#include "core/verdicts.h"
 #include "cuda/twin/twin.h"
 
 namespace graze::analysis {

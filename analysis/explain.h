@@ -13,7 +13,7 @@
 #include "analysis/deciding.h"
 #include "analysis/lane_trace.h"
 #include "analysis/neighbours.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 #include "oracle/precise.h"
 #include "oracle/truth.h"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/algorithms/traced.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze::analysis {
 

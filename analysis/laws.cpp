@@ -15,8 +15,8 @@
 #include "analysis/neighbours.h"
 #include "analysis/scales.h"
 #include "analysis/tally.h"
+#include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
-#include "core/verdicts.h"
 
 namespace graze::analysis {
 namespace {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 
 namespace graze::analysis {

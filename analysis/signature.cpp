@@ -83,6 +83,12 @@ std::string key(const Signature& s) {
   return text;
 }
 
+std::string coarse_key(const Signature& signature) {
+  Signature coarse = signature;
+  coarse.bucket = 0;
+  return key(coarse);
+}
+
 std::optional<Signature> parse_signature(std::string_view key) {
   Signature s;
   std::string_view rest = key;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/tally.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/verdict.h"
 #include "oracle/truth.h"
 
@@ -49,6 +49,9 @@ Signature signature(const Relation& truth, Bucket bucket, std::span<const Lane* 
 // "point/22/skew/-2^-3/moller_1997:+f32/cpu;-f64/cuda-fma": contact, dimensions of the two hulls, coplanar or skew,
 // margin bucket, subject, and the wrong lanes, each after its mark.
 std::string key(const Signature& signature);
+
+// The same of all signatures that differ by their margin bucket alone: the key with bucket 0.
+std::string coarse_key(const Signature& signature);
 
 // The inverse of key; nothing for a text that is no key.
 std::optional<Signature> parse_signature(std::string_view key);

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "strata/strata.h"
 
 namespace graze::analysis {

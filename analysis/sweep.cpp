@@ -11,7 +11,7 @@
 #include <bit>
 
 #include "core/exact/exact.h"
-#include "core/ladder.h"
+#include "core/lanes/ladder.h"
 #include "cuda/engine/sweep.h"
 #include "cuda/twin/twin.h"
 

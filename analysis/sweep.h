@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/counts.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "strata/pair_source.h"
 
 namespace graze::analysis {
@@ -55,7 +55,7 @@ using DecideUnder = std::function<DecideBlock(const std::string& policy)>;
 // on each core).
 Sweep host_sweep(DecideUnder decide, int threads = 0);
 
-// That of a published lane, on the host, or by its twin: under many tolerances at once where core/ladder.h can.
+// That of a published lane, on the host, or by its twin: under many tolerances at once where core/lanes/ladder.h can.
 // Throws (the sweep): UsageError for a policy that the lane cannot have.
 Sweep host_sweep(const Lane& lane, int threads = 0);
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/counts.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/margin/bucket.h"
 
 namespace graze::analysis {

@@ -9,7 +9,7 @@
 
 #include "analysis/lane_trace.h"
 #include "core/exact/exact.h"
-#include "core/verdicts.h"
+#include "core/lanes/verdicts.h"
 #include "oracle/truth.h"
 #include "strata/draws.h"
 
@@ -96,7 +96,7 @@ class Panels {
   std::vector<Verdict> said_;  // by the lane of one panel
 };
 
-// Throws: OracleApart.
+// Throws: OracleMismatch.
 void confirm(const UlpMap& map, int cell) {
   const int column = cell % kMapSize, row = cell / kMapSize;
   const Pair pair = pair_at(map.pair, map.moved, column, row);
@@ -106,7 +106,7 @@ void confirm(const UlpMap& map, int cell) {
   if ((oracle::cgal_verdict(pair) == Verdict::intersects) == intersects &&
       (oracle::gmp_contact(pair) != Contact::none) == intersects)
     return;
-  throw oracle::OracleApart(
+  throw oracle::OracleMismatch(
       fmt::format("the exact decision and the oracle differ in column {}, row {} of an ulp map over {} and {}", column,
                   row, name_of_coordinate(map.moved.x), name_of_coordinate(map.moved.y)));
 }

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 
 namespace graze::analysis {
@@ -73,7 +73,7 @@ MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* c
 // CUDA lanes by their twins; exact lanes are left out, for the truth is theirs, and foreign code that takes all of its
 // time on three pairs, or crashes on 3000. Deterministic.
 // Requires: finite coordinates; lanes that run here, or have a twin; two coordinates.   Exact: the truth.
-// Throws: OracleApart where the oracle does not confirm the truth.
+// Throws: OracleMismatch where the oracle does not confirm the truth.
 UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved);
 
 }  // namespace graze::analysis

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/error.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "cuda/query/device_query.h"
 #include "cuda/query/device_rows.h"
 #include "oracle/aabb_tree.h"

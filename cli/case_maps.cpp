@@ -26,8 +26,8 @@ bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane
 
 }  // namespace
 
-bool map_case(const fuzz::LanesUnderTest& under_test, const std::filesystem::path& case_file,
-              const std::string& subject, bool again) {
+bool map_case(const fuzz::SelectedLanes& under_test, const std::filesystem::path& case_file, const std::string& subject,
+              bool again) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
   const Pair pair = corpus::read_pairs(case_file).at(0).pair;
   std::vector<const Lane*> lanes;

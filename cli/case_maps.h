@@ -5,13 +5,14 @@
 #include <filesystem>
 #include <string>
 
-#include "fuzz/lanes_under_test.h"
+#include "fuzz/selected_lanes.h"
 
 namespace graze::cli {
 
 // Maps the file's first case on the subject's lanes under test, along the liveliest coordinates,
-// unless that is there already or `again`. Returns: whether it was done now. Throws: OracleApart, std::runtime_error.
-bool map_case(const fuzz::LanesUnderTest& under_test, const std::filesystem::path& case_file,
-              const std::string& subject, bool again);
+// unless that is there already or `again`. Returns: whether it was done now. Throws: OracleMismatch,
+// std::runtime_error.
+bool map_case(const fuzz::SelectedLanes& under_test, const std::filesystem::path& case_file, const std::string& subject,
+              bool again);
 
 }  // namespace graze::cli

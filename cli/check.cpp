@@ -35,8 +35,8 @@ void check(const CheckOptions& options) {
   const bool from_stdin = options.file == "-";
   std::ifstream file;
   if (!from_stdin) file = corpus::open_pairs(options.file);
-  fuzz::LanesUnderTest under_test;
-  if (!options.truth_only) under_test = lanes_under_test(options.lanes, options.file);
+  fuzz::SelectedLanes under_test;
+  if (!options.truth_only) under_test = selected_lanes(options.lanes, options.file);
   const std::string evidence = cuda_evidence(under_test);
   const std::string name_of_input = from_stdin ? "standard input" : options.file;
   corpus::PairReader reader(from_stdin ? std::cin : file, name_of_input);

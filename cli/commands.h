@@ -10,7 +10,7 @@
 
 #include "fuzz/campaign/campaign_scene.h"
 #include "fuzz/campaign/store_file.h"
-#include "fuzz/lanes_under_test.h"
+#include "fuzz/selected_lanes.h"
 
 namespace graze::cli {
 
@@ -61,8 +61,8 @@ void open_subjects_of(const std::filesystem::path& name);
 // Opens the subjects, those of what the command is about as well, then selects the lanes. Says on standard error which
 // ones that were asked for do not run here, and why.
 // Throws: as subjects::open, fuzz::select_lanes and fuzz::expect_each_runs.
-fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::filesystem::path& about = {},
-                                      bool require_device = false);
+fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
+                                   bool require_device = false);
 
 // Names these lanes on standard error, each with the reason.
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
@@ -104,12 +104,12 @@ enum class Chosen { word, place };
 CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
-std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair);
+std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const Pair& pair);
 
 // Whether a verdict is not the truth; no verdict is wrong of a pair that the truth declines.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);
 
 // What runs the CUDA lanes under test, in one line: each kind of evidence once. Empty without CUDA lanes.
-std::string cuda_evidence(const fuzz::LanesUnderTest& under_test);
+std::string cuda_evidence(const fuzz::SelectedLanes& under_test);
 
 }  // namespace graze::cli

@@ -47,7 +47,7 @@ void write_corpus(const CorpusOptions& options, const fuzz::RegressionCorpus& co
   fuzz::write_regressions(options.file(), corpus);
 }
 
-fuzz::DecideLanes decide_by(const fuzz::LanesUnderTest& under_test) {
+fuzz::DecideLanes decide_by(const fuzz::SelectedLanes& under_test) {
   return [&under_test](const Pair& pair, std::vector<const Lane*>& apart) { return decide(under_test, pair, apart); };
 }
 
@@ -68,7 +68,7 @@ void print_next(const CorpusOptions& options, const char* verb) {
 
 void add(const CorpusOptions& options) {
   for (const std::string& name : options.names) open_subjects_of(name);
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   const fuzz::DecideLanes by_bench = decide_by(under_test);
   const Json build = fuzz::build_info(under_test);
   std::vector<std::pair<std::string, std::vector<fuzz::FoundFailure>>> found;
@@ -115,7 +115,7 @@ void list(const CorpusOptions& options) {
 }
 
 int verify(const CorpusOptions& options) {
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   std::optional<fuzz::FolderLock> lock;
   if (options.update && std::filesystem::exists(options.folder))
     lock.emplace(options.folder, fuzz::FolderLock::WhenTaken::wait);

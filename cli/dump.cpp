@@ -103,8 +103,8 @@ void print_row(Format format, const corpus::Entry& entry) {
 }
 
 void dump(const DumpOptions& options) {
-  fuzz::LanesUnderTest under_test;
-  if (!options.lanes.globs.empty()) under_test = lanes_under_test(options.lanes);
+  fuzz::SelectedLanes under_test;
+  if (!options.lanes.globs.empty()) under_test = selected_lanes(options.lanes);
   const bool is_path = fs::is_directory(options.name) || options.name.find('/') != std::string::npos;
   const Dumped dumped = is_path ? of_campaign(options) : of_stratum(options);
   print_header(options.format, under_test.lanes);

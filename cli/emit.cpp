@@ -32,7 +32,7 @@ std::string described(const std::string& name, const corpus::Entry& entry, const
 }  // namespace
 
 std::string emit(reports::SnippetKind kind, const std::string& name, const std::vector<corpus::Entry>& entries,
-                 const fuzz::LanesUnderTest& under_test) {
+                 const fuzz::SelectedLanes& under_test) {
   std::optional<reports::SnippetCase> fallback;
   for (const corpus::Entry& entry : entries) {
     const oracle::Truth t = oracle::truth(entry.pair);

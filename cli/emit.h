@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "corpus/pair_format.h"
-#include "fuzz/lanes_under_test.h"
+#include "fuzz/selected_lanes.h"
 #include "reports/snippet.h"
 
 namespace graze::cli {
@@ -16,6 +16,6 @@ namespace graze::cli {
 // wrong, or else the first case. `name` is what the user called the cases. Throws: std::runtime_error when there is
 // none, or none with finite coordinates.
 std::string emit(reports::SnippetKind kind, const std::string& name, const std::vector<corpus::Entry>& entries,
-                 const fuzz::LanesUnderTest& under_test);
+                 const fuzz::SelectedLanes& under_test);
 
 }  // namespace graze::cli

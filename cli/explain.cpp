@@ -146,7 +146,7 @@ struct ExplainOptions {
 };
 
 void explain_cases(const ExplainOptions& options) {
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
+  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
   const reports::Screen screen = output_screen();
   bool wrong = false;
   for (const corpus::Entry& entry : read_cases(options.name)) {

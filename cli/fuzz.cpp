@@ -23,7 +23,7 @@
 #include "cli/screen.h"
 #include "cli/shard_option.h"
 #include "core/error.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/result_files.h"
@@ -74,7 +74,7 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
 // as `graze minimize` would; the simplest result counts, and of equal ones that of the simpler kept pair. Returns: it,
 // and its file.
 std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
-                                                     const fuzz::LanesUnderTest& under_test, const Json& summary,
+                                                     const fuzz::SelectedLanes& under_test, const Json& summary,
                                                      const std::string& subject) {
   std::vector<std::pair<fuzz::Simplicity, std::filesystem::path>> kept;
   for (const Json& row : summary["signatures"]) {
@@ -105,7 +105,7 @@ std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path
 
 // The first subject of these, or of any where there are none, that is wrong on more pairs than it may be: says so in
 // one line, with its simplest case, minimised.   Returns: the exit status.
-int fail_above(const FuzzOptions& options, const fuzz::LanesUnderTest& under_test, const Json& summary) {
+int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test, const Json& summary) {
   std::map<std::string, std::uint64_t> wrong;
   for (const Json& row : summary["signatures"]) {
     const auto signature = analysis::parse_signature(row["key"].get<std::string>());
@@ -141,7 +141,7 @@ int on_ranks(const FuzzOptions& options, fuzz::Campaign& campaign, const std::ve
 }
 
 int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, {}, options.require_device);
+  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, {}, options.require_device);
   fuzz::Campaign campaign;
   campaign.seed = options.seed;
   campaign.under_test = &under_test;

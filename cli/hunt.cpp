@@ -69,7 +69,7 @@ int hunt(const HuntOptions& options) {
   }
   LaneOptions lanes = options.lanes;
   lanes.executor = fuzz::Executor::twin;
-  const fuzz::LanesUnderTest under_test = lanes_under_test(lanes);
+  const fuzz::SelectedLanes under_test = selected_lanes(lanes);
   fuzz::Hunt hunt;
   hunt.pairs = options.runs;
   hunt.seconds = 60 * static_cast<double>(options.minutes);

@@ -24,7 +24,7 @@ struct LawsOptions {
 };
 
 int laws(const LawsOptions& options) {
-  fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   analysis::LawSpec spec;
   spec.lanes = under_test.lanes;
   spec.on_host = under_test.on_host;

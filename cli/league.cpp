@@ -105,7 +105,7 @@ int league(const LeagueOptions& options) {
   fuzz::MostPairs most;
   std::vector<reports::LeagueSubject> subjects = read_subjects(options.subjects, most);
   for (reports::LeagueSubject& subject : subjects) open(subject, options.timeout);
-  const fuzz::LanesUnderTest lanes = fuzz::league_lanes({"*/cpu", "*/cpu-fma"});
+  const fuzz::SelectedLanes lanes = fuzz::league_lanes({"*/cpu", "*/cpu-fma"});
   say_left_out(lanes.left_out);
   for (const reports::LeagueSubject& subject : subjects) {
     if (std::none_of(lanes.lanes.begin(), lanes.lanes.end(),

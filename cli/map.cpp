@@ -107,7 +107,7 @@ void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
 
 void draw_map(const MapOptions& options) {
   const std::optional<analysis::MovedCoordinates> asked = asked_for(options);
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
+  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
   const corpus::Entry entry = read_cases(options.name).front();
   if (!is_finite(entry.pair)) throw std::runtime_error(options.name + ": expected finite coordinates, found others");
   const analysis::MovedCoordinates moved =

@@ -4,7 +4,7 @@
 
 #include "cli/campaign_end.h"
 #include "cli/commands.h"
-#include "fuzz/campaign/merge.h"
+#include "fuzz/shards/merge.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {

@@ -94,7 +94,7 @@ std::string with_header(const std::string& text) {
 
 int minimize_case(const MinimizeOptions& options) {
   if (!options.out.empty()) expect_replaceable(options.out, kPairs);
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
+  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
   std::vector<corpus::Entry> entries = read_cases(options.name);
   for (const corpus::Entry& entry : entries) {
     if (options.exact_input) expect_exact_input(options.name, entry);
@@ -151,7 +151,7 @@ struct Done {
   double processor = 0;     // seconds of one core for the file's cases
 };
 
-Done minimize_file(const fuzz::LanesUnderTest& under_test, const Json& spec, const fs::path& directory, const Json& row,
+Done minimize_file(const fuzz::SelectedLanes& under_test, const Json& spec, const fs::path& directory, const Json& row,
                    bool again) {
   const auto start = Clock::now();
   const double before = processor_seconds();
@@ -200,7 +200,7 @@ int minimize_directory(MinimizeOptions options) {
   const std::string text = fuzz::read_whole(directory / "summary.json");
   const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes, options.name);
+  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
   const fuzz::FolderLock held(directory,
                               whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
   if (fuzz::read_whole(directory / "summary.json") != text)

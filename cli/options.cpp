@@ -187,11 +187,11 @@ void open_subjects(const LaneOptions& options) {
   }
 }
 
-fuzz::LanesUnderTest lanes_under_test(const LaneOptions& options, const std::filesystem::path& about,
-                                      bool require_device) {
+fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about,
+                                   bool require_device) {
   open_subjects(options);
   if (!about.empty()) open_subjects_of(about);
-  fuzz::LanesUnderTest under_test = fuzz::select_lanes(options.globs, options.executor, require_device);
+  fuzz::SelectedLanes under_test = fuzz::select_lanes(options.globs, options.executor, require_device);
   fuzz::expect_each_runs(under_test);
   say_left_out(under_test.left_out);
   return under_test;
@@ -201,7 +201,7 @@ void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {
   for (const std::string& line : fuzz::left_out_in_words(left_out)) fmt::print(stderr, "graze: {}\n", line);
 }
 
-std::vector<Verdict> decide(const fuzz::LanesUnderTest& under_test, const Pair& pair) {
+std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const Pair& pair) {
   std::vector<const Lane*> apart;
   std::vector<Verdict> verdicts = decide(under_test, pair, apart);
   for (const Lane* lane : apart) fmt::print(stderr, "graze: {}: device and twin differ\n", lane->id);
@@ -213,7 +213,7 @@ bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth) {
          std::any_of(verdicts.begin(), verdicts.end(), [&](Verdict verdict) { return is_wrong(verdict, truth); });
 }
 
-std::string cuda_evidence(const fuzz::LanesUnderTest& under_test) {
+std::string cuda_evidence(const fuzz::SelectedLanes& under_test) {
   std::set<std::string> kinds;
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
     if (under_test.lanes[l]->is_cuda()) kinds.insert(under_test.evidence(l));

@@ -6,7 +6,7 @@
 
 #include "cli/commands.h"
 #include "cli/progress.h"
-#include "fuzz/plan.h"
+#include "fuzz/campaign/plan.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
@@ -38,7 +38,7 @@ std::string size_of(double bytes) {
 }
 
 int plan(const PlanOptions& options) {
-  const fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   fuzz::Campaign campaign;
   campaign.under_test = &under_test;
   Json scene;

@@ -64,7 +64,7 @@ bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std:
 }
 
 int repro(const std::string& name, const LaneOptions& lanes, const std::string& emitted) {
-  const fuzz::LanesUnderTest under_test = lanes_under_test(lanes, name);
+  const fuzz::SelectedLanes under_test = selected_lanes(lanes, name);
   const std::vector<corpus::Entry> entries = read_cases(name);
   if (!emitted.empty()) {
     const auto kind = std::find(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds), emitted);

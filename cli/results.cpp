@@ -8,6 +8,7 @@
 #include <cerrno>
 
 #include "core/error.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/own_files.h"
 
 namespace graze::cli {

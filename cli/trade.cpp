@@ -44,7 +44,7 @@ std::string why_not_timed(const Lane& lane, bool device) {
   return lane.decide ? "" : "only --device times CUDA lanes";
 }
 
-Measured measured(const TradeOptions& options, const fuzz::LanesUnderTest& under_test) {
+Measured measured(const TradeOptions& options, const fuzz::SelectedLanes& under_test) {
   Measured result;
   for (const Lane* lane : under_test.lanes) {
     result.ids.push_back(lane->id);
@@ -114,7 +114,7 @@ int trade(TradeOptions options) {
     if (!cuda::open_device(why_not)) throw std::runtime_error("--device: expected a CUDA device, found " + why_not);
     options.lanes.executor = fuzz::Executor::device;
   }
-  fuzz::LanesUnderTest under_test = lanes_under_test(options.lanes);
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
   say_left_out(leave_out(under_test, [&](const Lane& lane) { return why_not_timed(lane, options.device); }));
   const Measured lanes = measured(options, under_test);
   const strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);

@@ -37,7 +37,7 @@ struct TuneOptions {
 // The smallest pair that the policy mends, or breaks: the verdicts of both lanes stay as they are. Of lanes without a
 // twin the pair itself.
 std::string smallest(const Lane& zero, const Lane& under, const Pair& pair) {
-  fuzz::LanesUnderTest both;
+  fuzz::SelectedLanes both;
   both.lanes = {&zero, &under};
   both.on_host = {cuda::block_on_host(zero), cuda::block_on_host(under)};
   Pair small = pair;

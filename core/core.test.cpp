@@ -13,7 +13,7 @@
 #include <set>
 
 #include "core/algorithms/algorithms.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/margin/axis.h"
 #include "core/margin/bucket.h"
 

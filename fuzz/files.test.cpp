@@ -2,6 +2,7 @@
 // What stands where a file is written: links, devices, pipes and folders stay what they are.
 #include "fuzz/files.h"
 #include "core/error.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/own_files.h"
 
 #include <fcntl.h>

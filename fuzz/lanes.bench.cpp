@@ -17,7 +17,7 @@
 #include <benchmark/benchmark.h>
 
 #include "build_info.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "oracle/truth.h"
 #include "strata/mesh.h"
 #include "strata/strata.h"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/error.h"
-#include "fuzz/campaign/rank_stores.h"
 #include "fuzz/files.h"
 
 namespace graze::fuzz {
@@ -77,12 +76,6 @@ bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); }) ||
          std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
                      [](const auto& e) { return is_nothing(e.path()); });
-}
-
-bool may_hold_campaign(const fs::path& folder) {
-  const auto begins = [&](const char* name, const char* with) { return read_whole(folder / name).starts_with(with); };
-  return may_fill(folder, {kDatabase}) || begins("summary.json", "{\n \"spec\"") ||
-         begins("status.json", "{\n \"state\"") || !rank_directories(folder).empty();
 }
 
 }  // namespace graze::fuzz

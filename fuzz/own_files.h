@@ -25,7 +25,4 @@ void expect_own(const std::filesystem::path& file, const std::string& text);
 // has one of these files.
 bool may_fill(const std::filesystem::path& folder, std::initializer_list<const char*> own);
 
-// The same of a campaign's or a shard's, as `graze fuzz`, `hunt` and `merge` leave it.
-bool may_hold_campaign(const std::filesystem::path& folder);
-
 }  // namespace graze::fuzz

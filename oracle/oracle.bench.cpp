@@ -28,7 +28,7 @@ Work work_of(Kind kind) {
     work.pairs.push_back(source.next());
     work.verdicts.push_back(cgal_verdict(work.pairs.back()));
     if ((work.verdicts.back() == Verdict::intersects) != (gmp_contact(work.pairs.back()) != Contact::none)) {
-      throw OracleApart("benchmark pair");
+      throw OracleMismatch("benchmark pair");
     }
   }
   return work;

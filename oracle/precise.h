@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/algorithms/traced.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 #include "core/verdict.h"
 

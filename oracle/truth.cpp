@@ -30,8 +30,8 @@ Truth truth(const Pair& pair) {
   const Verdict verdict = cgal_verdict(pair);
   const Contact contact = gmp_contact(pair);
   if ((verdict == Verdict::disjoint) != (contact == Contact::none)) {
-    throw OracleApart("oracle: CGAL says " + std::string(name(verdict)) + ", GMP finds contact " +
-                      std::string(name(contact)) + " of" + hex_coordinates(pair));
+    throw OracleMismatch("oracle: CGAL says " + std::string(name(verdict)) + ", GMP finds contact " +
+                         std::string(name(contact)) + " of" + hex_coordinates(pair));
   }
   const Grid grid = grid_of(pair);
   const LargePair large = large_integers(pair, grid);

@@ -17,13 +17,13 @@ struct Truth : Relation {
 };
 
 // The oracle's two decisions differ: a defect in the oracle itself.
-struct OracleApart : std::runtime_error {
+struct OracleMismatch : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 // Relation and margin; the verdict is CGAL's, confirmed by the decision on GMP integers.
 // Exact: always; the margin is a rational's square root, rounded once by MPFR.
-// Throws: OracleApart.   Returns: declined, unknown, NaN where a coordinate is not finite.
+// Throws: OracleMismatch.   Returns: declined, unknown, NaN where a coordinate is not finite.
 Truth truth(const Pair& pair);
 
 // CGAL's decision: closed triangles by its triangle test, degenerate ones as segments and points.

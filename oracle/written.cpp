@@ -81,8 +81,8 @@ std::optional<Truth> truth_as_written(std::span<const std::string> numbers, cons
   const Verdict verdict = cgal_verdict(large);
   const Contact contact = gmp_contact(large);
   if ((verdict == Verdict::disjoint) != (contact == Contact::none))
-    throw OracleApart("oracle: CGAL says " + std::string(name(verdict)) + ", GMP finds contact " +
-                      std::string(name(contact)) + " of a pair as written");
+    throw OracleMismatch("oracle: CGAL says " + std::string(name(verdict)) + ", GMP finds contact " +
+                         std::string(name(contact)) + " of a pair as written");
   constexpr std::uint32_t kAllAxes = (1u << kSeparatingAxes) - 1;
   SquaredMargin squared = verdict == Verdict::disjoint ? exact_distance(large, 0) : exact_depth(large, 0, kAllAxes);
   squared.denominator *= denominator * denominator;

@@ -18,7 +18,7 @@ std::optional<std::size_t> first_rounded(std::span<const std::string> numbers, c
 
 // Verdict, contact and margin of the numbers as rationals, decided as truth() does; the margin in ulps is in those of
 // the stored pair. Nothing where every number is stored as written, or one is not finite.
-// Exact: always.   Throws: OracleApart; and as first_rounded.
+// Exact: always.   Throws: OracleMismatch; and as first_rounded.
 std::optional<Truth> truth_as_written(std::span<const std::string> numbers, const Pair& stored);
 
 }  // namespace graze::oracle

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/exact/reference.h"
+#include "core/exact/prepared_triangle.h"
 #include "core/exact_blocks/decide.h"
 #include "core/pair.h"
 #if defined(__SSE2__)
@@ -98,7 +98,7 @@ struct Block {
   };
 
   // exact::is_beyond, four at a time.
-  Sights look_past(const exact::Reference& reference) const {
+  Sights look_past(const exact::PreparedTriangle& reference) const {
     Sights sights;
     for (std::size_t i = 0; i < kBlock; i += 4) {
       Four v[9];
@@ -189,7 +189,7 @@ class Worker {
 
   // By another lane, of the wanted triangles.
   void decide(std::size_t r, std::uint64_t wanted, std::uint64_t& hits, std::uint64_t& declined) {
-    const exact::Reference& reference = references_[r];
+    const exact::PreparedTriangle& reference = references_[r];
     for (std::size_t i = 0; i < kBlock; ++i) {
       std::memcpy(coordinates(pairs_[i]), reference.v, sizeof reference.v);
       std::memcpy(coordinates(pairs_[i]) + 9, block_.rows[i], sizeof reference.v);
@@ -200,7 +200,7 @@ class Worker {
   }
 
   const CpuQuestion& question_;
-  std::vector<exact::Reference> references_;
+  std::vector<exact::PreparedTriangle> references_;
   std::vector<char> finite_;
   Block block_;
   std::vector<Pair> pairs_;

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "cuda/query/device_query.h"
 
 namespace graze::query {

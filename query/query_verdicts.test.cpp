@@ -2,8 +2,8 @@
 // Every exact verdict is that of the oracle, of both its decisions; every other lane's that of the lane.
 #include <gtest/gtest.h>
 
-#include "core/exact/reference.h"
-#include "core/lanes.h"
+#include "core/exact/prepared_triangle.h"
+#include "core/lanes/lanes.h"
 #include "oracle/truth.h"
 #include "query/testing.h"
 
@@ -40,7 +40,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
       query.executor = GRAZE_ONE_CORE;
       const std::vector<std::uint8_t> bytes = bytes_of(query, kTogether * kTogether);
       for (std::size_t r = 0; r < kTogether; ++r) {
-        const exact::Reference prepared = exact::prepare(references[r].data());
+        const exact::PreparedTriangle prepared = exact::prepare(references[r].data());
         for (std::size_t t = 0; t < kTogether; ++t) {
           Pair pair;
           std::memcpy(pair.a, references[r].data(), sizeof pair.a);
@@ -71,7 +71,7 @@ TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
   const std::vector<std::uint8_t> bytes = bytes_of(query_of(kThesisReference, part), triangles.size());
   Pair pair;
   std::memcpy(pair.a, kThesisReference.data(), sizeof pair.a);
-  const exact::Reference prepared = exact::prepare(kThesisReference.data());
+  const exact::PreparedTriangle prepared = exact::prepare(kThesisReference.data());
   std::size_t beyond = 0, unsure = 0;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     std::memcpy(pair.b, triangles[i].data(), sizeof pair.b);
@@ -112,7 +112,7 @@ TEST(QueryVerdicts, AreThoseOfTheLane) {
 TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   for (const float unit : {0x1p-149f, 0x1p-126f, 0x1p-60f, 1.0f, 0x1p60f, 0x1p126f}) {
     const Triangle reference = {0, 0, 0, unit, 0, 0, 0, unit, 0};
-    const exact::Reference prepared = exact::prepare(reference.data());
+    const exact::PreparedTriangle prepared = exact::prepare(reference.data());
     const Triangle touching = {0, 0, 0, 0, 0, unit, unit, 0, unit},
                    edge = {unit, unit, 0, 0, unit, 0, unit, unit, unit};
     for (const Triangle& t : {touching, edge}) EXPECT_FALSE(exact::is_beyond(prepared, t.data()));
@@ -121,7 +121,7 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
         Triangle broken = touching;
         broken[static_cast<std::size_t>(k)] = bad;
         for (const auto& [r, t] : {std::pair(reference, broken), std::pair(broken, touching)}) {
-          const exact::Reference either = exact::prepare(r.data());
+          const exact::PreparedTriangle either = exact::prepare(r.data());
           EXPECT_FALSE(exact::is_beyond(either, t.data()));
           EXPECT_EQ(exact::detail::screen_in_floats(either, t.data()), exact::detail::Finding::unsure);
         }
@@ -131,7 +131,7 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   const float most = 0x1.fffffep+127f;
   const Triangle corners = {most, -most, most, -most, most, most, most, most, -most},
                  far = {-most, -most, -most, -most, -most, most, most, -most, -most};
-  const exact::Reference prepared = exact::prepare(corners.data());
+  const exact::PreparedTriangle prepared = exact::prepare(corners.data());
   for (const Triangle& t : {corners, far}) EXPECT_FALSE(exact::is_beyond(prepared, t.data()));
   // The sum of its magnitudes overflows, but it is finite.
   const std::vector<Triangle> triangles = {corners, far, {most, NAN, 0, 0, 0, 0, 0, 0, most}};
@@ -144,7 +144,7 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
 
 // The slabs are the thinnest ones: square to the normal and to the longest edge, whichever that is. A worse one loses
 // no hit, and time.
-TEST(Reference, SlabsAreSquareToTheNormalAndTheLongestEdge) {
+TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
   const Vec3<double> corners[3] = {{1, 2, 3}, {9, -6, 5}, {4, 1, 2.5}};
   const Vec3<double> longest = corners[1] - corners[0];
   const Vec3<double> normal = cross(longest, corners[2] - corners[0]), across = cross(normal, longest);
@@ -152,7 +152,7 @@ TEST(Reference, SlabsAreSquareToTheNormalAndTheLongestEdge) {
     Triangle t;
     for (std::size_t i = 0; i < 9; ++i)
       t[i] = static_cast<float>(component(corners[(first + i / 3) % 3], static_cast<int>(i % 3)));
-    const exact::Reference r = exact::prepare(t.data());
+    const exact::PreparedTriangle r = exact::prepare(t.data());
     for (int k = 0; k < exact::kSlabs; ++k) {
       const exact::Slab& s = r.slabs[k];
       const Vec3<double> d{s.x, s.y, s.z}, off = cross(d, k == 0 ? normal : across);
@@ -172,13 +172,13 @@ TEST(Reference, SlabsAreSquareToTheNormalAndTheLongestEdge) {
   // A segment or a point has no normal: along the axes.
   const Triangle segment = {1, 1, 1, 2, 2, 2, 3, 3, 3}, point = {5, 6, 7, 5, 6, 7, 5, 6, 7};
   for (const Triangle& t : {segment, point}) {
-    const exact::Reference r = exact::prepare(t.data());
+    const exact::PreparedTriangle r = exact::prepare(t.data());
     EXPECT_TRUE(r.slabs[0].x == 0.25f && r.slabs[0].y == 0 && r.slabs[0].z == 0);
     EXPECT_TRUE(r.slabs[1].x == 0 && r.slabs[1].y == 0.25f && r.slabs[1].z == 0);
   }
 }
 
-TEST(Reference, LooksAtNineNumbersAndDecidesWithinItsExtents) {
+TEST(PreparedTriangle, LooksAtNineNumbersAndDecidesWithinItsExtents) {
   const Triangle reference = {0, 0, 0, 4, 0, 0, 0, 4, 0};
   std::vector<float> behind = {0, 0, 9, 1, 0, 9, 0, 1, 9, 3e38f};  // a triangle, and what may lie behind it
   EXPECT_TRUE(exact::is_beyond(exact::prepare(reference.data()), behind.data()));

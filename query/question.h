@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "cuda/query/triangles.h"
 #include "query/include/graze/query_c.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "reports/report.h"
 #include "strata/strata.h"
 

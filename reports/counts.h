@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/tally.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze::reports {
 

@@ -235,7 +235,7 @@ Json signature_rows(const CampaignCounts& counts, const Json& summary) {
 
 void add_signatures(Json& report, const std::filesystem::path& directory, const Json& summary,
                     const CampaignCounts& counts) {
-  for (const Json& found : summary.value("executors_apart", Json::array())) {
+  for (const Json& found : summary.value("executor_mismatches", Json::array())) {
     report["missing"].push_back(
         fmt::format("On {} pairs {} gave another verdict on the device than by its twin: one of the two is wrong.",
                     found.at("count").dump(), found.at("lane").get<std::string>()));

@@ -41,7 +41,7 @@ class FailureCards : public CampaignTest {
 
   // Of the lanes of the kind, those that are wrong on the pair.
   static std::set<std::string> wrong_of_kind(const Json& kind, const Pair& pair) {
-    const fuzz::LanesUnderTest under_test = lanes();
+    const fuzz::SelectedLanes under_test = lanes();
     const std::string subject = kind["subject"];
     const Verdict truth = oracle::cgal_verdict(pair);
     std::set<std::string> found;
@@ -70,7 +70,7 @@ TEST_F(FailureCards, AreTheCommonestKinds) {
 
 // Title, verdicts, sentence and drawing.
 TEST_F(FailureCards, DoNotContradictThemselves) {
-  const fuzz::LanesUnderTest under_test = lanes();
+  const fuzz::SelectedLanes under_test = lanes();
   std::size_t with_line = 0;
   for (const Json& card : report_["cards"]) {
     const Json& kind = card["kind"];

@@ -21,7 +21,7 @@ struct Contracted {
   std::optional<std::uint64_t> differs;
 };
 
-std::vector<Contracted> contracted(const CampaignCounts& counts, const Places& lanes) {
+std::vector<Contracted> contracted(const CampaignCounts& counts, const LaneIndices& lanes) {
   std::vector<Contracted> found;
   for (const std::size_t l : lanes) {
     const ReportLane& lane = counts.lanes[l];
@@ -36,7 +36,7 @@ std::vector<Contracted> contracted(const CampaignCounts& counts, const Places& l
   return found;
 }
 
-std::string contraction(const CampaignCounts& counts, const Places& lanes) {
+std::string contraction(const CampaignCounts& counts, const LaneIndices& lanes) {
   const std::vector<Contracted> all = contracted(counts, lanes);
   if (all.empty()) {
     return "No lane with contraction ran beside the same lane without it, so the campaign does not show what "
@@ -72,7 +72,7 @@ std::string contraction(const CampaignCounts& counts, const Places& lanes) {
                      with_interval(share_of(*most->differs, total.pairs), " pairs"), from_to, how_many, uncounted);
 }
 
-std::string thesis(const CampaignCounts& counts, const Places& lanes) {
+std::string thesis(const CampaignCounts& counts, const LaneIndices& lanes) {
   const StratumCounts* stratum = counts.stratum("thesis");
   if (!stratum || stratum->pairs == 0) {
     return "The triangles of the 2012 thesis (stratum thesis) were not drawn, so the campaign does not say how often "
@@ -80,7 +80,7 @@ std::string thesis(const CampaignCounts& counts, const Places& lanes) {
   }
   const std::string pairs = grouped(stratum->pairs);
   const auto differing = [&](std::size_t l) { return stratum->lanes[l].differs_from_cpu; };
-  Places compared;
+  LaneIndices compared;
   std::uint64_t without_contraction = 0;
   bool ran_without = false;
   for (const std::size_t l : lanes) {
@@ -118,7 +118,7 @@ std::string thesis(const CampaignCounts& counts, const Places& lanes) {
                          : fmt::format("; without contraction {} verdicts differ still", grouped(without_contraction)));
 }
 
-std::string dangerous(const CampaignCounts& counts, const Places& lanes) {
+std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
   struct Danger {
     const StratumCounts* stratum;
     double share;
@@ -176,7 +176,7 @@ std::string rate_words(double rate, Bound bound) {
 
 std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs) {
   if (counts.total.pairs == 0) return {"No pair has been decided yet."};
-  const Places lanes = published(counts);
+  const LaneIndices lanes = published(counts);
   if (lanes.empty()) {
     std::uint64_t wrong = 0;
     for (std::size_t l = 0; l < counts.lanes.size(); ++l) wrong += counts.total.wrong(l);

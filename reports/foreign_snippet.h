@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 
 namespace graze::reports {

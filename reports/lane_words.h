@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "reports/counts.h"
 #include "reports/findings.h"
 #include "reports/terminal.h"
@@ -14,11 +14,11 @@
 
 namespace graze::reports {
 
-using Places = std::vector<std::size_t>;
+using LaneIndices = std::vector<std::size_t>;
 
 // Lanes that are not exact.
-inline Places published(const CampaignCounts& counts) {
-  Places places;
+inline LaneIndices published(const CampaignCounts& counts) {
+  LaneIndices places;
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     if (!counts.lanes[l].exact) places.push_back(l);
   }
@@ -31,7 +31,7 @@ inline bool all_published(const CampaignCounts& counts) {
     return std::any_of(graze::published_lanes().begin(), graze::published_lanes().end(),
                        [&](const Lane& lane) { return lane.info->id == subject; });
   };
-  const Places lanes = published(counts);
+  const LaneIndices lanes = published(counts);
   return std::all_of(lanes.begin(), lanes.end(), [&](std::size_t l) { return of_ours(counts.lanes[l].name.subject); });
 }
 
@@ -53,7 +53,7 @@ inline std::string list_of(const std::vector<std::string>& names) {
   return named < names.size() ? fmt::format("{} and {} more", text, names.size() - named) : text;
 }
 
-inline std::string ids(const CampaignCounts& counts, const Places& places) {
+inline std::string ids(const CampaignCounts& counts, const LaneIndices& places) {
   std::vector<std::string> names;
   for (const std::size_t l : places) names.push_back(counts.lanes[l].id);
   return list_of(names);

@@ -11,8 +11,8 @@ Share wrong_share(const CampaignCounts& counts, std::size_t lane) {
   return share_of(counts.total.wrong(lane), counts.total.pairs);
 }
 
-Places those_wrong(const CampaignCounts& counts, const Places& among, std::uint64_t wrong) {
-  Places places;
+LaneIndices those_wrong(const CampaignCounts& counts, const LaneIndices& among, std::uint64_t wrong) {
+  LaneIndices places;
   std::copy_if(among.begin(), among.end(), std::back_inserter(places),
                [&](std::size_t l) { return counts.total.wrong(l) == wrong; });
   return places;
@@ -40,7 +40,7 @@ std::string with_spread(const Cost& cost) {
 }
 
 // The lane of least cost there; -1 where none was timed.
-int cheapest(const Costs* costs, const Places& among, const std::vector<std::size_t>& strata) {
+int cheapest(const Costs* costs, const LaneIndices& among, const std::vector<std::size_t>& strata) {
   int best = -1;
   for (const std::size_t l : among) {
     const std::optional<Cost> cost = cost_of(costs, l, strata);
@@ -50,8 +50,8 @@ int cheapest(const Costs* costs, const Places& among, const std::vector<std::siz
   return best;
 }
 
-Places exact_lanes(const CampaignCounts& counts) {
-  Places places;
+LaneIndices exact_lanes(const CampaignCounts& counts) {
+  LaneIndices places;
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
     if (counts.lanes[l].exact) places.push_back(l);
   }
@@ -68,7 +68,7 @@ std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, co
 }
 
 // What exactness costs, as the end of a sentence.
-std::string price(const CampaignCounts& counts, const Costs* costs, const Places& exact) {
+std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIndices& exact) {
   const Ground ground = ground_of(counts);
   const int own = cheapest(costs, exact, ground.strata);
   if (own < 0) return ". What it costs is not settled: the campaign has no timings of it.";
@@ -104,7 +104,7 @@ bool same_family(const CampaignCounts& counts, std::size_t l, std::size_t r) {
 
 // Of the lanes of other families the one that `better` puts first; -1 for none.
 template <class Better>
-int first_of_others(const CampaignCounts& counts, const Places& lanes, std::size_t than, Better better) {
+int first_of_others(const CampaignCounts& counts, const LaneIndices& lanes, std::size_t than, Better better) {
   int best = -1;
   for (const std::size_t l : lanes) {
     if (same_family(counts, l, than)) continue;
@@ -126,7 +126,7 @@ std::string not_settled(const CampaignCounts& counts, const char* which, std::si
 }
 
 // ", at 82 ns a general pair": of the cheapest of them.
-std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Places& lanes) {
+std::string at_cost(const CampaignCounts& counts, const Costs* costs, const LaneIndices& lanes) {
   const Ground ground = ground_of(counts);
   const int lane = cheapest(costs, lanes, ground.strata);
   if (lane < 0) return "";
@@ -136,7 +136,7 @@ std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Plac
 }
 
 // "; bound declines 1,200 pairs": of those lanes that give no answer on some pairs.
-std::string declining(const CampaignCounts& counts, const Places& lanes) {
+std::string declining(const CampaignCounts& counts, const LaneIndices& lanes) {
   std::string text;
   for (const std::size_t l : lanes) {
     if (const std::uint64_t declined = counts.total.lanes[l].declined; declined > 0)
@@ -148,7 +148,7 @@ std::string declining(const CampaignCounts& counts, const Places& lanes) {
 }  // namespace
 
 Sentence lane_to_use(const CampaignCounts& counts, const Costs* costs) {
-  const Places exact = exact_lanes(counts);
+  const LaneIndices exact = exact_lanes(counts);
   if (exact.empty()) return {"No exact lane ran, so there is none to recommend for every pair.", false};
   for (const std::size_t l : exact) {
     const std::uint64_t not_right = counts.total.lanes[l].not_right();
@@ -163,7 +163,7 @@ Sentence lane_to_use(const CampaignCounts& counts, const Costs* costs) {
 }
 
 Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
-  const Places lanes = published(counts);
+  const LaneIndices lanes = published(counts);
   const auto wrong = [&](std::size_t l) { return counts.total.wrong(l); };
   const std::size_t worst =
       *std::max_element(lanes.begin(), lanes.end(), [&](auto l, auto r) { return wrong(l) < wrong(r); });
@@ -177,7 +177,7 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
   }
   if (!wrong_share(counts, worst).apart(wrong_share(counts, static_cast<std::size_t>(next))))
     return {not_settled(counts, "worst", worst, static_cast<std::size_t>(next))};
-  const Places equals = those_wrong(counts, lanes, wrong(worst));
+  const LaneIndices equals = those_wrong(counts, lanes, wrong(worst));
   const analysis::LaneCounts& found = counts.total.lanes[worst];
   std::string text = fmt::format("Avoid {}: wrong on {}, {} false positives and {} false negatives",
                                  ids(counts, equals), with_interval(wrong_share(counts, worst), " pairs"),
@@ -199,7 +199,7 @@ Sentence lane_to_avoid(const CampaignCounts& counts, const Costs* costs) {
 }
 
 Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
-  const Places lanes = published(counts);
+  const LaneIndices lanes = published(counts);
   const StratumCounts& total = counts.total;
   const auto less = [&](std::size_t l, std::size_t r) { return total.wrong(l) < total.wrong(r); };
   const std::size_t least = *std::min_element(lanes.begin(), lanes.end(), less);
@@ -219,7 +219,7 @@ Sentence least_wrong_lane(const CampaignCounts& counts, const Costs* costs) {
       total.wrong(least) == 0
           ? fmt::format("none of {} pairs (with 95 % confidence fewer than {})", grouped(total.pairs), bound)
           : fmt::format("{} of {} pairs", with_interval(wrong_share(counts, least)), grouped(total.pairs));
-  const Places best = those_wrong(counts, lanes, total.wrong(least));
+  const LaneIndices best = those_wrong(counts, lanes, total.wrong(least));
   const std::string cost = at_cost(counts, costs, best);
   if (lanes.size() == 1)
     return {fmt::format("The only published lane, {}, is wrong on {}{}{}.", counts.lanes[least].id, found, cost,

@@ -148,7 +148,7 @@ Call call_of(const Lane& lane, std::string_view algorithm) {
   const Epsilons& epsilons = lane.under->epsilons;
   const std::string_view real = lane.scalar == Scalar::f32 ? "float" : "double";
   return {fmt::format("graze::decide_within<{}, {}>(a, b, graze::Tolerances<{}>(graze::Epsilons{{{{{}}}, {{{}}}}}))",
-                      algorithm, epsilons.any_relative() ? fmt::format("graze::Sized<{}>", real) : real, real,
+                      algorithm, epsilons.any_relative() ? fmt::format("graze::WithMagnitude<{}>", real) : real, real,
                       fmt::join(epsilons.absolute, ", "), fmt::join(epsilons.relative, ", ")),
           fmt::format(
               "// The policy {}: absolute and relative tolerances at plane distances, parallel planes, orientations "
@@ -190,7 +190,7 @@ bool shows(SnippetKind kind, const Lane& lane) {
 std::string amalgamated_source(std::string_view algorithm_id, bool with_policy) {
   Amalgamation all;
   all.add(header_of(algorithm_id));
-  if (with_policy) all.add("core/decide_under.h");
+  if (with_policy) all.add("core/lanes/decide_under.h");
   std::string text = "// SPDX-License-Identifier: Apache-2.0\n";
   for (const std::string& line : all.system) text += line + '\n';
   return text + all.text;

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 #include "core/verdict.h"
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 #include "oracle/truth.h"
 #include "reports/screen.h"

@@ -53,12 +53,12 @@ class CampaignTest : public testing::Test {
   }
   static void TearDownTestSuite() { fs::remove_all(root_); }
 
-  static fuzz::LanesUnderTest lanes() {
+  static fuzz::SelectedLanes lanes() {
     return fuzz::select_lanes({"moller_1997/*", "interval_overlap/*", "exact/f32/cpu"}, fuzz::Executor::twin);
   }
 
   static void run(const std::string& name, int threads, std::uint64_t seed = 3) {
-    const fuzz::LanesUnderTest under_test = lanes();
+    const fuzz::SelectedLanes under_test = lanes();
     fuzz::Campaign c;
     c.seed = seed;
     c.sources = strata::stratum_sources(c.seed, 15'000, {"near_edge_edge", "extreme_scale", "thesis"});

@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
 #include "oracle/truth.h"

@@ -1,16 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Checks the direction of every #include: a file includes from its own folder and from those before it in the order of
-add_subdirectory in the root CMakeLists.txt, tests and device code too. Some libraries are seen by one folder only, and
-no algorithm's header includes another algorithm's.
+add_subdirectory in the root CMakeLists.txt, tests and device code too. The files that a
+folder's CMakeLists.txt lists are of the same folders. The folders inside have no cycle, tests, benchmarks and fuzz
+targets aside. Some libraries are seen by one folder only, and no algorithm's header includes
+another algorithm's.
   check_includes.py ROOT
 """
 import fnmatch
+import graphlib
 import pathlib
 import re
 import sys
 
 SOURCES = {".h", ".cpp", ".cu", ".cuh", ".inl"}
+LEAF = re.compile(r"\.(test|bench|fuzz)\.|_test\.|_testing\.")  # nothing but a program includes these
 GENERATED = {
     "build_info.h",
     "embedded.inc",
@@ -52,12 +56,35 @@ def algorithms(root):
     }
 
 
+def folder_of(name):
+    """The folder two levels deep at most: "cuda/lanes" of "cuda/lanes/device.cu", "cuda" of "cuda/no_device.cpp"."""
+    return "/".join(name.split("/")[:-1][:2])
+
+
+def cycle(arrows):
+    """The arrows of one cycle of folders, each as the include that draws it; none where there is no cycle."""
+    graph = {}
+    for source, target in arrows:
+        graph.setdefault(source, set()).add(target)
+    try:
+        list(graphlib.TopologicalSorter(graph).static_order())
+        return []
+    except graphlib.CycleError as error:
+        way = error.args[1][::-1]  # each folder includes from the next one
+        return [arrows[step] for step in zip(way, way[1:])]
+
+
 def check(root, exceptions):
     """Returns: how many files were read; for each violation file:line, what was expected, what was found."""
     order = re.findall(r"^add_subdirectory\((\w+)\)", (root / "CMakeLists.txt").read_text(encoding="utf-8"), re.M)
-    said, used, count, of_algorithms = [], set(), 0, algorithms(root)
+    said, used, count, of_algorithms, arrows = [], set(), 0, algorithms(root), {}
     for place, folder in enumerate(order):
         allowed = order[: place + 1]
+        for file in sorted((root / folder).rglob("CMakeLists.txt")):
+            for other in re.findall(r"\.\./(\w+)/", file.read_text(encoding="utf-8")):
+                if other not in allowed:
+                    name = file.relative_to(root).as_posix()
+                    said.append(f"{name}: expected files of {', '.join(allowed)}, found one of {other}")
         for file in sorted(path for path in (root / folder).rglob("*") if path.suffix in SOURCES):
             count += 1
             name = file.relative_to(root).as_posix()
@@ -68,6 +95,10 @@ def check(root, exceptions):
                         said.append(f'{name}:{line}: expected a path below {", ".join(allowed)}, found "{included}"')
                     elif name in of_algorithms and included in of_algorithms:
                         said.append(f'{name}:{line}: expected no other algorithm, found "{included}"')
+                    if right and included not in GENERATED and not LEAF.search(name):
+                        arrow = (folder_of(name), folder_of(included))
+                        if arrow[0] != arrow[1]:
+                            arrows.setdefault(arrow, f'{name}:{line} includes "{included}"')
                     continue
                 for pattern, library, home in LIBRARIES:
                     if folder == home or not re.match(pattern, included):
@@ -78,6 +109,8 @@ def check(root, exceptions):
                     used.update(excepted)
                     if not excepted:
                         said.append(f"{name}:{line}: expected {library} below {home} only, found <{included}>")
+    if found := cycle(arrows):
+        said.append("expected folders without a cycle, found " + ", ".join(found))
     for glob in exceptions.keys() - used:
         said.append(
             f"{glob}: expected an include of {exceptions[glob][0]}, which is listed as an exception, found none"

@@ -57,6 +57,25 @@ class IncludeDirection(unittest.TestCase):
                 self.assertTrue(said[0].endswith(f"found {found}"), said)
                 (self.root / file).unlink()
 
+    def test_a_list_of_files_names_no_later_folder(self):
+        self.write("oracle/CMakeLists.txt", "add_library(oracle truth.cpp ../core/pair.cpp)\n")
+        self.assertEqual(self.said(), [])
+        self.write("core/CMakeLists.txt", "add_library(core pair.cpp ../oracle/truth.cpp)\n")
+        self.assertEqual(self.said(), ["core/CMakeLists.txt: expected files of core, found one of oracle"])
+
+    def test_folders_inside_have_no_cycle(self):
+        self.write("cuda/twin/twin.h", '#include "cuda/lanes/kernels.cuh"\n')
+        self.write("cuda/no_device.cpp", '#include "cuda/twin/twin.h"\n')
+        self.write("cuda/lanes/twins.test.cpp", '#include "cuda/twin/twin.h"\n')
+        self.assertEqual(self.said(), [])
+        self.write("cuda/lanes/device.cu", '\n#include "cuda/twin/twin.h"\n')
+        self.assertEqual(len(self.said()), 1, self.said())
+        for arrow in [
+            'cuda/lanes/device.cu:2 includes "cuda/twin/twin.h"',
+            'cuda/twin/twin.h:1 includes "cuda/lanes/kernels.cuh"',
+        ]:
+            self.assertIn(arrow, self.said()[0])
+
     def test_no_algorithm_includes_another(self):
         info = "struct Sat { static constexpr AlgorithmInfo kInfo{}; };\n"
         self.write("core/algorithms/sat.h", '#include "core/algorithms/plane.h"\n' + info)

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/text.h"
 #include "strata/strata.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/fnv1a.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/text.h"
 #include "cuda/subject/cuda_subject.h"
 #include "cuda/twin/twin.h"

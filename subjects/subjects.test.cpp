@@ -12,8 +12,8 @@
 
 #include "core/algorithms/algorithms.h"
 #include "core/error.h"
-#include "core/lanes.h"
-#include "core/verdicts.h"
+#include "core/lanes/lanes.h"
+#include "core/lanes/verdicts.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 #include "subjects/process.h"

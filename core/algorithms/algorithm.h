@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "core/policy.h"
+#include "core/epsilon_sites.h"
 #include "core/vec3.h"
 #include "core/verdict.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/policy.h"
+#include "core/epsilon_sites.h"
 #include "core/vec3.h"
 
 namespace graze {

@@ -2,7 +2,7 @@
 // Projections on an axis, and whether they overlap.
 #pragma once
 
-#include "core/policy.h"
+#include "core/epsilon_sites.h"
 #include "core/vec3.h"
 
 namespace graze {

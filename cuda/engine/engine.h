@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/margin/bucket.h"
 #include "core/verdict.h"
 #include "strata/pair_source.h"

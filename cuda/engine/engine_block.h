@@ -8,7 +8,7 @@
 #include "core/margin/axis.h"
 #include "cuda/engine/engine.h"
 #include "cuda/engine/signature_table.h"
-#include "cuda/lanes/places.h"
+#include "cuda/lanes/pair_list.h"
 
 namespace graze::cuda {
 
@@ -62,7 +62,7 @@ struct EngineBlock {
   std::int8_t* buckets;
   std::uint8_t* relations;  // as packed: of each pair that some lane decides wrongly, in the end
   LaneTable lanes;
-  Places lists[kEngineLists];
+  PairList lists[kEngineLists];
   SignatureTable signatures;
   IndexList undecided;
   std::uint64_t* counts;  // see EngineResult

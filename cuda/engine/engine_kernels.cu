@@ -47,7 +47,7 @@ __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs_by_ve
 
 template <class Step>
 __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_listed(EngineBlock block, EngineList which) {
-  const Places& list = block.lists[which];
+  const PairList& list = block.lists[which];
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *list.count; n += gridDim.x * kThreads) {
     float c[kCoordinates];
     load(block.pairs, list.at[n], c);
@@ -77,7 +77,7 @@ __device__ void add_together(const SignatureTable& table, const SignatureKey& ke
 }
 
 __global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, EngineList which) {
-  const Places& list = block.lists[which];
+  const PairList& list = block.lists[which];
   for (std::uint32_t begin = blockIdx.x * kThreads; begin < *list.count; begin += gridDim.x * kThreads) {
     const std::uint32_t n = begin + threadIdx.x;
     std::uint32_t i = n < *list.count ? list.at[n] : 0;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/counts.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "strata/pair_source.h"
 
 namespace graze::cuda {

@@ -2,7 +2,7 @@
 // The device lanes under the policy bound. Compiled once for each device variant that keeps error bounds, each time
 // with its flags and in its own namespace GRAZE_FP; nothing else may be defined here, or the linker would mix the
 // variants. They have no twins: what they decide is the exact verdict anyway, and their PTX is ten times as long.
-#include "core/decide_under.h"
+#include "core/lanes/decide_under.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/vote.cuh"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze::cuda {
 

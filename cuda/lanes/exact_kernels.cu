@@ -13,8 +13,8 @@ using exact::Stage;
 using exact::detail::Finding;
 
 __global__ void __launch_bounds__(kThreads, 3)
-    decide_most(DevicePairs pairs, Places in_floats, Places left, std::uint32_t* intersects, std::uint32_t* declined,
-                unsigned long long* stages) {
+    decide_most(DevicePairs pairs, PairList in_floats, PairList left, std::uint32_t* intersects,
+                std::uint32_t* declined, unsigned long long* stages) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
   bool finite = true;
   int list = -1;
@@ -39,7 +39,7 @@ __global__ void __launch_bounds__(kThreads, 3)
 }
 
 // Lists the finite pairs that a filter declined, and takes their bits back.
-__global__ void __launch_bounds__(kThreads) list_declined(DevicePairs pairs, Places in_floats, Places left,
+__global__ void __launch_bounds__(kThreads) list_declined(DevicePairs pairs, PairList in_floats, PairList left,
                                                           std::uint32_t* intersects, std::uint32_t* declined) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;
   bool finite = true;

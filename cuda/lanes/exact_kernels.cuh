@@ -8,7 +8,7 @@
 
 #include "core/exact/exact.h"
 #include "cuda/lanes/device_memory.cuh"
-#include "cuda/lanes/places.h"
+#include "cuda/lanes/pair_list.h"
 
 namespace graze {
 struct Lane;
@@ -34,7 +34,7 @@ class DeviceExact {
   void decide_listed(DevicePairs pairs, std::uint32_t* intersects, unsigned long long* stages, cudaStream_t stream);
 
   DeviceArray<std::uint32_t> places_[kExactLists], counts_;
-  Places left_[kExactLists];
+  PairList left_[kExactLists];
 };
 
 // Starts the kernels of a CUDA lane, which write as DeviceExact::decide does.

@@ -6,11 +6,11 @@
 #pragma once
 
 #include "core/exact/exact.h"
-#include "cuda/lanes/close_numbers.cuh"
 #include "cuda/lanes/device_memory.cuh"
+#include "cuda/lanes/double_double_numbers.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
-#include "cuda/lanes/places.h"
+#include "cuda/lanes/pair_list.h"
 
 namespace graze::cuda {
 namespace {
@@ -58,7 +58,7 @@ __device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
 constexpr int kLeft = exact::kStages;
 
 template <class Pairs, class Decide>
-__device__ void decide_listed(const Pairs& pairs, const Places& from, const Places& left, std::uint32_t* intersects,
+__device__ void decide_listed(const Pairs& pairs, const PairList& from, const PairList& left, std::uint32_t* intersects,
                               unsigned long long* stages, const Decide& decide) {
   const std::uint32_t count = *from.count;
   std::uint32_t decided[exact::kStages] = {};
@@ -83,8 +83,8 @@ __device__ void decide_listed(const Pairs& pairs, const Places& from, const Plac
 // Of pairs that floats hold.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 3)
-    decide_by_floats(Pairs pairs, Places from, std::uint32_t* intersects, unsigned long long* stages) {
-  decide_listed(pairs, from, Places{}, intersects, stages, [](const float* c, bool& yes) {
+    decide_by_floats(Pairs pairs, PairList from, std::uint32_t* intersects, unsigned long long* stages) {
+  decide_listed(pairs, from, PairList{}, intersects, stages, [](const float* c, bool& yes) {
     yes = exact::detail::decide<exact::detail::SingleNumbers>(c, c + 9, 0);
     return static_cast<int>(Stage::doubles);
   });
@@ -94,7 +94,7 @@ __global__ void __launch_bounds__(kThreads, 3)
 // should hold at once, which limits the registers.
 template <class Kinds, int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
-    decide_by(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
+    decide_by(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
   decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
     const Grid grid = exact::detail::grid_of(c, c + 9);
     if (!Kinds::hold(grid)) return kLeft;
@@ -108,7 +108,7 @@ __global__ void __launch_bounds__(kThreads, kThreadBlocks)
 // Exactly, or by one bound for each determinant.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
-    decide_on_int128(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
+    decide_on_int128(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
   using Numbers = exact::detail::IntNumbers;
   decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
     const Grid grid = exact::detail::grid_of(c, c + 9);
@@ -125,9 +125,9 @@ __global__ void __launch_bounds__(kThreads, 2)
 // By closer bounds, of twice a double's precision.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
-    decide_closely(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
+    decide_closely(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
   decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
-    const Finding found = by_planes(exact::detail::triangles<CloseNumbers>(c, c + 9));
+    const Finding found = by_planes(exact::detail::triangles<DoubleDoubleNumbers>(c, c + 9));
     yes = found == Finding::crosses || found == Finding::intersects;
     return found == Finding::unsure ? kLeft : static_cast<int>(Stage::bounded);
   });
@@ -135,12 +135,12 @@ __global__ void __launch_bounds__(kThreads, 2)
 
 // By these bounds, and the determinants that they leave open in wide integers.
 template <class Pairs>
-__global__ void __launch_bounds__(kThreads)
-    decide_one_by_one(Pairs pairs, Places from, Places left, std::uint32_t* intersects, unsigned long long* stages) {
+__global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairList from, PairList left,
+                                                              std::uint32_t* intersects, unsigned long long* stages) {
   using exact::detail::WideNumbers;
   decide_listed(pairs, from, left, intersects, stages, [](const float* c, bool& yes) {
     Stage stage = Stage::bounded;
-    const Finding found = exact::detail::by_planes_one_by_one<CloseNumbers, WideNumbers>(c, c + 9, 0, stage);
+    const Finding found = exact::detail::by_planes_one_by_one<DoubleDoubleNumbers, WideNumbers>(c, c + 9, 0, stage);
     yes = found == Finding::intersects;
     return found == Finding::unsure ? kLeft : static_cast<int>(stage);
   });
@@ -151,20 +151,20 @@ constexpr int kBlocksForLeft = 1024;
 // Of pairs that no small grid holds: the first of four lists; the others are for what one step leaves to the next, and
 // empty.
 template <class Pairs>
-void launch_large_steps(const Pairs& pairs, const Places* left, std::uint32_t* intersects, unsigned long long* stages,
+void launch_large_steps(const Pairs& pairs, const PairList* left, std::uint32_t* intersects, unsigned long long* stages,
                         cudaStream_t stream) {
   decide_on_int128<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], intersects, stages);
   decide_closely<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], intersects, stages);
   decide_one_by_one<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[2], left[3], intersects, stages);
   decide_by<exact::detail::MultiwordNumbers, 1>
-      <<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[3], Places{}, intersects, stages);
+      <<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[3], PairList{}, intersects, stages);
   check(cudaGetLastError());
 }
 
 // Decides the pairs of the first two lists, the first those that floats hold; the other ones are for what the steps
 // leave to each other, and empty.
 template <class Pairs>
-void launch_exact_steps(const Pairs& pairs, const Places (&left)[kExactLists], std::uint32_t* intersects,
+void launch_exact_steps(const Pairs& pairs, const PairList (&left)[kExactLists], std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {
   using namespace exact::detail;
   decide_by_floats<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], intersects, stages);

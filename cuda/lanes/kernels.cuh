@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "core/algorithms/algorithms.h"
-#include "core/tolerances.h"
+#include "core/lanes/tolerances.h"
 #include "core/variants.h"
 #include "cuda/lanes/device_pairs.h"
 

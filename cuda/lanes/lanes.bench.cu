@@ -20,7 +20,7 @@
 #include "build_info.h"
 #include "core/exact/exact.h"
 #include "core/fnv1a.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "cuda/engine/sweep.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_event.cuh"

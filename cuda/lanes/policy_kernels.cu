@@ -2,7 +2,7 @@
 // The device lanes under tolerances, the policies abs, rel and paper. Compiled once for each device variant, each time
 // with its flags and in its own namespace GRAZE_FP; nothing else may be defined here, or the linker would mix the
 // variants. The twins are generated from the PTX of this file.
-#include "core/decide_under.h"
+#include "core/lanes/decide_under.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/vote.cuh"
 
@@ -22,7 +22,7 @@ template <int algorithm, class Real>
 __global__ void relative_pairs(DevicePairs pairs, Tolerances<Real> tolerances, std::uint32_t* intersects,
                                std::uint32_t* declined) {
   vote<Real>(pairs, intersects, declined, [&](const auto& a, const auto& b) {
-    return decide_within<std::tuple_element_t<algorithm, Algorithms>, Sized<Real>>(a, b, tolerances);
+    return decide_within<std::tuple_element_t<algorithm, Algorithms>, WithMagnitude<Real>>(a, b, tolerances);
   });
 }
 

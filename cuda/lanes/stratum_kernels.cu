@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "cuda/lanes/device_memory.cuh"
-#include "strata/scene.h"
+#include "strata/scene/scene.h"
 #include "strata/strata.h"
 
 namespace graze::cuda {

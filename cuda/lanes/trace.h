@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/policy.h"
+#include "core/epsilon_sites.h"
 
 namespace graze::cuda {
 inline namespace GRAZE_FP {

@@ -201,7 +201,7 @@ class Run {
     check(cudaMemcpyAsync(to.at_least(words / 2), from, words * sizeof *from, cudaMemcpyDeviceToHost, stream));
   }
 
-  void decide(Verdicts& at, const exact::Reference& reference, const QueryChunk& chunk, std::uint32_t* hits,
+  void decide(Verdicts& at, const exact::PreparedTriangle& reference, const QueryChunk& chunk, std::uint32_t* hits,
               std::uint32_t* declined, cudaStream_t stream) {
     if (question_.lane->exact)
       return launch_exact_query(reference, chunk, at.lists.at_least(2 * std::size_t{chunk.count}),
@@ -252,7 +252,7 @@ class Run {
   QueryWork& work_;
   int device_;
   Slot* slots_;
-  std::vector<exact::Reference> references_;
+  std::vector<exact::PreparedTriangle> references_;
   bool resident_ = false, pinned_ = false, failed_ = false;
   std::uint64_t most_ = 0, chunk_ = 0;
   LaunchRecord record_;

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "cuda/lanes/device_failure.h"
 #include "cuda/query/triangles.h"
 

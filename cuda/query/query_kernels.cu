@@ -10,7 +10,7 @@ namespace {
 
 // How the steps of the exact decision read a pair.
 struct QueryPairs {
-  exact::Reference reference;
+  exact::PreparedTriangle reference;
   QueryChunk chunk;
 };
 
@@ -22,7 +22,7 @@ __device__ void load(const QueryPairs& pairs, std::uint32_t i, float* c) {
 // Decides what is listed: by numbers of its grid where that is small, as where triangles touch it often is. What is not
 // finite is declined.
 __global__ void __launch_bounds__(kThreads, 2)
-    decide_on_grid(const __grid_constant__ QueryPairs pairs, Places from, Places left, std::uint32_t* hits,
+    decide_on_grid(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits,
                    std::uint32_t* declined) {
   using Numbers = exact::detail::ResidueNumbers;
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
@@ -46,7 +46,7 @@ __global__ void __launch_bounds__(kThreads, 2)
 
 // The screen in doubles for those that this left.
 __global__ void __launch_bounds__(kThreads, 3)
-    screen_listed(const __grid_constant__ QueryPairs pairs, Places from, Places left, std::uint32_t* hits) {
+    screen_listed(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
     const std::uint32_t i = from.at[n];
     float c[kCoordinates];
@@ -125,13 +125,13 @@ std::uint32_t blocks_for(std::uint32_t things) { return (things + kThreads - 1) 
 
 }  // namespace
 
-void launch_exact_query(const exact::Reference& reference, const QueryChunk& chunk, std::uint32_t* lists,
+void launch_exact_query(const exact::PreparedTriangle& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream) {
   check(cudaMemsetAsync(counts, 0, kQueryLists * sizeof *counts, stream));
   check(cudaMemsetAsync(declined, 0, row_words(chunk.count) * sizeof *declined, stream));
   const QueryPairs pairs{reference, chunk};
   // Each list takes the memory of the one before the last, which nobody needs any more.
-  Places left[kQueryLists];
+  PairList left[kQueryLists];
   for (std::uint32_t k = 0; k < kQueryLists; ++k) left[k] = {lists + (k % 2) * chunk.count, counts + k};
   launch_slabs(reference, chunk, left[0], hits, stream);
   decide_on_grid<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits, declined);
@@ -139,7 +139,7 @@ void launch_exact_query(const exact::Reference& reference, const QueryChunk& chu
   launch_large_steps(pairs, left + 2, hits, nullptr, stream);
 }
 
-void launch_pair_up(const exact::Reference& reference, const QueryChunk& chunk, float* columns,
+void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& chunk, float* columns,
                     std::uint32_t* not_finite, cudaStream_t stream) {
   pair_up<<<blocks_for(chunk.count), kThreads, 0, stream>>>({reference, chunk}, row_words(chunk.count) * 32, columns,
                                                             not_finite);

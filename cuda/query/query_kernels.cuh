@@ -6,9 +6,9 @@
 
 #include <cstdint>
 
-#include "core/exact/reference.h"
+#include "core/exact/prepared_triangle.h"
 #include "core/pair.h"
-#include "cuda/lanes/places.h"
+#include "cuda/lanes/pair_list.h"
 #include "cuda/query/device_query.h"
 
 namespace graze::cuda {
@@ -27,15 +27,15 @@ inline constexpr int kQueryLists = 6;
 
 // What the slabs of the reference and the screen in floats show of a chunk: all words of `hits` are written, and what
 // is left open is listed.
-void launch_slabs(const exact::Reference& reference, const QueryChunk& chunk, Places left, std::uint32_t* hits,
+void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& chunk, PairList left, std::uint32_t* hits,
                   cudaStream_t stream);
 
 // The exact verdicts on a chunk: bit i % 32 of word i / 32. `lists`: room for 2 * count places; `counts`: kQueryLists.
-void launch_exact_query(const exact::Reference& reference, const QueryChunk& chunk, std::uint32_t* lists,
+void launch_exact_query(const exact::PreparedTriangle& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream);
 
 // The chunk as pairs with the reference, 18 columns of row_words(count) * 32; and which triangles are not finite.
-void launch_pair_up(const exact::Reference& reference, const QueryChunk& chunk, float* columns,
+void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& chunk, float* columns,
                     std::uint32_t* not_finite, cudaStream_t stream);
 
 // Turns verdicts on what is not finite into declined ones.

@@ -51,7 +51,7 @@ __device__ std::uint32_t lanes_before(std::uint32_t lanes) {
 }
 
 // Queues what the slabs leave open of a tile.   Returns: the queue's new end.
-__device__ std::uint32_t queue_open(const exact::Reference& reference, WarpMemory& warp, std::uint32_t stage,
+__device__ std::uint32_t queue_open(const exact::PreparedTriangle& reference, WarpMemory& warp, std::uint32_t stage,
                                     std::uint32_t end) {
   // Four bytes times 9 kEach: as many as these have, so no two threads read from one bank at once.
   struct alignas(4 * kEach) Vector {
@@ -77,7 +77,7 @@ __device__ std::uint32_t queue_open(const exact::Reference& reference, WarpMemor
 }
 
 // Lists `count` of the unsure ones, the last that came.
-__device__ void list(const WarpMemory& warp, std::uint32_t unsure, std::uint32_t count, Places left) {
+__device__ void list(const WarpMemory& warp, std::uint32_t unsure, std::uint32_t count, PairList left) {
   const std::uint32_t lane = threadIdx.x % 32;
   std::uint32_t first = 0;
   if (lane == 0) first = atomicAdd(left.count, count);
@@ -94,8 +94,8 @@ __device__ void give(WarpMemory& warp, std::uint32_t stage, std::uint32_t tile, 
 }
 
 __global__ void __launch_bounds__(kWarps * 32, kBlocks)
-    decide_by_slabs(const __grid_constant__ exact::Reference reference, const __grid_constant__ QueryChunk chunk,
-                    bool by_vectors, Places left, std::uint32_t* hits) {
+    decide_by_slabs(const __grid_constant__ exact::PreparedTriangle reference, const __grid_constant__ QueryChunk chunk,
+                    bool by_vectors, PairList left, std::uint32_t* hits) {
   extern __shared__ float4 shared[];
   WarpMemory& warp = reinterpret_cast<WarpMemory*>(shared)[threadIdx.x / 32];
   const std::uint32_t lane = threadIdx.x % 32, step = gridDim.x * kWarps, tiles = (chunk.count + kTile - 1) / kTile;
@@ -144,7 +144,7 @@ __global__ void __launch_bounds__(kWarps * 32, kBlocks)
 
 }  // namespace
 
-void launch_slabs(const exact::Reference& reference, const QueryChunk& chunk, Places left, std::uint32_t* hits,
+void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& chunk, PairList left, std::uint32_t* hits,
                   cudaStream_t stream) {
   int device = 0, processors = 0;
   check(cudaGetDevice(&device));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/variants.h"
 
 namespace graze::cuda {
@@ -22,7 +22,7 @@ struct CudaBuild {
   std::string ptx;                      // for compute_75, as NVRTC gives it
   std::string toolkit;                  // "13.0.88"
   std::string hash;                     // of the instructions and their contractions: what a proof holds for
-  std::filesystem::path twin;           // a shared library, see twin_library.h; empty where there is none
+  std::filesystem::path twin;           // a shared library, see cuda/twin/twin_library.h; empty where there is none
   std::string why_no_twin;              // one line; empty where there is one
   bool machine_code_identical = false;  // ptxas gives the same bytes for this PTX and for that with every contraction
                                         // written out, which the twin replays

@@ -11,7 +11,7 @@
 #include "cuda/subject/machine_code.h"
 #include "cuda/subject/nvrtc.h"
 #include "cuda/subject/twin_build.h"
-#include "cuda/subject/twin_library.h"
+#include "cuda/twin/twin_library.h"
 
 namespace graze::cuda {
 namespace {

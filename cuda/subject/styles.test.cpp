@@ -17,7 +17,7 @@
 #include "cuda/subject/machine_code.h"
 #include "cuda/subject/nvrtc.h"
 #include "cuda/subject/twin_build.h"
-#include "cuda/subject/twin_library.h"
+#include "cuda/twin/twin_library.h"
 #include "strata/strata.h"
 
 namespace graze::cuda {

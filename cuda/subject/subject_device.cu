@@ -8,7 +8,7 @@
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/stratum_kernels.cuh"
-#include "cuda/subject/twin_library.h"
+#include "cuda/twin/twin_library.h"
 #include "strata/strata.h"
 
 namespace graze::cuda {

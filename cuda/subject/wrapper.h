@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze::cuda {
 

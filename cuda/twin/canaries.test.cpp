@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
 #include "cuda/twin/twin_table.h"

@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cuda/subject/twin_library.h"
 #include "cuda/twin/twin.h"
+#include "cuda/twin/twin_library.h"
 #include "cuda/twin/twin_table.h"
 
 namespace graze::cuda {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <thread>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/kernels.cuh"

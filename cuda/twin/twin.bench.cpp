@@ -3,7 +3,7 @@
 // twin without contraction gives the cpu lane's verdicts.
 #include <benchmark/benchmark.h>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 

@@ -4,7 +4,7 @@
 
 #include "core/fuzz_pair.h"
 #include "core/fuzz_target.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze::cuda {
 namespace {

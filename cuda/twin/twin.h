@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze::cuda {
 

@@ -25,7 +25,7 @@ void BatchResult::add(const BatchResult& other) {
   tally.add(other.tally);
   extremes.add(other.extremes);
   for (const auto& [signature, found] : other.signatures) signatures[signature].add(found);
-  for (const auto& [lane, found] : other.executors_apart) executors_apart[lane].add(found);
+  for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;

@@ -40,11 +40,11 @@ struct BatchResult {
   analysis::Tally tally;
   analysis::Tally extremes;  // by place_on_axis; empty without an axis
   std::map<analysis::Signature, SignatureCount> signatures;
-  std::map<std::string, SignatureCount> executors_apart;  // by lane: device and twin differ
-  std::uint64_t disagreements = 0;                        // pairs on which some lane is wrong
-  std::uint64_t cgal = 0;                                 // pairs decided by CGAL
-  std::uint64_t gmp = 0;                                  // pairs confirmed by GMP
-  std::uint64_t exact = 0;                                // pairs decided by the exact lane, here or on a device
+  std::map<std::string, SignatureCount> executor_mismatches;  // by lane: device and twin differ
+  std::uint64_t disagreements = 0;                            // pairs on which some lane is wrong
+  std::uint64_t cgal = 0;                                     // pairs decided by CGAL
+  std::uint64_t gmp = 0;                                      // pairs confirmed by GMP
+  std::uint64_t exact = 0;                                    // pairs decided by the exact lane, here or on a device
 
   void add(const BatchResult& other);
 };

@@ -81,7 +81,7 @@ Json campaign_spec(const Campaign& campaign) {
   return spec;
 }
 
-Json build_info(const LanesUnderTest& under_test) {
+Json build_info(const SelectedLanes& under_test) {
   Json info = {{"version", GRAZE_VERSION}, {"commit", GRAZE_COMMIT}, {"compiler", GRAZE_COMPILER},
                {"type", GRAZE_BUILD_TYPE}, {"flags", GRAZE_FLAGS},   {"cuda", nullptr},
                {"device", nullptr}};

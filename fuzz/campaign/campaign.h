@@ -14,7 +14,7 @@
 
 #include "cuda/engine/engine.h"
 #include "fuzz/campaign/store.h"
-#include "fuzz/lanes_under_test.h"
+#include "fuzz/selected_lanes.h"
 #include "strata/pair_source.h"
 
 namespace graze::fuzz {
@@ -22,8 +22,8 @@ namespace graze::fuzz {
 struct Campaign {
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
-  const LanesUnderTest* under_test = nullptr;  // the lanes, and what runs them
-  int threads = 0;                             // 0: one on each core
+  const SelectedLanes* under_test = nullptr;  // the lanes, and what runs them
+  int threads = 0;                            // 0: one on each core
   std::vector<std::unique_ptr<cuda::DeviceEngine>>
       engines;        // the devices' engines, which share it; none: the CPU engine
   DecideBlock exact;  // decides what is true for the CPU engine, confirmed by the oracle; null: the oracle does
@@ -52,7 +52,7 @@ struct Progress {
 Json campaign_spec(const Campaign& campaign);
 
 // Version, commit, compiler, type and flags of the build, toolkit, device, and for each CUDA lane what ran it.
-Json build_info(const LanesUnderTest& under_test);
+Json build_info(const SelectedLanes& under_test);
 
 // The processor's name and the architecture, for timings.
 std::string machine_name();
@@ -74,8 +74,8 @@ struct Outcome {
 };
 
 // Runs or goes on with the campaign until done or `stop`, then writes timings.json and, of a whole one, summary.json
-// and cases/; status.json meanwhile. Throws: OracleApart, UsageError, std::runtime_error; committed batches stay in any
-// case.
+// and cases/; status.json meanwhile. Throws: OracleMismatch, UsageError, std::runtime_error; committed batches stay in
+// any case.
 Outcome run_campaign(const Campaign& campaign, const std::atomic<bool>& stop,
                      const std::function<void(const Progress&)>& report);
 

@@ -29,7 +29,7 @@ class CampaignTest : public CampaignFiles {
     return c;
   }
 
-  LanesUnderTest under_test_ = select_lanes({"*/f32/*"}, Executor::twin);
+  SelectedLanes under_test_ = select_lanes({"*/f32/*"}, Executor::twin);
 };
 
 TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
@@ -170,8 +170,8 @@ TEST_F(CampaignTest, ReportsEachDifferenceOfDeviceAndTwin) {
   const std::vector<Pair>& flipped = device->flipped;
   under_test_.device = std::move(device);
   const Json summary = run(campaign("apart", 2, 4000));
-  ASSERT_EQ(summary["executors_apart"].size(), 1u);
-  const Json& apart = summary["executors_apart"][0];
+  ASSERT_EQ(summary["executor_mismatches"].size(), 1u);
+  const Json& apart = summary["executor_mismatches"][0];
   EXPECT_EQ(apart["lane"], "moller_1997/f32/cuda-fma");
   EXPECT_EQ(apart["count"], 3);  // one in each stratum
   const auto cases = corpus::read_pairs(root_ / "apart" / apart["case"].get<std::string>());

@@ -54,7 +54,7 @@ class CampaignFiles : public testing::Test {
   }
   ~CampaignFiles() override { std::filesystem::remove_all(root_); }
 
-  Campaign campaign_of(const LanesUnderTest& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
+  Campaign campaign_of(const SelectedLanes& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
                        const std::string& name) const {
     Campaign c;
     c.seed = seed;
@@ -99,7 +99,7 @@ class CampaignFiles : public testing::Test {
 // lanes than a subject has.
 class ManyLanes {
  public:
-  ManyLanes(const LanesUnderTest& of, int copies) {
+  ManyLanes(const SelectedLanes& of, int copies) {
     rows_.reserve(of.lanes.size() * static_cast<std::size_t>(copies));
     for (std::size_t l = 0; l < of.lanes.size(); ++l) {
       for (int copy = 0; copy < copies; ++copy) {
@@ -112,7 +112,7 @@ class ManyLanes {
     }
   }
 
-  LanesUnderTest under_test;
+  SelectedLanes under_test;
 
  private:
   std::vector<Lane> rows_;

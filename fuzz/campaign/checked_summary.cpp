@@ -114,7 +114,7 @@ Json summary_of_database(const fs::path& directory) {
   });
   StoredCounts all(static_cast<int>(store.lanes.size()));
   for (const StoredCounts& counts : of_source) all.add(counts);
-  return summary_of(store, of_source, all.signatures, all.executors_apart, done == store.spec.at("pairs"));
+  return summary_of(store, of_source, all.signatures, all.executor_mismatches, done == store.spec.at("pairs"));
 }
 
 }  // namespace

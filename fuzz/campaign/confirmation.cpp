@@ -30,9 +30,9 @@ void Confirmation::confirm(int source, BatchResult& result) {
                         std::find(found->second.cases.begin(), found->second.cases.end(), CaseKey{index, source}) !=
                             found->second.cases.end();
       if (!same) {
-        throw oracle::OracleApart(fmt::format("the exact lane and the oracle differ on {}:{}:{}: the lane says {}",
-                                              campaign_.sources[static_cast<std::size_t>(source)].id, campaign_.seed,
-                                              index, analysis::key(signature)));
+        throw oracle::OracleMismatch(fmt::format("the exact lane and the oracle differ on {}:{}:{}: the lane says {}",
+                                                 campaign_.sources[static_cast<std::size_t>(source)].id, campaign_.seed,
+                                                 index, analysis::key(signature)));
       }
     }
   }

@@ -14,7 +14,7 @@ class Confirmation {
   explicit Confirmation(const Campaign& campaign) : campaign_(campaign) {}
 
   // Has the oracle judge those cases of the result that would be kept and that it has not judged yet.
-  // Throws: OracleApart when a case is not what the result says.
+  // Throws: OracleMismatch when a case is not what the result says.
   void confirm(int source, BatchResult& result);
 
  private:

@@ -94,7 +94,7 @@ class BlockJudge {
                    std::span(bits.declined).subspan(begin / 64, words)};
       for (std::size_t i = 0; under_test_.on_both(l) && i < pairs.size(); ++i) {
         if (views_[l].at(i) == twin.at(i)) continue;
-        result.executors_apart[under_test_.lanes[l]->id].add(CaseKey{indices[i], source_});
+        result.executor_mismatches[under_test_.lanes[l]->id].add(CaseKey{indices[i], source_});
       }
     }
 
@@ -130,7 +130,7 @@ class BlockJudge {
   Verdict truth(std::size_t i) const { return analysis::test_bit(truth_, i) ? Verdict::intersects : Verdict::disjoint; }
 
   [[noreturn]] void apart(std::uint64_t index, const std::string& what) const {
-    throw oracle::OracleApart(fmt::format("{} differ on {}:{}:{}", what, source_id(), campaign_.seed, index));
+    throw oracle::OracleMismatch(fmt::format("{} differ on {}:{}:{}", what, source_id(), campaign_.seed, index));
   }
 
   void find_truth(std::span<const Pair> pairs, BatchResult& result) {
@@ -205,7 +205,7 @@ class BlockJudge {
   }
 
   const Campaign& campaign_;
-  const LanesUnderTest& under_test_;
+  const SelectedLanes& under_test_;
   int source_;
   const DecideBlock& exact_;
   const std::vector<cuda::LaneBits>& device_bits_;

@@ -13,7 +13,7 @@ namespace graze::fuzz {
 
 // Judges `count` pairs of the source, whose indices are index_of(0), index_of(1), …; on the threads at hand.
 // exact: decides in CGAL's and GMP's place, unless null.
-// Throws: OracleApart when two exact decisions differ.
+// Throws: OracleMismatch when two exact decisions differ.
 BatchResult judge(const Campaign& campaign, int source, std::size_t count,
                   const std::function<std::uint64_t(std::size_t)>& index_of, const DecideBlock& exact = nullptr);
 
@@ -30,7 +30,7 @@ class PairJudge {
     std::vector<Verdict> verdicts;              // of each lane; of one that is right by its convention the truth
     std::vector<analysis::Signature> failures;  // of each subject that is wrong
   };
-  // Adds the pair's counts to `total`.   Throws: OracleApart.
+  // Adds the pair's counts to `total`.   Throws: OracleMismatch.
   const Found& judge(const Pair& pair, std::uint64_t index, BatchResult& total);
 
  private:

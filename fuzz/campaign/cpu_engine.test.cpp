@@ -23,7 +23,7 @@ class ExactJudge : public CampaignFiles {
     return Json::parse(read_whole(root_ / name / "timings.json"))["oracle"][by];
   }
 
-  LanesUnderTest lanes_ = select_lanes({"*/cpu", "*/cpu-fma", "moller_1997/*/cuda-*"}, Executor::twin);
+  SelectedLanes lanes_ = select_lanes({"*/cpu", "*/cpu-fma", "moller_1997/*/cuda-*"}, Executor::twin);
 };
 
 TEST_F(ExactJudge, LeavesTheBytesOfTheOracleOverAllStrata) {
@@ -67,7 +67,7 @@ void sometimes_wrong(const Pair* pairs, std::size_t count, std::uint64_t* inters
 TEST_F(ExactJudge, TheOracleFindsAnExactLaneThatIsNotRight) {
   Campaign c = campaign("wrong", 20'000, 3, {"uniform"});
   c.exact = &sometimes_wrong<5000>;
-  EXPECT_THROW(run(c), oracle::OracleApart);
+  EXPECT_THROW(run(c), oracle::OracleMismatch);
 }
 
 // No lane is there that would look wrong, so that the sample alone can tell.
@@ -76,7 +76,7 @@ TEST_F(ExactJudge, TheSampleFindsWhatNoLaneShows) {
   lanes_.on_host[0] = &sometimes_wrong<20>;
   Campaign c = campaign("sample", 200'000, 3, {"uniform"});
   c.exact = &sometimes_wrong<20>;
-  EXPECT_THROW(run(c), oracle::OracleApart);
+  EXPECT_THROW(run(c), oracle::OracleMismatch);
   c = campaign("right", 20'000, 3, {"uniform"});
   c.exact = &sometimes_wrong<1u << 25>;  // never
   lanes_.on_host[0] = exact_lane();
@@ -84,7 +84,7 @@ TEST_F(ExactJudge, TheSampleFindsWhatNoLaneShows) {
 }
 
 TEST(SignatureCounts, AreThoseOfEachFailureAlone) {
-  const LanesUnderTest lanes = select_lanes({"moller_1997/*/cpu", "guigue*/f32/cpu", "exact/f32/cpu"}, Executor::twin);
+  const SelectedLanes lanes = select_lanes({"moller_1997/*/cpu", "guigue*/f32/cpu", "exact/f32/cpu"}, Executor::twin);
   ASSERT_EQ(lanes.lanes.size(), 4u);
   constexpr Verdict yes = Verdict::intersects, no = Verdict::disjoint;
   SignatureCounts counts(lanes.lanes);

@@ -30,7 +30,7 @@ class DeviceTest : public CampaignFiles {
   }
 
   // engines: how many devices share it; 0: the CPU engine.
-  Campaign campaign(const LanesUnderTest& under_test, const std::string& name, std::uint64_t pairs, std::size_t engines,
+  Campaign campaign(const SelectedLanes& under_test, const std::string& name, std::uint64_t pairs, std::size_t engines,
                     std::uint64_t seed = 3, const std::vector<std::string>& strata = {}) const {
     Campaign c = campaign_of(under_test, strata::stratum_sources(seed, pairs, strata), seed, name);
     c.threads = 0;
@@ -42,8 +42,8 @@ class DeviceTest : public CampaignFiles {
   }
 
   const std::vector<std::string> kWithTwins = {"*/cuda-nofma", "*/cuda-fma", "*/cuda"};
-  LanesUnderTest twins_ = select_lanes(kWithTwins, Executor::twin);
-  LanesUnderTest on_device_;
+  SelectedLanes twins_ = select_lanes(kWithTwins, Executor::twin);
+  SelectedLanes on_device_;
 };
 
 TEST_F(DeviceTest, GpuEngineCpuEngineAndTwinsLeaveTheSameBytesOverAllStrata) {
@@ -59,7 +59,7 @@ TEST_F(DeviceTest, GpuEngineCpuEngineAndTwinsLeaveTheSameBytesOverAllStrata) {
 }
 
 TEST_F(DeviceTest, ScenesAreDrawnOnTheDeviceAsOnTheHost) {
-  const auto in_scenes = [&](const LanesUnderTest& under_test, const std::string& name, bool engine) {
+  const auto in_scenes = [&](const SelectedLanes& under_test, const std::string& name, bool engine) {
     Campaign c = campaign_of(under_test, sources_in_scenes(4, 120'000), 4, name);
     c.threads = 0;
     c.build = build_info(twins_);
@@ -117,11 +117,11 @@ TEST_F(DeviceTest, CostsAreOfEachLaneAndNameItsKernel) {
 TEST_F(DeviceTest, LanesUnderTolerancesLeaveTheSameBytesByTheirTwins) {
   const std::vector<std::string> globs = {"*/cuda-nofma/abs:1e-6", "*/cuda-nofma/rel:16", "*/cuda-fma/abs:1e-6",
                                           "*/cuda-fma/rel:16", "*/cuda-fma/plane_distance=rel:3,separation=abs:1e-9"};
-  const LanesUnderTest asked = select_lanes(globs, Executor::twin);
+  const SelectedLanes asked = select_lanes(globs, Executor::twin);
   ASSERT_EQ(asked.lanes.size(), globs.size() * 10 - 2);  // two have none: see twin.cpp
   std::vector<std::string> ids;
   for (const Lane* lane : asked.lanes) ids.push_back(lane->id);
-  const LanesUnderTest by_twins = select_lanes(ids, Executor::twin), by_device = select_lanes(ids, Executor::device);
+  const SelectedLanes by_twins = select_lanes(ids, Executor::twin), by_device = select_lanes(ids, Executor::device);
   run(campaign(by_twins, "twins", 60'007, 0));
   run(campaign(by_device, "cpu", 60'007, 0));
   const Json summary = run(campaign(by_device, "gpu", 60'007, 1));
@@ -131,7 +131,7 @@ TEST_F(DeviceTest, LanesUnderTolerancesLeaveTheSameBytesByTheirTwins) {
 }
 
 TEST_F(DeviceTest, BoundsDecideNothingWrongly) {
-  const LanesUnderTest lanes =
+  const SelectedLanes lanes =
       select_lanes({"*/cuda-nofma/bound", "*/cuda-fma/bound", "*/cuda-fma/filtered"}, Executor::device);
   ASSERT_EQ(lanes.lanes.size(), 3u * 4 * 2);
   const Json summary = run(campaign(lanes, "bounds", 200'003, 1));
@@ -152,7 +152,7 @@ TEST_F(DeviceTest, BoundsDecideNothingWrongly) {
 }
 
 TEST_F(DeviceTest, BothEnginesLeaveTheSameBytesOfLanesWithoutATwin) {
-  const LanesUnderTest all = select_lanes({"*/cuda*"}, Executor::device);
+  const SelectedLanes all = select_lanes({"*/cuda*"}, Executor::device);
   ASSERT_GT(all.lanes.size(), on_device_.lanes.size());
   run(campaign(all, "cpu", 30'011, 0));
   run(campaign(all, "gpu", 30'011, 1));

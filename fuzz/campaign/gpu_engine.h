@@ -13,7 +13,7 @@ class GpuEngine {
   explicit GpuEngine(const Campaign& campaign) : campaign_(campaign), confirmation_(campaign) {}
 
   // Pairs [first, first + count) of the source, shared by the campaign's engines.
-  // Throws: OracleApart when a kept case is not what the device says.
+  // Throws: OracleMismatch when a kept case is not what the device says.
   BatchResult judge(int source, std::uint64_t first, std::uint64_t count);
 
  private:

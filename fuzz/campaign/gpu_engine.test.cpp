@@ -12,7 +12,7 @@ namespace {
 
 class GpuEngineTest : public CampaignFiles {
  protected:
-  Campaign campaign(const LanesUnderTest& under_test, const std::string& name, std::uint64_t pairs, int engines,
+  Campaign campaign(const SelectedLanes& under_test, const std::string& name, std::uint64_t pairs, int engines,
                     std::uint64_t seed = 3, const std::vector<std::string>& strata = {},
                     const cuda::EngineLimits& limits = {}) const {
     Campaign c = campaign_of(under_test, strata::stratum_sources(seed, pairs, strata), seed, name);
@@ -21,7 +21,7 @@ class GpuEngineTest : public CampaignFiles {
     return c;
   }
 
-  LanesUnderTest twins_ = select_lanes({"*/cuda*"}, Executor::twin);
+  SelectedLanes twins_ = select_lanes({"*/cuda*"}, Executor::twin);
 };
 
 TEST_F(GpuEngineTest, LeavesTheBytesOfTheCpuEngineOverAllStrata) {
@@ -103,7 +103,7 @@ class WrongEngine final : public cuda::DeviceEngine {
 TEST_F(GpuEngineTest, TheOracleFindsAnEngineThatIsWrongOnOneSignature) {
   Campaign c = campaign(twins_, "wrong", 5'000, 1, 3, {"sliver"});
   c.engines[0] = std::make_unique<WrongEngine>(std::move(c.engines[0]));
-  EXPECT_THROW(run(c), oracle::OracleApart);
+  EXPECT_THROW(run(c), oracle::OracleMismatch);
 }
 
 }  // namespace

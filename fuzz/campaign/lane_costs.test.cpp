@@ -7,7 +7,7 @@ namespace graze::fuzz {
 namespace {
 
 TEST_F(CampaignFiles, CostsAreOfHostLanesOnTheCampaignsOwnPairs) {
-  const LanesUnderTest lanes =
+  const SelectedLanes lanes =
       select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma", "exact/f32/cpu"}, Executor::twin);
   const Campaign campaign = campaign_of(lanes, strata::stratum_sources(1, 4000, {"uniform", "degenerate"}), 1, "timed");
   const Json costs = measure_costs(campaign)["lanes"];
@@ -25,7 +25,7 @@ TEST_F(CampaignFiles, CostsAreOfHostLanesOnTheCampaignsOwnPairs) {
 }
 
 TEST_F(CampaignFiles, CostsStandInTimingsOnceTheCampaignIsComplete) {
-  const LanesUnderTest lanes = select_lanes({"moller_1997/f32/cpu"});
+  const SelectedLanes lanes = select_lanes({"moller_1997/f32/cpu"});
   const Campaign campaign = campaign_of(lanes, strata::stratum_sources(1, 140'000, {"thesis"}), 1, "parts");
   const auto runs = [&] { return Json::parse(read_whole(campaign.directory / "timings.json"))["runs"]; };
   run(campaign, 1);

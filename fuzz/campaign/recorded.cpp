@@ -41,9 +41,9 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
   return sources;
 }
 
-LanesUnderTest recorded_lanes(const Json& spec) {
+SelectedLanes recorded_lanes(const Json& spec) {
   subjects::open_recorded(spec);
-  LanesUnderTest under_test;
+  SelectedLanes under_test;
   for (const std::string id : spec.at("lanes")) {
     add_policy_lanes(id);
     const Lane* lane = find_lane(id);

@@ -8,7 +8,7 @@
 
 #include "fuzz/campaign/shard.h"
 #include "fuzz/campaign/store_file.h"
-#include "fuzz/lanes_under_test.h"
+#include "fuzz/selected_lanes.h"
 
 namespace graze::fuzz {
 
@@ -18,7 +18,7 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec);
 
 // The lanes, in the spec's order, with nothing that runs them. Opens the campaign's subjects.
 // Throws: std::runtime_error for a lane that this build does not know.
-LanesUnderTest recorded_lanes(const Json& spec);
+SelectedLanes recorded_lanes(const Json& spec);
 
 // The command that begins the shard there, or goes on with it.
 std::string command_of(const Json& spec, const Shard& shard, const std::filesystem::path& out);

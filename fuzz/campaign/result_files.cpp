@@ -13,8 +13,8 @@
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
+#include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/recorded.h"
-#include "fuzz/minimise/minimised_cases.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -94,7 +94,7 @@ std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Trut
 
 Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_source,
                 const std::map<std::string, SignatureCount>& signatures,
-                const std::map<std::string, SignatureCount>& executors_apart, bool complete) {
+                const std::map<std::string, SignatureCount>& executor_mismatches, bool complete) {
   Json results = results_of(spec, of_source);
   leave_out_what_was_not_compared(results["strata"], spec.lanes);
   std::vector<const std::pair<const std::string, SignatureCount>*> by_count;
@@ -111,13 +111,13 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
                   {"disagreements", results["disagreements"]},
                   {"signatures", rows}};
   // Pairs on which a device and its twin differ: nobody's failure.
-  for (const auto& [lane, found] : executors_apart)
-    summary["executors_apart"].push_back({{"lane", lane}, {"count", found.count}, {"case", case_name(lane)}});
+  for (const auto& [lane, found] : executor_mismatches)
+    summary["executor_mismatches"].push_back({{"lane", lane}, {"count", found.count}, {"case", case_name(lane)}});
   return summary;
 }
 
 Json write_summary(const Campaign& campaign, const Store& store, bool complete) {
-  for (const auto* cases : {&store.signatures(), &store.executors_apart()}) {
+  for (const auto* cases : {&store.signatures(), &store.executor_mismatches()}) {
     for (const auto& [key, found] : *cases) {
       const std::filesystem::path file = campaign.directory / case_name(key);
       const std::string text = case_text(campaign, key, found);
@@ -125,7 +125,7 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete) 
     }
   }
   const Json summary =
-      summary_of(store.spec(), store.of_source(), store.signatures(), store.executors_apart(), complete);
+      summary_of(store.spec(), store.of_source(), store.signatures(), store.executor_mismatches(), complete);
   write_whole(campaign.directory / "summary.json", summary.dump(1) + "\n");
   return summary;
 }
@@ -198,6 +198,17 @@ void append_timing(const std::filesystem::path& directory, const Json& run, cons
   timings["runs"].push_back(run);
   if (!oracle.is_null()) timings["oracle"] = oracle;
   write_whole(file, timings.dump(1) + "\n");
+}
+
+bool is_minimised_from(const std::string& text, const std::string& fresh) {
+  const std::size_t head = fresh.find('\n', fresh.find('\n') + 1) + 1;  // the version line, and the signature's
+  return text.size() >= fresh.size() && text.starts_with(fresh.substr(0, head)) && text.ends_with(fresh.substr(head));
+}
+
+bool may_hold_campaign(const fs::path& folder) {
+  const auto begins = [&](const char* name, const char* with) { return read_whole(folder / name).starts_with(with); };
+  return may_fill(folder, {kDatabase}) || begins("summary.json", "{\n \"spec\"") ||
+         begins("status.json", "{\n \"state\"") || !rank_directories(folder).empty();
 }
 
 }  // namespace graze::fuzz

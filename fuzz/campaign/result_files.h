@@ -22,7 +22,7 @@ Json write_summary(const Campaign& campaign, const Store& store, bool complete);
 // The summary of a store's counts, those of each source and the signatures of all.
 Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_source,
                 const std::map<std::string, SignatureCount>& signatures,
-                const std::map<std::string, SignatureCount>& executors_apart, bool complete);
+                const std::map<std::string, SignatureCount>& executor_mismatches, bool complete);
 
 // What a shard says instead, until all are merged: {"shard", "complete", "pairs", "disagreements", "signatures"}.
 Json shard_summary(const Shard& shard, const Store& store, bool complete, std::uint64_t pairs);
@@ -36,8 +36,15 @@ std::filesystem::path case_file(const std::filesystem::path& directory, const Js
 // it. Throws: FormatError, in one line, with the command that writes the file again.
 std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row);
 
+// Whether the file is `fresh` as a campaign writes it, but for results of the minimiser.
+bool is_minimised_from(const std::string& text, const std::string& fresh);
+
 // The error of a file of cases that does not check.   found: "another pair".
 corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Json& row, const std::string& found);
+
+// Whether results may go into the folder, see may_fill: nothing is there, or what `graze fuzz`, `hunt` and `merge`
+// leave of a campaign or a shard.
+bool may_hold_campaign(const std::filesystem::path& folder);
 
 // Adds a run to timings.json, the only file that depends on when, where and by which engine the campaign ran.
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle = {});

@@ -10,7 +10,6 @@
 
 #include "core/fnv1a.h"
 #include "fuzz/files.h"
-#include "fuzz/hunt/feedback.h"
 
 namespace graze::fuzz {
 namespace {
@@ -29,7 +28,7 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
   std::set<std::string> ways;
   for (const auto& [key, count] : signatures) {
     if (const auto signature = analysis::parse_signature(key))
-      ways.insert(fmt::format("{:016x}", fnv1a(coarse_key(*signature))));
+      ways.insert(fmt::format("{:016x}", fnv1a(analysis::coarse_key(*signature))));
   }
   return ways;
 }

@@ -88,7 +88,7 @@ class Whole {
   }
 
   fs::path folder_;
-  LanesUnderTest under_test_ = select_lanes({"moller_1997/f32/cpu", "projected_sat/f32/cpu"}, Executor::twin);
+  SelectedLanes under_test_ = select_lanes({"moller_1997/f32/cpu", "projected_sat/f32/cpu"}, Executor::twin);
   Campaign campaign_;
   std::vector<StoredCounts> counts_;
   Files ended_, killed_;

@@ -55,12 +55,12 @@ class Store {
 
   const StoreSpec& spec() const { return spec_; }
 
-  // Of all that is committed, but for signatures and executors_apart: of each source.
+  // Of all that is committed, but for signatures and executor_mismatches: of each source.
   const std::vector<StoredCounts>& of_source() const { return of_source_; }
 
   const std::map<std::string, SignatureCount>& signatures() const { return signatures_; }  // by key
   // Pairs on which a device and its twin differ, by lane.
-  const std::map<std::string, SignatureCount>& executors_apart() const { return executors_apart_; }
+  const std::map<std::string, SignatureCount>& executor_mismatches() const { return executors_apart_; }
 
  private:
   struct Row {
@@ -75,7 +75,7 @@ class Store {
   FolderLock lock_;
   StoreFile file_;
   std::vector<std::map<std::uint64_t, Row>> rows_;                      // of each source, by their first pair
-  std::vector<StoredCounts> of_source_;                                 // but for signatures and executors_apart
+  std::vector<StoredCounts> of_source_;                                 // but for signatures and executor_mismatches
   std::map<std::string, SignatureCount> signatures_, executors_apart_;  // of all sources
 };
 

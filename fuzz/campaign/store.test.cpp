@@ -87,7 +87,7 @@ class StoreTest : public testing::Test {
   }
 
   fs::path root_;
-  LanesUnderTest under_test_ = select_lanes({"moller_1997/f32/cpu", "projected_sat/f32/cpu"}, Executor::twin);
+  SelectedLanes under_test_ = select_lanes({"moller_1997/f32/cpu", "projected_sat/f32/cpu"}, Executor::twin);
 };
 
 TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {

@@ -8,7 +8,7 @@
 
 #include "analysis/signature.h"
 #include "core/fnv1a.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze::fuzz {
 namespace {
@@ -135,7 +135,7 @@ StoredCounts::StoredCounts(int lanes) : tally(std::vector<int>(static_cast<std::
 StoredCounts::StoredCounts(const BatchResult& result)
     : tally(result.tally),
       extremes(result.extremes),
-      executors_apart(result.executors_apart),
+      executor_mismatches(result.executor_mismatches),
       disagreements(result.disagreements),
       cgal(result.cgal),
       gmp(result.gmp),
@@ -147,7 +147,7 @@ void StoredCounts::add(const StoredCounts& other) {
   tally.add(other.tally);
   extremes.add(other.extremes);
   for (const auto& [key, found] : other.signatures) signatures[key].add(found);
-  for (const auto& [lane, found] : other.executors_apart) executors_apart[lane].add(found);
+  for (const auto& [lane, found] : other.executor_mismatches) executor_mismatches[lane].add(found);
   disagreements += other.disagreements;
   cgal += other.cgal;
   gmp += other.gmp;
@@ -158,7 +158,7 @@ std::string to_bytes(const StoredCounts& counts) {
   std::string bytes;
   Json::to_cbor(
       Json::array({to_json(counts.tally), to_json(counts.extremes), to_json(counts.signatures),
-                   to_json(counts.executors_apart), counts.disagreements, counts.cgal, counts.gmp, counts.exact}),
+                   to_json(counts.executor_mismatches), counts.disagreements, counts.cgal, counts.gmp, counts.exact}),
       bytes);
   return bytes;
 }
@@ -173,7 +173,7 @@ StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::u
          "the extremes and the batch's pairs");
   counts.signatures = read_signatures(
       all[2], range, pairs, [](const std::string& key) { return is_printable(key) && analysis::parse_signature(key); });
-  counts.executors_apart = read_signatures(
+  counts.executor_mismatches = read_signatures(
       all[3], range, pairs, [](const std::string& lane) { return is_printable(lane) && parse_lane_name(lane); });
   counts.disagreements = whole(all[4], pairs, "the disagreements and the batch's pairs");
   counts.cgal = whole(all[5], kMost, "the pairs that CGAL decided");

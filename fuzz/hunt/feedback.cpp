@@ -6,8 +6,8 @@
 #include <source_location>
 
 #include "analysis/lane_trace.h"
-#include "core/bounded.h"
 #include "core/fnv1a.h"
+#include "core/lanes/with_error_bound.h"
 #include "cuda/twin/twin.h"
 
 namespace graze::fuzz {
@@ -30,7 +30,7 @@ std::uint16_t feature(Kind kind, Values... values) {
 // The default policy, which also says how far beyond its error bound each value is.
 template <class Real>
 struct Meter {
-  using Number = Bounded<Real>;
+  using Number = WithErrorBound<Real>;
   int algorithm;
   Features* features;
   int* asked;
@@ -65,7 +65,7 @@ template <class Real, std::size_t place>
 void measure_sites(const Pair& pair, Features& features) {
   int asked = 0;
   const Meter<Real> meter{static_cast<int>(place), &features, &asked};
-  decide_widened<Bounded<Real>>(
+  decide_widened<WithErrorBound<Real>>(
       pair, [&](const auto& a, const auto& b) { return std::tuple_element_t<place, Algorithms>::decide(a, b, meter); });
 }
 
@@ -112,7 +112,7 @@ Features Feedback::features(const Pair& pair, const PairJudge::Found& found) con
   features.push_back(feature(Kind::closeness, found.bucket + kBucketMost, number_of(oracle::hulls(pair))));
   for (const int algorithm : algorithms_) measure_sites(algorithm, pair, features);
   for (const analysis::Signature& failure : found.failures) {
-    features.push_back(feature(Kind::failure, fnv1a(coarse_key(failure))));
+    features.push_back(feature(Kind::failure, fnv1a(analysis::coarse_key(failure))));
     const auto lane =
         std::find_if(lanes_.begin(), lanes_.end(), [&](const Lane* l) { return l->info->id == failure.subject; });
     if ((*lane)->algorithm >= 0)
@@ -133,12 +133,6 @@ Features Feedback::features(const Pair& pair, const PairJudge::Found& found) con
   std::sort(features.begin(), features.end());
   features.erase(std::unique(features.begin(), features.end()), features.end());
   return features;
-}
-
-std::string coarse_key(const analysis::Signature& signature) {
-  analysis::Signature coarse = signature;
-  coarse.bucket = 0;
-  return analysis::key(coarse);
 }
 
 }  // namespace graze::fuzz

@@ -4,7 +4,7 @@
 //   failures     how each subject's lanes are wrong together, with the contact and the shape
 //   closeness    margin bucket and shape
 //   sites        of each value or comparison that an algorithm asks its policy about: log2 of how many times its error
-//                bound (core/bounded.h) it is away from zero, in float32 and in float64
+//                bound (core/lanes/with_error_bound.h) it is away from zero, in float32 and in float64
 //   parting      the line of the first comparison at which float32 and float64 part, of an algorithm that is wrong
 //   contractions the contraction sites without which, all others fused, the verdict of a cuda-fma lane is another;
 //   where
@@ -37,8 +37,5 @@ class Feedback {
   std::vector<int> algorithms_;  // of the published lanes, each once
   std::vector<Fused> fused_;
 };
-
-// The signature's name without its margin bucket: "point/22/skew/moller_1997:+f32/cpu".
-std::string coarse_key(const analysis::Signature& signature);
 
 }  // namespace graze::fuzz

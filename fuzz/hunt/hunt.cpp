@@ -196,8 +196,8 @@ class Hunter {
     std::set<std::string> coarse = found_->coarse;
     for (const auto& [key, found] : result.counts.signatures) {
       const std::optional<analysis::Signature> signature = analysis::parse_signature(key);
-      if (!signature || !coarse.insert(coarse_key(*signature)).second) continue;
-      kept.coarse.push_back(coarse_key(*signature));
+      if (!signature || !coarse.insert(analysis::coarse_key(*signature)).second) continue;
+      kept.coarse.push_back(analysis::coarse_key(*signature));
       fresh.push_back({*signature, found.cases.front().index, {}});
     }
     tbb::parallel_for(std::size_t{0}, fresh.size(), [&](std::size_t i) {

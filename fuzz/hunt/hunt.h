@@ -40,7 +40,7 @@ std::uint64_t round_pairs(std::uint64_t pairs);
 // Runs or goes on with the hunt, or with a shard of it, until done, or its time is over, or `stop`; then writes
 // hunt.json and timings.json, and of a whole one summary.json and cases/; status.json meanwhile. A shard is a search of
 // its own, through its share of the pairs' numbers. Requires: has_libfuzzer(); no lane runs on a device. Throws:
-// OracleApart, UsageError, std::runtime_error; committed rounds stay in any case.
+// OracleMismatch, UsageError, std::runtime_error; committed rounds stay in any case.
 Outcome run_hunt(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report);
 
 }  // namespace graze::fuzz

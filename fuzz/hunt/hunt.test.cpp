@@ -13,11 +13,11 @@
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign_testing.h"
-#include "fuzz/campaign/merge.h"
 #include "fuzz/campaign/run_status.h"
 #include "fuzz/hunt/feedback.h"
 #include "fuzz/hunt/round.h"
 #include "fuzz/hunt/round_bytes.h"
+#include "fuzz/shards/merge.h"
 #include "strata/scene/envelope.h"
 #include "strata/scene/place.h"
 
@@ -118,7 +118,7 @@ TEST(Mutations, StayWithinAScene) {
 }
 
 TEST(Feedback, ShowsMarginsFailuresAndContractions) {
-  const LanesUnderTest under_test = select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-*fma"}, Executor::twin);
+  const SelectedLanes under_test = select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-*fma"}, Executor::twin);
   Campaign campaign;
   campaign.under_test = &under_test;
   campaign.sources = strata::stratum_sources(1, 1, {"near_edge_edge"});
@@ -202,7 +202,7 @@ class HuntFiles : public CampaignFiles {
     EXPECT_EQ(read_whole(root_ / one / "hunt.json"), read_whole(root_ / other / "hunt.json"));
   }
 
-  LanesUnderTest under_test_ = select_lanes(
+  SelectedLanes under_test_ = select_lanes(
       {"moller_1997/f32/cpu", "moller_1997/f32/cuda-*fma", "projected_sat/f32/cpu", "exact/*"}, Executor::twin);
 };
 
@@ -305,7 +305,7 @@ TEST_F(HuntFiles, SaysWhatWentWrongInARound) {
   const Hunt hunt = hunt_of("errors", 1);
   const std::vector<Unit> none;
   const RoundTask task{&hunt.campaign, &hunt.drawn, {0, 0, 5000}, &none};
-  EXPECT_THROW(parse_result(error_bytes("apart", true), task), oracle::OracleApart);
+  EXPECT_THROW(parse_result(error_bytes("apart", true), task), oracle::OracleMismatch);
   EXPECT_THROW(parse_result(error_bytes("full", false), task), std::runtime_error);
   EXPECT_FALSE(parse_round("short", 1));
 }

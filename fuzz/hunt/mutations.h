@@ -10,7 +10,7 @@
 #include "core/pair.h"
 #include "strata/draws.h"
 #include "strata/pair_source.h"
-#include "strata/scene.h"
+#include "strata/scene/scene.h"
 
 namespace graze::fuzz {
 

@@ -132,7 +132,7 @@ class Round {
 
   RoundTask task_;
   std::filesystem::path file_;
-  LanesUnderTest under_test_;
+  SelectedLanes under_test_;
   std::vector<std::unique_ptr<subjects::ForeignProcesses>> foreign_;
   Campaign campaign_;
   std::optional<PairJudge> judge_;
@@ -155,7 +155,7 @@ template <class Act>
 auto guarded(Act act) {
   try {
     return act();
-  } catch (const oracle::OracleApart& error) {
+  } catch (const oracle::OracleMismatch& error) {
     current->fail(error.what(), true);
   } catch (const std::exception& error) {
     current->fail(error.what(), false);

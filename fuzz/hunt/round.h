@@ -56,7 +56,7 @@ bool has_libfuzzer();
 // Requires: has_libfuzzer().   Throws: std::runtime_error.
 pid_t start_round(const RoundTask& task, const std::filesystem::path& file);
 
-// What the process left.   Throws: OracleApart, std::runtime_error, where something went wrong in it.
+// What the process left.   Throws: OracleMismatch, std::runtime_error, where something went wrong in it.
 RoundResult round_result(const RoundTask& task, const std::filesystem::path& file);
 
 }  // namespace graze::fuzz

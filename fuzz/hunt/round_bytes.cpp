@@ -96,7 +96,7 @@ RoundResult parse_result(const std::string& bytes, const RoundTask& task) {
   const Json json = Json::from_cbor(bytes);
   if (json.contains("error")) {
     const std::string what = json.at("error");
-    if (json.at("apart")) throw oracle::OracleApart(what);
+    if (json.at("apart")) throw oracle::OracleMismatch(what);
     throw std::runtime_error(what);
   }
   const int lanes = static_cast<int>(task.campaign->under_test->lanes.size());

@@ -15,8 +15,8 @@
 #include "analysis/laws.h"
 #include "analysis/neighbours.h"
 #include "analysis/tally.h"
+#include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
-#include "core/verdicts.h"
 #include "fuzz/league/smallest.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimise.h"
@@ -34,7 +34,7 @@ constexpr std::uint64_t kOrderShare = 20;    // at most one in so many of a lane
 Relation true_of(const Pair& pair) {
   const Relation found = relation_of(pair);
   if (found.verdict != oracle::cgal_verdict(pair))
-    throw oracle::OracleApart(pair_text(pair) + ": CGAL and the exact decision of core differ");
+    throw oracle::OracleMismatch(pair_text(pair) + ": CGAL and the exact decision of core differ");
   return found;
 }
 
@@ -50,8 +50,8 @@ struct Counting {
   void confirm(const Pair& pair, const Relation& truth) const {
     const Contact contact = oracle::gmp_contact(pair);
     if (contact != truth.contact) {
-      throw oracle::OracleApart(fmt::format("{}: the exact decision of core says contact {}, GMP {}", pair_text(pair),
-                                            name(truth.contact), name(contact)));
+      throw oracle::OracleMismatch(fmt::format("{}: the exact decision of core says contact {}, GMP {}",
+                                               pair_text(pair), name(truth.contact), name(contact)));
     }
   }
 
@@ -79,7 +79,7 @@ struct Counting {
                        LeagueCounts& counts) {
     std::vector<Pair> again_of;
     for (const std::size_t i : not_right) again_of.push_back(pairs[i]);
-    const std::vector<Verdict> again = said_afresh(*row.lane, again_of);
+    const std::vector<Verdict> again = verdicts_in_fresh_process(*row.lane, again_of);
     for (std::size_t k = 0; k < not_right.size(); ++k) {
       const std::size_t i = not_right[k];
       confirm(pairs[i], truths[i]);
@@ -169,8 +169,8 @@ LeagueCounts& LeagueCounts::operator+=(const LeagueCounts& other) {
   return *this;
 }
 
-LanesUnderTest league_lanes(const std::vector<std::string>& globs) {
-  LanesUnderTest all = select_lanes(globs, Executor::twin), result;
+SelectedLanes league_lanes(const std::vector<std::string>& globs) {
+  SelectedLanes all = select_lanes(globs, Executor::twin), result;
   result.left_out = all.left_out;
   for (std::size_t l = 0; l < all.lanes.size(); ++l) {
     if (all.lanes[l]->variant != Variant::cpu && all.lanes[l]->variant != Variant::cpu_fma) continue;
@@ -180,7 +180,7 @@ LanesUnderTest league_lanes(const std::vector<std::string>& globs) {
   return result;
 }
 
-League run_league(const LanesUnderTest& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
+League run_league(const SelectedLanes& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
                   const MostPairs& most, const std::function<bool(std::uint64_t)>& stop) {
   std::vector<Counting> all;
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {

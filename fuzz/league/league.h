@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/counts.h"
-#include "fuzz/lanes_under_test.h"
+#include "fuzz/selected_lanes.h"
 #include "oracle/truth.h"
 #include "strata/pair_source.h"
 
@@ -69,15 +69,15 @@ struct League {
 
 // The lanes of the league: those of these patterns that are built as cpu, and their cpu-fma counterparts.
 // Throws: as select_lanes.
-LanesUnderTest league_lanes(const std::vector<std::string>& globs);
+SelectedLanes league_lanes(const std::vector<std::string>& globs);
 
 // A slow subject takes no more than so many pairs, the first of each stratum, by its name.
 using MostPairs = std::map<std::string, std::uint64_t, std::less<>>;
 
 // Runs it; deterministic, whatever the threads. `stop` is asked now and then with how many pairs are done, and ends it
-// with what there is.   Throws: OracleApart when two exact decisions differ.
+// with what there is.   Throws: OracleMismatch when two exact decisions differ.
 League run_league(
-    const LanesUnderTest& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
+    const SelectedLanes& under_test, std::vector<strata::PairSource> sources, std::uint64_t seed,
     const MostPairs& most = {},
     const std::function<bool(std::uint64_t done)>& stop = [](std::uint64_t) { return false; });
 

@@ -52,7 +52,7 @@ std::vector<strata::PairSource> sources() {
 
 struct Planted : testing::Test {
   static inline League league;
-  static inline LanesUnderTest lanes;
+  static inline SelectedLanes lanes;
 
   static void SetUpTestSuite() {
     const fs::path folder = fs::path(testing::TempDir()) / ("league-" + std::to_string(getpid()));

@@ -9,7 +9,7 @@
 
 #include "analysis/convention.h"
 #include "analysis/tally.h"
-#include "core/verdicts.h"
+#include "core/lanes/verdicts.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/minimise/kinds.h"
 #include "fuzz/minimise/minimise.h"
@@ -27,8 +27,8 @@ std::size_t most_moved(const Candidate& candidate) {
   return candidate.lane_dies ? kLeastMoved + 10'000 : kMostMovedHere;
 }
 
-LanesUnderTest alone(const Lane& lane) {
-  LanesUnderTest result;
+SelectedLanes alone(const Lane& lane) {
+  SelectedLanes result;
   result.lanes.push_back(&lane);
   result.on_host.push_back(lane.decide);
   return result;
@@ -42,7 +42,7 @@ LeagueFailure minimised(const Candidate& candidate) {
   LeagueFailure result{candidate.lane, candidate.shape, candidate.says, candidate.pair, {}, false};
   if (most_moved(candidate) == 0) return result;
   try {
-    const LanesUnderTest under_test = alone(*candidate.lane);
+    const SelectedLanes under_test = alone(*candidate.lane);
     const std::vector<Failure> failures = failures_of(under_test, candidate.pair);
     if (failures.empty()) return result;
     const Minimised found = minimise(failures.front(), candidate.pair, {}, most_moved(candidate));
@@ -50,7 +50,7 @@ LeagueFailure minimised(const Candidate& candidate) {
     if (candidate.shape == kClear && !is_clear(oracle::truth(found.pair))) return result;
     result.pair = found.pair;
     result.minimised = true;
-  } catch (const oracle::OracleApart&) {
+  } catch (const oracle::OracleMismatch&) {
     throw;
   } catch (const std::runtime_error&) {  // its failure comes and goes: the pair stays as it was met
   }
@@ -68,7 +68,7 @@ bool fails_so(const LeagueFailure& failure, const Pair& pair) {
 
 }  // namespace
 
-std::vector<Verdict> said_afresh(const Lane& lane, const std::vector<Pair>& pairs) {
+std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<Pair>& pairs) {
   if (pairs.empty()) return {};
   std::unique_ptr<subjects::ForeignProcesses> fresh;
   if (lane.foreign) fresh = subjects::processes_of(lane).anew();
@@ -118,7 +118,7 @@ std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candi
   tbb::parallel_for(std::size_t{0}, shared.size(), [&](std::size_t i) {
     LeagueFailure& failure = shared[i];
     failure.truth = oracle::truth(failure.pair);
-    const Verdict again = said_afresh(*failure.lane, {failure.pair}).front();
+    const Verdict again = verdicts_in_fresh_process(*failure.lane, {failure.pair}).front();
     shown[i] = again == failure.verdict && again != failure.truth.verdict;
   });
   std::vector<LeagueFailure> result;

@@ -15,7 +15,7 @@
 namespace graze::fuzz {
 
 // What the lane says in a process that has seen no pair before these.
-std::vector<Verdict> said_afresh(const Lane& lane, const std::vector<Pair>& pairs);
+std::vector<Verdict> verdicts_in_fresh_process(const Lane& lane, const std::vector<Pair>& pairs);
 
 struct Candidate {
   const Lane* lane;
@@ -37,7 +37,7 @@ class Smallest {
 
 // Minimises the first candidate of each subject, shape and verdict; where another subject's pair is simpler and fails
 // alike, that is the subject's too. Candidates are in the order of lanes. Returns: those that a fresh process shows
-// again; not_repeated: how many it does not. Throws: OracleApart.
+// again; not_repeated: how many it does not. Throws: OracleMismatch.
 std::vector<LeagueFailure> smallest_failures(const std::vector<Candidate>& candidates, std::uint64_t& not_repeated);
 
 }  // namespace graze::fuzz

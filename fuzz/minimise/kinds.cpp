@@ -40,7 +40,7 @@ Verdict truth_of(const corpus::Entry& entry) {
   return corpus::text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
 }
 
-Case read_case(const LanesUnderTest& under_test, const Json& spec, const std::filesystem::path& directory,
+Case read_case(const SelectedLanes& under_test, const Json& spec, const std::filesystem::path& directory,
                const Json& row) {
   const auto signature = analysis::parse_signature(row.at("key").get<std::string>());
   if (!signature)
@@ -113,7 +113,7 @@ double ulps_of(const corpus::Entry& entry) {
 }
 
 // The pair as a person is shown it, with all lanes' verdicts, and why those of the kind are wrong.
-Json simplest_pair(const LanesUnderTest& under_test, const Kind& kind, const Case& c) {
+Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case& c) {
   std::vector<const Lane*> apart;
   const std::vector<Verdict> verdicts = decide(under_test, c.shown().pair, apart);
   if (!apart.empty())
@@ -135,7 +135,7 @@ Json simplest_pair(const LanesUnderTest& under_test, const Kind& kind, const Cas
   return result;
 }
 
-Json worst_pair(const LanesUnderTest& under_test, const Kind& kind, const std::vector<Case>& cases,
+Json worst_pair(const SelectedLanes& under_test, const Kind& kind, const std::vector<Case>& cases,
                 const Case& simplest) {
   struct Candidate {
     const Case* of;
@@ -164,7 +164,7 @@ Json worst_pair(const LanesUnderTest& under_test, const Kind& kind, const std::v
   return nullptr;
 }
 
-Json row_of(const LanesUnderTest& under_test, const Kind& kind, const std::vector<Case>& cases, std::size_t simplest) {
+Json row_of(const SelectedLanes& under_test, const Kind& kind, const std::vector<Case>& cases, std::size_t simplest) {
   std::set<const Lane*> lanes;
   std::map<std::string, std::uint64_t> strata;
   std::map<Bucket, std::uint64_t> margins;
@@ -252,7 +252,7 @@ std::string hash_of_cases(const std::filesystem::path& directory, const Json& si
 
 }  // namespace
 
-std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string_view subject, const Pair& pair,
+std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const Pair& pair,
                                    Verdict truth) {
   std::vector<const Lane*> lanes;
   std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
@@ -293,7 +293,7 @@ std::string kind_key(std::string_view subject, const LaneReason& reason, const H
   return fmt::format("{}/{}/{}/{}", subject, cause, file.empty() ? "-" : file, shape_name(hulls));
 }
 
-Json find_kinds(const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,
+Json find_kinds(const SelectedLanes& under_test, const std::filesystem::path& directory, const Json& summary,
                 const std::function<bool()>& stop) {
   const Json& rows = summary.at("signatures");
   std::vector<Case> cases(rows.size());

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fuzz/campaign/store.h"
-#include "fuzz/lanes_under_test.h"
+#include "fuzz/selected_lanes.h"
 #include "oracle/truth.h"
 
 namespace graze::fuzz {
@@ -26,7 +26,7 @@ struct LaneReason {
 
 // Of the subject's lanes under test that are wrong on the pair. A lane whose run is not known has the reason of its
 // source with every operation rounded as written, where that is wrong alike.
-std::vector<LaneReason> reasons_of(const LanesUnderTest& under_test, std::string_view subject, const Pair& pair,
+std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const Pair& pair,
                                    Verdict truth);
 
 // So many kinds are shown to a person: listed, on cards, with maps. There are hundreds, most of them of a few pairs.
@@ -53,7 +53,7 @@ std::string kind_key(std::string_view subject, const LaneReason& reason, const H
 // Throws: FormatError; std::runtime_error where a device and its twin differ.
 inline constexpr std::size_t kMostLookedAt = 40;
 Json find_kinds(
-    const LanesUnderTest& under_test, const std::filesystem::path& directory, const Json& summary,
+    const SelectedLanes& under_test, const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
 
 // The kinds stored, whole as find_kinds makes them; null without them, and where the summary or a case has changed

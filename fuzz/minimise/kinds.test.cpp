@@ -47,7 +47,7 @@ class Kinds : public testing::Test {
 
   static inline fs::path directory_;
   static inline Json summary_, kinds_;
-  static inline LanesUnderTest under_test_;
+  static inline SelectedLanes under_test_;
 };
 
 TEST_F(Kinds, EverySignatureHasOneAndPairsAddUp) {

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "analysis/convention.h"
+#include "core/lanes/verdicts.h"
 #include "core/margin/margin.h"
 #include "core/relation_of.h"
-#include "core/verdicts.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/minimise/moves.h"
 #include "oracle/truth.h"
@@ -38,7 +38,7 @@ std::vector<Pair> decided_alike(const Failure& failure, std::vector<Pair> pairs,
 }
 
 // A device takes one thread at a time.
-std::vector<Verdict> decide_in_turn(const LanesUnderTest& under_test, const Pair& pair) {
+std::vector<Verdict> decide_in_turn(const SelectedLanes& under_test, const Pair& pair) {
   static std::mutex mutex;
   std::vector<const Lane*> apart;
   std::unique_lock lock(mutex, std::defer_lock);
@@ -262,7 +262,7 @@ bool fails_for_reason(const Failure& failure, const Reason& reason, const Pair& 
          analysis::cause_of(failure.first_wrong(pair), pair, failure.truth.verdict) == reason.cause;
 }
 
-std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& pair) {
+std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pair) {
   std::vector<Failure> failures;
   if (!is_finite(pair)) return failures;
   const Relation truth = relation_of(pair);
@@ -323,9 +323,9 @@ Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Min
   return walk.result;
 }
 
-void confirm(const LanesUnderTest& under_test, const Failure& failure, const Pair& pair) {
+void confirm(const SelectedLanes& under_test, const Failure& failure, const Pair& pair) {
   const Relation by_oracle = oracle::truth(pair);
-  if (by_oracle != failure.truth) throw oracle::OracleApart("the minimiser's truth and the oracle's differ");
+  if (by_oracle != failure.truth) throw oracle::OracleMismatch("the minimiser's truth and the oracle's differ");
   if (!can_shrink(failure)) return;  // its pair is the first one, and to ask again would be of no use
   const std::vector<Failure> failures = failures_of(under_test, pair);
   if (std::find(failures.begin(), failures.end(), failure) == failures.end())

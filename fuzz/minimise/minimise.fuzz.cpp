@@ -22,7 +22,7 @@ Pair drawn_or_given(std::string_view bytes) {
 }
 
 const RegisterFuzzTarget kMinimise("minimise", [](std::string_view bytes) {
-  static const LanesUnderTest under_test = select_lanes({"*/f32/cpu", "*/f32/cuda-fma"}, Executor::twin);
+  static const SelectedLanes under_test = select_lanes({"*/f32/cpu", "*/f32/cuda-fma"}, Executor::twin);
   const Pair pair = drawn_or_given(bytes);
   for (const Failure& failure : failures_of(under_test, pair)) {
     must_hold(fails_alike(failure, pair), "a pair fails as it does");

@@ -9,8 +9,8 @@
 
 #include "analysis/explain.h"
 #include "analysis/signature.h"
-#include "fuzz/lanes_under_test.h"
 #include "fuzz/minimise/simplicity.h"
+#include "fuzz/selected_lanes.h"
 
 namespace graze::fuzz {
 
@@ -29,8 +29,8 @@ struct Failure {
 };
 
 // The failures of a pair, one for each algorithm of the under_test that is wrong on it; none for coordinates that are
-// not finite.   Throws: OracleApart; std::runtime_error where the under_test's device and the twin differ.
-std::vector<Failure> failures_of(const LanesUnderTest& under_test, const Pair& pair);
+// not finite.   Throws: OracleMismatch; std::runtime_error where the under_test's device and the twin differ.
+std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pair);
 
 bool fails_alike(const Failure& failure, const Pair& pair);
 
@@ -80,13 +80,13 @@ struct Minimised {
 // simpler still, and then bisected. The cause, which is dear, is asked for at the end. Where it was lost, a bisection
 // of the way finds a pair that has it, followed by one that does not, and from there on every pair is asked.
 // `known`: results of the same failure; one that is met is the result. `most`: in place of most_moved.
-// Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleApart.
+// Requires: fails_alike(failure, pair), most > kLeastMoved.   Throws: OracleMismatch.
 std::size_t most_moved(const Failure& failure);  // kMostMoved, or kMostMovedCrashing
 Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Minimised> known = {},
                    std::optional<std::size_t> most = {});
 
-// Throws: OracleApart unless CGAL and GMP say of the pair what the failure does; std::runtime_error unless all lanes of
-// the under_test do, on the device where it has one.
-void confirm(const LanesUnderTest& under_test, const Failure& failure, const Pair& pair);
+// Throws: OracleMismatch unless CGAL and GMP say of the pair what the failure does; std::runtime_error unless all lanes
+// of the under_test do, on the device where it has one.
+void confirm(const SelectedLanes& under_test, const Failure& failure, const Pair& pair);
 
 }  // namespace graze::fuzz

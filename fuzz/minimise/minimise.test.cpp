@@ -12,6 +12,7 @@
 
 #include "core/relation_of.h"
 #include "corpus/pair_format.h"
+#include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/minimise/moves.h"
 #include "oracle/truth.h"
@@ -22,8 +23,8 @@ namespace {
 
 constexpr std::uint64_t kSeed = 5;
 
-const LanesUnderTest& under_test() {
-  static const LanesUnderTest all = select_lanes({}, Executor::twin);
+const SelectedLanes& under_test() {
+  static const SelectedLanes all = select_lanes({}, Executor::twin);
   return all;
 }
 
@@ -231,7 +232,7 @@ TEST(Minimise, ShrinksWhatFailsOnlyAtTheEndsOfTheRange) {
 
 // A shear that lowers a coordinate by 2 did so 620,000 times.
 TEST(Minimise, MovesThatHelpAreDoneManyTimesAtOnce) {
-  const LanesUnderTest one = select_lanes({"projected_sat/f32/cpu"});
+  const SelectedLanes one = select_lanes({"projected_sat/f32/cpu"});
   const Pair pair = strata::generate(21, strata::Stratum::mixed_scale, 649);
   const std::vector<Failure> failures = failures_of(one, pair);
   ASSERT_EQ(failures.size(), 1u);

@@ -52,7 +52,7 @@ corpus::Entry result_entry(const MinimisedCase& result, const Pair& pair, const 
 
 bool is_minimised(const corpus::Entry& entry) { return has_kind(entry, "minimised"); }
 
-std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const Json& spec,
+std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const Json& spec,
                                          const std::filesystem::path& directory, const Json& row) {
   const auto& ran = spec.at("lanes");
   std::vector<corpus::Entry> entries = read_cases(directory, row);
@@ -77,7 +77,7 @@ std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const
   return entries;
 }
 
-std::vector<MinimisedCase> minimise_cases(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries,
+std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries,
                                           const std::function<bool()>& stop) {
   std::vector<MinimisedCase> results;
   std::vector<std::vector<Minimised>> ended;  // of each result, what its originals came to
@@ -120,7 +120,7 @@ std::vector<MinimisedCase> minimise_cases(const LanesUnderTest& under_test, cons
     try {
       confirm(under_test, result.failure, result.result.pair);
       confirm(under_test, result.failure, result.result.worst);
-    } catch (const oracle::OracleApart&) {
+    } catch (const oracle::OracleMismatch&) {
       throw;
     } catch (const std::runtime_error&) {
       // Foreign code may not say the same twice, by its time alone. Then the original is all that is known.
@@ -166,7 +166,7 @@ std::string with_results(const std::string& text, const std::vector<corpus::Entr
   return out.str();
 }
 
-bool has_result(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries) {
+bool has_result(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries) {
   const corpus::Entry &result = entries.front(), &first = *originals(entries).front();
   const std::string* recorded = corpus::field(result, "signature");
   if (!is_result(result) || is_result(first) || !recorded) return false;
@@ -174,11 +174,6 @@ bool has_result(const LanesUnderTest& under_test, const std::vector<corpus::Entr
   return std::any_of(failures.begin(), failures.end(), [&](const Failure& failure) {
     return fails_alike(failure, result.pair) && key(signature_of(failure, result.pair)) == *recorded;
   });
-}
-
-bool is_minimised_from(const std::string& text, const std::string& fresh) {
-  const std::size_t head = fresh.find('\n', fresh.find('\n') + 1) + 1;  // the version line, and the signature's
-  return text.size() >= fresh.size() && text.starts_with(fresh.substr(0, head)) && text.ends_with(fresh.substr(head));
 }
 
 }  // namespace graze::fuzz

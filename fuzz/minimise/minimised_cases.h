@@ -24,7 +24,7 @@ struct MinimisedCase {
 
 // As read_cases; and those lanes under test that the campaign ran too, but for foreign code, say of each pair what its
 // signature says. spec: the campaign's.   Throws: as read_cases.
-std::vector<corpus::Entry> checked_cases(const LanesUnderTest& under_test, const Json& spec,
+std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const Json& spec,
                                          const std::filesystem::path& directory, const Json& row);
 
 // Whether the entry is what a case was minimised to.
@@ -34,9 +34,9 @@ bool is_minimised(const corpus::Entry& entry);
 // one, and the worst pair of all. Those with another cause stay as they are. Cases without a record have one for each
 // algorithm that is wrong. What is minimised already counts as a case only where there is no other. Each result is
 // confirmed. Returns: nothing of cases on which no lane of the under_test is wrong; nothing at all once `stop`, which
-// is asked before each case, says so.   Throws: OracleApart, std::runtime_error.
+// is asked before each case, says so.   Throws: OracleMismatch, std::runtime_error.
 std::vector<MinimisedCase> minimise_cases(
-    const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries,
+    const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries,
     const std::function<bool()>& stop = [] { return false; });
 
 // The text of a file with these results in place of those that it may hold already.
@@ -45,9 +45,6 @@ std::string with_results(const std::string& text, const std::vector<corpus::Entr
                          const std::vector<MinimisedCase>& results);
 
 // Whether the file holds the result for its first case on these lanes.
-bool has_result(const LanesUnderTest& under_test, const std::vector<corpus::Entry>& entries);
-
-// Whether the file is `fresh` as a campaign writes it, but for results of the minimiser.
-bool is_minimised_from(const std::string& text, const std::string& fresh);
+bool has_result(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries);
 
 }  // namespace graze::fuzz

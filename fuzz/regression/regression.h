@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 #include "corpus/pair_format.h"
 #include "oracle/truth.h"
@@ -53,7 +53,7 @@ RegressionCorpus read_regressions(const std::filesystem::path& file);
 void write_regressions(const std::filesystem::path& file, const RegressionCorpus& corpus);
 
 // Each lane's verdict on a pair, and in apart the lanes that disagree with themselves; see decide in
-// fuzz/lanes_under_test.h.
+// fuzz/selected_lanes.h.
 using DecideLanes = std::function<std::vector<Verdict>(const Pair&, std::vector<const Lane*>& apart)>;
 
 struct Replay {

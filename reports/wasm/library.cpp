@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/host_blocks.h"
+#include "core/lanes/host_blocks.h"
 #include "cuda/twin/twin_table.h"
 
 // That of wasi-libc is wrong where the result is subnormal and lies halfway between two numbers. Here the product is

@@ -6,7 +6,7 @@
 #include "analysis/blame.h"
 #include "analysis/lane_trace.h"
 #include "core/exact/exact.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/margin/margin.h"
 #include "core/relation_of.h"
 #include "core/text.h"

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "strata/scene.h"
 #include "strata/scene/file.h"
+#include "strata/scene/scene.h"
 
 namespace graze::strata {
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "strata/contact.h"
-#include "strata/scene.h"
+#include "strata/scene/scene.h"
 
 namespace graze::strata::in_scene {
 inline namespace GRAZE_FP {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn in a scene: every pair within the extent, on the grid and of the scene's sizes; strata keep what they
 // promise; sources are shared by the mix, and what a scene cannot contain is left out with its reason.
-#include "strata/scene.h"
+#include "strata/scene/scene.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

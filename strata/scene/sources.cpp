@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/text.h"
 #include "strata/mesh.h"
 #include "strata/scene/envelope.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fuzz/lanes_under_test.h"
+#include "fuzz/selected_lanes.h"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ std::string why_unavailable(const Lane& lane, const cuda::Device* device, const 
 std::string twin_evidence_of(const Lane& lane) { return lane.exact ? "twin, exact" : cuda::twin_evidence(lane); }
 
 // Lanes under a policy stand at the table's end; here they stand beside the others of their subject.
-void sort_by_subject(LanesUnderTest& under_test) {
+void sort_by_subject(SelectedLanes& under_test) {
   std::map<const AlgorithmInfo*, std::size_t> places;
   for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());
   std::vector<std::size_t> order(under_test.lanes.size());
@@ -36,7 +36,7 @@ void sort_by_subject(LanesUnderTest& under_test) {
   std::stable_sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
     return places.at(under_test.lanes[l]->info) < places.at(under_test.lanes[r]->info);
   });
-  LanesUnderTest sorted;
+  SelectedLanes sorted;
   for (const std::size_t l : order) {
     sorted.lanes.push_back(under_test.lanes[l]);
     sorted.on_host.push_back(under_test.on_host[l]);
@@ -47,7 +47,7 @@ void sort_by_subject(LanesUnderTest& under_test) {
 
 }  // namespace
 
-std::vector<const Lane*> LanesUnderTest::device_lanes() const {
+std::vector<const Lane*> SelectedLanes::device_lanes() const {
   std::vector<const Lane*> result;
   for (std::size_t l = 0; l < lanes.size(); ++l) {
     if (on_device(l)) result.push_back(lanes[l]);
@@ -55,7 +55,7 @@ std::vector<const Lane*> LanesUnderTest::device_lanes() const {
   return result;
 }
 
-std::string LanesUnderTest::evidence(std::size_t l) const {
+std::string SelectedLanes::evidence(std::size_t l) const {
   if (lanes[l]->foreign) return lanes[l]->evidence;
   const std::string twin = on_host[l] ? twin_evidence_of(*lanes[l]) : "";
   return !on_device(l) ? twin : twin.empty() ? "device" : "device and " + twin;
@@ -69,7 +69,7 @@ std::string status(const Lane& lane, const cuda::Device* device, const std::stri
   return device ? "available (device)" : "available (" + twin_evidence_of(lane) + ")";
 }
 
-void expect_each_runs(const LanesUnderTest& under_test) {
+void expect_each_runs(const SelectedLanes& under_test) {
   std::vector<std::string> patterns = under_test.asked;
   if (patterns.empty()) {
     for (const LaneLeftOut& row : under_test.left_out) patterns.push_back(row.id.substr(0, row.id.find('/')) + "/*");
@@ -87,7 +87,7 @@ void expect_each_runs(const LanesUnderTest& under_test) {
   }
 }
 
-std::vector<LaneLeftOut> leave_out(LanesUnderTest& under_test, const std::function<std::string(const Lane&)>& why) {
+std::vector<LaneLeftOut> leave_out(SelectedLanes& under_test, const std::function<std::string(const Lane&)>& why) {
   std::vector<LaneLeftOut> taken;
   std::vector<const Lane*> lanes;
   std::vector<DecideBlock> on_host;
@@ -121,14 +121,14 @@ std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_
   return lines;
 }
 
-nlohmann::ordered_json left_out_json(const LanesUnderTest& under_test) {
+nlohmann::ordered_json left_out_json(const SelectedLanes& under_test) {
   if (under_test.left_out.empty()) return nullptr;
   nlohmann::ordered_json why = nlohmann::ordered_json::object();
   for (const LaneLeftOut& row : under_test.left_out) why[row.id] = row.why;
   return {{"patterns", under_test.asked}, {"why", why}};
 }
 
-void add_left_out(nlohmann::ordered_json& object, const LanesUnderTest& under_test) {
+void add_left_out(nlohmann::ordered_json& object, const SelectedLanes& under_test) {
   if (!under_test.left_out.empty()) object["lanes_left_out"] = left_out_json(under_test);
 }
 
@@ -138,7 +138,7 @@ std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded) {
   return rows;
 }
 
-LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device) {
+SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor executor, bool require_device) {
   for (const std::string& glob : globs) {
     add_policy_lanes(glob);
     if (std::none_of(lanes().begin(), lanes().end(), [&](const Lane& lane) { return matches_any({glob}, lane.id); })) {
@@ -148,7 +148,7 @@ LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor exec
                        did_you_mean(glob, ids));
     }
   }
-  LanesUnderTest under_test;
+  SelectedLanes under_test;
   under_test.asked = globs;
   std::string why_not;
   if (executor != Executor::twin) under_test.device = cuda::open_device(why_not);
@@ -174,7 +174,7 @@ LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor exec
   return under_test;
 }
 
-std::vector<Verdict> decide(const LanesUnderTest& under_test, const Pair& pair, std::vector<const Lane*>& apart) {
+std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart) {
   apart.clear();
   std::vector<Verdict> verdicts(under_test.lanes.size());
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The block functions of the host lanes. Compiled once per variant, each in its own namespace GRAZE_FP and with its
 // own contraction flags; nothing else may be defined here, or the linker would mix the variants.
-#include "core/host_blocks.h"
+#include "core/lanes/host_blocks.h"
 #include "core/algorithms/algorithms.h"
 #include "core/decide_each.h"
-#include "core/decide_under.h"
+#include "core/lanes/decide_under.h"
 
 namespace graze {
 inline namespace GRAZE_FP {
@@ -39,7 +39,8 @@ constexpr HostBlocks blocks(const std::tuple<Algorithm...>*) {
 
 template <class Algorithm, class Real>
 constexpr PolicyBlocks policy_blocks() {
-  PolicyBlocks result{decide_within_block<Algorithm, Real, Real>, decide_within_block<Algorithm, Real, Sized<Real>>};
+  PolicyBlocks result{decide_within_block<Algorithm, Real, Real>,
+                      decide_within_block<Algorithm, Real, WithMagnitude<Real>>};
 #ifndef __FAST_MATH__  // which forgets what bounds rest on
   if constexpr (Algorithm::kInfo.right_without_rounding) result.bound = decide_bounded_block<Algorithm, Real>;
 #endif

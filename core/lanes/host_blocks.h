@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/algorithms/algorithms.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fuzz/plan.h"
+#include "fuzz/campaign/plan.h"
 
 #include <tbb/global_control.h>
 

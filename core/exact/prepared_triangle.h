@@ -26,7 +26,7 @@ struct Slab {
 
 inline constexpr int kSlabs = 2;
 
-struct Reference {
+struct PreparedTriangle {
   float v[9];
   float low[3], high[3];  // its box
   Slab slabs[kSlabs];
@@ -89,9 +89,9 @@ inline Slab slab_along(const Vec<double>& direction, const float* v) {
 }  // namespace detail
 
 // Of a reference that is not finite no slab shows anything, and the screen in floats is unsure.
-inline Reference prepare(const float* v) {
+inline PreparedTriangle prepare(const float* v) {
   using Direction = detail::Vec<double>;
-  Reference r;
+  PreparedTriangle r;
   Direction at[3];
   bool finite = true;
   for (int i = 0; i < 9; ++i) {
@@ -129,7 +129,7 @@ GRAZE_HD inline float size_of(const float* t) {
 
 // Returns: true: the triangle is beyond one of the slabs, so disjoint, for certain; never where it is not finite.
 // Exact: whatever the rounding mode, with contraction and without.
-GRAZE_HD inline bool is_beyond(const Reference& r, const float* t) {
+GRAZE_HD inline bool is_beyond(const PreparedTriangle& r, const float* t) {
   using detail::bits_of, detail::lesser, detail::magnitude;
   const float size = size_of(t);
   bool beyond = false;
@@ -163,7 +163,7 @@ struct FloatNumbers {
 // sum of its six products, none of them larger than that of the extents. These lie within 2^-24 and 2^40: nothing
 // overflows, and what underflows is off by less than 6 * 2^40 * 2^-150, a small part of the least bound, 48 * 2^-96.
 // Returns: disjoint, crosses, or unsure, as of all other extents and of what is not finite.
-GRAZE_HD inline Finding screen_in_floats(const Reference& r, const float* t) {
+GRAZE_HD inline Finding screen_in_floats(const PreparedTriangle& r, const float* t) {
   float extent[3];
   for (int i = 0; i < 3; ++i) {
     extent[i] = greater(greater(r.high[i], t[i]), greater(t[i + 3], t[i + 6])) -

@@ -25,7 +25,7 @@ namespace graze {
 inline namespace GRAZE_FP {
 
 template <class Real>
-struct Bounded {
+struct WithErrorBound {
   static constexpr bool kIsFloat = sizeof(Real) == sizeof(float);
   static constexpr Real kUnit = kIsFloat ? Real(0x1p-24) : Real(0x1p-53);
   static constexpr Real kTiny = kIsFloat ? Real(0x1p-126f) : Real(0x1p-1022);  // normal: subnormal ones are slow
@@ -35,30 +35,32 @@ struct Bounded {
   Real error = 0;
   bool* doubt = nullptr;  // of constants null
 
-  Bounded() = default;
-  GRAZE_IN_PLACE GRAZE_HD explicit Bounded(Real exact) : value(exact) {}
-  GRAZE_IN_PLACE GRAZE_HD Bounded(Real exact, bool* in_doubt) : value(exact), doubt(in_doubt) {}
+  WithErrorBound() = default;
+  GRAZE_IN_PLACE GRAZE_HD explicit WithErrorBound(Real exact) : value(exact) {}
+  GRAZE_IN_PLACE GRAZE_HD WithErrorBound(Real exact, bool* in_doubt) : value(exact), doubt(in_doubt) {}
 
   GRAZE_IN_PLACE GRAZE_HD bool is_exact() const { return error == Real(0); }
   GRAZE_IN_PLACE GRAZE_HD bool is_exact_zero() const { return value == Real(0) && is_exact(); }
   // Whether the exact quantity is certainly less than the other's.
-  GRAZE_IN_PLACE GRAZE_HD bool is_below(const Bounded& y) const { return value < y.value && is_settled(*this, y); }
+  GRAZE_IN_PLACE GRAZE_HD bool is_below(const WithErrorBound& y) const {
+    return value < y.value && is_settled(*this, y);
+  }
   // Whether the exact quantity is certainly not zero.
   GRAZE_IN_PLACE GRAZE_HD bool is_nonzero() const { return magnitude(value) > error; }
 
-  GRAZE_IN_PLACE GRAZE_HD Bounded operator-() const {
-    Bounded result = *this;
+  GRAZE_IN_PLACE GRAZE_HD WithErrorBound operator-() const {
+    WithErrorBound result = *this;
     result.value = -value;
     return result;
   }
-  GRAZE_IN_PLACE GRAZE_HD friend Bounded operator+(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD friend WithErrorBound operator+(const WithErrorBound& x, const WithErrorBound& y) {
     return sum(x, y, x.value + y.value);
   }
-  GRAZE_IN_PLACE GRAZE_HD friend Bounded operator-(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD friend WithErrorBound operator-(const WithErrorBound& x, const WithErrorBound& y) {
     return sum(x, y, x.value - y.value);
   }
-  GRAZE_IN_PLACE GRAZE_HD friend Bounded operator*(const Bounded& x, const Bounded& y) {
-    Bounded result = either(x, y);
+  GRAZE_IN_PLACE GRAZE_HD friend WithErrorBound operator*(const WithErrorBound& x, const WithErrorBound& y) {
+    WithErrorBound result = either(x, y);
     result.value = x.value * y.value;
     if (!x.is_exact_zero() && !y.is_exact_zero())
       result.error =
@@ -67,8 +69,8 @@ struct Bounded {
           kTiny;
     return result;
   }
-  GRAZE_IN_PLACE GRAZE_HD friend Bounded operator/(const Bounded& x, const Bounded& y) {
-    Bounded result = either(x, y);
+  GRAZE_IN_PLACE GRAZE_HD friend WithErrorBound operator/(const WithErrorBound& x, const WithErrorBound& y) {
+    WithErrorBound result = either(x, y);
     const Real q = result.value = x.value / y.value;
     const Real size = magnitude(q) * kSlack + kTiny, divisor = (magnitude(y.value) - y.error) / kSlack;
     if (divisor > Real(0)) {
@@ -79,9 +81,9 @@ struct Bounded {
     }
     return result;
   }
-  GRAZE_IN_PLACE GRAZE_HD friend Bounded sqrt(const Bounded& x) {
+  GRAZE_IN_PLACE GRAZE_HD friend WithErrorBound sqrt(const WithErrorBound& x) {
     using std::sqrt;
-    Bounded result = x;
+    WithErrorBound result = x;
     result.value = sqrt(x.value);
     if (!x.is_exact_zero())
       result.error = x.value > x.error ? ((x.error / result.value) * kSlack + kUnit * result.value) * kSlack + kTiny
@@ -89,31 +91,31 @@ struct Bounded {
     return result;
   }
 
-  GRAZE_IN_PLACE GRAZE_HD friend bool operator<(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator<(const WithErrorBound& x, const WithErrorBound& y) {
     return settled(x, y), x.value < y.value;
   }
-  GRAZE_IN_PLACE GRAZE_HD friend bool operator>(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator>(const WithErrorBound& x, const WithErrorBound& y) {
     return settled(x, y), x.value > y.value;
   }
-  GRAZE_IN_PLACE GRAZE_HD friend bool operator<=(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator<=(const WithErrorBound& x, const WithErrorBound& y) {
     return settled(x, y), x.value <= y.value;
   }
-  GRAZE_IN_PLACE GRAZE_HD friend bool operator>=(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator>=(const WithErrorBound& x, const WithErrorBound& y) {
     return settled(x, y), x.value >= y.value;
   }
-  GRAZE_IN_PLACE GRAZE_HD friend bool operator==(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD friend bool operator==(const WithErrorBound& x, const WithErrorBound& y) {
     return settled(x, y), x.value == y.value;
   }
 
  private:
-  GRAZE_IN_PLACE GRAZE_HD static Bounded either(const Bounded& x, const Bounded& y) {
-    Bounded result;
+  GRAZE_IN_PLACE GRAZE_HD static WithErrorBound either(const WithErrorBound& x, const WithErrorBound& y) {
+    WithErrorBound result;
     result.doubt = x.doubt ? x.doubt : y.doubt;
     return result;
   }
 
-  GRAZE_IN_PLACE GRAZE_HD static Bounded sum(const Bounded& x, const Bounded& y, Real computed) {
-    Bounded result = either(x, y);
+  GRAZE_IN_PLACE GRAZE_HD static WithErrorBound sum(const WithErrorBound& x, const WithErrorBound& y, Real computed) {
+    WithErrorBound result = either(x, y);
     result.value = computed;
     // Of exact numbers a sum that is zero is exact: no two different numbers have a difference that rounds to zero.
     if (!(computed == Real(0) && x.is_exact() && y.is_exact()))
@@ -123,13 +125,13 @@ struct Bounded {
 
   // Whether the two exact quantities compare as the values do. Values that are equal do where both are exact; others,
   // where they are further apart than their bounds and the rounding of these sums.
-  GRAZE_IN_PLACE GRAZE_HD static bool is_settled(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD static bool is_settled(const WithErrorBound& x, const WithErrorBound& y) {
     const Real gap = magnitude(x.value - y.value), errors = (x.error + y.error) * kSlack;
     return (gap * (Real(1) - 4 * kUnit) > errors + kTiny && gap <= kLargest) ||
            (x.is_exact() && y.is_exact() && x.value == x.value && y.value == y.value);
   }
 
-  GRAZE_IN_PLACE GRAZE_HD static void settled(const Bounded& x, const Bounded& y) {
+  GRAZE_IN_PLACE GRAZE_HD static void settled(const WithErrorBound& x, const WithErrorBound& y) {
     if (is_settled(x, y)) return;
     if (bool* const doubt = x.doubt ? x.doubt : y.doubt) *doubt = true;
   }
@@ -139,9 +141,9 @@ struct Bounded {
 
 // Any component that is certainly not zero serves as an axis: a doubt is raised only where the chosen one is not.
 template <class Real>
-GRAZE_HD int dominant_axis(const Vec3<Bounded<Real>>& v) {
+GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
   const int axis = dominant_axis(Vec3<Real>{v.x.value, v.y.value, v.z.value});
-  const Bounded<Real>& chosen = component(v, axis);
+  const WithErrorBound<Real>& chosen = component(v, axis);
   if (!chosen.is_nonzero() && chosen.doubt) *chosen.doubt = true;
   return axis;
 }
@@ -149,12 +151,13 @@ GRAZE_HD int dominant_axis(const Vec3<Bounded<Real>>& v) {
 // The least and the greatest of three quantities lie within the largest bound of the least and the greatest value:
 // which one it is need not be settled.
 template <class Real>
-GRAZE_HD Range<Bounded<Real>> project(const Vec3<Bounded<Real>>& direction, const Vec3<Bounded<Real>> (&v)[3]) {
-  const Bounded<Real> first = dot(direction, v[0]);
-  Range<Bounded<Real>> range{first, first};
+GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& direction,
+                                             const Vec3<WithErrorBound<Real>> (&v)[3]) {
+  const WithErrorBound<Real> first = dot(direction, v[0]);
+  Range<WithErrorBound<Real>> range{first, first};
   Real error = first.error;
   for (int i = 1; i < 3; ++i) {
-    const Bounded<Real> t = dot(direction, v[i]);
+    const WithErrorBound<Real> t = dot(direction, v[i]);
     range.lo.value = t.value < range.lo.value ? t.value : range.lo.value;
     range.hi.value = t.value > range.hi.value ? t.value : range.hi.value;
     if (error == error && !(t.error <= error)) error = t.error;  // NaN stays
@@ -165,7 +168,7 @@ GRAZE_HD Range<Bounded<Real>> project(const Vec3<Bounded<Real>>& direction, cons
 
 // False only where it is certain; where nothing is, true, with a doubt.
 template <class Real>
-GRAZE_HD bool overlap(const Range<Bounded<Real>>& s, const Range<Bounded<Real>>& t, const ExactZero&) {
+GRAZE_HD bool overlap(const Range<WithErrorBound<Real>>& s, const Range<WithErrorBound<Real>>& t, const ExactZero&) {
   if (s.hi.is_below(t.lo) || t.hi.is_below(s.lo)) return false;
   static_cast<void>(s.hi < t.lo || t.hi < s.lo);  // raises the doubt
   return true;

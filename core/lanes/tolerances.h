@@ -2,8 +2,8 @@
 // The policies abs, rel and paper: at each site a number is held for zero when it is smaller than a tolerance.
 #pragma once
 
-#include "core/policy.h"
-#include "core/sized.h"
+#include "core/epsilon_sites.h"
+#include "core/lanes/with_magnitude.h"
 
 namespace graze {
 
@@ -39,7 +39,7 @@ struct Tolerances {
 
   // Strictly: |x| < epsilon, as published codes have it. False for NaN.
   GRAZE_HD bool near_zero(Site site, const Real& x) const { return magnitude(x) < absolute[static_cast<int>(site)]; }
-  GRAZE_HD bool near_zero(Site site, const Sized<Real>& x) const {
+  GRAZE_HD bool near_zero(Site site, const WithMagnitude<Real>& x) const {
     const int s = static_cast<int>(site);
     return magnitude(x.value) < absolute[s] + relative[s] * x.size;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 #include <fnmatch.h>
 
@@ -11,7 +11,7 @@
 
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"
-#include "core/host_blocks.h"
+#include "core/lanes/host_blocks.h"
 
 namespace graze {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/algorithms/algorithm.h"
+#include "core/lanes/policies.h"
 #include "core/pair.h"
-#include "core/policies.h"
 #include "core/variants.h"
 
 namespace graze {

@@ -19,27 +19,27 @@ __device__ inline void convert(float x, double, DoubleDouble& out) { out = stati
 namespace cuda {
 
 // A difference is one double and its error. A sum of products, and the sum of the products' magnitudes.
-struct CloselyBounded {
+struct DoubleDoubleSum {
   DoubleDouble value;
   double size;
 
-  __device__ explicit CloselyBounded(const DoubleDouble& x) : value(x), size(fabs(x.hi)) {}
-  __device__ CloselyBounded(const DoubleDouble& v, double s) : value(v), size(s) {}
-  __device__ friend CloselyBounded operator*(const CloselyBounded& l, const DoubleDouble& r) {
+  __device__ explicit DoubleDoubleSum(const DoubleDouble& x) : value(x), size(fabs(x.hi)) {}
+  __device__ DoubleDoubleSum(const DoubleDouble& v, double s) : value(v), size(s) {}
+  __device__ friend DoubleDoubleSum operator*(const DoubleDoubleSum& l, const DoubleDouble& r) {
     return {l.value * r, l.size * fabs(r.hi)};
   }
-  __device__ friend CloselyBounded operator+(const CloselyBounded& l, const CloselyBounded& r) {
+  __device__ friend DoubleDoubleSum operator+(const DoubleDoubleSum& l, const DoubleDoubleSum& r) {
     return {l.value + r.value, l.size + r.size};
   }
-  __device__ friend CloselyBounded operator-(const CloselyBounded& l, const CloselyBounded& r) {
+  __device__ friend DoubleDoubleSum operator-(const DoubleDoubleSum& l, const DoubleDoubleSum& r) {
     return {l.value - r.value, l.size + r.size};
   }
 };
 
-struct CloseNumbers {
+struct DoubleDoubleNumbers {
   using D = DoubleDouble;
-  using M = CloselyBounded;
-  using T = CloselyBounded;
+  using M = DoubleDoubleSum;
+  using T = DoubleDoubleSum;
   static constexpr double kError = 0x1p-101;
   __device__ bool positive(const T& x) const { return x.value.hi > kError * x.size; }
   __device__ bool negative(const T& x) const { return x.value.hi < -kError * x.size; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/verdicts.h"
+#include "core/lanes/verdicts.h"
 
 namespace graze {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "cuda/lanes/device.h"
 
 namespace graze::fuzz {
@@ -22,7 +22,7 @@ struct LaneLeftOut {
   std::string id, why;
 };
 
-struct LanesUnderTest {
+struct SelectedLanes {
   std::vector<const Lane*> lanes;        // selected and available, in table order
   std::vector<DecideBlock> on_host;      // of each: the host lane or the twin; null where only the device runs it
   std::unique_ptr<cuda::Device> device;  // null when the CUDA lanes do not run on one
@@ -41,22 +41,22 @@ struct LanesUnderTest {
 
 // Throws: UsageError when a pattern matches no lane, or no selected lane is available; std::runtime_error when a device
 // is asked for and there is none.
-LanesUnderTest select_lanes(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
-                            bool require_device = false);
+SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor executor = Executor::automatic,
+                           bool require_device = false);
 
 // Throws: UsageError, with the reasons, when of a pattern no lane runs here; without patterns, of a user's own code.
-void expect_each_runs(const LanesUnderTest& under_test);
+void expect_each_runs(const SelectedLanes& under_test);
 
 // Takes those out for which `why` has a reason.   Returns: these.   Throws: as expect_each_runs.
-std::vector<LaneLeftOut> leave_out(LanesUnderTest& under_test, const std::function<std::string(const Lane&)>& why);
+std::vector<LaneLeftOut> leave_out(SelectedLanes& under_test, const std::function<std::string(const Lane&)>& why);
 
 // Those left out in words, a line for each reason: "left out (no device, and no twin): moller_1997/f32/cuda-fast".
 std::vector<std::string> left_out_in_words(const std::vector<LaneLeftOut>& left_out);
 
 // {"patterns": those asked for, "why": {lane: reason}}, as a campaign's spec records it; null where none is left out.
-nlohmann::ordered_json left_out_json(const LanesUnderTest& under_test);
+nlohmann::ordered_json left_out_json(const SelectedLanes& under_test);
 // The same as the object's "lanes_left_out", where some are.
-void add_left_out(nlohmann::ordered_json& object, const LanesUnderTest& under_test);
+void add_left_out(nlohmann::ordered_json& object, const SelectedLanes& under_test);
 
 // The inverse.   Throws: nlohmann::json::exception.
 std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded);
@@ -66,6 +66,6 @@ std::string status(const Lane& lane, const cuda::Device* device, const std::stri
 
 // Each lane's verdict on one pair.
 // Returns in apart, for lanes on both: those whose device and twin differ.
-std::vector<Verdict> decide(const LanesUnderTest& under_test, const Pair& pair, std::vector<const Lane*>& apart);
+std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart);
 
 }  // namespace graze::fuzz

@@ -2,14 +2,14 @@
 // Two triangles decided by an algorithm under a policy other than zero, on host and device alike.
 #pragma once
 
-#include "core/bounded.h"
-#include "core/tolerances.h"
+#include "core/lanes/tolerances.h"
+#include "core/lanes/with_error_bound.h"
 #include "core/verdict.h"
 
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Number is Real, or Sized<Real> where tolerances are relative.
+// Number is Real, or WithMagnitude<Real> where tolerances are relative.
 template <class Algorithm, class Number, class Real>
 GRAZE_HD Verdict decide_within(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Tolerances<Real>& tolerances) {
   Vec3<Number> p[3], q[3];
@@ -22,8 +22,8 @@ GRAZE_HD Verdict decide_within(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3
 
 // Whether the triangle certainly has an area: published algorithms promise nothing of others.
 template <class Real>
-GRAZE_HD bool certainly_proper(const Vec3<Bounded<Real>> (&v)[3]) {
-  const Vec3<Bounded<Real>> normal = cross(v[1] - v[0], v[2] - v[0]);
+GRAZE_HD bool certainly_proper(const Vec3<WithErrorBound<Real>> (&v)[3]) {
+  const Vec3<WithErrorBound<Real>> normal = cross(v[1] - v[0], v[2] - v[0]);
   return normal.x.is_nonzero() || normal.y.is_nonzero() || normal.z.is_nonzero();
 }
 
@@ -31,7 +31,7 @@ GRAZE_HD bool certainly_proper(const Vec3<Bounded<Real>> (&v)[3]) {
 // Exact: of algorithms that are right without rounding.
 template <class Algorithm, class Real>
 GRAZE_HD Verdict decide_bounded(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
-  using Number = Bounded<Real>;
+  using Number = WithErrorBound<Real>;
   bool doubt = false;
   Vec3<Number> p[3], q[3];
   for (int i = 0; i < 3; ++i) {

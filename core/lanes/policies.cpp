@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/policies.h"
+#include "core/lanes/policies.h"
 
 #include <algorithm>
 #include <charconv>

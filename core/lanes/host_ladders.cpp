@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/algorithms/algorithms.h"
-#include "core/decide_under.h"
-#include "core/ladder.h"
+#include "core/lanes/decide_under.h"
+#include "core/lanes/ladder.h"
 
 namespace graze {
 inline namespace GRAZE_FP {
@@ -91,8 +91,8 @@ void decide_ladder(std::span<const Epsilons> epsilons, const Pair* pairs, std::s
 template <class... Algorithm>
 constexpr auto ladders(const std::tuple<Algorithm...>*) {
   return std::array{std::array<DecideLadder, 4>{
-      decide_ladder<Algorithm, float, float>, decide_ladder<Algorithm, float, Sized<float>>,
-      decide_ladder<Algorithm, double, double>, decide_ladder<Algorithm, double, Sized<double>>}...};
+      decide_ladder<Algorithm, float, float>, decide_ladder<Algorithm, float, WithMagnitude<float>>,
+      decide_ladder<Algorithm, double, double>, decide_ladder<Algorithm, double, WithMagnitude<double>>}...};
 }
 
 }  // namespace GRAZE_FP

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // However a campaign is cut into shards, whoever runs them, and in whatever order they are merged: the bytes of one
 // run.
-#include "fuzz/campaign/merge.h"
+#include "fuzz/shards/merge.h"
 
 #include <fmt/format.h>
 
@@ -63,7 +63,7 @@ class MergeTest : public CampaignFiles {
 
   fs::path database(const std::string& name) const { return root_ / name / kDatabase; }
 
-  LanesUnderTest twins_ =
+  SelectedLanes twins_ =
       select_lanes({"moller_1997/f32/cuda*", "projected_sat/f32/cuda*", "exact/f32/cuda*"}, Executor::twin);
 };
 
@@ -192,7 +192,7 @@ TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
 
 // Lanes that were left out were asked for: by the patterns, of each of which some lane ran.
 TEST_F(MergeTest, CommandsAskForTheLanesThatWereLeftOutToo) {
-  const LanesUnderTest some = select_lanes({"moller_1997/f32/cuda-*", "exact/f32/cpu"}, Executor::twin);
+  const SelectedLanes some = select_lanes({"moller_1997/f32/cuda-*", "exact/f32/cpu"}, Executor::twin);
   Json spec = {
       {"seed", 3}, {"pairs", 9}, {"strata", {"thesis"}}, {"lanes", {"moller_1997/f32/cuda-fma", "exact/f32/cpu"}}};
   spec["lanes_left_out"] = left_out_json(some);

@@ -10,8 +10,8 @@
 
 namespace graze::cuda {
 
-// Places of pairs in a block.
-struct Places {
+// PairList of pairs in a block.
+struct PairList {
   std::uint32_t* at;
   std::uint32_t* count;
 
@@ -34,7 +34,7 @@ struct Places {
 #ifdef __CUDACC__
 // Adds the places of a block's threads to two lists, at most one each: which is 0, 1 or -1. All its threads call this.
 // One atomic operation for a block and list: a list's count, where all of a kernel's blocks meet, bears one in 0.7 ns.
-__device__ inline void add_of_block(const Places& first, const Places& second, int which, std::uint32_t place) {
+__device__ inline void add_of_block(const PairList& first, const PairList& second, int which, std::uint32_t place) {
   __shared__ std::uint32_t begins[2][32];
   if (!__syncthreads_or(which >= 0)) return;
   const unsigned in_first = __ballot_sync(0xffffffffu, which == 0), in_second = __ballot_sync(0xffffffffu, which == 1);

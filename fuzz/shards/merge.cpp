@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fuzz/campaign/merge.h"
+#include "fuzz/shards/merge.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -255,7 +255,7 @@ Outcome merge(const MergeOptions& options) {
     throw std::runtime_error(fmt::format("{}: expected shards of this build, commit {}, found {}",
                                          stores.front().directory.string(), here["commit"].get<std::string>(),
                                          printable(campaign.build["commit"].get<std::string>())));
-  const LanesUnderTest under_test = recorded_lanes(campaign.spec);
+  const SelectedLanes under_test = recorded_lanes(campaign.spec);
   campaign.under_test = &under_test;
   const fs::path place = place_of(options.out), beside = folder_beside(place);
   const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // up to the end, so that no other merge empties it

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cuda/subject/twin_library.h"
+#include "cuda/twin/twin_library.h"
 
 #include <dlfcn.h>
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 #include "core/pair.h"
 
 namespace graze::cuda {

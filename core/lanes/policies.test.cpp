@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/policies.h"
+#include "core/lanes/policies.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <random>
 
 #include "core/algorithms/algorithms.h"
-#include "core/bounded.h"
 #include "core/error.h"
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
+#include "core/lanes/with_error_bound.h"
 
 namespace graze {
 namespace {
@@ -131,8 +131,8 @@ TEST(Policies, RefuseWhatTheyDoNotKnow) {
       "expected another policy than bound for moller_1997/f32/cpu-fast: the compiler's fast math keeps no error bound");
 }
 
-TEST(Bounded, KnowsWhatIsExact) {
-  using B = Bounded<float>;
+TEST(WithErrorBound, KnowsWhatIsExact) {
+  using B = WithErrorBound<float>;
   bool doubt = false;
   const B x(1.5f, &doubt), y(1.5f, &doubt), z(0.1f, &doubt);
   EXPECT_TRUE((x - y).is_exact_zero());
@@ -155,17 +155,17 @@ TEST(Bounded, KnowsWhatIsExact) {
 }
 
 // Random expressions against the same in long double, which is exact enough for these.
-TEST(Bounded, HoldsTheExactQuantity) {
+TEST(WithErrorBound, HoldsTheExactQuantity) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<float> mantissa(-2, 2);
   std::uniform_int_distribution<int> exponent(-40, 40), operation(0, 4);
   int held = 0, tight = 0;
   for (int i = 0; i < 300000; ++i) {
     bool doubt = false;
-    Bounded<float> x(std::ldexp(mantissa(random), exponent(random) / (i % 2 ? 1 : 20)), &doubt);
+    WithErrorBound<float> x(std::ldexp(mantissa(random), exponent(random) / (i % 2 ? 1 : 20)), &doubt);
     long double exact = x.value;
     for (int step = 0; step < 4; ++step) {
-      const Bounded<float> y(std::ldexp(mantissa(random), exponent(random) / (i % 2 ? 1 : 20)), &doubt);
+      const WithErrorBound<float> y(std::ldexp(mantissa(random), exponent(random) / (i % 2 ? 1 : 20)), &doubt);
       switch (operation(random)) {
         case 0:
           x = x + y, exact += y.value;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/lanes.h"
+#include "core/lanes/lanes.h"
 
 namespace graze {
 

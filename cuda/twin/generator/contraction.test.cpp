@@ -29,7 +29,7 @@ std::string contracted(const std::string& body, const std::string& type, Rule ru
   for (auto at = result.find("." + type); at != std::string::npos; at = result.find("." + type))
     result.replace(at, 1 + type.size(), ".T");
   for (auto at = result.find("graze_" + type); at != std::string::npos; at = result.find("graze_" + type))
-    result.replace(at, 6 + type.size(), "t");
+    result.replace(at, 6 + type.size(), 1, 't');
   return result.substr(0, result.size() - 4);
 }
 

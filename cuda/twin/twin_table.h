@@ -34,10 +34,6 @@ struct TwinTable {
   namespace name {                   \
   extern const TwinTable kTwinTable; \
   }
-#define GRAZE_DECLARE_POLICY(name)             \
-  namespace policy_##name {                    \
-    extern const PolicyTwinTable kPolicyTwins; \
-  }
 #define GRAZE_DECLARE_no_twin_rounded(name)
 #define GRAZE_DECLARE_no_twin_contracted(name)
 #define GRAZE_DECLARE_no_twin_fast(name)

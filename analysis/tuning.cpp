@@ -7,7 +7,6 @@
 #include <array>
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
-#include <tuple>
 
 #include "analysis/lane_trace.h"
 #include "analysis/scales.h"
@@ -108,16 +107,7 @@ class Tuner {
     }
   }
 
-  bool has_too_many(const PolicyErrors& errors) const {
-    return static_cast<double>(forbidden(errors, spec_.forbid)) > spec_.max_rate * static_cast<double>(errors.pairs);
-  }
-
-  // Low enough first, then by the other errors, then by those forbidden.
-  std::tuple<bool, std::uint64_t, std::uint64_t> rank(const PolicyErrors& errors) const {
-    const std::uint64_t bad = forbidden(errors, spec_.forbid);
-    const bool too_many = has_too_many(errors);
-    return {too_many, too_many ? bad : errors.wrong() - bad, too_many ? errors.wrong() - bad : bad};
-  }
+  PolicyRank rank(const PolicyErrors& errors) const { return analysis::rank(errors, spec_.forbid, spec_.max_rate); }
 
   void choose() {
     const PolicyErrors* best = &result_.zero;  // curves stand in the order in which equals are preferred
@@ -131,10 +121,7 @@ class Tuner {
     result_.zero_confirmed = found[0];
     result_.confirmed = found[1];
     result_.bound = upper_bound(forbidden(result_.confirmed, spec_.forbid), result_.confirmed.pairs);
-    result_.result = result_.bound <= spec_.max_rate    ? TuneResult::satisfied
-                     : !has_too_many(result_.confirmed) ? TuneResult::too_few_pairs
-                     : !has_too_many(*best)             ? TuneResult::not_confirmed
-                                                        : TuneResult::not_satisfiable;
+    result_.result = result_of(*best, result_.confirmed, result_.bound, spec_.forbid, spec_.max_rate);
   }
 
   void find_dead() {
@@ -217,6 +204,20 @@ std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid) {
   return forbid == Forbid::false_negative   ? errors.false_negative
          : forbid == Forbid::false_positive ? errors.false_positive
                                             : errors.wrong();
+}
+
+PolicyRank rank(const PolicyErrors& errors, Forbid forbid, double max_rate) {
+  const std::uint64_t bad = forbidden(errors, forbid), others = errors.wrong() - bad;
+  const bool too_many = static_cast<double>(bad) > max_rate * static_cast<double>(errors.pairs);
+  return too_many ? PolicyRank{true, bad, others} : PolicyRank{false, others, bad};
+}
+
+TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, double bound, Forbid forbid,
+                     double max_rate) {
+  return bound <= max_rate                             ? TuneResult::satisfied
+         : !rank(confirmed, forbid, max_rate).too_many ? TuneResult::too_few_pairs
+         : !rank(chosen_on, forbid, max_rate).too_many ? TuneResult::not_confirmed
+                                                       : TuneResult::not_satisfiable;
 }
 
 Tuned tune(const TuneSpec& spec) { return Tuner(spec).run(); }

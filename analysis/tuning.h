@@ -3,6 +3,7 @@
 // with epsilons that no error count alone shows.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -24,6 +25,15 @@ double upper_bound(std::uint64_t count, std::uint64_t of);
 // What may not happen more often than a rate.
 enum class Forbid { false_negative, false_positive, any };
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid);
+
+// What a policy is judged by. Compares less for the better one: its rate of what is forbidden is low enough first, then
+// by the other errors, then by those forbidden.
+struct PolicyRank {
+  bool too_many;
+  std::uint64_t first, second;
+  auto operator<=>(const PolicyRank&) const = default;
+};
+PolicyRank rank(const PolicyErrors& errors, Forbid forbid, double max_rate);
 
 struct TuneSpec {
   Sweep sweep;
@@ -72,6 +82,10 @@ struct Tuned {
   ScaleBreak scale;
   std::vector<Interaction> interactions;
 };
+
+// What follows of the choice: its errors on the pairs that it was made on, those on the others, and their bound.
+TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, double bound, Forbid forbid,
+                     double max_rate);
 
 // Chooses on some pairs and judges on others. Of the policies whose rate of what is forbidden is low enough the one
 // with the fewest other errors; of equals relative tolerances, then all sites, then the smallest tolerance.

@@ -98,7 +98,7 @@ int kinds_of(const std::string& directory, bool json, bool all) {
     for (const Json& kind : kinds) fmt::print("{}\n", kind.dump());
     return 0;
   }
-  if (kinds.empty()) fmt::print("no failures\n");
+  if (summary["signatures"].empty()) fmt::print("no failures\n");
   const std::size_t shown = all ? kinds.size() : std::min(kinds.size(), fuzz::kMostShown);
   double told = 0, sum = 0;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
@@ -109,6 +109,11 @@ int kinds_of(const std::string& directory, bool json, bool all) {
   if (shown < kinds.size())
     fmt::print("{}", reports::wrapped(fmt::format("and {} rarer kinds with {:.1f} % of the pairs; --all lists them",
                                                   kinds.size() - shown, 100 * (1 - told / sum)),
+                                      screen.columns));
+  if (const std::size_t without = fuzz::signatures_without_kind(summary, kinds); without > 0)
+    fmt::print("{}", reports::wrapped(fmt::format("{} of {} signatures belong to no kind: their lanes were not looked "
+                                                  "at, run on a device alone, or did not fail again",
+                                                  without, summary["signatures"].size()),
                                       screen.columns));
   if (!kinds.empty()) fmt::print("\n");
   print_audit(kinds, screen);

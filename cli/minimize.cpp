@@ -13,6 +13,7 @@
 #include <iostream>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <sstream>
 
 #include "cli/case_maps.h"
@@ -200,7 +201,9 @@ int minimize_directory(MinimizeOptions options) {
   const std::string text = fuzz::read_whole(directory / "summary.json");
   const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
-  const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  const auto ran = summary["spec"]["lanes"].get<std::set<std::string>>();
+  leave_out(under_test, [&](const Lane& lane) { return ran.contains(lane.id) ? "" : "the campaign did not run it"; });
   const fuzz::FolderLock held(directory,
                               whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
   if (fuzz::read_whole(directory / "summary.json") != text)
@@ -253,7 +256,7 @@ int minimize_directory(MinimizeOptions options) {
     return 0;
   }
   const double map_seconds = seconds_since(mapping);
-  fuzz::write_kinds(directory, kinds);
+  fuzz::write_kinds(directory, under_test, kinds);
   print_directory(options.name, all);
   fmt::print("{} kinds of failure, listed by: graze kinds {}\nNext: graze report {}\n", reports::grouped(kinds.size()),
              shell_word(options.name), shell_word(options.name));

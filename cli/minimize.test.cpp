@@ -113,6 +113,11 @@ TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   const Ran some = shell("graze minimize host --lanes 'moller_*'");
   EXPECT_EQ(some.status, 0) << some.err;
   EXPECT_NE(some.out.find("no selected lane is wrong on the others"), std::string::npos) << some.out;
+  const auto kinds = nlohmann::json::parse(contents(shell.folder / "host/kinds.json"));
+  EXPECT_EQ(kinds["lanes"], (nlohmann::json{"moller_1997/f32/cpu", "moller_1997/f64/cpu"}));
+  expect_done("graze kinds host | grep 'signatures belong to no kind'");
+  expect_done("graze report host | grep 'signatures belong to no kind of failure'");
+  expect_error("graze minimize host --lanes 'moller_*/cuda-*'", 2, "the campaign did not run it");
 }
 
 // Each file of cases says its signature; one that another wrote or moved there is not believed.

@@ -47,7 +47,46 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   more["kinds"][0]["pairs"] = more["kinds"][0]["pairs"].get<std::uint64_t>() + 1;
   write("c/kinds.json", more);
   expect_error("graze kinds c", 1, "c/kinds.json: expected what `graze minimize` writes");
+  // Kinds that are left out, and a lane, a stratum and a margin that are none: no failure is hidden, or made up.
+  const auto refused = [&](const std::string& found) {
+    for (const char* reader : {"kinds c", "report c", "corpus add c --corpus r"})
+      expect_error(std::string("graze ") + reader, 1,
+                   "c/kinds.json: expected what `graze minimize` writes, found " + found);
+  };
+  more = kinds;
+  more["kinds"] = nlohmann::ordered_json::array();
+  write("c/kinds.json", more);
+  refused("no kind of moller_1997/");
+  for (const auto& [field, value, found] :
+       {std::tuple<const char*, nlohmann::ordered_json, const char*>("lanes", {"x"}, "the lane \"x\", which is none"),
+        {"strata", {{"lattice", 99}}, "other strata"},
+        {"margins", {{"banana", kinds["kinds"][0]["pairs"]}}, "other margins"}}) {
+    more = kinds;
+    more["kinds"][0][field] = value;
+    write("c/kinds.json", more);
+    refused(found);
+  }
+  expect_done("head -c 300 c/kinds.json > k; cp k c/kinds.json");
+  refused("something else; remove this file, then: graze minimize c");
   write("c/kinds.json", kinds);
+  expect_done("graze kinds c > /dev/null");
+
+  const std::string timed = contents(shell.folder / "c/timings.json");
+  nlohmann::ordered_json timings = nlohmann::ordered_json::parse(timed), costs;
+  for (nlohmann::ordered_json& run : timings["runs"]) {
+    if (run.contains("costs")) run["costs"]["lanes"]["exact/f32/cpu"]["thesis"]["middle"] = -1;
+  }
+  write("c/timings.json", timings);
+  expect_error("graze report c", 1, "c/timings.json: expected costs of exact/f32/cpu on 1 to 1024 pairs of thesis");
+  std::ofstream(shell.folder / "c/timings.json") << timed;
+  costs = nlohmann::ordered_json::parse(contents(shell.folder / "c/costs.json"));
+  for (const auto& [field, value] : {std::pair("middle", -1), {"pairs", 1'000'000}}) {
+    nlohmann::ordered_json other = costs;
+    other["rows"][0][field] = value;
+    write("c/costs.json", other);
+    expect_error("graze report --from c/report.json --out r.html", 1, "c/costs.json: expected ");
+  }
+  write("c/costs.json", costs);
 
   nlohmann::ordered_json report = nlohmann::ordered_json::parse(contents(shell.folder / "c/report.json"));
   for (const char* part : {"count", "of", "share"}) {

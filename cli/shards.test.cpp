@@ -193,6 +193,47 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   expect_done("graze status killed --stalled 3000");
 }
 
+// A status that is damaged, or counts what cannot be, is no shard that has not begun.
+TEST_F(Shards, StatusRefusesADamagedStatus) {
+  expect_done("graze fuzz --seed 5 --pairs 400 --strata near_edge_edge --lanes '*/f32/cpu' --out c > /dev/null");
+  const Json whole = Json::parse(contents(shell.folder / "c/status.json"));
+  ASSERT_EQ(whole["state"], "done");
+  const auto refused = [&](const std::string& text, const std::string& found) {
+    std::ofstream(shell.folder / "c/status.json") << text;
+    expect_error("graze status c", 1, "c/status.json: expected " + found);
+  };
+  const std::string else_found = "what a run says of itself, found something else";
+  for (const std::string& text : {std::string(), std::string("[]"), whole.dump().substr(0, 90)})
+    refused(text, else_found);
+  for (const auto& [field, value, found] :
+       {std::tuple<const char*, Json, std::string>("done", 399, "all 400 pairs of a run that is done, found 399"),
+        {"done", 401, "at most 400 pairs done"},
+        {"disagreements", 401, "at most 400 pairs done and as many disagreements"},
+        {"disagreements", 18446744073709551616.0, else_found},
+        {"signatures", -1, else_found},
+        {"state", "unknown", "running, done, stopped or failed as state"},
+        {"state", nullptr, else_found},
+        {"shard", "2/1", "K/N as shard"},
+        {"rate", -1, "a rate and a time of at least 0"},
+        {"ways", {1}, else_found},
+        {"updated", "x", "a whole number as updated"}}) {
+    Json other = whole;
+    other[field] = value;
+    refused(other.dump(), found);
+  }
+  for (const char* field : {"state", "shard", "pairs", "done", "disagreements", "signatures", "updated"}) {
+    Json other = whole;
+    other.erase(field);
+    refused(other.dump(), else_found);
+  }
+  std::filesystem::remove(shell.folder / "c/status.json");
+  expect_error("graze status c", 1, "c/status.json: expected what the run of this campaign says of itself, found none");
+  std::filesystem::remove(shell.folder / "c/campaign.sqlite");
+  expect_done("graze status c | grep 'not begun'");
+  std::ofstream(shell.folder / "c/status.json") << whole;
+  expect_done("graze status c | grep ' done '");
+}
+
 // mpirun refuses to run as root unless it is told to.
 TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   const Ran found = shell("command -v mpirun && test -e '" + std::string(GRAZE_BINARY_DIR) + "/libgraze_mpi.so'");

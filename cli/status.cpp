@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "cli/results.h"
+#include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/run_status.h"
 #include "reports/terminal.h"
@@ -33,12 +34,13 @@ struct StatusOptions {
 // A run that does not say how it ended: killed, where its process is gone from this machine; stalled, where it has said
 // nothing for long.
 std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stalled) {
-  const std::string state = status.value("state", "unknown");
+  const std::string state = status.at("state");
   if (state != "running") return state;
   char host[256] = {};
   gethostname(host, sizeof host - 1);
-  const auto process = status.value("process", pid_t{0});
-  if (status.value("host", "") == host && process > 0 && kill(process, 0) != 0 && errno == ESRCH) return "killed";
+  const auto process = status.at("process").get<pid_t>();
+  if (status.at("host").get<std::string>() == host && process > 0 && kill(process, 0) != 0 && errno == ESRCH)
+    return "killed";
   return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
 }
 
@@ -54,32 +56,27 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
               {"disagreements", 0},
               {"signatures", 0},
               {"new", 0}};
-  try {
-    const Json status = fuzz::read_status(directory);
-    if (status.is_null()) return row;
-    const std::int64_t silent = std::time(nullptr) - status.at("updated").get<std::int64_t>();
-    row["shard"] = status.at("shard").get<std::string>();
-    row["state"] = state_of(status, silent, stalled);
-    for (const char* count : {"pairs", "done", "disagreements", "signatures"})
-      row[count] = status.at(count).get<std::uint64_t>();
-    if (row["done"] > row["pairs"] || row["disagreements"] > row["done"])
-      throw std::runtime_error(fmt::format(
-          "{}: expected at most {} pairs done and as many disagreements, found {} and {}",
-          (directory / "status.json").string(), row["pairs"].dump(), row["done"].dump(), row["disagreements"].dump()));
-    std::size_t fresh = 0;
-    for (const std::string way : status.value("ways", Json::array())) fresh += known.insert(way).second;
-    row["new"] = fresh;
-    if (row["state"] == "running") {
-      row["rate"] = status.at("rate").get<double>();
-      row["seconds_left"] = status.at("seconds_left");
-    }
-    row["silent"] = silent;
-    if (status.contains("why")) row["why"] = status["why"].get<std::string>();
+  const Json status = fuzz::read_status(directory);
+  if (status.is_null()) {
+    if (fuzz::has_database(directory))
+      throw std::runtime_error((directory / "status.json").string() +
+                               ": expected what the run of this campaign says of itself, found none (`graze merge` "
+                               "leaves none)");
     return row;
-  } catch (const Json::exception&) {
-    throw std::runtime_error((directory / "status.json").string() +
-                             ": expected what a run says of itself, found something else");
   }
+  const std::int64_t silent = std::time(nullptr) - status.at("updated").get<std::int64_t>();
+  row["state"] = state_of(status, silent, stalled);
+  for (const char* field : {"shard", "pairs", "done", "disagreements", "signatures"}) row[field] = status.at(field);
+  std::size_t fresh = 0;
+  for (const std::string way : status.at("ways")) fresh += known.insert(way).second;
+  row["new"] = fresh;
+  if (row["state"] == "running") {
+    row["rate"] = status.at("rate");
+    row["seconds_left"] = status.at("seconds_left");
+  }
+  row["silent"] = silent;
+  if (status.contains("why")) row["why"] = status["why"];
+  return row;
 }
 
 // In the order of the directories. {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements",

@@ -144,7 +144,7 @@ int trade(TradeOptions options) {
   for (const std::string& sentence : reports::extreme_sentences(trade.curves))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(all.left_out));
-  nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
+  nlohmann::ordered_json json = {{"pairs", trade.offers.front().errors.pairs}, {"seed", options.seed}};
   fuzz::add_left_out(json, under_test);
   json.update(reports::trade_json(trade));
   write_result(out / "trade.json", json.dump(1) + "\n");

@@ -26,10 +26,10 @@ struct Costs {
   std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
 };
 
-// Nothing where the campaign has no timings of its lanes.
+// Nothing where the campaign has no timings of its lanes.   Throws: as costs_of.
 std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts);
 
-// Requires: what timings.json holds.
+// Throws: std::runtime_error for costs that cannot be; Json::exception for another shape.
 std::optional<Costs> costs_of(const nlohmann::ordered_json& timings, const CampaignCounts& counts);
 
 // What costs.json holds: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],

@@ -244,6 +244,12 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   if (kinds.is_null() && !summary["signatures"].empty())
     report["missing"].push_back(
         "The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
+  const std::size_t without = kinds.is_null() ? 0 : fuzz::signatures_without_kind(summary, kinds);
+  if (without > 0)
+    report["missing"].push_back(
+        fmt::format("{} of {} signatures belong to no kind of failure: their lanes were not looked at, run on a device "
+                    "alone, or did not fail again.",
+                    without, summary["signatures"].size()));
   Json rows = Json::array(), cards = Json::array();
   std::size_t room = kMostMapBytes;
   Lacking lacking;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "core/fnv1a.h"
@@ -140,66 +141,78 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   const oracle::Truth truth = oracle::truth(pair);
   std::string fields;
   for (const auto& [name, value] : fuzz::truth_fields(truth)) fields += name + '=' + value + ' ';
-  for (int i = 0; i < 12'000; ++i) {
-    const std::string key = fmt::format(
-        "{}/22/skew/{}/guigue_devillers_2003:+f32/cpu;+f32/cpu-fma;+f32/cpu-fast;-f32/cuda-nofma;-f32/cuda-fma;"
-        "-f32/cuda-fast;+f64/cpu;+f64/cpu-fma;+f64/cpu-fast;+f64/cuda-nofma;+f64/cuda-fma/abs:{}",
-        name(truth.contact), name_of_bucket(oracle::margin_bucket(pair, truth.verdict)), i);
+  const std::string bucket = name_of_bucket(oracle::margin_bucket(pair, truth.verdict));
+  const auto stratum_of = [](int i, std::size_t k) {
+    return "a_stratum_with_a_name_" + std::to_string((static_cast<std::size_t>(i) + k) % 19);
+  };
+  constexpr int kSignatures = 12'000, kOfAKind = 9;  // each kind has every ninth signature
+  const std::string marks = truth.verdict == Verdict::disjoint ? "+" : "-";
+  std::string wrong;
+  for (const Lane& lane : lanes()) {
+    if (lane.info->id == std::string_view("guigue_devillers_2003"))
+      wrong += (wrong.empty() ? "" : ";") + marks + lane.lane_name().within_subject();
+  }
+  Json pair_hex = Json::array(), kinds = Json::array();
+  for (int i = 0; i < kCoordinates; ++i) pair_hex.push_back(fmt::format("{:a}", coordinates(pair)[i]));
+  const std::string maps =
+      Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump();
+  for (int i = 0; i < kSignatures; ++i) {
+    const std::string key = fmt::format("{}/22/skew/{}/guigue_devillers_2003:{};{}f64/cuda-fma/abs:{}",
+                                        name(truth.contact), bucket, wrong, marks, i);
     const std::string file = fmt::format("cases/{:016x}.pairs", fnv1a(key));
     std::string text = fmt::format("graze-pairs 1\n# {}: {} pairs\n", key, kPairs);
     for (std::size_t k = 0; k < fuzz::kKeptCases; ++k)
-      text += fmt::format("{} | stratum=s seed=1 index={} {}signature={}\n", fuzz::pair_text(pair), k, fields, key);
+      text += fmt::format("{} | stratum={} seed=1 index={} {}signature={}\n", fuzz::pair_text(pair), stratum_of(i, k),
+                          k, fields, key);
     fuzz::write_whole(directory / file, text);
+    if (i < kOfAKind) fuzz::write_whole(fs::path(directory / file).replace_extension(".maps.json"), maps);
     summary["signatures"].push_back({{"key", key}, {"count", kPairs}, {"case", file}});
   }
-  fuzz::write_whole(directory / "cases/1.pairs", "graze-pairs 1\n" + fuzz::pair_text(pair) +
-                                                     " | stratum=s seed=1 index=1 truth=disjoint contact=none "
-                                                     "margin=1e-30 margin_ulps=1.25\n");
-  Json pair_hex = Json::array(), kinds = Json::array();
-  for (int i = 0; i < kCoordinates; ++i) pair_hex.push_back(fmt::format("{:a}", coordinates(pair)[i]));
-  fuzz::write_whole(directory / "cases/1.maps.json",
-                    Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump());
   fuzz::write_whole(directory / "summary.json", summary.dump());
-  Json kind = {
-      {"subject", "guigue_devillers_2003"},
-      {"cause", "rounding"},
-      {"line", "core/algorithms/range.h:31"},
-      {"shape", "general"},
-      {"pairs", 99'999'999'999},
-      {"signatures", 12'000},
-      {"lanes", Json::array()},
-      {"settled", {1, 2}},
-      {"strata", Json::object()},
-      {"margins", Json::object()},
-      {"places", Json::array()},
-      {"simplest",
-       {{"case", "cases/1.pairs"},
-        {"pair", fuzz::pair_text(pair)},
-        {"from", "s:1:1"},
-        {"lanes", Json::array()},
-        {"verdicts", Json::object()},
-        {"sentences", {std::string(400, 's')}}}},
-      {"worst",
-       {{"case", "cases/1.pairs"}, {"pair", fuzz::pair_text(pair)}, {"from", "s:1:1"}, {"margin_ulps", 1.25}}}};
+  Json kind = {{"subject", "guigue_devillers_2003"},
+               {"cause", "rounding"},
+               {"shape", "general"},
+               {"lanes", Json::array()},
+               {"simplest",
+                {{"pair", fuzz::pair_text(pair)},
+                 {"lanes", Json::array()},
+                 {"verdicts", Json::object()},
+                 {"sentences", {std::string(400, 's')}}}},
+               {"worst", {{"pair", fuzz::pair_text(pair)}, {"margin_ulps", truth.margin_ulps}}}};
+  const Verdict other = truth.verdict == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint;
   for (const Lane& lane : lanes()) {
-    if (lane.info->id == std::string_view("guigue_devillers_2003")) {
+    const bool is_wrong = lane.info->id == std::string_view("guigue_devillers_2003");
+    if (is_wrong) {
       kind["lanes"].push_back(lane.id);
       kind["simplest"]["lanes"].push_back(lane.id);
     }
-    kind["simplest"]["verdicts"][lane.id] = "intersects";
+    kind["simplest"]["verdicts"][lane.id] = name(is_wrong ? other : truth.verdict);
   }
-  for (int s = 0; s < 19; ++s) kind["strata"]["a_stratum_with_a_name_" + std::to_string(s)] = 4 * 12'000;
-  for (int k = 0; k < 100; ++k) {
-    kind["key"] = "guigue_devillers_2003/rounding/range.h:31/" + std::to_string(k);
-    kind["places"] = Json::array();  // as if each of its eleven lanes were wrong for another reason
-    for (int i = k % 9; i < 12'000; i += 9) kind["places"].push_back(i);
-    kind["signatures"] = kind["places"].size();
-    kind["pairs"] = kind["places"].size() * kPairs;
-    for (int b = -kBucketMost; b <= kBucketMost; ++b) kind["margins"][name_of_bucket(static_cast<Bucket>(b))] = kPairs;
-    kind["margins"]["0"] = (kind["places"].size() - (kBucketCount - 1)) * kPairs;
+  for (int k = 0; k < 100; ++k) {  // as if each of its lanes were wrong for many reasons
+    kind["line"] = fmt::format("core/algorithms/range.h:{}", 100 + k);
+    kind["key"] = fmt::format("guigue_devillers_2003/rounding/range.h:{}/general", 100 + k);
+    kind["places"] = Json::array();
+    std::map<std::string, std::uint64_t> strata;
+    for (int i = k % kOfAKind; i < kSignatures; i += kOfAKind) {
+      kind["places"].push_back(i);
+      for (std::size_t c = 0; c < fuzz::kKeptCases; ++c) ++strata[stratum_of(i, c)];
+    }
+    const std::uint64_t places = kind["places"].size();
+    kind["strata"] = strata;
+    kind["signatures"] = places;
+    kind["pairs"] = places * kPairs;
+    kind["margins"] = {{bucket, places * kPairs}};
+    kind["settled"] = {1, places * kind["lanes"].size()};
+    for (const char* which : {"simplest", "worst"}) {
+      kind[which]["case"] = summary["signatures"][static_cast<std::size_t>(k % kOfAKind)]["case"];
+      kind[which]["from"] = stratum_of(k % kOfAKind, 0) + ":1:0";
+    }
     kinds.push_back(kind);
   }
-  fuzz::write_kinds(directory, kinds);
+  std::stable_sort(kinds.begin(), kinds.end(), [](const Json& l, const Json& r) { return l["pairs"] > r["pairs"]; });
+  fuzz::SelectedLanes under_test;
+  for (const Lane& lane : lanes()) under_test.lanes.push_back(&lane);
+  fuzz::write_kinds(directory, under_test, kinds);
   const Json report = make_report(directory);
   const std::string html = page(report, nullptr, kNone);
   EXPECT_EQ(report["cards"].size(), fuzz::kMostShown);

@@ -2,15 +2,26 @@
 #include "reports/possible_counts.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
 
+#include "analysis/trade.h"
+#include "analysis/tuning.h"
+#include "core/lanes/lanes.h"
+#include "core/margin/bucket.h"
 #include "core/pair.h"
 #include "core/text.h"
+#include "fuzz/campaign/lane_costs.h"
 #include "fuzz/counts_json.h"
 #include "reports/failure_cards.h"
 #include "reports/shapes.h"
 #include "reports/tables.h"
+#include "reports/tuning.h"
 #include "reports/wilson.h"
 
 namespace graze::reports {
@@ -130,6 +141,11 @@ void expect_possible_failures(const Json& report) {
            fmt::format("a share of {} pairs", pairs), row);
     for (const Json& card : row.at("cards")) report.at("cards").at(card.get<std::size_t>());
   }
+  std::set<std::string> buckets, strata;
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) buckets.insert(name_of_bucket(static_cast<Bucket>(b)));
+  for (const Json& row : report.at("strata")) strata.insert(row.at("id"));
+  std::set<std::pair<std::string, std::string>> lanes;  // subject and id
+  for (const Json& row : report.at("lanes")) lanes.emplace(row.at("algorithm"), row.at("id"));
   for (const Json& card : report.at("cards")) {
     const Json& kind = card.at("kind");
     const std::uint64_t of_kind = kind.at("pairs");
@@ -138,6 +154,9 @@ void expect_possible_failures(const Json& report) {
                     kind["settled"][0] <= kind["settled"][1] &&
                     kind["settled"][1] <= kind["signatures"].get<std::uint64_t>() * kind.at("lanes").size();
     for (const Json& count : kind.at("margins")) by_margin += count.get<std::uint64_t>();
+    for (const auto& [name, count] : kind["margins"].items()) possible = possible && buckets.contains(name);
+    for (const auto& [name, count] : kind.at("strata").items()) possible = possible && strata.contains(name);
+    for (const Json& lane : kind.at("lanes")) possible = possible && lanes.contains({kind.at("subject"), lane});
     for (const char* by : {"margins", "strata"}) {
       for (const Json& count : kind.at(by)) possible = possible && count <= of_kind;
     }
@@ -169,11 +188,129 @@ void expect_possible_errors(const Json& part) {
     expect(possible && fuzz::counts_of(part).not_right() <= pairs, fmt::format("errors on at most {} pairs", pairs),
            part);
   } else if (part.is_object() && part.contains("middle")) {
-    expect(0 <= part.at("low") && part["low"] <= part["middle"] && part["middle"] <= part.at("high"),
+    expect(0 < part.at("low") && part["low"] <= part["middle"] && part["middle"] <= part.at("high"),
            "quartiles in their order", part);
   } else if (part.is_structured()) {
     for (const Json& inner : part) expect_possible_errors(inner);
   }
+}
+
+void expect_lane(const Json& id) {
+  expect(parse_lane_name(id.get<std::string>()).has_value(), "the name of a lane", id);
+}
+
+// The bound is the one that `graze tune` and `graze trade` compute.
+void expect_upper_bound(const Json& bound, std::uint64_t count, std::uint64_t of) {
+  const double expected = analysis::upper_bound(count, of);
+  expect(std::abs(bound.get<double>() - expected) <= 1e-9 * expected,
+         fmt::format("{:.17g} as the bound of {} of {} pairs", expected, count, of), bound);
+}
+
+analysis::PolicyErrors errors_of(const Json& row) {
+  analysis::PolicyErrors errors;
+  static_cast<Counts&>(errors) = fuzz::counts_of(row);
+  errors.policy = row.at("policy");
+  errors.pairs = row.at("pairs");
+  errors.fixed = row.at("fixed");
+  errors.broken = row.at("broken");
+  return errors;
+}
+
+// What the policy fixes and breaks makes the difference to the lane without one, on the same pairs.
+void expect_relocation(const Json& row, const Json& without) {
+  const analysis::PolicyErrors errors = errors_of(row), zero = errors_of(without);
+  expect(
+      errors.pairs == zero.pairs && errors.fixed <= zero.not_right() && errors.broken <= errors.not_right() &&
+          zero.not_right() - errors.fixed == errors.not_right() - errors.broken,
+      fmt::format("errors that differ by what is fixed and broken from {} of {} pairs", zero.not_right(), zero.pairs),
+      row);
+}
+
+void expect_relocations(const Json& tuned) {
+  const Json &zero = tuned.at("zero"), &zero_confirmed = tuned.at("zero_confirmed");
+  for (const Json* without : {&zero, &zero_confirmed}) {
+    const analysis::PolicyErrors errors = errors_of(*without);
+    expect(errors.policy.empty() && errors.changes_nothing(), "errors without a policy", *without);
+  }
+  expect_relocation(tuned.at("confirmed"), zero_confirmed);
+  for (const Json& curve : tuned.at("curves")) {
+    for (const Json& point : curve.at("points")) expect_relocation(point, zero);
+  }
+  for (const Json& row : tuned.at("interactions")) {
+    for (const char* which : {"first", "second", "together"}) expect_relocation(row.at(which), zero);
+  }
+  for (const auto& [side, row] : tuned.at("scale_break").items()) {
+    const analysis::PolicyErrors errors = errors_of(row.at("errors"));
+    const int log2 = row.at("log2");
+    expect((side == "up" ? log2 > 0 : log2 < 0) && std::abs(log2) <= analysis::kMostScale &&
+               errors.policy == tuned.at("chosen") && errors.pairs <= zero.at("pairs") &&
+               errors.fixed <= errors.pairs - errors.not_right() && errors.broken <= errors.not_right(),
+           fmt::format("errors of the choice at another scale, of at most {} pairs", zero["pairs"].dump()), row);
+  }
+}
+
+template <class Enumeration, std::size_t kCount>
+Enumeration among(const std::string_view (&names)[kCount], const Json& name) {
+  const auto found = std::find(std::begin(names), std::end(names), name.get_ref<const std::string&>());
+  expect(found != std::end(names), fmt::format("one of {}", fmt::join(names, ", ")), name);
+  return static_cast<Enumeration>(found - std::begin(names));
+}
+
+// The choice, its result and the dead sites are those that the counts lead to.
+void expect_choice(const Json& tuned) {
+  const auto forbid = among<analysis::Forbid>(kTuneForbids, tuned.at("forbid"));
+  const double max_rate = tuned.at("max_rate");
+  const std::string chosen = tuned.at("chosen") == "zero" ? "" : tuned["chosen"].get<std::string>();
+  const analysis::PolicyErrors confirmed = errors_of(tuned.at("confirmed")), zero = errors_of(tuned.at("zero"));
+  expect(confirmed.policy == chosen, "errors of the policy that was chosen", tuned["confirmed"]);
+  std::optional<analysis::PolicyErrors> chosen_on;
+  if (chosen.empty()) chosen_on = zero;
+  std::vector<analysis::PolicyErrors> others = {zero};
+  std::vector<std::string> sites;
+  std::set<std::string> live = {"all"};
+  for (const Json& curve : tuned.at("curves")) {
+    const std::string site = curve.at("site");
+    if (site != "all" && std::find(sites.begin(), sites.end(), site) == sites.end()) sites.push_back(site);
+    for (const Json& point : curve.at("points")) {
+      others.push_back(errors_of(point));
+      if (!others.back().changes_nothing()) live.insert(site);
+      if (!chosen_on && others.back().policy == chosen) chosen_on = others.back();
+    }
+  }
+  std::erase_if(sites, [&](const std::string& site) { return live.contains(site); });
+  expect(tuned.at("dead") == Json(sites), "as dead those sites at which nothing changes", tuned["dead"]);
+  expect(chosen_on.has_value(), "a point of the curves as the choice", tuned["chosen"]);
+  const analysis::PolicyRank rank = analysis::rank(*chosen_on, forbid, max_rate);
+  expect(std::none_of(others.begin(), others.end(),
+                      [&](const auto& other) { return analysis::rank(other, forbid, max_rate) < rank; }),
+         "the best of the curves' policies as the choice", tuned["chosen"]);
+  expect_upper_bound(tuned.at("bound"), forbidden(confirmed, forbid), confirmed.pairs);
+  const auto result = among<analysis::TuneResult>(kTuneResults, tuned.at("result"));
+  const auto expected = result_of(*chosen_on, confirmed, tuned["bound"], forbid, max_rate);
+  expect(result == expected, fmt::format("'{}'", kTuneResults[static_cast<int>(expected)]), tuned["result"]);
+}
+
+// Costs are of the host in all rows, or of a device, which are measured otherwise.
+void expect_costs_of_kind(const Json& row, bool on_device) {
+  for (const char* field : {"resident", "with_copies", "registers", "local_bytes", "active_threads"})
+    expect(row.contains(field) == on_device, fmt::format("{} of all lanes or of none", field), row);
+  for (const char* field : {"in_cache", "from_memory"})
+    expect(row.contains(field) != on_device, fmt::format("{} of all lanes or of none", field), row);
+}
+
+// Costs are rounded, which keeps their order but may make them equal.
+void expect_domination(const Json& row, const Json& lanes) {
+  const auto cost = [](const Json& lane) -> double {
+    return lane.at(lane.contains("resident") ? "resident" : "in_cache").at("middle");
+  };
+  const auto errors = [](const Json& lane) { return fuzz::counts_of(lane.at("errors")).not_right(); };
+  const bool dominated = row.at("dominated");
+  expect(std::any_of(lanes.begin(), lanes.end(),
+                     [&](const Json& other) {
+                       return &other != &row && errors(other) <= errors(row) &&
+                              (dominated ? cost(other) <= cost(row) : cost(other) < cost(row));
+                     }) == dominated,
+         dominated ? "a lane that none dominates" : "a lane that another dominates", row.at("dominated"));
 }
 
 }  // namespace
@@ -196,25 +333,23 @@ void expect_possible_costs(const Json& costs, const Json& report) {
   expect_shape(costs, "costs");
   expect_possible_errors(costs);
   expect_lanes(costs, report.at("lanes").size());
-  for (const Json& row : costs["rows"]) drawn_of(report, nullptr, row["group"]);
+  const std::uint64_t all = report.at("run").at("pairs");
+  for (const Json& row : costs["rows"]) {
+    const Json& group = row["group"];
+    const std::size_t strata = group.is_null() ? report.at("strata").size()
+                                               : report.at("groups").at(group.get<std::size_t>()).at("strata").size();
+    const std::uint64_t most = std::min<std::uint64_t>(all, strata * fuzz::kPairsTimed);
+    expect(row["pairs"] > 0 && row["pairs"] <= most, fmt::format("costs of 1 to {} pairs", most), row);
+  }
 }
 
 void expect_possible_tuned(const Json& tuned) {
   expect_shape(tuned, "tuned");
   expect_possible_errors(tuned);
-  const Json &confirmed = tuned.at("confirmed"), &forbid = tuned.at("forbid");
-  const Counts counts = fuzz::counts_of(confirmed);
-  const std::uint64_t forbidden = forbid == "false_negative"   ? counts.false_negative
-                                  : forbid == "false_positive" ? counts.false_positive
-                                                               : counts.wrong();
-  expect_bound(tuned.at("bound"), forbidden, confirmed.at("pairs"), tuned["bound"]);
-  expect(tuned.at("zero_confirmed").at("pairs") == confirmed["pairs"], "the pairs of `confirmed`",
-         tuned["zero_confirmed"]);
-  for (const Json& curve : tuned.at("curves")) {
-    for (const Json& point : curve.at("points"))
-      expect(point.at("pairs") == tuned.at("zero").at("pairs"), "the pairs of `zero`", point);
-  }
+  expect_lane(tuned.at("lane"));
   expect(tuned.at("max_rate") >= 0 && tuned["max_rate"] <= 1, "a rate", tuned["max_rate"]);
+  expect_relocations(tuned);
+  expect_choice(tuned);
   const Json& sentences = tuned.at("sentences");
   const auto breaks = std::count_if(sentences.begin(), sentences.end(), [](const Json& sentence) {
     return sentence.get<std::string>().starts_with("Scale break:");
@@ -226,10 +361,31 @@ void expect_possible_tuned(const Json& tuned) {
 void expect_possible_trade(const Json& trade) {
   expect_shape(trade, "trade");
   expect_possible_errors(trade);
-  for (const Json& row : trade.at("lanes")) {
+  const Json& lanes = trade.at("lanes");
+  const std::uint64_t pairs = trade.at("pairs");
+  std::set<std::string> ids;
+  for (const Json& row : lanes) {
+    const std::string lane = row.at("lane");
+    expect_lane(row["lane"]);
+    expect(ids.insert(lane).second, "each lane once", row);
     const Json& errors = row.at("errors");
-    expect(errors.at("pairs") == trade["lanes"][0].at("errors").at("pairs"), "the pairs of the first lane", row);
-    expect_bound(row.at("bound"), fuzz::counts_of(errors).not_right(), errors.at("pairs"), row);
+    expect(errors.at("pairs") == pairs, fmt::format("errors on {} pairs", pairs), row);
+    expect_upper_bound(row.at("bound"), fuzz::counts_of(errors).not_right(), pairs);
+    expect_costs_of_kind(row, lanes[0].contains("resident"));
+  }
+  for (const Json& row : lanes) expect_domination(row, lanes);
+  std::set<std::pair<std::string, std::string>> curves;
+  for (const Json& row : trade.at("extremes")) {
+    expect(ids.contains(row.at("lane")), "an extreme of a lane that was judged", row["lane"]);
+    expect(std::any_of(std::begin(analysis::kExtremes), std::end(analysis::kExtremes),
+                       [&](analysis::Extreme extreme) { return name(extreme) == row.at("extreme"); }),
+           "an extreme", row["extreme"]);
+    expect(curves.emplace(row["lane"], row["extreme"]).second, "each extreme of a lane once", row["extreme"]);
+    std::set<int> exponents;
+    for (const Json& point : row.at("points"))
+      expect(exponents.insert(point.at("log2").get<int>()).second && point.at("pairs") <= pairs &&
+                 point["pairs"] == row["points"][0]["pairs"],
+             fmt::format("a point of each exponent, of as many pairs as the first and at most {}", pairs), point);
   }
 }
 

@@ -140,17 +140,6 @@ Json make_report(const std::filesystem::path& directory) {
   }
 }
 
-Json make_costs(const std::filesystem::path& directory) {
-  const CampaignCounts counts = counts_of(fuzz::checked_summary(directory));
-  try {
-    const std::optional<Costs> costs = read_costs(directory, counts);
-    return costs ? to_json(*costs, counts) : Json();
-  } catch (const Json::exception&) {
-    throw corpus::FormatError((directory / "timings.json").string() +
-                              ": expected a campaign's timings, found something else");
-  }
-}
-
 namespace {
 
 // Checks a file that graze wrote.   Throws: FormatError that names it.
@@ -166,6 +155,15 @@ void checked(const std::filesystem::path& file, const char* what, Check check) {
 }
 
 }  // namespace
+
+Json make_costs(const std::filesystem::path& directory) {
+  const CampaignCounts counts = counts_of(fuzz::checked_summary(directory));
+  Json made;
+  checked(directory / "timings.json", "a campaign's timings", [&] {
+    if (const std::optional<Costs> costs = read_costs(directory, counts)) made = to_json(*costs, counts);
+  });
+  return made;
+}
 
 Json make_choices(const std::filesystem::path& directory) {
   const auto read = [&](const char* name, void (*expect_possible)(const Json&)) -> Json {

@@ -113,6 +113,19 @@ TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
   }
   for (const char* other : {"[]", R"({"runs": 1})", R"({"runs": [1, {"machine": 1, "pairs": 2}, {"pairs": {}}]})"})
     EXPECT_EQ(blamed(timings, other), "nothing");  // only names the machine
+  const std::string timed = fuzz::read_whole(timings);
+  for (const auto& [part, value] : {std::pair("middle", -1), {"pairs", 1'000'000}, {"low", 1'000'000}}) {
+    Json other = Json::parse(timed);
+    other["runs"].back()["costs"]["lanes"]["moller_1997/f32/cpu"]["thesis"][part] = value;
+    std::ofstream(timings) << other;
+    try {
+      make_costs(folder);
+      ADD_FAILURE() << part;
+    } catch (const corpus::FormatError& error) {
+      EXPECT_TRUE(std::string(error.what()).starts_with(timings.string() + ": expected costs of ")) << error.what();
+    }
+  }
+  std::ofstream(timings) << timed;
 
   const Json stored = Json::parse(fuzz::read_whole(folder / "kinds.json"));
   for (const char* part : {"/simplest", "/simplest/case", "/simplest/pair", "/simplest/verdicts", "/simplest/lanes",
@@ -123,7 +136,7 @@ TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
     EXPECT_EQ(blamed(folder / "kinds.json", other.dump()), "the file") << part;
   }
   for (const char* other : {"", "[]", R"({"kinds": []})", R"({"summary": 1, "kinds": 2})"})
-    EXPECT_EQ(blamed(folder / "kinds.json", other), "nothing") << other;  // no kinds are known
+    EXPECT_EQ(blamed(folder / "kinds.json", other), "the file") << other;
 
   const fs::path cases = folder / stored["kinds"][0]["simplest"]["case"].get<std::string>();
   std::string text = fuzz::read_whole(cases);
@@ -213,42 +226,75 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   for (Json& row : report["signatures"]) row["cards"] = {0};
   expect_all_refused(report, {"seed", "exponent", "largest", "step", "size", "/compare/other/pairs"},
                      [&](const Json& json) { return error_of([&] { read_report(file); }, file, json); });
+  for (const auto& [place, value] : {std::pair<const char*, Json>("strata", {{"lattice", 1}}),
+                                     {"margins", {{"banana", report["cards"][0]["kind"]["pairs"]}}},
+                                     {"lanes", {"x"}},
+                                     {"lanes", {"exact/f32/cpu"}}}) {
+    Json other = report;
+    other["cards"][0]["kind"][place] = value;
+    EXPECT_NE(error_of([&] { read_report(file); }, file, other), "") << place;
+  }
   const Json costs = make_costs(root_ / "one");
-  expect_all_refused({{"costs", costs}}, {"passes", "pairs", "low", "middle", "high"}, [&](const Json& json) {
+  expect_all_refused({{"costs", costs}}, {"passes", "low", "middle", "high"}, [&](const Json& json) {
     return error_of([&] { stored_costs(root_ / "forged" / "costs.json", report); }, root_ / "forged" / "costs.json",
                     json.is_object() ? json.value("costs", Json()) : json);
   });
 
-  const auto errors = [](std::uint64_t pairs, std::uint64_t false_negatives, const char* policy) {
+  // without: the errors of no policy on the same pairs
+  const auto errors = [](std::uint64_t pairs, std::uint64_t false_negatives, const char* policy,
+                         std::uint64_t without) {
     analysis::PolicyErrors result;
     result.policy = policy;
     result.pairs = pairs;
     result.false_negative = false_negatives;
-    result.fixed = result.broken = false_negatives;
+    result.fixed = *policy ? without : 0;
+    result.broken = *policy ? false_negatives : 0;
     return result;
   };
   analysis::Tuned tuned;
   tuned.chosen = "rel:8";
-  tuned.confirmed = errors(4000, 552, "rel:8");
-  tuned.zero_confirmed = errors(4000, 600, "");
+  tuned.confirmed = errors(4000, 552, "rel:8", 600);
+  tuned.zero_confirmed = errors(4000, 600, "", 600);
   tuned.bound = analysis::upper_bound(552, 4000);
-  tuned.zero = errors(400, 60, "");
-  tuned.curves = {{"", true, {errors(400, 50, "rel:1"), errors(400, 30, "rel:8")}}};
+  tuned.zero = errors(400, 60, "", 60);
+  tuned.curves = {{"", true, {errors(400, 50, "rel:1", 60), errors(400, 30, "rel:8", 60)}},
+                  {"parallel", true, {tuned.zero}}};
+  tuned.curves[1].points[0].policy = "parallel=rel:1";
   tuned.dead = {"parallel"};
   tuned.scale.down = -4;
-  tuned.scale.at_down = errors(4000, 2000, "rel:8");
-  tuned.interactions = {{"a", "b", errors(400, 1, "a"), errors(400, 2, "b"), errors(400, 3, "c")}};
+  tuned.scale.at_down = errors(400, 200, "rel:8", 60);
+  tuned.interactions = {{"a", "b", errors(400, 1, "a", 60), errors(400, 2, "b", 60), errors(400, 3, "c", 60)}};
   const Json tune = tuning_json({"moller_1997/f32/cpu", analysis::Forbid::false_negative, 1e-3}, tuned);
   const fs::path tune_file = root_ / "forged" / "tune.json", trade_file = root_ / "forged" / "trade.json";
   const auto tune_error = [&](const Json& json) {
     return error_of([&] { make_choices(root_ / "forged"); }, tune_file, json);
   };
-  expect_all_refused(tune,
-                     {"log2", "/scale_break/down/errors/pairs", "/interactions/0/first/pairs",
-                      "/interactions/0/second/pairs", "/interactions/0/together/pairs"},
-                     tune_error);
-  for (const auto& [place, value] :
-       {std::pair<const char*, Json>("/bound", 0), {"/bound", 2}, {"/scale_break", Json::object()}}) {
+  expect_all_refused(tune, {}, tune_error);
+  for (const auto& [place, value] : {std::pair<const char*, Json>("/bound", 0),
+                                     {"/bound", 2},
+                                     {"/bound", tuned.bound * 1.01},
+                                     {"/scale_break", Json::object()},
+                                     {"/scale_break/down/log2", 4},
+                                     {"/scale_break/down/errors/policy", "rel:1"},
+                                     {"/lane", "x"},
+                                     {"/forbid", "nothing"},
+                                     {"/max_rate", 0.9},
+                                     {"/chosen", "zero"},
+                                     {"/chosen", "rel:1"},
+                                     {"/confirmed/policy", "rel:1"},
+                                     {"/confirmed/fixed", 601},
+                                     {"/confirmed/broken", 0},
+                                     {"/confirmed/false_negative", 551},
+                                     {"/zero_confirmed/fixed", 1},
+                                     {"/zero/policy", "rel:1"},
+                                     {"/curves/0/points/0/broken", 3},
+                                     {"/interactions/0/together/false_negative", 4},
+                                     {"/dead", Json::array()},
+                                     {"/dead", {"orientation"}},
+                                     {"/result", "satisfied"},
+                                     {"/result", "too few pairs"},
+                                     {"/result", "not confirmed"},
+                                     {"/result", "banana"}}) {
     Json other = tune;
     other[Json::json_pointer(place)] = value;
     EXPECT_NE(tune_error(other), "") << place;
@@ -256,18 +302,42 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   fs::remove(tune_file);
 
   analysis::Trade trade{"a machine", false, 0, {}, {}};
-  trade.offers = {{"moller_1997/f32/cpu", errors(400, 20, ""), {1, 2, 3}, {2, 3, 4}},
-                  {"exact/f32/cpu", errors(400, 0, ""), {1, 2, 3}, {2, 3, 4}}};
+  trade.offers = {{"moller_1997/f32/cpu", errors(400, 20, "", 20), {1, 2, 3}, {2, 3, 4}},
+                  {"exact/f32/cpu", errors(400, 0, "", 0), {0.5, 1, 1.5}, {2, 3, 4}}};
   trade.curves = {
-      {"moller_1997/f32/cpu", analysis::Extreme::scale, {{-4, errors(400, 20, "")}, {4, errors(400, 20, "")}}}};
+      {"moller_1997/f32/cpu", analysis::Extreme::scale, {{-4, errors(400, 20, "", 20)}, {4, errors(400, 20, "", 20)}}}};
+  analysis::mark_dominated(trade.offers);
   Json traded = {{"pairs", 400}, {"seed", 1}};
   traded.update(trade_json(trade));
   const auto trade_error = [&](const Json& json) {
     return error_of([&] { make_choices(root_ / "forged"); }, trade_file, json);
   };
-  expect_all_refused(traded, {"/pairs", "seed", "log2", "/extremes/0/points/0/pairs"}, trade_error);
-  traded["lanes"][0]["bound"] = 0.01;
-  EXPECT_NE(trade_error(traded), "");
+  expect_all_refused(traded, {"seed", "log2"}, trade_error);
+  const Json row = traded["lanes"][0];
+  for (const auto& [place, value] : {std::pair<const char*, Json>("/lanes/0/bound", 0.01),
+                                     {"/pairs", 401},
+                                     {"/lanes/0/lane", "x"},
+                                     {"/lanes/0/lane", "moller_1997/f32/cpu"},
+                                     {"/lanes/0/dominated", true},
+                                     {"/lanes/1/dominated", false},
+                                     {"/lanes/0/resident", row["in_cache"]},
+                                     {"/lanes/0/registers", 3},
+                                     {"/lanes/0/in_cache/low", 0},
+                                     {"/lanes/2", row},
+                                     {"/extremes/0/lane", "guigue_devillers_2003/f32/cpu"},
+                                     {"/extremes/0/extreme", "banana"},
+                                     {"/extremes/0/points/0/pairs", 399},
+                                     {"/extremes/0/points/0/log2", 4},
+                                     {"/extremes/1", traded["extremes"][0]}}) {
+    Json other = traded;
+    other[Json::json_pointer(place)] = value;
+    EXPECT_NE(trade_error(other), "") << place << ' ' << value;
+  }
+  for (const char* part : {"in_cache", "from_memory"}) {
+    Json other = traded;
+    other["lanes"][1].erase(part);
+    EXPECT_NE(trade_error(other), "") << part;
+  }
   fs::remove_all(root_ / "forged");
 }
 

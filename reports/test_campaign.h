@@ -74,7 +74,7 @@ class CampaignTest : public testing::Test {
 
   // As `graze minimize` does, of the pairs as they were found.
   static void store_kinds(const std::string& name) {
-    fuzz::write_kinds(root_ / name, fuzz::find_kinds(lanes(), root_ / name, summary(name)));
+    fuzz::write_kinds(root_ / name, lanes(), fuzz::find_kinds(lanes(), root_ / name, summary(name)));
   }
 
   static inline fs::path root_;

@@ -127,13 +127,11 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const Tu
 }
 
 Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
-  constexpr std::string_view kResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable"};
-  constexpr std::string_view kForbid[] = {"false_negative", "false_positive", "any"};
   Json json = {{"lane", question.lane},
-               {"forbid", kForbid[static_cast<int>(question.forbid)]},
+               {"forbid", kTuneForbids[static_cast<int>(question.forbid)]},
                {"max_rate", question.max_rate},
                {"chosen", tuned.chosen.empty() ? "zero" : tuned.chosen},
-               {"result", kResults[static_cast<int>(tuned.result)]},
+               {"result", kTuneResults[static_cast<int>(tuned.result)]},
                {"bound", tuned.bound},
                {"confirmed", errors_json(tuned.confirmed)},
                {"zero_confirmed", errors_json(tuned.zero_confirmed)},

@@ -5,11 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/tuning.h"
 
 namespace graze::reports {
+
+// As tune.json says them, in the order of the enumerations.
+inline constexpr std::string_view kTuneForbids[] = {"false_negative", "false_positive", "any"},
+                                  kTuneResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable"};
 
 // What was tuned, and for what.
 struct TuneQuestion {

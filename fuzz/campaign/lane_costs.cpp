@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/campaign/lane_costs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "analysis/trade.h"
+#include "core/text.h"
 
 namespace graze::fuzz {
 namespace {
@@ -46,6 +49,30 @@ Json measure_costs(const Campaign& campaign) {
     }
   }
   return {{"passes", kPassesTimed}, {"lanes", std::move(rows)}};
+}
+
+void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
+                           const std::vector<std::string>& sources, std::uint64_t pairs) {
+  const auto expect_one_of = [](const std::vector<std::string>& known, const std::string& name, const char* what) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw std::runtime_error(fmt::format("expected costs of {} of the campaign, found {}", what, shown(name)));
+  };
+  const std::uint64_t most = std::min(kPairsTimed, pairs);
+  if (costs.at("passes").get_ref<const Json::number_unsigned_t&>() == 0)
+    throw std::runtime_error("expected costs of a pass or more, found none");
+  for (const auto& [lane, rows] : costs.at("lanes").get_ref<const Json::object_t&>()) {
+    expect_one_of(lanes, lane, "lanes");
+    for (const auto& [source, row] : rows.get_ref<const Json::object_t&>()) {
+      expect_one_of(sources, source, "strata");
+      const std::uint64_t timed = row.at("pairs").get_ref<const Json::number_unsigned_t&>();
+      const double low = row.at("low").get<double>(), middle = row.at("middle").get<double>(),
+                   high = row.at("high").get<double>();
+      if (timed == 0 || timed > most || !(0 < low && low <= middle && middle <= high))
+        throw std::runtime_error(
+            fmt::format("expected costs of {} on 1 to {} pairs of {}, quartiles in their order, found {}", lane, most,
+                        source, shown(row.dump())));
+    }
+  }
 }
 
 }  // namespace graze::fuzz

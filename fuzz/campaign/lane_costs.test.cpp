@@ -24,6 +24,33 @@ TEST_F(CampaignFiles, CostsAreOfHostLanesOnTheCampaignsOwnPairs) {
   }
 }
 
+TEST(LaneCosts, ThatCannotBeAreRefused) {
+  const Json whole = {
+      {"passes", 9},
+      {"lanes", {{"a/f32/cpu", {{"uniform", {{"pairs", 200}, {"low", 1.5}, {"middle", 2}, {"high", 3}}}}}}}};
+  const auto check = [](const Json& costs) { expect_possible_costs(costs, {"a/f32/cpu"}, {"uniform"}, 200); };
+  EXPECT_NO_THROW(check(whole));
+  for (const auto& [place, value] : {std::pair<const char*, Json>("middle", -1),
+                                     {"middle", 4},
+                                     {"low", 2.5},
+                                     {"low", 0},
+                                     {"low", "x"},
+                                     {"high", nullptr},
+                                     {"pairs", 0},
+                                     {"pairs", 201},
+                                     {"pairs", 1'000'000},
+                                     {"pairs", -1}}) {
+    Json other = whole;
+    other["lanes"]["a/f32/cpu"]["uniform"][place] = value;
+    EXPECT_ANY_THROW(check(other)) << place << ' ' << value;
+  }
+  Json other = whole;
+  other["passes"] = 0;
+  EXPECT_ANY_THROW(check(other));
+  EXPECT_ANY_THROW(expect_possible_costs(whole, {"b/f32/cpu"}, {"uniform"}, 200));
+  EXPECT_ANY_THROW(expect_possible_costs(whole, {"a/f32/cpu"}, {"thesis"}, 200));
+}
+
 TEST_F(CampaignFiles, CostsStandInTimingsOnceTheCampaignIsComplete) {
   const SelectedLanes lanes = select_lanes({"moller_1997/f32/cpu"});
   const Campaign campaign = campaign_of(lanes, strata::stratum_sources(1, 140'000, {"thesis"}), 1, "parts");

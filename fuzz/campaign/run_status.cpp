@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/fnv1a.h"
+#include "core/text.h"
 #include "fuzz/files.h"
 
 namespace graze::fuzz {
@@ -31,6 +32,35 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
       ways.insert(fmt::format("{:016x}", fnv1a(analysis::coarse_key(*signature))));
   }
   return ways;
+}
+
+// Throws: std::runtime_error that says what was expected; Json::exception for another shape.
+void expect_possible(const Json& status) {
+  const std::string state = status.at("state"), shard = status.at("shard");
+  if (state != "running" && state != "done" && state != "stopped" && state != "failed")
+    throw std::runtime_error("expected running, done, stopped or failed as state, found " + shown(state));
+  if (!parse_shard(shard)) throw std::runtime_error("expected K/N as shard, found " + shown(shard));
+  for (const char* count : {"pairs", "done", "disagreements", "signatures"})
+    status.at(count).get_ref<const Json::number_unsigned_t&>();
+  const std::uint64_t pairs = status["pairs"], done = status["done"], disagreements = status["disagreements"];
+  if (done > pairs || disagreements > done)
+    throw std::runtime_error(fmt::format("expected at most {} pairs done and as many disagreements, found {} and {}",
+                                         pairs, done, disagreements));
+  if (state == "done" && done != pairs)
+    throw std::runtime_error(fmt::format("expected all {} pairs of a run that is done, found {}", pairs, done));
+  const Json& left = status.at("seconds_left");
+  if (status.at("rate").get<double>() < 0 || (!left.is_null() && left.get<double>() < 0))
+    throw std::runtime_error(
+        fmt::format("expected a rate and a time of at least 0, found {} and {}", status["rate"].dump(), left.dump()));
+  status.at("ways").get<std::vector<std::string>>();
+  for (const char* whole : {"process", "updated"}) {
+    if (!status.at(whole).is_number_integer())
+      throw std::runtime_error(fmt::format("expected a whole number as {}, found {}", whole, status[whole].dump()));
+  }
+  status.at("host").get_ref<const std::string&>();
+  for (const char* text : {"why", "hash"}) {
+    if (status.contains(text)) status[text].get_ref<const std::string&>();
+  }
 }
 
 }  // namespace
@@ -98,8 +128,17 @@ void seal(const fs::path& directory) {
 }
 
 Json read_status(const fs::path& directory) {
-  const Json status = Json::parse(read_whole(directory / kFile), nullptr, false);
-  return status.is_object() ? status : Json();
+  const fs::path file = directory / kFile;
+  if (!fs::exists(file)) return nullptr;
+  const Json status = Json::parse(read_whole(file), nullptr, false);
+  try {
+    expect_possible(status);
+  } catch (const Json::exception&) {
+    throw std::runtime_error(file.string() + ": expected what a run says of itself, found something else");
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  }
+  return status;
 }
 
 }  // namespace graze::fuzz

@@ -38,6 +38,7 @@ std::string file_hash(const std::filesystem::path& file);
 void seal(const std::filesystem::path& directory);
 
 // The directory's status; null where there is none.
+// Throws: std::runtime_error that names the file where it is damaged, or counts what cannot be.
 Json read_status(const std::filesystem::path& directory);
 
 }  // namespace graze::fuzz

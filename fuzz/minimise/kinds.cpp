@@ -14,10 +14,8 @@
 
 #include "analysis/explain.h"
 #include "analysis/signature.h"
-#include "core/fnv1a.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
-#include "fuzz/files.h"
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/minimise/simplicity.h"
 #include "subjects/subjects.h"
@@ -199,57 +197,6 @@ Json row_of(const SelectedLanes& under_test, const Kind& kind, const std::vector
           {"worst", worst_pair(under_test, kind, cases, cases[simplest])}};
 }
 
-// Throws: Json::exception where a row of kinds.json lacks something, or it is of another type.
-void expect_kind(const Json& kind) {
-  using Texts = std::map<std::string, std::string>;
-  using Counts = std::map<std::string, std::uint64_t>;
-  for (const char* field : {"key", "subject", "cause", "line", "shape"}) kind.at(field).get_ref<const std::string&>();
-  for (const char* field : {"pairs", "signatures"}) kind.at(field).get<std::uint64_t>();
-  for (const char* field : {"strata", "margins"}) kind.at(field).get<Counts>();
-  kind.at("lanes").get<std::vector<std::string>>();
-  kind.at("settled").get<std::array<std::uint64_t, 2>>();
-  kind.at("places").get<std::vector<std::uint64_t>>();
-  for (const char* which : {"simplest", "worst"}) {
-    for (const char* field : {"case", "pair", "from"}) kind.at(which).at(field).get_ref<const std::string&>();
-  }
-  for (const char* field : {"lanes", "sentences"}) kind.at("simplest").at(field).get<std::vector<std::string>>();
-  kind.at("simplest").at("verdicts").get<Texts>();
-  kind.at("worst").at("margin_ulps").get<double>();
-}
-
-// Throws: std::runtime_error where what the kind counts is not what its signatures in the summary count.
-void expect_counts(const Json& kind, const Json& signatures) {
-  std::uint64_t pairs = 0, by_margin = 0;
-  for (const std::uint64_t place : kind.at("places")) {
-    if (place >= signatures.size()) throw std::runtime_error("");
-    pairs += signatures[place].at("count").get<std::uint64_t>();
-  }
-  for (const Json& margin : kind.at("margins")) by_margin += margin.get<std::uint64_t>();
-  for (const Json& kept : kind.at("strata")) {  // of its pairs, those that are stored
-    if (kept.get<std::uint64_t>() > pairs) throw std::runtime_error("");
-  }
-  const std::array<std::uint64_t, 2> settled = kind.at("settled");
-  if (kind.at("pairs") != pairs || by_margin != pairs || kind.at("signatures") != kind.at("places").size() ||
-      settled[0] > settled[1])
-    throw std::runtime_error("");
-}
-
-std::string hash_of_summary(const std::filesystem::path& directory) {
-  return fmt::format("{:016x}", fnv1a(read_whole(directory / "summary.json")));
-}
-
-// The rows of all signatures.   Throws: Json::exception.
-Json signatures_of(const std::filesystem::path& directory) {
-  return Json::parse(read_whole(directory / "summary.json")).at("signatures");
-}
-
-// Of the case files of all signatures, as they are now.
-std::string hash_of_cases(const std::filesystem::path& directory, const Json& signatures) {
-  std::uint64_t hash = fnv1a("");
-  for (const Json& row : signatures) hash = fnv1a(read_whole(case_file(directory, row)), hash);
-  return fmt::format("{:016x}", hash);
-}
-
 }  // namespace
 
 std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const Pair& pair,
@@ -311,45 +258,6 @@ Json find_kinds(const SelectedLanes& under_test, const std::filesystem::path& di
   });
   if (stop()) return nullptr;
   return Json(std::move(found));
-}
-
-Json read_kinds(const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / "kinds.json";
-  const Json stored = Json::parse(read_whole(file), nullptr, false);
-  if (!stored.is_object() || stored.value("summary", Json()) != hash_of_summary(directory)) return nullptr;
-  try {
-    const Json signatures = signatures_of(directory);
-    if (stored.value("cases", Json()) != hash_of_cases(directory, signatures)) return nullptr;
-    const Json& kinds = stored.at("kinds");
-    if (!kinds.is_array()) throw std::runtime_error("");
-    for (const Json& kind : kinds) {
-      expect_kind(kind);
-      expect_counts(kind, signatures);
-    }
-    return kinds;
-  } catch (const std::exception&) {
-    throw corpus::FormatError(file.string() + ": expected what `graze minimize` writes, found something else");
-  }
-}
-
-Json kinds_of(const std::filesystem::path& directory, const Json& summary, const std::function<bool()>& stop) {
-  Json kinds = read_kinds(directory);
-  if (!kinds.is_null()) return kinds;
-  const auto lanes = summary.at("spec").at("lanes").get<std::vector<std::string>>();
-  subjects::open_recorded(summary.at("spec"));
-  kinds = find_kinds(select_lanes(lanes, Executor::twin), directory, summary, stop);
-  try {
-    if (!kinds.is_null()) write_kinds(directory, kinds);
-  } catch (const std::runtime_error&) {  // in a folder that cannot be written to they are found anew each time
-  }
-  return kinds;
-}
-
-void write_kinds(const std::filesystem::path& directory, const Json& kinds) {
-  const Json stored = {{"summary", hash_of_summary(directory)},
-                       {"cases", hash_of_cases(directory, signatures_of(directory))},
-                       {"kinds", kinds}};
-  write_whole(directory / "kinds.json", stored.dump(1) + "\n");
 }
 
 }  // namespace graze::fuzz

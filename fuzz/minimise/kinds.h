@@ -56,15 +56,19 @@ Json find_kinds(
     const SelectedLanes& under_test, const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
 
-// The kinds stored, whole as find_kinds makes them; null without them, and where the summary or a case has changed
-// since.
-// Throws: FormatError.
+// The kinds in kinds.json; null without the file, and where the summary or a case has changed since. They are compared
+// with the summary and the cases: all but causes, lines, sentences, and verdicts of lanes of other subjects.
+// Throws: FormatError, with the command that writes the file again.
 Json read_kinds(const std::filesystem::path& directory);
 // The same, or those of the campaign's lanes, found now and stored.   Throws: as find_kinds; UsageError for lanes that
 // are none here.
 Json kinds_of(
     const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
-void write_kinds(const std::filesystem::path& directory, const Json& kinds);
+void write_kinds(const std::filesystem::path& directory, const SelectedLanes& under_test, const Json& kinds);
+
+// How many of the summary's signatures belong to no kind: their lanes were not looked at, run on a device alone, or are
+// foreign code that did not fail again.
+std::size_t signatures_without_kind(const Json& summary, const Json& kinds);
 
 }  // namespace graze::fuzz

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -106,7 +107,7 @@ TEST_F(Kinds, AreTheSameWithOneThreadAndAfterStoring) {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_EQ(find_kinds(under_test_, directory_, summary_).dump(), kinds_.dump());
   }
-  write_kinds(directory_, kinds_);
+  write_kinds(directory_, under_test_, kinds_);
   EXPECT_EQ(read_kinds(directory_).dump(), kinds_.dump());
   const std::string text = read_whole(directory_ / "summary.json");
   write_whole(directory_ / "summary.json", text + "\n");
@@ -119,12 +120,96 @@ TEST_F(Kinds, StoredOnesAreWhole) {
   for (const auto& [field, value] : kinds_[0].items()) {
     Json damaged = kinds_;
     damaged[0].erase(field);
-    write_kinds(directory_, damaged);
+    write_kinds(directory_, under_test_, damaged);
     EXPECT_THROW(read_kinds(directory_), corpus::FormatError) << field;
     damaged[0][field] = value.is_object() ? Json(1) : Json::object();
-    write_kinds(directory_, damaged);
+    write_kinds(directory_, under_test_, damaged);
     EXPECT_THROW(read_kinds(directory_), corpus::FormatError) << field;
   }
+  fs::remove(directory_ / "kinds.json");
+}
+
+// Whatever else can be told from the summary and the cases is compared with them.
+TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
+  const fs::path file = directory_ / "kinds.json";
+  write_kinds(directory_, under_test_, kinds_);
+  const Json whole = Json::parse(read_whole(file));
+  const auto error_of = [&](const std::string& text) -> std::string {
+    std::ofstream(file) << text;
+    try {
+      read_kinds(directory_);
+    } catch (const corpus::FormatError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  ASSERT_EQ(error_of(whole.dump()), "");
+  for (const char* text : {"", "{", "[]", "7", R"({"kinds": []})", R"({"summary": 1, "cases": 2, "kinds": []})"}) {
+    const std::string error = error_of(text);
+    EXPECT_TRUE(error.starts_with(file.string() + ": expected what `graze minimize` writes, found ")) << text << error;
+    EXPECT_TRUE(error.ends_with("; remove this file, then: graze minimize " + directory_.string())) << error;
+  }
+  const auto refused = [&](const char* place, const Json& value) {
+    Json other = whole;
+    other[Json::json_pointer(place)] = value;
+    EXPECT_NE(error_of(other.dump()), "") << place << " was taken as " << value;
+  };
+  const auto at = [&](const char* place) -> const Json& { return whole.at(Json::json_pointer(place)); };
+  const std::uint64_t pairs = at("/kinds/0/pairs");
+  const std::string subject = at("/kinds/0/subject");
+  refused("/kinds", Json::array());
+  refused("/kinds", Json(whole["kinds"].begin() + 3, whole["kinds"].end()));
+  refused("/kinds", Json(whole["kinds"].rbegin(), whole["kinds"].rend()));
+  refused("/lanes", Json::array());
+  refused("/lanes", {"moller_1997/f32/cpu", "banana/f32/cpu"});
+  refused("/kinds/0/strata", {{"lattice", 99}});
+  refused("/kinds/0/strata", Json::object());
+  refused("/kinds/0/margins", {{"banana", pairs}});
+  refused("/kinds/0/margins", {{"0", pairs}});
+  refused("/kinds/0/pairs", pairs + 1);
+  refused("/kinds/0/signatures", 1);
+  refused("/kinds/0/places", Json::array());
+  refused("/kinds/0/places", {whole["kinds"].size() * 1000});
+  for (const char* lane : {"x", "", "/", "moller_1997/f32", "exact/f32/cpu"}) refused("/kinds/0/lanes", {lane});
+  refused("/kinds/0/lanes", {subject + "/f32/banana"});
+  refused("/kinds/0/lanes", Json::array());
+  refused("/kinds/0/settled", {0, 0});
+  refused("/kinds/0/settled", {1, 1'000'000'000});
+  refused("/kinds/0/settled", {1, 2, 3});
+  for (const char* part : {"key", "subject", "cause", "line", "shape", "simplest/case", "simplest/pair",
+                           "simplest/from", "worst/case", "worst/pair", "worst/from"})
+    refused(("/kinds/0/" + std::string(part)).c_str(), "banana");
+  refused("/kinds/0/worst/margin_ulps", at("/kinds/0/worst/margin_ulps").get<double>() + 1);
+  refused("/kinds/0/simplest/lanes", {"x"});
+  refused("/kinds/0/simplest/verdicts", Json::object());
+  const std::string lane = at("/kinds/0/simplest/lanes/0");
+  for (const Json verdict :
+       {"banana", "declined", at("/kinds/0/simplest/verdicts")[lane] == "disjoint" ? "intersects" : "disjoint"}) {
+    Json verdicts = at("/kinds/0/simplest/verdicts");
+    verdicts[lane] = verdict;
+    refused("/kinds/0/simplest/verdicts", verdicts);
+  }
+  for (std::size_t i = 0; i < whole["kinds"].size(); ++i) {
+    Json other = whole["kinds"];
+    other.push_back(other[i]);
+    refused("/kinds", other);
+    other = whole["kinds"];
+    other.erase(i);
+    refused("/kinds", other);
+  }
+  fs::remove(file);
+}
+
+// Kinds of some lanes alone, or of none that runs here, do not hide the other failures.
+TEST_F(Kinds, SignaturesWithoutAKindAreCounted) {
+  EXPECT_EQ(signatures_without_kind(summary_, kinds_), 0u);
+  EXPECT_EQ(signatures_without_kind(summary_, Json::array()), summary_["signatures"].size());
+  const SelectedLanes some = select_lanes({"moller_1997/*"}, Executor::twin);
+  const Json kinds = find_kinds(some, directory_, summary_);
+  write_kinds(directory_, some, kinds);
+  EXPECT_EQ(read_kinds(directory_), kinds);
+  EXPECT_GT(signatures_without_kind(summary_, kinds), 0u);
+  EXPECT_LT(signatures_without_kind(summary_, kinds), summary_["signatures"].size());
   fs::remove(directory_ / "kinds.json");
 }
 

@@ -13,6 +13,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "fuzz/campaign/lane_costs.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/campaign/run_status.h"
@@ -104,7 +105,7 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
 // Throws: std::runtime_error where the file is not what the finished run sealed.
 void expect_sealed(const StoreSpec& store) {
   const Json status = read_status(store.directory);
-  if (status.is_null() || status.value("state", "") != "done" || !status.contains("hash")) return;
+  if (status.is_null() || status["state"] != "done" || !status.contains("hash")) return;
   if (const std::string found = file_hash(store.directory / kDatabase); found != status["hash"])
     throw DamagedStore(fmt::format("{}: expected the file that the run left, hash {}, found hash {}; copy it again, or",
                                    (store.directory / kDatabase).string(), printable(status["hash"].get<std::string>()),
@@ -147,20 +148,35 @@ fs::path folder_beside(const fs::path& place) {
   return part;
 }
 
+// Adds the part's runs to those of their machines.   Throws: as expect_possible_costs.
+void add_timings(const StoreSpec& part, const Json& runs, std::size_t parts, std::map<std::string, Json>& by_machine) {
+  for (const Json& of_part : runs) {
+    if (!of_part.is_object() || !of_part.contains("machine")) continue;
+    const std::string machine = of_part["machine"];
+    Json& run = by_machine[machine];
+    if (run.is_null()) run = {{"merged", parts}, {"pairs", 0}, {"seconds", 0.0}, {"machine", machine}};
+    run["pairs"] = run["pairs"].get<std::uint64_t>() + of_part.value("pairs", std::uint64_t{0});
+    run["seconds"] = run["seconds"].get<double>() + of_part.value("seconds", 0.0);
+    if (!of_part.contains("costs")) continue;
+    expect_possible_costs(of_part["costs"], part.spec.at("lanes"), part.spec.at("strata"), part.spec.at("pairs"));
+    run["costs"] = of_part["costs"];
+  }
+}
+
 // Runs of the parts as one for each machine, and what one of them measured of the lanes.
+// Throws: std::runtime_error that names the timings.
 std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   std::map<std::string, Json> by_machine;
   for (const StoreSpec& store : stores) {
-    const Json timings = Json::parse(read_whole(store.directory / "timings.json"), nullptr, false);
+    const fs::path file = store.directory / "timings.json";
+    const Json timings = Json::parse(read_whole(file), nullptr, false);
     if (!timings.is_object() || !timings.contains("runs") || !timings["runs"].is_array()) continue;
-    for (const Json& of_part : timings["runs"]) {
-      if (!of_part.is_object() || !of_part.contains("machine")) continue;
-      const std::string machine = of_part["machine"];
-      Json& run = by_machine[machine];
-      if (run.is_null()) run = {{"merged", stores.size()}, {"pairs", 0}, {"seconds", 0.0}, {"machine", machine}};
-      run["pairs"] = run["pairs"].get<std::uint64_t>() + of_part.value("pairs", std::uint64_t{0});
-      run["seconds"] = run["seconds"].get<double>() + of_part.value("seconds", 0.0);
-      if (of_part.contains("costs")) run["costs"] = of_part["costs"];
+    try {
+      add_timings(store, timings["runs"], stores.size(), by_machine);
+    } catch (const Json::exception&) {
+      throw std::runtime_error(file.string() + ": expected a campaign's timings, found something else");
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(file.string() + ": " + error.what());
     }
   }
   return by_machine;
@@ -257,6 +273,7 @@ Outcome merge(const MergeOptions& options) {
                                          printable(campaign.build["commit"].get<std::string>())));
   const SelectedLanes under_test = recorded_lanes(campaign.spec);
   campaign.under_test = &under_test;
+  const std::map<std::string, Json> timings = timings_of(stores);
   const fs::path place = place_of(options.out), beside = folder_beside(place);
   const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // up to the end, so that no other merge empties it
   campaign.directory = beside / "campaign.part";
@@ -293,7 +310,7 @@ Outcome merge(const MergeOptions& options) {
     if (hunt) join_rounds(stores, held, sums, campaign);
     Outcome outcome = partial ? write_results(campaign, *partial, sums.gaps().empty()) : write_merged(campaign, sums);
     partial.reset();
-    for (const auto& [machine, run] : timings_of(stores)) append_timing(campaign.directory, run, outcome.oracle);
+    for (const auto& [machine, run] : timings) append_timing(campaign.directory, run, outcome.oracle);
     std::error_code error;
     fs::rename(campaign.directory, place, error);  // over an empty folder too
     if (error) throw std::runtime_error(options.out.string() + ": cannot put the campaign there: " + error.message());

@@ -161,6 +161,16 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   write_whole(database("of3-2"), bytes);
   expect(parts, {"expected the file that the run left, hash ", "--shard 2/3", " --discard-damaged"});
   write_whole(database("of3-2"), good);
+  const auto with_other = [&](const fs::path& file, const std::string& text, const std::string& expected) {
+    const std::string before = read_whole(file);
+    std::ofstream(file) << text;
+    expect(parts, {file.string() + ": expected " + expected});
+    std::ofstream(file) << before;
+  };
+  Json timings = Json::parse(read_whole(parts[0] / "timings.json"));
+  timings["runs"].back()["costs"]["passes"] = 0;
+  with_other(parts[0] / "timings.json", timings.dump(), "costs of a pass or more, found none");
+  with_other(parts[1] / "status.json", "{", "what a run says of itself, found something else");
   fs::remove(parts[1] / "status.json");
   SQLite::Database(database("of3-2").string(), SQLite::OPEN_READWRITE).exec("UPDATE batch SET first = first + 1");
   expect(parts, {"expected a whole database, found damage: ", "--shard 2/3", " --discard-damaged"});

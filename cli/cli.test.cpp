@@ -196,7 +196,24 @@ TEST_F(Cli, AFullDiskLosesNothing) {
   ASSERT_EQ(shell(fuzz + "--out disk").status, 0);
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
   EXPECT_EQ(shell("diff disk/summary.json whole/summary.json && diff -r disk/cases whole/cases").status, 0);
-  EXPECT_NE(shell("graze strata > /dev/full").status, 0);
+  EXPECT_EQ(shell("graze strata > /dev/full").status, 1);
+  // Nor need there be room for the error itself.
+  EXPECT_EQ(shell("graze check nofile 2> /dev/full").status, 1);
+  EXPECT_EQ(shell("graze check nofile 2>&-").status, 1);
+  EXPECT_EQ(shell("graze fuzz --pairs -1 2> /dev/full").status, 2);
+  EXPECT_EQ(shell("graze strata > /dev/full 2>&1").status, 1);
+}
+
+// What looks like a rank's folder, and is somebody's, stays.
+TEST_F(Cli, FoldersOfRanksAreKnownByTheirStores) {
+  const std::string fuzz = "graze fuzz --pairs 400 --strata near_edge_edge --lanes moller_1997/f32/cpu --out r";
+  ASSERT_EQ(shell(fuzz).status, 0);
+  ASSERT_EQ(shell("mkdir -p r/rank-7/deep other r/rank-8; echo x > r/rank-7/deep/f; echo x > other/f; "
+                  "ln -s ../other r/rank-9")
+                .status,
+            0);
+  ASSERT_EQ(shell(fuzz).status, 0);
+  EXPECT_EQ(shell("cat r/rank-7/deep/f other/f r/rank-9/f").out, "x\nx\nx\n");
 }
 
 // Killed at twelve places, the same command goes on each time, and the end is the same bytes.

@@ -30,7 +30,8 @@ void expect_verb(const CLI::App& app, const std::string& word) {
 // One line, whatever is in the names and texts that it quotes.
 int fail(std::string what, int status) {
   for (char& c : what) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
-  fmt::print(stderr, "{} {}\n", graze::reports::red(graze::cli::error_screen(), "graze:"), what);
+  // Where even this cannot be written, the exit status says it all.
+  std::fputs(fmt::format("{} {}\n", graze::reports::red(graze::cli::error_screen(), "graze:"), what).c_str(), stderr);
   return status;
 }
 

@@ -76,7 +76,7 @@ int plan(const PlanOptions& options) {
       "rate    {} pairs/s on one {}, {}\n"
       "time    {} on {} {}{}\n"
       "shards  {} of {} each: --shard K/{}\n"
-      "disk    about {} a shard, {} all, {} merged\n",
+      "disk    about {} a shard, {} all, {} merged, and the cases\n",
       reports::grouped(found.pairs), campaign.sources.size(), under_test.lanes.size(),
       reports::grouped(static_cast<std::uint64_t>(found.rate)), worker,
       options.rate > 0 ? "as given" : fmt::format("measured here on {} pairs", reports::grouped(sample.pairs)),

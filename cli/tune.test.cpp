@@ -145,7 +145,7 @@ TEST_F(TradeCommand, SetsErrorsAgainstCosts) {
       "graze trade --strata 'near_*,extreme_scale' --pairs 3000 --lanes "
       "'*/f32/cpu,exact/f32/cpu,moller_1997/f32/cpu/paper' --out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("\nScale, as right as"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("\nScaled by 2^k"), std::string::npos) << ran.out;
   const auto json = json_of(shell.folder / "t/trade.json");
   ASSERT_EQ(json["lanes"].size(), 7u);
   double before = 0;

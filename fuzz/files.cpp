@@ -2,6 +2,7 @@
 #include "fuzz/files.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,9 +11,9 @@
 #include <cstdio>
 #include <cstring>
 #include <iostream>
-#include <memory>
 #include <stdexcept>
 
+#include "core/stop.h"
 #include "fuzz/own_files.h"
 
 namespace graze::fuzz {
@@ -33,11 +34,20 @@ struct Handle {
   }
 };
 
+// Until a pipe is ready. The one at its other end may never come, so this looks at the request to stop.
+void wait_for(int handle, short events) {
+  pollfd ready{handle, events, 0};
+  while (poll(&ready, 1, 100) <= 0) {
+    if (stop_requested) throw Stopped();
+  }
+}
+
 // Whether all of it was written; errno says why not.
 bool write_all(int handle, const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t written = write(handle, text.data() + at, text.size() - at);
-    if (written < 0 && errno == EINTR) continue;
+    if (written < 0 && errno == EAGAIN) wait_for(handle, POLLOUT);
+    if (written < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (written < 0) return false;
     at += static_cast<std::size_t>(written);
   }
@@ -53,11 +63,22 @@ bool is_standard_output(const struct stat& file) {
   return fstat(STDOUT_FILENO, &output) == 0 && same_file(output, file);
 }
 
+// Opened for writing. A named pipe opens once somebody reads it.
+int opened(const fs::path& file, bool pipe) {
+  if (!pipe) return open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  while (true) {
+    const int number = open(file.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+    if (number >= 0 || errno != ENXIO) return number;
+    if (stop_requested) throw Stopped();
+    poll(nullptr, 0, 100);
+  }
+}
+
 // Into a device or a pipe, which cannot be replaced by a file.
-void write_into(const fs::path& file, bool standard_output, const std::string& text) {
+void write_into(const fs::path& file, bool pipe, bool standard_output, const std::string& text) {
   std::cout.flush();
   std::fflush(stdout);
-  const Handle own{standard_output ? dup(STDOUT_FILENO) : open(file.c_str(), O_WRONLY | O_CLOEXEC)};
+  const Handle own{standard_output ? dup(STDOUT_FILENO) : opened(file, pipe)};
   if (own.number < 0 || !write_all(own.number, text)) fail(file, "to write it", std::strerror(errno));
 }
 
@@ -102,14 +123,24 @@ fs::path behind_links(fs::path file) {
 }
 
 std::string read_whole(const fs::path& file) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> in(std::fopen(file.c_str(), "rbe"), &std::fclose);
-  if (!in && (errno == ENOENT || errno == ENOTDIR)) return {};
+  const Handle in{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
+  if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR)) return {};
+  struct stat state {};
+  if (in.number < 0 || fstat(in.number, &state) != 0) fail(file, "to read it", std::strerror(errno));
   std::string text;
   char bytes[65536];
-  for (std::size_t count = 1; in && count > 0; text.append(bytes, count))
-    count = std::fread(bytes, 1, sizeof bytes, in.get());
-  if (!in || std::ferror(in.get())) fail(file, "to read it", std::strerror(errno));
-  return text;
+  while (true) {
+    if (S_ISFIFO(state.st_mode)) wait_for(in.number, POLLIN);
+    const ssize_t count = read(in.number, bytes, sizeof bytes);
+    if (count == 0) return text;
+    if (count > 0) {
+      text.append(bytes, static_cast<std::size_t>(count));
+    } else if (errno == EAGAIN) {
+      wait_for(in.number, POLLIN);
+    } else if (errno != EINTR) {
+      fail(file, "to read it", std::strerror(errno));
+    }
+  }
 }
 
 void write_whole(const fs::path& file, const std::string& text) {
@@ -119,7 +150,8 @@ void write_whole(const fs::path& file, const std::string& text) {
   if (exists && S_ISDIR(there.st_mode)) fail(file, "a file", "a folder");
   // The standard output may be a file too: replaced, it would lose what else is printed.
   const bool standard_output = exists && is_standard_output(there);
-  if (exists && (standard_output || !S_ISREG(there.st_mode))) return write_into(file, standard_output, text);
+  if (exists && (standard_output || !S_ISREG(there.st_mode)))
+    return write_into(file, S_ISFIFO(there.st_mode), standard_output, text);
   expect_own(file, text);
   replace(behind_links(file), file, text, exists ? there.st_mode & 07777 : 0);
 }

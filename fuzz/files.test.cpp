@@ -2,6 +2,7 @@
 // What stands where a file is written: links, devices, pipes and folders stay what they are.
 #include "fuzz/files.h"
 #include "core/error.h"
+#include "core/stop.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/own_files.h"
 
@@ -78,6 +79,19 @@ TEST_F(Files, PipesStayPipes) {
   EXPECT_EQ(reader.get(), "through");
   EXPECT_TRUE(fs::is_fifo(pipe));
   EXPECT_EQ(count(), 1u);
+}
+
+// Nobody may ever come to the other end: the request to stop ends the wait.
+TEST_F(Files, WaitingForAPipeStops) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  stop_requested = true;
+  EXPECT_THROW(read_whole(pipe), Stopped);
+  EXPECT_THROW(write_whole(pipe, "text"), Stopped);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  EXPECT_THROW(write_whole(pipe, std::string(1 << 20, 'x')), Stopped);  // more than the pipe holds
+  close(reader);
+  stop_requested = false;
 }
 
 // A node of our own for the null device, made in our folder; only root may make one.

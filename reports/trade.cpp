@@ -119,13 +119,18 @@ std::vector<std::string> extreme_sentences(const std::vector<ExtremeCurve>& curv
       lanes.push_back(fmt::format("{} {}{}{}", curve.lane, down ? fmt::format("down to 2^{}", *down) : "",
                                   up && down ? " and " : "", up ? fmt::format("up to 2^{}", *up) : ""));
     }
-    const std::string_view what = extreme == Extreme::scale      ? "Scale, as right as at the scene's own"
-                                  : extreme == Extreme::offset   ? "Offset in sizes, as right as at the first"
-                                  : extreme == Extreme::flatness ? "Flattened by 2^k, as right as before"
-                                                                 : "Made needles by 2^k, as right as before";
-    result.push_back(lanes.empty()
-                         ? fmt::format("{}: all lanes, as far as was measured.", what)
-                         : fmt::format("{}: {}; the others as far as was measured.", what, fmt::join(lanes, "; ")));
+    const std::string_view what = extreme == Extreme::scale      ? "Scaled by 2^k"
+                                  : extreme == Extreme::offset   ? "Offset by 2^k sizes"
+                                  : extreme == Extreme::flatness ? "Flattened by 2^k"
+                                                                 : "Made needles by 2^k";
+    result.push_back(
+        lanes.empty()
+            ? fmt::format("{}: no lane's share of errors more than doubles and exceeds 0.1 %, as far as was measured.",
+                          what)
+            : fmt::format(
+                  "{}, before the share of errors more than doubles and exceeds 0.1 %: {}; the others as far as was "
+                  "measured.",
+                  what, fmt::join(lanes, "; ")));
   }
   return result;
 }

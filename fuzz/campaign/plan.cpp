@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kSample = 2048, kSampleOfDevice = std::uint64_t{1} << 22;
 constexpr double kShardSeconds = 3600;    // a shard that dies loses nothing; an hour is what schedulers like
 constexpr double kRowPairs = 16777216;    // of the CPU engine; see store.cpp
-constexpr double kDatabaseBytes = 16384;  // without rows
+constexpr double kDatabaseBytes = 65536;  // without rows, and with the small files beside it
 
 // Bytes of a row of so many pairs. A new signature is met more and more seldom, so this is rather too much.
 double row_bytes(const Sample& sample, std::size_t source, double pairs) {

@@ -5,6 +5,7 @@
 
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/own_files.h"
 
 namespace graze::fuzz {
 
@@ -17,7 +18,9 @@ std::vector<fs::path> rank_directories(const fs::path& campaign) {
   if (!fs::is_directory(campaign)) return found;
   for (const auto& entry : fs::directory_iterator(campaign)) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with("rank-") && parse_whole(name.substr(5)) && entry.is_directory()) found.push_back(entry.path());
+    if (name.starts_with("rank-") && parse_whole(name.substr(5)) && !entry.is_symlink() && entry.is_directory() &&
+        may_fill(entry.path(), {kDatabase}))
+      found.push_back(entry.path());
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -45,12 +48,12 @@ void take_in_ranks(const Campaign& campaign, Store& store) {
       }
       append_timing(campaign.directory, {{"pairs", pairs}, {"seconds", 0}, {"machine", machine_name()}});
     }
-    fs::remove_all(directory);
+    remove_store(directory);
   }
 }
 
 void remove_ranks(const fs::path& campaign) {
-  for (const fs::path& directory : rank_directories(campaign)) fs::remove_all(directory);
+  for (const fs::path& directory : rank_directories(campaign)) remove_store(directory);
 }
 
 }  // namespace graze::fuzz

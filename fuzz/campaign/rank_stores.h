@@ -10,7 +10,7 @@ namespace graze::fuzz {
 
 std::filesystem::path rank_directory(const std::filesystem::path& campaign, int rank);
 
-// All there are, in order of their names.
+// All there are, in order of their names: folders with a store, or with nothing. Others are not Graze's.
 std::vector<std::filesystem::path> rank_directories(const std::filesystem::path& campaign);
 
 // Commits what a run that was killed has left, and removes it.

@@ -45,7 +45,7 @@ void fetch_from_directory(const Campaign& campaign) {
 
 void bring_to_directory(const Campaign& campaign) {
   copy_whole(campaign.scratch / kDatabase, campaign.directory / kDatabase);
-  fs::remove_all(campaign.scratch);
+  remove_store(campaign.scratch);
 }
 
 }  // namespace graze::fuzz

@@ -386,4 +386,13 @@ std::optional<Salvage> discard_damaged(const StoreSpec& spec) {
   }
 }
 
+void remove_store(const fs::path& directory) {
+  for (const char* behind : {"", "-wal", "-shm", "-journal", ".part"})
+    fs::remove(directory / (std::string(kDatabase) + behind));
+  for (const char* file : {"status.json", "timings.json"}) fs::remove(directory / file);
+  std::error_code not_empty;
+  fs::remove(directory / "cases", not_empty);
+  fs::remove(directory, not_empty);
+}
+
 }  // namespace graze::fuzz

@@ -69,6 +69,9 @@ std::string first_difference(const Json& expected, const Json& found);
 // Throws: std::runtime_error, as StoreFile; DamagedStore.
 StoreSpec recorded_store(const std::filesystem::path& directory);
 
+// Removes a store, and what its run wrote beside it; the folder as well, unless something else is in it.
+void remove_store(const std::filesystem::path& directory);
+
 // Calls visit for every row of such a store, once its sources are known; writes nothing, and needs no lock where the
 // last run ended well.   Throws: as recorded_store.
 void for_each_row(const StoreSpec& spec, const std::function<void(const PairRange&, const StoredCounts&)>& visit);

@@ -54,6 +54,15 @@ class Processes {
   std::map<pid_t, int> running_;
 };
 
+// Whether it is a round's unread result, or a part of a file, that a killed process left: "000012.result".
+bool is_left_over(const fs::directory_entry& file) {
+  const std::string name = file.path().filename().string();
+  const std::size_t digits = name.find_first_not_of("0123456789");
+  const std::string rest = digits >= 6 && digits != name.npos ? name.substr(digits) : "";
+  return file.symlink_status().type() == fs::file_type::regular &&
+         (rest == ".result" || rest == ".result.graze.part" || rest == ".round.graze.part");
+}
+
 class Hunter {
  public:
   Hunter(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report)
@@ -73,8 +82,8 @@ class Hunter {
                        ": holds a hunt that was merged of shards, which is done; choose another --out");
     checksum_ = hunt_checksum(hunt.campaign.spec, hunt.campaign.build);
     fs::create_directories(folder());
-    for (const auto& file : fs::directory_iterator(folder())) {  // of processes that were killed
-      if (file.path().extension() != ".round") fs::remove(file.path());
+    for (const auto& file : fs::directory_iterator(folder())) {
+      if (is_left_over(file)) fs::remove(file.path());
     }
   }
 

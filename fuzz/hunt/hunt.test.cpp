@@ -220,6 +220,22 @@ TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
   EXPECT_EQ(read_whole(root_ / "whole/hunt/000000.round"), read_whole(root_ / "one/hunt/000000.round"));
 }
 
+TEST_F(HuntFiles, RemovesNothingThatItDidNotWrite) {
+  run("tidy", 2, 1);
+  const std::filesystem::path folder = root_ / "tidy/hunt", others = root_ / "others";
+  write_whole(folder / "notes.txt", "kept");
+  write_whole(folder / "000004.result.txt", "kept");
+  write_whole(folder / "000004.result", "of a killed process");
+  std::filesystem::create_directories(others);
+  write_whole(others / "a", "kept");
+  std::filesystem::create_directory_symlink(others, folder / "000005.result");
+  run("tidy", 2);
+  EXPECT_EQ(read_whole(folder / "notes.txt"), "kept");
+  EXPECT_EQ(read_whole(folder / "000004.result.txt"), "kept");
+  EXPECT_FALSE(std::filesystem::exists(folder / "000004.result"));
+  EXPECT_EQ(read_whole(others / "a"), "kept");
+}
+
 TEST_F(HuntFiles, KeepsPairsThatFailAsTheirSignatureSays) {
   const Json summary = run("kept", 2);
   ASSERT_GT(summary["signatures"].size(), 20u);

@@ -316,6 +316,58 @@ def forged_summaries(turn):
         shutil.rmtree(campaign)
 
 
+def forged_kinds(turn):
+    """Kinds, costs and a status that another changes: refused by the file's name."""
+    reported = turn.bench.reference("tiny", minimised=True, reported=True)
+
+    def without_kinds(value):
+        value["kinds"] = []
+
+    def without_some(value):
+        del value["kinds"][:3]
+
+    def other_part(part, other):
+        def edit(value):
+            value["kinds"][0][part] = other
+
+        return edit
+
+    def other_cost(part, other):
+        def edit(value):
+            lanes = next(run["costs"]["lanes"] for run in value["runs"] if "costs" in run)
+            next(iter(next(iter(lanes.values())).values()))[part] = other
+
+        return edit
+
+    def other_status(part, other):
+        def edit(value):
+            value[part] = other
+
+        return edit
+
+    kinds = [without_kinds, without_some]
+    kinds += [other_part(*pair) for pair in [("strata", {"lattice": 99}), ("margins", {"banana": 1}), ("lanes", ["x"])]]
+    edits = [("kinds.json", edit, ["kinds", "report"]) for edit in kinds]
+    edits += [("timings.json", other_cost(*pair), ["report"]) for pair in [("middle", -1), ("pairs", 1000000)]]
+    edits += [
+        ("status.json", other_status(*pair), ["status"])
+        for pair in [("disagreements", 1 << 64), ("state", "unknown"), ("done", 1), ("shard", None)]
+    ]
+    for attempt, (name, edit, readers) in enumerate(turn.random.sample(edits, 4)):
+        campaign = turn.folder / f"campaign-{attempt}"
+        shutil.copytree(reported, campaign)
+        value = json.loads((campaign / name).read_text())
+        edit(value)
+        text = json.dumps(value, indent=1) + "\n"
+        (campaign / name).write_text(text[: len(text) // 2] if turn.random.random() < 0.2 and name != "timings.json" else text)
+        reader = turn.random.choice(readers)
+        ran = turn.run(reader, campaign)
+        if not turn.is_refused(ran, name):
+            raise Violation(f"expected {reader} to refuse a forged {name}, found status {ran.status}: {ran.out[-200:]!r}")
+        turn.count("refused")
+        shutil.rmtree(campaign)
+
+
 def forged_cases(turn):
     """A file of cases that is another signature's, lacks a pair or has another one: refused by its name, and brought back
     by the command that the message has."""

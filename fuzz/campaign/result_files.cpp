@@ -15,6 +15,7 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/recorded.h"
+#include "fuzz/own_files.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {

@@ -193,6 +193,19 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   expect_done("graze status killed --stalled 3000");
 }
 
+// A shard's folder is no larger than planned, nor is the merged campaign's without its cases.
+TEST_F(Shards, ThePlannedDiskIsEnough) {
+  const std::string of = " --pairs 20000 --strata 'near_*' --lanes '*/f32/cpu' ";
+  const Json plan = Json::parse(shell("graze plan --json --cores 2" + of).out);
+  ASSERT_EQ(plan["shards"], 2);
+  for (const char* k : {"1", "2"}) {
+    ASSERT_EQ(shell("graze fuzz" + of + "--shard " + k + "/2 --out s-" + k).status, 0);
+    EXPECT_LE(std::stod(shell(std::string("cat s-") + k + "/* | wc -c").out), plan["shard_bytes"].get<double>());
+  }
+  ASSERT_EQ(shell("graze merge s-1 s-2 --out all").status, 0);
+  EXPECT_LE(std::stod(shell("cat all/campaign.sqlite | wc -c").out), plan["merged_bytes"].get<double>());
+}
+
 // mpirun refuses to run as root unless it is told to.
 TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   const Ran found = shell("command -v mpirun && test -e '" + std::string(GRAZE_BINARY_DIR) + "/libgraze_mpi.so'");

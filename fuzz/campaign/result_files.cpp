@@ -15,6 +15,7 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/recorded.h"
+#include "fuzz/own_files.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -205,7 +206,7 @@ bool is_minimised_from(const std::string& text, const std::string& fresh) {
   return text.size() >= fresh.size() && text.starts_with(fresh.substr(0, head)) && text.ends_with(fresh.substr(head));
 }
 
-bool may_hold_campaign(const fs::path& folder) {
+bool may_hold_campaign(const std::filesystem::path& folder) {
   const auto begins = [&](const char* name, const char* with) { return read_whole(folder / name).starts_with(with); };
   return may_fill(folder, {kDatabase}) || begins("summary.json", "{\n \"spec\"") ||
          begins("status.json", "{\n \"state\"") || !rank_directories(folder).empty();

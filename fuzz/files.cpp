@@ -8,11 +8,11 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 
+#include "core/cannot.h"
 #include "fuzz/own_files.h"
 
 namespace graze::fuzz {
@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPart = ".graze.part";  // behind the name of a file that is being written
 
-[[noreturn]] void fail(const fs::path& file, const char* expected, const std::string& found) {
-  throw std::runtime_error(file.string() + ": expected " + expected + ", found: " + found);
+[[noreturn]] void fail(const char* act, const fs::path& file, int error) {
+  throw std::runtime_error(cannot(act, file, error));
 }
 
 struct Handle {
@@ -58,7 +58,7 @@ void write_into(const fs::path& file, bool standard_output, const std::string& t
   std::cout.flush();
   std::fflush(stdout);
   const Handle own{standard_output ? dup(STDOUT_FILENO) : open(file.c_str(), O_WRONLY | O_CLOEXEC)};
-  if (own.number < 0 || !write_all(own.number, text)) fail(file, "to write it", std::strerror(errno));
+  if (own.number < 0 || !write_all(own.number, text)) fail("write", file, errno);
 }
 
 // Opens the file for this writer alone: another one waits until this one has moved it to its place.
@@ -81,8 +81,9 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
   const std::string beside = file.string() + kPart;
   Handle part{opened_alone(beside)};
   struct stat state {};
-  if (part.number < 0) fail(asked, "to write it", std::strerror(errno));
-  if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode)) fail(beside, "no such file", "a device or a pipe");
+  if (part.number < 0) fail("write", asked, errno);
+  if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode))
+    throw std::runtime_error(cannot("write", asked, beside + " is in the way and is no file; remove it"));
   bool done =
       ftruncate(part.number, 0) == 0 && write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
   // A full disk may show only on closing; the file itself stays open, and so locked, until it is in its place.
@@ -90,7 +91,7 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
   const int error = errno;
   unlink(beside.c_str());
-  fail(asked, "to write it", std::strerror(error));
+  fail("write", asked, error);
 }
 
 }  // namespace
@@ -108,15 +109,15 @@ std::string read_whole(const fs::path& file) {
   char bytes[65536];
   for (std::size_t count = 1; in && count > 0; text.append(bytes, count))
     count = std::fread(bytes, 1, sizeof bytes, in.get());
-  if (!in || std::ferror(in.get())) fail(file, "to read it", std::strerror(errno));
+  if (!in || std::ferror(in.get())) fail("read", file, errno);
   return text;
 }
 
 void write_whole(const fs::path& file, const std::string& text) {
   struct stat there {};
   const bool exists = stat(file.c_str(), &there) == 0;
-  if (!exists && errno != ENOENT) fail(file, "to write it", std::strerror(errno));
-  if (exists && S_ISDIR(there.st_mode)) fail(file, "a file", "a folder");
+  if (!exists && errno != ENOENT) fail("write", file, errno);
+  if (exists && S_ISDIR(there.st_mode)) fail("write", file, EISDIR);
   // The standard output may be a file too: replaced, it would lose what else is printed.
   const bool standard_output = exists && is_standard_output(there);
   if (exists && (standard_output || !S_ISREG(there.st_mode))) return write_into(file, standard_output, text);
@@ -126,14 +127,15 @@ void write_whole(const fs::path& file, const std::string& text) {
 
 FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
     : handle_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (handle_ < 0) fail(folder, "a folder", std::strerror(errno));
+  if (handle_ < 0) fail("open the folder", folder, errno);
   if (flock(handle_, when_taken == WhenTaken::wait     ? LOCK_EX
                      : when_taken == WhenTaken::refuse ? LOCK_EX | LOCK_NB
                                                        : LOCK_SH | LOCK_NB) == 0)
     return;
   const int error = errno;
   close(handle_);
-  fail(folder, "to be alone", error == EWOULDBLOCK ? "another process at work in it" : std::strerror(error));
+  if (error != EWOULDBLOCK) fail("lock", folder, error);
+  throw std::runtime_error(cannot("use", folder, "another process is using it; wait until it has ended"));
 }
 
 FolderLock::~FolderLock() { close(handle_); }

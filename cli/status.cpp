@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <ctime>
 #include <iostream>
 #include <set>
@@ -12,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "cli/results.h"
+#include "core/cannot.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/run_status.h"
 #include "reports/terminal.h"
@@ -63,9 +65,10 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
     for (const char* count : {"pairs", "done", "disagreements", "signatures"})
       row[count] = status.at(count).get<std::uint64_t>();
     if (row["done"] > row["pairs"] || row["disagreements"] > row["done"])
-      throw std::runtime_error(fmt::format(
-          "{}: expected at most {} pairs done and as many disagreements, found {} and {}",
-          (directory / "status.json").string(), row["pairs"].dump(), row["done"].dump(), row["disagreements"].dump()));
+      throw std::runtime_error(
+          cannot("use", directory / "status.json",
+                 fmt::format("its counts contradict each other: {} pairs, {} done, {} disagreements",
+                             row["pairs"].dump(), row["done"].dump(), row["disagreements"].dump())));
     std::size_t fresh = 0;
     for (const std::string way : status.value("ways", Json::array())) fresh += known.insert(way).second;
     row["new"] = fresh;
@@ -77,8 +80,8 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
     if (status.contains("why")) row["why"] = status["why"].get<std::string>();
     return row;
   } catch (const Json::exception&) {
-    throw std::runtime_error((directory / "status.json").string() +
-                             ": expected what a run says of itself, found something else");
+    throw std::runtime_error(
+        cannot("use", directory / "status.json", "it is damaged; the next status of the run replaces it"));
   }
 }
 
@@ -184,15 +187,21 @@ int status_command(const StatusOptions& options) {
 
 void add_status(CLI::App& app, int& status) {
   CLI::App* command =
-      app.add_subcommand("status", "How far shards are; exit status 1 where one failed, was killed or stalls");
+      app.add_subcommand("status", "Show how far shards are; exit with 1 if one has failed, was killed or has stalled");
   command->footer("Example: graze status shard-*");
   auto options = std::make_shared<StatusOptions>();
-  command->add_option("directories", options->directories, "Directories of shards or campaigns, of one by mpirun also")
-      ->required();
-  command->add_option("--stalled", options->stalled, "Seconds without a word after which a run counts as stalled")
+  command
+      ->add_option("directories", options->directories,
+                   "Directories of shards or campaigns, also of those that mpirun started")
+      ->required()
+      ->option_text("DIR");
+  command
+      ->add_option("--stalled", options->stalled,
+                   "Time without a sign of life after which a run counts as stalled, in seconds")
       ->transform(whole_number(1, 1'000'000'000))
-      ->capture_default_str();
-  command->add_option("--prometheus", options->prometheus, "Write the same to this file in Prometheus' text format")
+      ->capture_default_str()
+      ->option_text("SECONDS");
+  command->add_option("--prometheus", options->prometheus, "File for the same figures in Prometheus' text format")
       ->check(not_empty())
       ->option_text("FILE");
   command->add_flag("--json", options->json, "Print one JSON object");

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <fstream>
 #include <set>
 
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "fuzz/files.h"
 
@@ -81,12 +83,13 @@ void RunStatus::end(const std::string& state, const std::string& why) {
 }
 
 std::string file_hash(const fs::path& file) {
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
   std::uint64_t hash = fnv1a("");
   std::string bytes(1 << 20, '\0');
   while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), in.gcount() > 0)
     hash = fnv1a({bytes.data(), static_cast<std::size_t>(in.gcount())}, hash);
-  if (in.bad() || !in.eof()) throw std::runtime_error(file.string() + ": expected to read it, found an error");
+  if (in.bad() || !in.eof()) throw std::runtime_error(cannot("read", file, errno != 0 ? errno : EIO));
   return fmt::format("{:016x}", hash);
 }
 

@@ -14,6 +14,7 @@
 
 #include "analysis/explain.h"
 #include "analysis/signature.h"
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
@@ -116,8 +117,7 @@ double ulps_of(const corpus::Entry& entry) {
 Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case& c) {
   std::vector<const Lane*> apart;
   const std::vector<Verdict> verdicts = decide(under_test, c.shown().pair, apart);
-  if (!apart.empty())
-    throw std::runtime_error(apart.front()->id + ": expected one verdict of device and twin, found two");
+  if (!apart.empty()) throw std::runtime_error(apart.front()->id + ": the verdicts of device and twin differ");
   Json result = {{"case", c.file},         {"pair", pair_text(c.shown().pair)}, {"from", corpus::origin_of(c.shown())},
                  {"lanes", Json::array()}, {"verdicts", Json::object()},        {"sentences", Json::array()}};
   std::vector<const Lane*> own, others;
@@ -328,7 +328,7 @@ Json read_kinds(const std::filesystem::path& directory) {
     }
     return kinds;
   } catch (const std::exception&) {
-    throw corpus::FormatError(file.string() + ": expected what `graze minimize` writes, found something else");
+    throw corpus::FormatError(cannot("use", file, "it is damaged; run `graze minimize` again to write it"));
   }
 }
 

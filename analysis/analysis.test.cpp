@@ -173,7 +173,7 @@ TEST(Tally, StoredCountsGoToTheirBucketAndLane) {
   sum.add(tally);
   EXPECT_EQ(sum.pairs(bucket), 10u);
   EXPECT_EQ(sum.intersects(bucket), 4u);
-  EXPECT_EQ(fields(sum.lane(1, bucket)), (std::vector<std::uint64_t>{2, 2, 8, 16, 32, 64, 128, 2}));
+  EXPECT_EQ(fields(sum.lane(1, bucket)), (std::vector<std::uint64_t>{2, 2, 8, 32, 64, 128, 2, 16}));
   EXPECT_EQ(sum.pairs(make_bucket(-1, 2)), 0u);
 }
 

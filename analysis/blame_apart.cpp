@@ -16,6 +16,7 @@
 #include <stdexcept>
 
 #include "analysis/blame.h"
+#include "core/cannot.h"
 
 namespace graze::analysis {
 namespace {
@@ -78,15 +79,19 @@ Blame blame_apart(const Lane& lane, const Pair& pair, double seconds) {
   static std::mutex starting;  // no other child may hold on to the end that is written to
   std::unique_lock lock(starting);
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("expected a pipe for another process, found none");
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw std::runtime_error(
+        cannot("explain", lane.id, "no pipe to another process: " + std::generic_category().message(errno)));
   const pid_t parent = getpid(), child = fork();
+  const int error = errno;  // of fork, if it failed
   if (child == 0) search(ends[1], lane, pair, parent);
   close(ends[1]);
   lock.unlock();
   std::string tail;
   const bool in_time = child > 0 && read_to_end(ends[0], seconds, tail);
   close(ends[0]);
-  if (child < 0) throw std::runtime_error("expected another process, found no room for one");
+  if (child < 0)
+    throw std::runtime_error(cannot("explain", lane.id, "no other process: " + std::generic_category().message(error)));
   if (!in_time) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

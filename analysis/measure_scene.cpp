@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "core/cannot.h"
 #include "oracle/truth.h"
 
 namespace graze::analysis {
@@ -54,7 +55,7 @@ void measure_sizes(const std::vector<Triangle>& triangles, const std::string& na
     edges.push_back(longest);
     aspect.push_back(std::clamp(longest * longest / area2, 1.1547005, 1e12));  // one that rounding leaves without area
   }
-  if (edges.empty()) throw std::runtime_error(name + ": expected a triangle that is not degenerate, found none");
+  if (edges.empty()) throw std::runtime_error(cannot("measure", name, "all triangles are degenerate"));
   scene.edges = quantiles_of(std::move(edges));
   scene.aspect = quantiles_of(std::move(aspect));
 }
@@ -153,8 +154,7 @@ SceneSample sample_of(const std::vector<Pair>& pairs) {
 }
 
 strata::SceneFile measure_scene(const SceneSample& sample, const std::string& name) {
-  if (sample.pairs == 0)
-    throw std::runtime_error(name + ": expected at least one pair of triangles whose boxes overlap, found none");
+  if (sample.pairs == 0) throw std::runtime_error(cannot("measure", name, "no two triangles have boxes that overlap"));
   strata::SceneFile scene;
   for (std::size_t axis = 0; axis < 3; ++axis) scene.extent[axis] = {INFINITY, -INFINITY};
   for (const Triangle& t : sample.triangles) {
@@ -168,7 +168,8 @@ strata::SceneFile measure_scene(const SceneSample& sample, const std::string& na
   }
   for (auto& [low, high] : scene.extent) {
     if (std::max(-low, high) > 0x1p126)
-      throw std::runtime_error(fmt::format("{}: expected coordinates within 2^126, found {} to {}", name, low, high));
+      throw std::runtime_error(
+          cannot("measure", name, fmt::format("coordinates go from {} to {}, beyond 2^126", low, high)));
     low = as_written(low);
     high = as_written(high);
   }

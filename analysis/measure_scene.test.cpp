@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/message_testing.h"
 #include "oracle/truth.h"
 #include "strata/scene/envelope.h"
 
@@ -156,10 +157,10 @@ TEST(MeasureScene, WhatCannotBeMeasuredIsSaid) {
     }
     return "none";
   };
-  EXPECT_EQ(error({}), "x.pairs: expected at least one pair of triangles whose boxes overlap, found none");
-  EXPECT_EQ(error({Pair{}}), "x.pairs: expected a triangle that is not degenerate, found none");
+  EXPECT_TRUE(names(error({}), {"x.pairs", "boxes"}));
+  EXPECT_TRUE(names(error({Pair{}}), {"x.pairs", "degenerate"}));
   Pair large{{{0, 0, 0}, {0x1p127f, 0, 0}, {0, 0x1p127f, 0}}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
-  EXPECT_EQ(error({large}).substr(0, 49), "x.pairs: expected coordinates within 2^126, found");
+  EXPECT_TRUE(names(error({large}), {"x.pairs", "2^126"}));
 }
 
 // The share of pairs with a margin below 16 ulps of the largest coordinate.

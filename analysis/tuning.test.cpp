@@ -54,9 +54,9 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   EXPECT_GT(no_negative.zero_confirmed.false_negative, 100u);
   EXPECT_LE(no_negative.bound, 1e-3);
   EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // not simply all of them
-  spec.forbid = Forbid::false_hit;
-  const Tuned no_false_hit = tune(spec);
-  EXPECT_EQ(no_false_hit.result, TuneResult::not_satisfiable);  // a tolerance takes none away
+  spec.forbid = Forbid::false_positive;
+  const Tuned no_positive = tune(spec);
+  EXPECT_EQ(no_positive.result, TuneResult::not_satisfiable);  // a tolerance takes none away
   spec.forbid = Forbid::any;
   spec.max_rate = 1e-6;
   const Tuned neither = tune(spec);  // no epsilon can

@@ -167,24 +167,27 @@ void bench(const Options& options, int& status) {
 
 void add_bench(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "bench", "Time the thesis's question on this machine: one triangle against many, by all executors");
+      "bench", "Time one triangle against arrays of triangles, on all cores and GPUs of this machine");
+  command->footer("Example: graze bench --triangles 1e4,1e5");
   auto options = std::make_shared<Options>();
-  command->add_option("--triangles", options->sizes, "Sizes of the arrays of the thesis's random triangles")
+  command->add_option("--triangles", options->sizes, "Sizes of the arrays of random triangles")
       ->delimiter(',')
       ->transform(whole_number(1, std::uint64_t{1} << 34))
-      ->capture_default_str()
+      ->default_str("1e4,1e5,1e6,1e7")
       ->option_text("N,…");
-  command->add_option("--mesh", options->mesh, "The triangles of a mesh too, against its middle one")
+  command->add_option("--mesh", options->mesh, "Mesh whose triangles are tested too, against its middle triangle")
       ->check(not_empty())
       ->option_text("FILE");
-  command->add_option("--lanes", options->lanes, "Lanes beside the exact one: of the host on cores, CUDA lanes on GPUs")
+  command
+      ->add_option("--lanes", options->lanes,
+                   "Lanes to time besides the exact one: host lanes on cores, CUDA lanes on GPUs")
       ->delimiter(',')
-      ->capture_default_str()
+      ->default_str("six common ones")
       ->option_text("LANE,…");
-  command->add_option("--plot", options->plot, "A picture of it: exact verdicts a second against the size of the array")
+  command->add_option("--plot", options->plot, "Picture to write: exact verdicts per second against array size")
       ->check(not_empty())
       ->option_text("FILE.svg");
-  command->add_flag("--json", options->json, "One JSON object");
+  command->add_flag("--json", options->json, "Print one JSON object");
   command->callback([options, command, &status] {
     if (command->count("--lanes") > 0) say_left_out(without_device(options->lanes));
     bench(*options, status);

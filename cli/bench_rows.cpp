@@ -173,9 +173,9 @@ class Measuring {
     for (const BenchRow& other : bench_.rows) {
       if (other.group != row.group || other.lane != "exact" || other.mode != "all") continue;
       if (other.hits * row.triangles == row.hits * other.triangles) continue;
-      throw std::runtime_error(fmt::format("{} {}: expected {} hits among {}, as by {}, found {} among {}",
-                                           row.executor, row.data, other.hits, other.triangles, other.executor,
-                                           row.hits, row.triangles));
+      throw std::runtime_error(fmt::format("{} and {} disagree: {} hits among {} triangles, {} among {}",
+                                           other.executor, row.executor, other.hits, other.triangles, row.hits,
+                                           row.triangles));
     }
   }
 

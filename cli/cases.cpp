@@ -51,13 +51,13 @@ std::vector<corpus::Entry> read_cases(const std::string& name) {
   const bool three_numbers = first != std::string::npos && first != last && name.find('/') == std::string::npos;
   if (!three_numbers || std::filesystem::exists(name, ignored)) {
     std::vector<corpus::Entry> entries = corpus::read_pairs(name);
-    if (entries.empty()) throw std::runtime_error(name + ": expected at least one case, found none");
+    if (entries.empty()) throw std::runtime_error("there is no pair in " + name);
     return entries;
   }
   const std::string stratum = name.substr(0, first), seed = name.substr(first + 1, last - first - 1),
                     index = name.substr(last + 1);
   const std::vector<strata::PairSource> sources = strata::stratum_sources(number(seed, name), 1, {stratum});
-  if (sources.size() != 1) throw UsageError(name + ": expected one stratum, found a pattern of several");
+  if (sources.size() != 1) throw UsageError(name + " matches several strata; name one");
   return {{sources.front().pair(number(index, name)), {{"stratum", stratum}, {"seed", seed}, {"index", index}}, 0}};
 }
 
@@ -72,17 +72,14 @@ std::string written_note(const corpus::Entry& entry, const oracle::Truth& stored
 }
 
 CLI::Option* add_exact_input(CLI::App& command, bool& exact_input) {
-  return command.add_flag("--exact-input", exact_input,
-                          "Refuse numbers that float32 does not hold as they are written");
+  return command.add_flag("--exact-input", exact_input, "Refuse numbers that float32 cannot represent exactly");
 }
 
 void expect_exact_input(const std::string& name, const corpus::Entry& entry) {
   if (entry.written.empty()) return;
   if (const std::optional<std::size_t> i = oracle::first_rounded(entry.written, entry.pair)) {
-    throw UsageError(
-        fmt::format("{}:{}: expected numbers that float32 holds as written (--exact-input), found {} as "
-                    "number {}",
-                    name, entry.line, shown(entry.written[*i]), *i + 1));
+    throw UsageError(fmt::format("{}:{}: float32 cannot represent number {}, {}, exactly, as --exact-input demands",
+                                 name, entry.line, *i + 1, shown(entry.written[*i])));
   }
 }
 

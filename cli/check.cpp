@@ -71,21 +71,21 @@ void check(const CheckOptions& options) {
       std::cout.flush();
     }
   }
-  if (number_of_pair == 0) throw std::runtime_error(name_of_input + ": expected at least one pair, found none");
+  if (number_of_pair == 0) throw std::runtime_error("there is no pair in " + name_of_input);
   if (wrong && !from_stdin && !options.json) fmt::print("Next: graze explain {}\n", shell_word(options.file));
 }
 
 }  // namespace
 
 void add_check(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("check", "Print the truth and every lane's verdict of the pairs in a file");
+  CLI::App* command = app.add_subcommand("check", "Print the truth and every lane's verdict for the pairs of a file");
   command->footer("Example: echo '0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1' | graze check -");
   auto options = std::make_shared<CheckOptions>();
-  command->add_option("file", options->file, "File of pairs (18 numbers a line), or - for standard input")->required();
+  command->add_option("file", options->file, "File of pairs, 18 numbers per line; - is standard input")->required();
   add_lane_options(*command, options->lanes);
   add_exact_input(*command, options->exact_input);
-  command->add_flag("--json", options->json, "One JSON object for each pair, on a line of its own");
-  command->add_flag("--truth-only", options->truth_only, "Run just the oracle")->excludes("--lanes");
+  command->add_flag("--json", options->json, "Print one JSON object per line, one line per pair");
+  command->add_flag("--truth-only", options->truth_only, "Print the truth alone; run no lane")->excludes("--lanes");
   command->callback([options] { check(*options); });
 }
 

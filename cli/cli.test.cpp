@@ -54,11 +54,11 @@ TEST_F(Cli, BadPairsGetOneLineAndKeepWhatCameBefore) {
   EXPECT_EQ(ran.status, 1);
   EXPECT_EQ(ran.err, "graze: pairs:2: expected 18 numbers, found 3\n");
   EXPECT_EQ(Json::parse(ran.out)["pair"], 0);
-  expect_error("graze check missing.pairs", 1, "missing.pairs: expected");
-  expect_error(": > empty; graze check empty", 1, "empty: expected at least one pair");
-  expect_error("echo 'graze-pairs 2' > future; graze check future", 1, "future:1: expected");
-  expect_error("head -c 300 /dev/zero > zeros; graze check zeros", 1, "zeros:1: expected");
-  expect_error("graze repro missing.pairs", 1, "missing.pairs: expected");
+  expect_error("graze check missing.pairs", 1, {"missing.pairs", "No such file or directory"});
+  expect_error(": > empty; graze check empty", 1, {"no pair", "empty"});
+  expect_error("echo 'graze-pairs 2' > future; graze check future", 1, {"future:1"});
+  expect_error("head -c 300 /dev/zero > zeros; graze check zeros", 1, {"zeros:1"});
+  expect_error("graze repro missing.pairs", 1, {"missing.pairs", "No such file or directory"});
 }
 
 // What was not compared is no zero.
@@ -86,10 +86,10 @@ TEST_F(Cli, NothingComparedIsSaidEverywhere) {
 }
 
 TEST_F(Cli, MeshesThatDoNotParseAreNamed) {
-  expect_error("echo 'not a mesh' > bad.off; graze fuzz --mesh bad.off", 1, "bad.off:1: expected OFF");
-  expect_error("graze fuzz --mesh missing.off", 1, "missing.off: expected");
+  expect_error("echo 'not a mesh' > bad.off; graze fuzz --mesh bad.off", 1, {"bad.off:1"});
+  expect_error("graze fuzz --mesh missing.off", 1, {"missing.off", "No such file or directory"});
   expect_error("printf 'OFF\\n3 1 0\\n0 0 0\\n1 0 0\\n0 1 nan\\n3 0 1 2\\n' > nan.off; graze fuzz --mesh nan.off", 1,
-               "nan.off:5: expected a coordinate that is finite");
+               {"nan.off:5"});
 }
 
 TEST_F(Cli, AMeshIsACampaign) {
@@ -105,13 +105,14 @@ TEST_F(Cli, AMeshIsACampaign) {
 
 TEST_F(Cli, DatabasesOfOthersAreRefused) {
   expect_error("mkdir a; head -c 8192 /dev/urandom > a/campaign.sqlite; graze fuzz --pairs 1000 --out a", 1,
-               "a/campaign.sqlite: expected a Graze campaign database");
+               {"a/campaign.sqlite"});
   expect_error(
       "graze fuzz --pairs 20000 --out b > /dev/null; truncate -s 40000 b/campaign.sqlite; graze fuzz --pairs 20000 "
       "--out b",
-      1, "b/campaign.sqlite: expected");
-  expect_error("touch file; graze fuzz --pairs 1000 --out file", 1, "file: expected a directory");
-  expect_error("rm b/campaign.sqlite; touch b/summary.json; graze fuzz --pairs 1000 --out b", 2, "not their database");
+      1, {"b/campaign.sqlite"});
+  expect_error("touch file; graze fuzz --pairs 1000 --out file", 1, {"file", "Not a directory"});
+  expect_error("rm b/campaign.sqlite; touch b/summary.json; graze fuzz --pairs 1000 --out b", 2,
+               {"b", "database", "--out"});
 }
 
 // One byte of a batch, and the end of the file: one line, and the way on keeps the rest.
@@ -124,12 +125,11 @@ TEST_F(Cli, DamageIsOneLineAndWhatChecksIsKept) {
   std::string changed = database;
   changed[place] = 'S';
   std::ofstream(shell.folder / "c/campaign.sqlite", std::ios::binary) << changed;
-  expect_error(fuzz + "--out c", 1, "and its checksum do not agree; --discard-damaged keeps the batches that check");
+  expect_error(fuzz + "--out c", 1, {"c/campaign.sqlite", "checksum", "--discard-damaged"});
   const Ran kept = shell(fuzz + "--discard-damaged --out c");
   EXPECT_EQ(kept.status, 0) << kept.err;
-  EXPECT_EQ(
-      kept.err,
-      "graze: kept 16,000 pairs in 4 batches that check; the damaged database is now c/campaign.sqlite.damaged\n");
+  EXPECT_TRUE(names(kept.err.substr(0, kept.err.find_last_not_of('\n') + 1),
+                    {"16,000 pairs", "4 batches", "c/campaign.sqlite.damaged"}));
   expect_done("diff c/summary.json whole/summary.json && diff -r c/cases whole/cases");
   EXPECT_EQ(contents(shell.folder / "c/campaign.sqlite.damaged"), changed);
   const Ran again = shell(fuzz + "--discard-damaged --out c");
@@ -141,7 +141,7 @@ TEST_F(Cli, DamageIsOneLineAndWhatChecksIsKept) {
 TEST_F(Cli, TwoAtOnceInOneFolderAreRefused) {
   const std::string fuzz = "graze fuzz --pairs 2000 --strata degenerate --lanes '*/f32/cpu' --out c";
   ASSERT_EQ(shell(fuzz).status, 0);
-  const std::string line = "c: expected to be alone, found: another process at work in it";
+  const std::vector<std::string> line = {"c", "another process"};
   expect_error("flock c " + fuzz, 1, line);
   expect_error("flock c graze minimize c", 1, line);
   expect_done("graze minimize c > /dev/null && " + fuzz);
@@ -156,33 +156,31 @@ TEST_F(Cli, OutGoesIntoWhatStandsThere) {
   const Ran piped = shell(minimize + "/dev/stdout | cat");
   EXPECT_TRUE(piped.out.ends_with(contents(shell.folder / "plain"))) << piped.out;
   if (shell("mknod null c 1 3 && : > null").status == 0) expect_done(minimize + "null && test -c null");
-  expect_error(minimize + "far", 1, "far: expected a file, found: a folder");
+  expect_error(minimize + "far", 1, {"far", "Is a directory"});
   expect_error("ulimit -f 4; graze map lattice:1:1 --lanes 'moller_*/cpu' --out full.png > /dev/null", 1,
-               "full.png: expected to write it, found: File too large");
+               {"full.png", "File too large"});
   expect_done("test ! -e full.png && test ! -e full.png.part");
   for (const char* verb : {"fuzz --out ''", "minimize exact_contact:1:1 --out ''", "map lattice:1:1 --out ''",
                            "report --from r.json --out ''", "prove-twin --out ''", "corpus list --corpus ''"})
-    expect_error("graze " + std::string(verb), 2, "expected a name, found ''");
+    expect_error("graze " + std::string(verb), 2, {"''"});
 }
 
 // Never a library's message.
 TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
   expect_error("mkdir a; echo '{\"signatures\":[{}],\"spec\":{\"lanes\":5}}' > a/summary.json; graze minimize a", 1,
-               "a/summary.json: expected a campaign's summary, found something else");
+               {"a/summary.json"});
   expect_error("cp -r a e; sed -i 's/5/[\"exact\\/f32\\/cpu\"]/' e/summary.json; graze minimize e", 1,
-               "e/summary.json: expected a campaign's summary, found something else");
-  expect_error("mkdir -p b/summary.json; graze report b", 1,
-               "b/summary.json: expected to read it, found: Is a directory");
-  expect_error("echo '{\"format\":1,\"rates\":5}' > r.json; graze report --from r.json --out r.html", 1,
-               "r.json: expected a report of `graze report`, found something else");
-  expect_error("graze minimize none", 1, "none: expected");
-  expect_error("graze report none", 1, "none: expected");
+               {"e/summary.json"});
+  expect_error("mkdir -p b/summary.json; graze report b", 1, {"b/summary.json", "Is a directory"});
+  expect_error("echo '{\"format\":1,\"rates\":5}' > r.json; graze report --from r.json --out r.html", 1, {"r.json"});
+  expect_error("graze minimize none", 1, {"none", "No such file or directory"});
+  expect_error("graze report none", 1, {"none", "summary.json"});
   expect_error("mkdir c; echo '{\"spec\": {\"lanes\": 1}, \"signatures\": [{}]}' > c/summary.json; graze corpus add c",
-               1, "c/summary.json: expected a campaign's summary, found something else");
+               1, {"c/summary.json"});
   expect_error(
       "printf 'OFF\\n6 2 0\\n0 0 0\\n4 0 0\\n0 4 0\\n1 1 -1\\n1 1 1\\n2 1 1\\n3 0 1 2\\n3 3 4 5\\n' > $'\\xff.off'; "
       "graze fuzz --mesh $'\\xff.off'",
-      2, "--mesh: expected a file name in UTF-8");
+      2, {"--mesh", "UTF-8"});
   expect_done(
       "echo '0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1' > "
       "$'\\xff.pairs' && graze "
@@ -192,11 +190,12 @@ TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
 // A full disk, played by a limit on the size of files: one line, and the same command goes on once there is room.
 TEST_F(Cli, AFullDiskLosesNothing) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 150000 --strata 'near_*' ";
-  expect_error("ulimit -f 400; " + fuzz + "--out disk", 1, "disk");
+  expect_error("ulimit -f 400; " + fuzz + "--out disk", 1, {"disk", "File too large"});
   ASSERT_EQ(shell(fuzz + "--out disk").status, 0);
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
   EXPECT_EQ(shell("diff disk/summary.json whole/summary.json && diff -r disk/cases whole/cases").status, 0);
-  EXPECT_EQ(shell("graze strata > /dev/full").status, 1);
+  for (const char* verb : {"strata", "lanes", "lanes --json"})
+    expect_error(std::string("graze ") + verb + " > /dev/full", 1, {"standard output", "No space left on device"});
   // Nor need there be room for the error itself.
   EXPECT_EQ(shell("graze check nofile 2> /dev/full").status, 1);
   EXPECT_EQ(shell("graze check nofile 2>&-").status, 1);
@@ -261,9 +260,7 @@ TEST_F(Cli, AHuntIsACampaignForOtherVerbs) {
   const std::string hunt = "graze hunt --runs 600 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out h";
   const Ran first = shell(hunt);
   if (first.status != 0) {
-    EXPECT_EQ(first.out,
-              "graze: hunt: expected a build with clang's libFuzzer, found none; install libclang-rt-14-dev and build "
-              "again\n");
+    expect_error(hunt, 1, {"hunt", "libFuzzer", "libclang-rt-14-dev"});
     GTEST_SKIP() << "this build has no libFuzzer";
   }
   EXPECT_NE(first.out.find("600 pairs: some lane is wrong on"), std::string::npos) << first.out;
@@ -297,18 +294,14 @@ TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
 
 // `graze_campaign` is what scripts/campaign builds, linked by this build.
 TEST_F(Cli, WhatACampaignsBuildLeavesOutSaysSo) {
-  const auto verbs = [&](const std::string& program) {
-    return shell(program + " --help | sed '1,/Subcommands/d' | awk '{print $1}'").out;
-  };
-  EXPECT_EQ(verbs("graze_campaign"), verbs("graze"));
+  EXPECT_EQ(verbs_in_help(shell, "graze_campaign"), verbs_in_help(shell, "graze"));
   const Ran left_out = shell("graze_campaign --help | awk '/Not in this build/ {print $1}'");
   EXPECT_NE(left_out.out.find("tune\n"), std::string::npos);
-  std::istringstream names(left_out.out);
-  for (std::string verb; names >> verb;) {
+  std::istringstream verbs(left_out.out);
+  for (std::string verb; verbs >> verb;) {
     const Ran ran = shell("graze_campaign " + verb + " some thing --or other");
     EXPECT_EQ(ran.status, 1);
-    EXPECT_EQ(ran.err, "graze: graze " + verb +
-                           ": not in this build, which scripts/campaign made; scripts/setup builds everything\n");
+    EXPECT_TRUE(names(ran.err.substr(0, ran.err.find_last_not_of('\n') + 1), {"graze " + verb, "scripts/setup"}));
   }
   for (const std::string program : {"graze", "graze_campaign"}) {
     const std::string out = " by_" + program;

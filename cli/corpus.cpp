@@ -10,6 +10,7 @@
 
 #include "cli/cases.h"
 #include "cli/commands.h"
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/files.h"
@@ -35,11 +36,11 @@ struct CorpusOptions {
 
 fuzz::RegressionCorpus read_corpus(const CorpusOptions& options) {
   if (!std::filesystem::exists(options.file())) {
-    throw std::runtime_error(
-        fmt::format("{}: expected a regression corpus (see `graze corpus add`), found none", options.file().string()));
+    throw std::runtime_error(cannot("read", options.file(), "there is no such corpus; `graze corpus add` makes one"));
   }
   fuzz::RegressionCorpus corpus = fuzz::read_regressions(options.file());
-  if (corpus.empty()) throw std::runtime_error(options.file().string() + ": expected at least one case, found none");
+  if (corpus.empty())
+    throw std::runtime_error("there is no case in " + options.file().string() + "; `graze corpus add` adds one");
   return corpus;
 }
 
@@ -78,9 +79,9 @@ void add(const CorpusOptions& options) {
                   ? fuzz::found_in_campaign(name, options.signatures, options.most)
                   : fuzz::found_in_cases(cases_to_add(name, options.exact_input), build, under_test.lanes, by_bench));
     if (found.back().second.empty())
-      throw std::runtime_error(name + (std::filesystem::is_directory(name)
-                                           ? "/summary.json: expected a failure to add, found none"
-                                           : ": expected a case on which some lane is wrong, found none"));
+      throw std::runtime_error(
+          "there is nothing to add in " + name +
+          (std::filesystem::is_directory(name) ? ": no signature matches" : ": no lane is wrong on any of its cases"));
   }
 
   std::error_code failed;
@@ -135,37 +136,44 @@ int verify(const CorpusOptions& options) {
     return 0;
   }
   if (result.compared == 0)
-    throw std::runtime_error(options.file().string() + ": expected a record of these lanes to compare, found none");
+    throw std::runtime_error(options.file().string() +
+                             " has no verdict of these lanes to compare with; choose other --lanes");
   if (!result.changes.empty()) print_next(options, "verify --update");
   return result.changes.empty() ? 0 : 1;
 }
 
 CLI::App* add_verb(CLI::App& corpus, const char* name, const char* what, const char* example,
                    const std::shared_ptr<CorpusOptions>& options) {
-  CLI::App* command = corpus.add_subcommand(name, what);
+  CLI::App* command = corpus.add_subcommand(name, what)->group("Verbs");
   command->footer(example);
-  command->add_option("--corpus", options->folder, "Folder of the corpus")->check(not_empty())->capture_default_str();
+  command->add_option("--corpus", options->folder, "Folder of the corpus")
+      ->check(not_empty())
+      ->capture_default_str()
+      ->option_text("DIR");
   return command;
 }
 
 }  // namespace
 
 void add_corpus(CLI::App& app, int& status) {
-  CLI::App* corpus = app.add_subcommand("corpus", "The regression corpus: add failures to it, list and replay them");
+  CLI::App* corpus = app.add_subcommand("corpus", "Add failures to a regression corpus, list them, and replay them");
   corpus->require_subcommand(1);
-  corpus->footer("Example: graze corpus --help");
+  corpus->footer("Example: graze corpus list");
   auto options = std::make_shared<CorpusOptions>();
 
   CLI::App* command = add_verb(
-      *corpus, "add", "Keep failures: one case for each signature, how often and where it was first and last seen",
+      *corpus, "add", "Add failures to the corpus, one case per signature, with where it was first and last seen",
       "Example: graze corpus add near_edge_edge:1:42 --corpus regression", options);
   command
-      ->add_option("cases", options->names,
-                   "Directories of campaigns (the first case of each signature), files of cases, or STRATUM:SEED:INDEX")
+      ->add_option(
+          "cases", options->names,
+          "Campaign directories (the first case of each signature is added), files of cases, or STRATUM:SEED:INDEX")
       ->required();
-  add_globs(*command, "--signatures", options->signatures, "Of a campaign only signatures that match a pattern");
-  command->add_option("--top", options->most, "Of a campaign only the commonest signatures, so many an algorithm")
-      ->transform(whole_number(1, 1'000'000'000));
+  add_globs(*command, "--signatures", options->signatures, "Patterns of the campaign's signatures to add");
+  command->add_option("--top", options->most, "Number of the commonest signatures to add per algorithm")
+      ->transform(whole_number(1, 1'000'000'000))
+      ->option_text("N")
+      ->default_str("all");
   add_exact_input(*command, options->exact_input);
   add_lane_options(*command, options->lanes);
   command->callback([options] { add(*options); });
@@ -174,11 +182,12 @@ void add_corpus(CLI::App& app, int& status) {
                      "Example: graze corpus list --corpus regression", options);
   command->callback([options] { list(*options); });
 
-  command =
-      add_verb(*corpus, "verify", "Replay every case on every lane; exit 1 when a verdict is not the recorded one",
-               "Example: graze corpus verify --corpus regression", options);
+  command = add_verb(*corpus, "verify",
+                     "Replay every case on every lane; exit with 1 if a verdict differs from the recorded one",
+                     "Example: graze corpus verify --corpus regression", options);
   add_lane_options(*command, options->lanes);
-  command->add_flag("--update", options->update, "Record what was found: verdicts, and failing, fixed or flaky");
+  command->add_flag("--update", options->update,
+                    "Record this run in the corpus: verdicts, and whether a case is failing, fixed or flaky");
   command->callback([options, &status] { status = verify(*options); });
 }
 

@@ -100,23 +100,21 @@ TEST_F(CorpusVerb, AChangedVerdictFailsUntilItIsRecorded) {
 }
 
 TEST_F(CorpusVerb, BadInputGetsOneLine) {
-  expect_error("graze corpus", 2, "subcommand");
-  expect_error("graze corpus verify", 1, "corpus/regression/cases.pairs: expected a regression corpus");
-  expect_error("graze corpus list --corpus none", 1, "none/cases.pairs: expected a regression corpus");
+  expect_error("graze corpus", 2, {"subcommand"});
+  expect_error("graze corpus verify", 1, {"corpus/regression/cases.pairs", "corpus add"});
+  expect_error("graze corpus list --corpus none", 1, {"none/cases.pairs", "corpus add"});
   expect_error("mkdir e; echo 'graze-pairs 1' > e/cases.pairs; graze corpus verify --corpus e", 1,
-               "e/cases.pairs: expected at least one case, found none");
-  expect_error("mkdir d; graze corpus add d", 1, "d: expected a campaign's directory with summary.json, found none");
-  expect_error("echo '{\"complete\":true}' > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
-  expect_error("echo '{\"complete\":false}' > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
-  expect_error("head -c 99 /dev/urandom > d/summary.json; graze corpus add d", 1, "d/summary.json: expected");
-  expect_error("graze corpus add missing.pairs", 1, "missing.pairs: expected");
-  expect_error("graze corpus add nowhere:1:2", 2, "found 'nowhere'");
-  expect_error("echo '0 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > easy; graze corpus add easy", 1,
-               "easy: expected a case on which some lane is wrong, found none");
-  expect_error("echo 'nan 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > nan; graze corpus add nan", 1, "nan: expected a case");
-  expect_error("sed -i 's/$/ | signature=x/' easy; graze corpus add easy", 1,
-               "easy: expected a pair with the signature x");
-  expect_error("touch file; graze corpus add near_edge_edge:1:42 --corpus file", 1, "file: expected a folder");
+               {"no case", "e/cases.pairs"});
+  expect_error("mkdir d; graze corpus add d", 1, {"d", "summary.json"});
+  expect_error("echo '{\"complete\":true}' > d/summary.json; graze corpus add d", 1, {"d/summary.json"});
+  expect_error("echo '{\"complete\":false}' > d/summary.json; graze corpus add d", 1, {"d/summary.json"});
+  expect_error("head -c 99 /dev/urandom > d/summary.json; graze corpus add d", 1, {"d/summary.json"});
+  expect_error("graze corpus add missing.pairs", 1, {"missing.pairs", "No such file or directory"});
+  expect_error("graze corpus add nowhere:1:2", 2, {"'nowhere'"});
+  expect_error("echo '0 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > easy; graze corpus add easy", 1, {"easy"});
+  expect_error("echo 'nan 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > nan; graze corpus add nan", 1, {"nan"});
+  expect_error("sed -i 's/$/ | signature=x/' easy; graze corpus add easy", 1, {"easy", "signature", "x"});
+  expect_error("touch file; graze corpus add near_edge_edge:1:42 --corpus file", 1, {"file", "Not a directory"});
   EXPECT_NE(shell("test -e corpus/regression/cases.pairs").status, 0);
 }
 
@@ -124,7 +122,7 @@ TEST_F(CorpusVerb, NoRecordOfTheLanesThatRunIsAFailure) {
   shell("echo '0 0 0 4 0 0 2 0 0  1 0 0 1 0 4 1 0 2' > p; graze corpus add p --corpus r --lanes 'moller_*'");
   EXPECT_EQ(shell("graze corpus verify --corpus r").status, 0);
   expect_error("graze corpus verify --corpus r --lanes separating_axes/f32/cpu > /dev/null", 1,
-               "expected a record of these lanes");
+               {"r/cases.pairs", "--lanes"});
 }
 
 // Killed before each of its writes: the file is the old or the new one, and the same command ends with the same bytes.
@@ -154,7 +152,7 @@ TEST_F(CorpusVerb, TwoAtOnceLoseNothing) {
 TEST_F(CorpusVerb, AFullDiskLosesNothing) {
   campaign("c", "--pairs 10000");
   ASSERT_EQ(shell("graze corpus add c --top 2 --corpus r; cp r/cases.pairs old").status, 0);
-  expect_error("ulimit -f 40; graze corpus add c --corpus r", 1, "r/cases.pairs");
+  expect_error("ulimit -f 40; graze corpus add c --corpus r", 1, {"r/cases.pairs"});
   EXPECT_EQ(shell("cmp r/cases.pairs old").status, 0);
 }
 

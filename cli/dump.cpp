@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "cli/commands.h"
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
@@ -60,13 +61,13 @@ Dumped of_campaign(const DumpOptions& options) {
   try {
     const Json& spec = summary.at("spec");
     if (spec.contains("hunt"))
-      throw std::runtime_error(
-          options.name + ": expected pairs that can be drawn again, found those of a hunt; it kept some in cases/");
+      throw std::runtime_error(cannot(
+          "dump", options.name, "the pairs of a hunt cannot be drawn again; those that it kept are in its cases/"));
     dumped.seed = spec.at("seed");
     if (spec.contains("scene")) dumped.scene = spec["scene"].at("name");
     dumped.sources = fuzz::recorded_sources(spec);
   } catch (const Json::exception&) {
-    throw std::runtime_error(options.name + "/summary.json: expected a campaign's summary, found something else");
+    throw std::runtime_error(cannot("use", options.name + "/summary.json", "it is not the summary of a campaign"));
   }
   if (options.pairs > 0) {  // the same share of every source, the first ones taking the rest
     for (std::size_t s = 0; s < dumped.sources.size(); ++s) {
@@ -129,20 +130,26 @@ void dump(const DumpOptions& options) {
 
 void add_dump(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
-      "dump", "Write the pairs of a stratum or a campaign with truth, contact and margin, for other programs");
+      "dump", "Write the pairs of a stratum or a campaign, with truth, contact and margin, for other programs");
   command->footer("Example: graze dump near_edge_edge:1 --pairs 100 --lanes '*/f32/cpu'");
   auto options = std::make_shared<DumpOptions>();
-  command->add_option("source", options->name, "A stratum, STRATUM:SEED (seed 1 without it), or a campaign's directory")
+  command
+      ->add_option("source", options->name, "Stratum, STRATUM:SEED (the seed is 1 by default), or campaign directory")
       ->required();
   static_assert(static_cast<int>(Format::pairs) == 0 && static_cast<int>(Format::csv) == 1);
   command
       ->add_option("--format", options->format,
-                   "csv: a table with a header line; pairs: what `graze check` reads, bit for bit")
+                   "Format of the output. csv: a table with a header line; pairs: the format that `graze check` reads")
       ->transform(one_of({"pairs", "csv"}, Chosen::place))
-      ->option_text("pairs|csv");
-  command->add_option("--pairs", options->pairs, "How many, in all; by default 1000 of a stratum, all of a campaign")
-      ->transform(whole_number(1, kMostWhole));
+      ->option_text("pairs|csv")
+      ->default_str("csv");
+  command
+      ->add_option("--pairs", options->pairs,
+                   "Number of pairs in total; by default 1000 of a stratum, all of a campaign")
+      ->transform(whole_number(1, kMostWhole))
+      ->option_text("N");
   add_lane_options(*command, options->lanes);
+  command->get_option("--lanes")->description("Patterns of the lanes whose verdicts are added")->default_str("none");
   command->callback([options] { dump(*options); });
 }
 

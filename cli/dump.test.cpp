@@ -128,20 +128,18 @@ TEST_F(Dump, AMeshesPairsAreReadAgain) {
   expect_done(
       "graze fuzz --mesh strip.off --lanes exact/f32/cpu --out m > /dev/null && graze dump m | grep -q "
       "'^mesh,1,0,'");
-  expect_error("echo '# other' >> strip.off; graze dump m", 1,
-               "strip.off: expected the mesh of the campaign, found another");
+  expect_error("echo '# other' >> strip.off; graze dump m", 1, {"strip.off", "changed"});
 }
 
 TEST_F(Dump, BadInputGetsOneLine) {
-  expect_error("graze dump", 2, "source");
-  expect_error("graze dump latice", 2, "found 'latice'; did you mean 'lattice'?");
-  expect_error("graze dump lattice:x", 2, "found 'x' as the seed");
-  expect_error("graze dump lattice --format xml", 2, "expected pairs or csv, found 'xml'");
-  expect_error("mkdir e; graze dump e", 1, "e: expected a campaign's directory");
-  expect_error("graze dump no/where", 1, "no/where: expected a campaign's directory");
-  expect_error("mkdir o; echo '{\"spec\": {}}' > o/summary.json; graze dump o", 1,
-               "o/summary.json: expected a campaign's");
-  expect_error("graze dump lattice --lanes nothing", 2, "found 'nothing'");
+  expect_error("graze dump", 2, {"source"});
+  expect_error("graze dump latice", 2, {"'latice'", "'lattice'"});
+  expect_error("graze dump lattice:x", 2, {"STRATUM:SEED", "'x'"});
+  expect_error("graze dump lattice --format xml", 2, {"pairs", "csv", "'xml'"});
+  expect_error("mkdir e; graze dump e", 1, {"e", "summary.json"});
+  expect_error("graze dump no/where", 1, {"no/where", "summary.json"});
+  expect_error("mkdir o; echo '{\"spec\": {}}' > o/summary.json; graze dump o", 1, {"o/summary.json"});
+  expect_error("graze dump lattice --lanes nothing", 2, {"'nothing'"});
 }
 
 }  // namespace

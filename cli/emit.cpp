@@ -52,10 +52,10 @@ std::string emit(reports::SnippetKind kind, const std::string& name, const std::
       return reports::snippet(kind, {found.name, found.pair, found.truth, under_test.lanes[*wrong], verdicts[*wrong]});
     if (!fallback) fallback = found;
   }
-  if (!fallback) throw std::runtime_error(name + ": expected a case with finite coordinates, found none");
+  if (!fallback) throw std::runtime_error("there is no pair with finite coordinates in " + name);
   if (!reports::shows_lanes(kind)) return reports::snippet(kind, *fallback);
-  throw std::runtime_error(fmt::format("{}: expected a case on which one of the {} lanes is wrong, found none", name,
-                                       kind == reports::SnippetKind::cuda ? "CUDA" : "CPU"));
+  throw std::runtime_error(fmt::format("none of the {} lanes is wrong on any pair of {}; choose other --lanes",
+                                       kind == reports::SnippetKind::cuda ? "CUDA" : "CPU", name));
 }
 
 }  // namespace graze::cli

@@ -71,16 +71,15 @@ class ExitStatus : public CommandTest {
 };
 
 TEST_F(ExitStatus, OfEveryVerb) {
-  const std::string help = shell("graze --help | sed '1,/^Subcommands/d' | awk '{print $1}'").out;
-  std::istringstream listed(help);
-  std::set<std::string> names, tested;
-  for (std::string name; listed >> name;) names.insert(name);
+  const std::vector<std::string> listed = verbs_in_help(shell, "graze");
+  const std::set<std::string> names(listed.begin(), listed.end());
+  std::set<std::string> tested;
   for (const Verb& verb : verbs()) {
     tested.insert(verb.name);
     const std::string graze = std::string("graze ") + verb.name + ' ';
-    expect_error(graze + "--no-such-option", 2, "graze: ");
+    expect_error(graze + "--no-such-option", 2, {"graze:"});
     if (*verb.done || std::string(verb.name) == "lanes") expect_done(graze + verb.done);
-    if (*verb.fails) expect_error(graze + verb.fails, 1, "graze: ");
+    if (*verb.fails) expect_error(graze + verb.fails, 1, {"graze:"});
     expect_done(graze + "--help");
   }
   EXPECT_EQ(names, tested);
@@ -106,17 +105,15 @@ TEST_F(ExitStatus, PlacesWithOtherThingsAreWrongUse) {
       const std::string done = verb.done, name = verb.name;
       const std::size_t at = done.find("--out ");
       if (at == done.npos || name == "map") continue;
-      expect_error("graze " + name + ' ' + done.substr(0, at) + "--out " + out, 2,
-                   out + ": expected a new or an empty ");
+      expect_error("graze " + name + ' ' + done.substr(0, at) + "--out " + out, 2, {out, "empty"});
     }
   }
   for (const std::string file : {"p", "link"}) {
     expect_done("ln -sf p link");
-    expect_error("graze minimize p --lanes 'guigue*/f32/cpu' --out " + file, 2,
-                 file + ": expected no file, or one that graze wrote");
-    expect_error("graze scene mesh.off --out " + file, 2, "--force replaces it");
-    expect_error("graze query 'mesh.off#0' mesh.off --obj " + file, 2, "--force replaces it");
-    expect_error("graze status s1 --prometheus " + file, 2, "--force replaces it");
+    expect_error("graze minimize p --lanes 'guigue*/f32/cpu' --out " + file, 2, {file, "--force"});
+    expect_error("graze scene mesh.off --out " + file, 2, {file, "--force"});
+    expect_error("graze query 'mesh.off#0' mesh.off --obj " + file, 2, {file, "--force"});
+    expect_error("graze status s1 --prometheus " + file, 2, {file, "--force"});
   }
   EXPECT_EQ(contents(shell.folder / "p").substr(0, 4), "0.1 ");
   EXPECT_EQ(contents(shell.folder / "mine/notes.txt"), "kept");

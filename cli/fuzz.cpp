@@ -118,8 +118,9 @@ int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test
       continue;
     const auto [pair, file] = smallest_case(options.out, under_test, summary, subject);
     fmt::print(stderr,
-               "graze: {}: expected at most {} wrong pairs, found {}; the smallest is {}; again: graze repro {}\n",
-               subject, reports::grouped(*options.fail_above), reports::grouped(count), fuzz::pair_text(pair),
+               "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; the smallest is {}; again: graze "
+               "repro {}\n",
+               subject, reports::grouped(count), reports::grouped(*options.fail_above), fuzz::pair_text(pair),
                shell_word(file.string()));
     return 1;
   }
@@ -136,7 +137,7 @@ int on_ranks(const FuzzOptions& options, fuzz::Campaign& campaign, const std::ve
   if (outcome) print_campaign(options.out, *outcome, options.json, left_out);
   const bool complete = ranks.from_root(outcome ? "complete" : "") == "complete";
   if (!complete && ranks.rank == 0)
-    fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
+    fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes the campaign\n");
   return complete ? 0 : kInterrupted;
 }
 
@@ -186,7 +187,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   if (options.discard_damaged) {
     if (!campaign.scratch.empty()) fuzz::fetch_from_directory(campaign);
     if (const auto kept = fuzz::discard_damaged(fuzz::store_spec(campaign)))
-      fmt::print(stderr, "graze: kept {} pairs in {} batches that check; the damaged database is now {}\n",
+      fmt::print(stderr, "graze: kept {} pairs in {} batches whose checksum is right; the damaged database is now {}\n",
                  reports::grouped(kept->pairs), reports::grouped(kept->batches), kept->damaged.string());
   }
   if (ranks) return on_ranks(options, campaign, left_out, *ranks);
@@ -203,7 +204,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   if (!outcome.complete) {
     if (campaign.shard.whole())
       fuzz::write_whole(campaign.directory / "margins.svg", reports::margin_figure(outcome.summary));
-    fmt::print(stderr, "graze: interrupted; what was done is kept, and the same command goes on from there\n");
+    fmt::print(stderr, "graze: interrupted; finished work is kept, and the same command resumes the campaign\n");
     return kInterrupted;
   }
   if (!campaign.shard.whole()) {
@@ -218,10 +219,10 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
 // Alone, or as one of those that mpirun started: of these one that fails ends all.
 int start(const FuzzOptions& options) {
   if (!options.scratch.empty() && options.shard.whole())
-    throw UsageError("--scratch: expected --shard with it, found none");
+    throw UsageError("--scratch is for shards alone; add --shard K/N");
   if (!fuzz::started_by_mpirun()) return fuzz(options, nullptr);
   if (!options.shard.whole() || options.fail_above || options.discard_damaged)
-    throw UsageError("expected no --shard, --fail-above or --discard-damaged under mpirun, found one");
+    throw UsageError("--shard, --fail-above and --discard-damaged do not work under mpirun; leave them out");
   const std::unique_ptr<fuzz::Ranks> ranks = fuzz::open_ranks();
   fuzz::take_one_device(ranks->local_rank);
   try {
@@ -273,70 +274,82 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
 }
 
 void add_fuzz(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("fuzz", "Run a campaign, or go on with one: strata through all lanes and the oracle");
-  command->footer("Example: graze fuzz --pairs 1000000 --seed 1 --strata 'near_*,coplanar_*' --out campaign");
+  CLI::App* command = app.add_subcommand(
+      "fuzz", "Run or resume a campaign: draw pairs, run every lane on them, and compare with the exact truth");
+  command->footer("Example: graze fuzz --pairs 1M --strata 'near_*,coplanar_*' --out campaign");
   auto options = std::make_shared<FuzzOptions>();
   command
-      ->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata; a mesh takes all of its own")
+      ->add_option("--pairs", options->pairs,
+                   "Number of pairs in total, shared evenly by the strata; a mesh adds all of its own")
       ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("N");
   command->add_option("--seed", options->seed, "Seed of all strata")
       ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str();
-  command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
+      ->capture_default_str()
+      ->option_text("N");
+  command
+      ->add_option("--threads", options->threads,
+                   "Number of threads; 0 means one per core. Results do not depend on it")
       ->transform(whole_number(0, 4096))
-      ->capture_default_str();
-  command->add_option("--out", options->out, "Directory of the campaign; an unfinished one is gone on with")
+      ->capture_default_str()
+      ->option_text("N");
+  command->add_option("--out", options->out, "Campaign directory; an unfinished campaign in it is resumed")
       ->take_last()
       ->check(not_empty())
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("DIR");
   add_shard_option(
       *command, options->shard,
-      "Only the K-th of N parts of the campaign, into a directory of its own; graze merge makes all of them "
-      "one campaign, the same as without shards");
+      "Part of the campaign to run: the K-th of N, in a directory of its own. `graze merge` joins the parts; the "
+      "result is the same as without shards");
   command
       ->add_option("--scratch", options->scratch,
-                   "Folder on a local disk for a shard's database while it runs; --out gets it as one file")
+                   "Folder on a local disk for a shard's database while it runs; it is then copied to --out")
       ->check(not_empty())
       ->option_text("DIR");
-  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_lane_options(*command, options->lanes);
   add_scene_option(*command, options->scene);
   command
-      ->add_option("--mesh", options->mesh,
-                   "Pairs of a mesh's triangles, or of two meshes', whose boxes overlap: FILE [FILE2]; alone unless "
-                   "--strata is given too")
+      ->add_option(
+          "--mesh", options->mesh,
+          "Mesh, or two meshes, whose triangles are paired where their boxes overlap. Strata are drawn as well only if "
+          "--strata is given")
       ->expected(1, 2)
-      ->excludes("--scene");
+      ->excludes("--scene")
+      ->option_text("FILE [FILE2]");
   static_assert(static_cast<int>(fuzz::EngineChoice::automatic) == 0 &&
                 static_cast<int>(fuzz::EngineChoice::cpu) == 1 && static_cast<int>(fuzz::EngineChoice::gpu) == 2);
   command
       ->add_option("--engine", options->engine,
-                   "What judges the pairs: cpu (see --judge), gpu (all on the device, where all lanes are CUDA lanes), "
-                   "or auto; results do not depend on it")
+                   "Engine that judges the pairs. cpu: see --judge; gpu: all on the device, for CUDA lanes alone; "
+                   "auto: gpu where "
+                   "possible. Results do not depend on it")
       ->transform(one_of({"auto", "cpu", "gpu"}, Chosen::place))
-      ->option_text("auto|cpu|gpu");
+      ->option_text("auto|cpu|gpu")
+      ->default_str("auto");
   command
       ->add_option(
           "--judge", options->by_exact_lane,
-          "What the cpu engine holds for true: oracle (CGAL for every pair, GMP for every disagreement) or exact "
-          "(the exact lane; CGAL and GMP for one pair in 1,000 and every case that is kept); results do not "
-          "depend on it")
+          "Ground truth of the CPU engine. oracle: CGAL decides every pair, GMP confirms every disagreement; exact: "
+          "the "
+          "exact lane decides, CGAL and GMP confirm one pair in 1,000 and every kept case. Results do not depend on it")
       ->transform(one_of({"oracle", "exact"}, Chosen::place))
-      ->option_text("oracle|exact");
+      ->option_text("oracle|exact")
+      ->default_str("oracle");
   command->add_flag("--discard-damaged", options->discard_damaged,
-                    "Go on with a damaged campaign from the batches that check");
+                    "Resume a damaged campaign; batches whose checksum fails are run again");
   command
-      ->add_option(
-          "--fail-above", options->fail_above,
-          "Exit with 1 where a subject given by --subject, or any lanes where none is, is wrong on more pairs; "
-          "with its smallest case on standard error: the simplest that minimising the eight signatures with the "
-          "simplest kept pairs gives")
+      ->add_option("--fail-above", options->fail_above,
+                   "Number of wrong pairs above which the exit status is 1. Counts each subject of --subject, or each "
+                   "algorithm if "
+                   "there is none. Standard error then has its simplest minimised case")
       ->transform(whole_number(0, kMostWhole))
-      ->excludes("--shard");
+      ->excludes("--shard")
+      ->option_text("N");
   command->add_flag("--json", options->json, "Print the summary as JSON");
-  command->add_flag("--require-device", options->require_device, "Fail when there is no CUDA device");
+  command->add_flag("--require-device", options->require_device, "Fail if there is no CUDA device");
   command->callback([options, &status] { status = start(*options); });
 }
 

@@ -65,7 +65,8 @@ void print_mutations(const std::filesystem::path& directory) {
 int hunt(const HuntOptions& options) {
   if (!fuzz::has_libfuzzer()) {
     throw std::runtime_error(
-        "hunt: expected a build with clang's libFuzzer, found none; install libclang-rt-14-dev and build again");
+        "graze hunt is not in this build, which found no libFuzzer of clang; install libclang-rt-14-dev and build "
+        "again");
   }
   LaneOptions lanes = options.lanes;
   lanes.executor = fuzz::Executor::twin;
@@ -111,8 +112,8 @@ int hunt(const HuntOptions& options) {
   });
   if (live) fmt::print(stderr, "{}", live->end());
   if (!complete) {
-    fmt::print(stderr, "graze: {}; what was done is kept, and the same command goes on from there\n",
-               interrupted ? "interrupted" : "the time is over");
+    fmt::print(stderr, "graze: {}; finished work is kept, and the same command resumes the hunt\n",
+               interrupted ? "interrupted" : "the time limit is reached");
     if (interrupted) return kInterrupted;
   }
   if (!options.shard.whole()) {
@@ -136,35 +137,40 @@ int hunt(const HuntOptions& options) {
 
 void add_hunt(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("hunt",
-                                         "Search for wrong verdicts, guided by what the lanes compute, or go on with "
-                                         "it: mutated pairs through all lanes and the oracle");
+                                         "Search for failures, or resume a search: mutate pairs, guided by what the "
+                                         "lanes compute");
   command->footer("Example: graze hunt --runs 1000000 --seed 1 --lanes 'moller*' --out hunt");
   auto options = std::make_shared<HuntOptions>();
-  command->add_option("--runs", options->runs, "Pairs in all")
+  command->add_option("--runs", options->runs, "Number of pairs in total")
       ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("N");
   command
       ->add_option("--minutes", options->minutes,
-                   "Stop after so many minutes, if not done; the same command goes on; 0: no limit")
+                   "Time limit in minutes, after which the same command resumes the search; 0 means none")
       ->transform(whole_number(0, 1'000'000))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("MINUTES");
   command->add_option("--seed", options->seed, "Seed of the search")
       ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("N");
   command
       ->add_option("--threads", options->threads,
-                   "Rounds at once, at most four; 0 for one on each core; results do not depend on it")
+                   "Number of rounds at once, at most four; 0 means one per core. Results do not depend on it")
       ->transform(whole_number(0, 4096))
-      ->capture_default_str();
-  command->add_option("--out", options->out, "Directory of the hunt; an unfinished one is gone on with")
+      ->capture_default_str()
+      ->option_text("N");
+  command->add_option("--out", options->out, "Directory of the search; an unfinished search in it is resumed")
       ->take_last()
       ->check(not_empty())
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("DIR");
   add_shard_option(
       *command, options->shard,
-      "Only the K-th of N searches, each through its part of the runs, into a directory of its own; graze merge "
-      "makes all of them one, by kind of failure");
-  add_globs(*command, "--strata", options->strata, "Start from, and draw again from, only strata that match a pattern");
+      "Part of the search to run: the K-th of N, with its share of the runs, in a directory of its own. `graze merge` "
+      "joins the parts by kind of failure");
+  add_globs(*command, "--strata", options->strata, "Patterns of the strata to start from");
   add_lane_options(*command, options->lanes, Executors::twins);
   add_scene_option(*command, options->scene);
   command->add_flag("--json", options->json, "Print the summary as JSON");

@@ -123,14 +123,15 @@ int kinds_of(const std::string& directory, bool json, bool all) {
 }  // namespace
 
 void add_kinds(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("kinds", "Say what kinds of failure a campaign found");
+  CLI::App* command = app.add_subcommand("kinds", "List the kinds of failure that a campaign found");
   command->footer("Example: graze kinds campaign");
   auto directory = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false), all = std::make_shared<bool>(false);
-  command->add_option("directory", *directory, "A campaign's directory; rather one that `graze minimize` went through")
-      ->required();
-  command->add_flag("--json", *json, "One object a line, as docs/formats.md describes it");
-  command->add_flag("--all", *all, "Also the rare ones");
+  command->add_option("directory", *directory, "Campaign directory, best after `graze minimize`")
+      ->required()
+      ->option_text("DIR");
+  command->add_flag("--json", *json, "Print one JSON object per line, described in docs/formats.md");
+  command->add_flag("--all", *all, "List rare kinds too");
   command->callback([directory, json, all, &status] { status = kinds_of(*directory, *json, *all); });
 }
 

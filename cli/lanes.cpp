@@ -70,10 +70,10 @@ void print_lanes(bool json, const std::vector<std::string>& globs) {
 
 void add_lanes(CLI::App& app, int&) {
   CLI::App* command =
-      app.add_subcommand("lanes", "List the lanes: every way to decide a pair, and whether it runs here");
+      app.add_subcommand("lanes", "List the lanes: every algorithm, precision and build, and whether it runs here");
   command->footer("Example: graze lanes --json | jq -r '.[].lane'");
   auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "One JSON array");
+  command->add_flag("--json", *json, "Print one JSON array");
   auto lanes = std::make_shared<LaneOptions>();
   add_lane_options(*command, *lanes);
   command->callback([json, lanes] {

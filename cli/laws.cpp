@@ -62,14 +62,15 @@ int laws(const LawsOptions& options) {
 
 void add_laws(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "laws",
-      "Count how often a lane's verdict changes although the question is the same: swapped, mirrored, moved, …");
+      "laws", "Count how often a verdict changes although the answer cannot: triangles swapped, mirrored, scaled, …");
   command->footer("Example: graze laws --lanes '*/f32/cpu' --strata 'near_*' --pairs 2000");
   const auto options = std::make_shared<LawsOptions>();
   add_lane_options(*command, options->lanes, Executors::twins);
-  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
-  command->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata; each has some 70 images")
+  command
+      ->add_option("--pairs", options->pairs,
+                   "Number of pairs in total, shared evenly by the strata; each is decided in about 70 forms")
       ->transform(whole_number(1, kMostWhole))
       ->capture_default_str()
       ->option_text("N");
@@ -77,8 +78,11 @@ void add_laws(CLI::App& app, int& status) {
       ->transform(whole_number(0, kMostWhole))
       ->capture_default_str()
       ->option_text("N");
-  command->add_option("--threads", options->threads, "Threads; 0: one on each core; results do not depend on it")
+  command
+      ->add_option("--threads", options->threads,
+                   "Number of threads; 0 means one per core. Results do not depend on it")
       ->transform(whole_number(0, 4096))
+      ->capture_default_str()
       ->option_text("N");
   command->add_option("--out", options->out, "Folder for laws.json and the simplest cases")
       ->check(not_empty())

@@ -93,9 +93,9 @@ TEST_F(LawsCommand, OfOnesOwnCodeAndWithinAScene) {
 }
 
 TEST_F(LawsCommand, BadUseIsOneLine) {
-  expect_error("graze laws --lanes nothing --out l", 2, "expected a lane");
-  expect_error("graze laws --strata nothing --out l", 2, "expected a stratum");
-  expect_error("touch l && graze laws --pairs 10 --out l", 1, "expected a folder");
+  expect_error("graze laws --lanes nothing --out l", 2, {"'nothing'", "graze lanes"});
+  expect_error("graze laws --strata nothing --out l", 2, {"'nothing'", "graze strata"});
+  expect_error("touch l && graze laws --pairs 10 --out l", 1, {"l", "Not a directory"});
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <ctime>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "cli/screen.h"
+#include "core/cannot.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/cost_estimate.h"
@@ -47,6 +49,7 @@ std::string trimmed(const std::string& text) {
 // not; # begins a comment.   Throws: std::runtime_error with file and line. `pairs: N`: it is slow, and takes no more.
 std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::MostPairs& most) {
   std::vector<reports::LeagueSubject> subjects;
+  if (!fs::exists(file)) throw std::runtime_error(cannot("read", file, ENOENT));
   std::istringstream in(fuzz::read_whole(file));
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
@@ -78,7 +81,7 @@ std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::Mo
       throw refuse("'version: ', 'source: ', 'convention: ' or 'pairs: ' below a subject");
     subjects.back().*field = text.substr(colon + 2);
   }
-  if (subjects.empty()) throw std::runtime_error(file.string() + ": expected a subject, NAME=WHAT, found none");
+  if (subjects.empty()) throw std::runtime_error("there is no line NAME=WHAT in " + file.string());
   return subjects;
 }
 
@@ -110,8 +113,8 @@ int league(const LeagueOptions& options) {
   for (const reports::LeagueSubject& subject : subjects) {
     if (std::none_of(lanes.lanes.begin(), lanes.lanes.end(),
                      [&](auto* lane) { return lane->info->id == subject.name; }))
-      throw std::runtime_error(fmt::format("{}: expected a subject with a lane of this processor, found none: {}",
-                                           options.subjects, subject.name));
+      throw std::runtime_error(
+          fmt::format("{} of {} has no lane that runs on this processor", subject.name, options.subjects));
   }
   const strata::SceneSources drawn_pairs = drawn(options.scene, options.seed, options.pairs, options.strata);
   const std::vector<strata::PairSource>& sources = drawn_pairs.sources;
@@ -150,33 +153,36 @@ int league(const LeagueOptions& options) {
 }  // namespace
 
 void add_league(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("league", "Compare libraries and our algorithms on the same pairs");
-  command->footer("Example: graze league --subjects build-league/subjects.txt --pairs 1000000 --out league");
+  CLI::App* command = app.add_subcommand("league", "Compare libraries and the published algorithms on the same pairs");
+  command->footer("Example: graze league --subjects build-league/subjects.txt --pairs 1M");
   auto options = std::make_shared<LeagueOptions>();
   command
-      ->add_option(
-          "--subjects", options->subjects,
-          "A file of subjects, NAME=WHAT a line as --subject takes them; scripts/league writes one of libraries")
+      ->add_option("--subjects", options->subjects,
+                   "File of libraries, one NAME=WHAT per line as for --subject; `scripts/league` writes one")
       ->required()
-      ->check(not_empty());
-  command->add_option("--pairs", options->pairs, "Pairs in all, shared evenly by the strata")
+      ->check(not_empty())
+      ->option_text("FILE");
+  command->add_option("--pairs", options->pairs, "Number of pairs in total, shared evenly by the strata")
       ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("N");
   command->add_option("--seed", options->seed, "Seed of all strata")
       ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("N");
   command
       ->add_option("--subject-timeout", options->timeout,
-                   "Seconds that a subject may take for a pair; one that takes longer is asked once more")
+                   "Time limit of a library for one pair, in seconds; a pair that exceeds it is tried once more")
       ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");
-  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
       ->take_last()
       ->check(not_empty())
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("DIR");
   command->callback([options, &status] { status = league(*options); });
 }
 

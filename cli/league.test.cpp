@@ -40,7 +40,7 @@ TEST_F(LeagueCommand, DrawsWithinAScene) {
   const std::string all = league.dump();
   EXPECT_EQ(all.find("extreme_scale"), std::string::npos);
   EXPECT_GT(league["failures"].size(), 0u);
-  expect_error("graze league --subjects subjects.txt --scene nowhere.toml", 1, "nowhere.toml");
+  expect_error("graze league --subjects subjects.txt --scene nowhere.toml", 1, {"nowhere.toml"});
 }
 
 TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
@@ -104,16 +104,17 @@ TEST_F(LeagueCommand, TheSameRunHasTheSameResultsButForTimings) {
 }
 
 TEST_F(LeagueCommand, BadFilesAreOneLine) {
-  const auto expect = [&](const std::string& text, const std::string& part) {
+  const auto expect = [&](const std::string& text, const std::vector<std::string>& words) {
     std::ofstream(shell.folder / "bad.txt") << text;
-    expect_error("graze league --subjects bad.txt --pairs 10 --out found", 1, part);
+    expect_error("graze league --subjects bad.txt --pairs 10 --out found", 1, words);
   };
-  expect("", "bad.txt: expected a subject, NAME=WHAT, found none");
-  expect("no\n", "bad.txt:1: expected NAME=WHAT, found \"no\"");
-  expect("  version: 1\n", "bad.txt:1: expected 'version: '");
-  expect("no=planted.so:no\n  colour: red\n", "bad.txt:2: expected 'version: '");
-  expect("no=planted.so:no\n  pairs: few\n", "bad.txt:2: expected a number of pairs, found \"pairs: few\"");
-  expect_error("graze league --pairs 10", 2, "--subjects");
+  expect("", {"NAME=WHAT", "bad.txt"});
+  expect("no\n", {"bad.txt:1", "NAME=WHAT", "\"no\""});
+  expect("  version: 1\n", {"bad.txt:1", "version"});
+  expect("no=planted.so:no\n  colour: red\n", {"bad.txt:2", "version", "colour: red"});
+  expect("no=planted.so:no\n  pairs: few\n", {"bad.txt:2", "\"pairs: few\""});
+  expect_error("graze league --pairs 10", 2, {"--subjects"});
+  expect_error("graze league --subjects none.txt", 1, {"none.txt", "No such file or directory"});
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "found"));
 }
 

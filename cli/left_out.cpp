@@ -7,7 +7,7 @@ namespace graze::cli {
 namespace {
 
 void add_left_out(CLI::App& app, const std::string& verb) {
-  app.add_subcommand(verb, "Not in this build; scripts/setup builds it")->prefix_command()->callback([verb] {
+  app.add_subcommand(verb, "Not in this build: run scripts/setup to build it")->prefix_command()->callback([verb] {
     throw std::runtime_error(not_in_a_campaigns_build("graze " + verb));
   });
 }

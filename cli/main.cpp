@@ -3,17 +3,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <iostream>
 
 #include "cli/commands.h"
+#include "cli/help.h"
 #include "cli/interrupt.h"
 #include "cli/results.h"
 #include "cli/screen.h"
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 
 namespace {
+
+// What `graze --help` groups the verbs by.
+struct Task {
+  const char* name;
+  std::vector<void (*)(CLI::App& app, int& status)> verbs;
+};
+const Task kTasks[] = {
+    {"Find failures",
+     {graze::cli::add_fuzz, graze::cli::add_hunt, graze::cli::add_check, graze::cli::add_laws, graze::cli::add_strata,
+      graze::cli::add_scene}},
+    {"Understand failures",
+     {graze::cli::add_repro, graze::cli::add_minimize, graze::cli::add_explain, graze::cli::add_kinds,
+      graze::cli::add_map, graze::cli::add_view}},
+    {"Choose algorithms and tolerances",
+     {graze::cli::add_lanes, graze::cli::add_tune, graze::cli::add_trade, graze::cli::add_league, graze::cli::add_query,
+      graze::cli::add_bench}},
+    {"Scale to many machines", {graze::cli::add_plan, graze::cli::add_status, graze::cli::add_merge}},
+    {"Keep and publish results",
+     {graze::cli::add_report, graze::cli::add_corpus, graze::cli::add_dump, graze::cli::add_prove_twin}}};
 
 // The first word is a verb, or one of the flags that stand without one.
 void expect_verb(const CLI::App& app, const std::string& word) {
@@ -22,9 +44,9 @@ void expect_verb(const CLI::App& app, const std::string& word) {
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
     verbs.push_back(verb->get_name());
   if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
-  throw graze::UsageError(
-      "expected a verb (see `graze --help`), found " +
-      (word.empty() ? "none" : "'" + graze::printable(word) + "'" + graze::did_you_mean(word, verbs)));
+  throw graze::UsageError(word.empty() ? "no verb is given; `graze --help` lists them"
+                                       : "there is no verb '" + graze::printable(word) +
+                                             "'; `graze --help` lists them" + graze::did_you_mean(word, verbs));
 }
 
 // One line, whatever is in the names and texts that it quotes.
@@ -38,53 +60,45 @@ int fail(std::string what, int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Graze finds where a triangle-triangle intersection test stops being right, and proves it.", "graze"};
-  app.set_version_flag("--version", GRAZE_VERSION);
+  CLI::App app{
+      "Find the pairs of triangles on which an intersection test is wrong, and prove each by exact arithmetic.",
+      "graze"};
+  graze::cli::format_help(app);
+  app.set_help_flag("-h,--help", "Print this help");
+  app.set_version_flag("--version", GRAZE_VERSION, "Print the version");
   app.require_subcommand(1);
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
   int status = 0;
-  graze::cli::add_fuzz(app, status);
-  graze::cli::add_merge(app, status);
-  graze::cli::add_status(app, status);
-  graze::cli::add_plan(app, status);
-  graze::cli::add_hunt(app, status);
-  graze::cli::add_check(app, status);
-  graze::cli::add_repro(app, status);
-  graze::cli::add_minimize(app, status);
-  graze::cli::add_corpus(app, status);
-  graze::cli::add_explain(app, status);
-  graze::cli::add_kinds(app, status);
-  graze::cli::add_league(app, status);
-  graze::cli::add_map(app, status);
-  graze::cli::add_view(app, status);
-  graze::cli::add_dump(app, status);
-  graze::cli::add_report(app, status);
-  graze::cli::add_scene(app, status);
-  graze::cli::add_lanes(app, status);
-  graze::cli::add_strata(app, status);
-  graze::cli::add_laws(app, status);
-  graze::cli::add_trade(app, status);
-  graze::cli::add_tune(app, status);
-  graze::cli::add_prove_twin(app, status);
-  graze::cli::add_query(app, status);
-  graze::cli::add_bench(app, status);
+  for (const Task& task : kTasks) {
+    for (const auto add : task.verbs) {
+      add(app, status);
+      app.get_subcommands([](const CLI::App*) { return true; }).back()->group(task.name);
+    }
+  }
+  app.footer("Run `graze VERB --help` for the options of a verb.");  // verbs added before have their own
   graze::cli::add_force(app);
   try {
     expect_verb(app, argc > 1 ? argv[1] : "");
     app.parse(argc, argv);
+    errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout.flush())
-      throw std::runtime_error("standard output: expected room for the output, found none");
+      throw std::runtime_error(graze::cannot("write", "standard output", errno != 0 ? errno : EIO));
     return status;
   } catch (const CLI::Success& help) {
     app.exit(help);
     return std::cout.flush() ? 0 : 1;
   } catch (const CLI::ParseError& error) {
-    return fail(fmt::format("{} (see `graze --help`)", error.what()), 2);
+    return fail(fmt::format("{}; see `graze{} --help`", error.what(),
+                            argc > 1 && *argv[1] != '-' ? std::string(" ") + argv[1] : ""),
+                2);
   } catch (const graze::Stopped&) {
     return fail("interrupted", graze::cli::kInterrupted);
   } catch (const graze::UsageError& error) {
     return fail(error.what(), 2);
   } catch (const std::exception& error) {
-    return fail(error.what(), 1);
+    constexpr std::string_view kByFmt = "cannot write to file";  // which does not know that it is the standard output
+    std::string what = error.what();
+    if (what.starts_with(kByFmt)) what.replace(0, kByFmt.size(), "cannot write standard output");
+    return fail(what, 1);
   }
 }

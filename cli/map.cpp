@@ -38,9 +38,9 @@ int coordinate(const std::string& option, const std::string& name) {
 // Those asked for, if any.
 std::optional<analysis::MovedCoordinates> asked_for(const MapOptions& options) {
   if (options.x.empty() && options.y.empty()) return std::nullopt;
-  if (options.x.empty() || options.y.empty()) throw UsageError("expected --x and --y together, found one of them");
+  if (options.x.empty() || options.y.empty()) throw UsageError("--x and --y need each other; add the other one");
   const analysis::MovedCoordinates moved{coordinate("--x", options.x), coordinate("--y", options.y)};
-  if (moved.x == moved.y) throw UsageError("expected two coordinates, found " + options.x + " twice");
+  if (moved.x == moved.y) throw UsageError("--x and --y are both " + options.x + "; choose two coordinates");
   return moved;
 }
 
@@ -109,7 +109,8 @@ void draw_map(const MapOptions& options) {
   const std::optional<analysis::MovedCoordinates> asked = asked_for(options);
   const fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
   const corpus::Entry entry = read_cases(options.name).front();
-  if (!is_finite(entry.pair)) throw std::runtime_error(options.name + ": expected finite coordinates, found others");
+  if (!is_finite(entry.pair))
+    throw std::runtime_error("cannot draw " + options.name + ": a coordinate of its first pair is not finite");
   const analysis::MovedCoordinates moved =
       asked ? *asked : analysis::liveliest_coordinates(entry.pair, under_test.lanes);
   const analysis::UlpMap map = analysis::ulp_map(entry.pair, under_test.lanes, moved);
@@ -129,23 +130,24 @@ void draw_map(const MapOptions& options) {
 }  // namespace
 
 void add_map(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand(
-      "map",
-      "Draw the verdicts around a case as two of its coordinates move by single ulps, one panel for the truth "
-      "and one for each lane");
+  CLI::App* command =
+      app.add_subcommand("map", "Draw the verdicts around a case while two of its coordinates move by single ulps");
   command->footer("Example: graze map mixed_scale:1:3 --lanes '*/f32/cpu'");
   auto options = std::make_shared<MapOptions>();
-  command->add_option("case", options->name, "A file of pairs, the first of which is drawn, or STRATUM:SEED:INDEX")
+  command->add_option("case", options->name, "File of pairs, whose first pair is drawn, or STRATUM:SEED:INDEX")
       ->required();
   add_lane_options(*command, options->lanes, Executors::twins);
-  command->add_option("--out", options->out, "The picture, or a directory for one picture a panel")
+  command
+      ->add_option("--out", options->out,
+                   "Picture with a panel for the truth and one per lane, or a directory for one picture per panel")
       ->check(not_empty())
       ->option_text("FILE.png|DIR")
       ->capture_default_str();
   command
-      ->add_option("--x", options->x, "The coordinate that moves to the right; by default chosen by how much changes")
+      ->add_option("--x", options->x,
+                   "Coordinate that moves to the right; with --y, chosen by default so that most verdicts change")
       ->option_text("b[0].x");
-  command->add_option("--y", options->y, "The coordinate that moves upwards")->option_text("b[0].y");
+  command->add_option("--y", options->y, "Coordinate that moves upwards")->option_text("b[0].y");
   command->callback([options] { draw_map(*options); });
 }
 

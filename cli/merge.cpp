@@ -28,7 +28,7 @@ int merge(const MergeOptions& options) {
   print_campaign(std::filesystem::exists(out) ? options.out : out.lexically_normal().string(), outcome, options.json);
   if (!outcome.complete) {
     std::fflush(stdout);
-    fmt::print(stderr, "graze: not all pairs are there; graze fuzz with --out {} goes on from there\n", options.out);
+    fmt::print(stderr, "graze: the campaign is not complete; `graze fuzz` with --out {} resumes it\n", options.out);
   }
   return 0;
 }
@@ -36,18 +36,19 @@ int merge(const MergeOptions& options) {
 }  // namespace
 
 void add_merge(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("merge", "Make one campaign of shards, the same as one run of the whole");
+  CLI::App* command =
+      app.add_subcommand("merge", "Join the shards of a campaign; the result is the same as that of one run");
   command->footer("Example: graze merge shard-* --out campaign");
   auto options = std::make_shared<MergeOptions>();
-  command
-      ->add_option("parts", options->parts,
-                   "Directories of shards, or of campaigns that were merged before; in any order")
-      ->required();
-  command->add_option("--out", options->out, "Directory of the campaign; new, or empty")
+  command->add_option("parts", options->parts, "Directories of shards, or of campaigns merged before, in any order")
       ->required()
-      ->check(not_empty());
+      ->option_text("DIR");
+  command->add_option("--out", options->out, "Directory for the campaign, new or empty")
+      ->required()
+      ->check(not_empty())
+      ->option_text("DIR");
   command->add_flag("--partial", options->partial,
-                    "Take what is there: an unfinished campaign, with which graze fuzz and graze merge go on");
+                    "Merge the shards that there are into an unfinished campaign, which `graze fuzz` resumes");
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->callback([options, &status] { status = merge(*options); });
 }

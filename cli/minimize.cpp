@@ -24,6 +24,7 @@
 #include "cli/results.h"
 #include "cli/screen.h"
 #include "cli/shard_option.h"
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
@@ -134,7 +135,8 @@ int minimize_case(const MinimizeOptions& options) {
     return kInterrupted;
   }
   if (results.empty())
-    throw std::runtime_error(options.name + ": expected a case on which a lane is wrong, found none");
+    throw std::runtime_error("there is nothing to minimise in " + options.name +
+                             ": no lane is wrong on any of its pairs");
   for (const fuzz::MinimisedCase& found : results) print(found, options.name);
   if (!options.out.empty()) write_result(options.out, with_header(fuzz::with_results(text, entries, results)));
   // Nothing can be read again from a pipe or a device; behind a link may be the standard output.
@@ -195,7 +197,7 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
 
 int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
-  if (!options.out.empty()) throw UsageError("expected --out only with one case, found a campaign's directory");
+  if (!options.out.empty()) throw UsageError("--out is for cases alone; the results of a campaign go into its cases/");
   const bool whole = options.shard.whole();
   // Read before the lock is taken, which reading the database of a run that was killed takes for itself.
   const std::string text = fuzz::read_whole(directory / "summary.json");
@@ -207,7 +209,8 @@ int minimize_directory(MinimizeOptions options) {
   const fuzz::FolderLock held(directory,
                               whole ? fuzz::FolderLock::WhenTaken::refuse : fuzz::FolderLock::WhenTaken::share);
   if (fuzz::read_whole(directory / "summary.json") != text)
-    throw std::runtime_error(options.name + ": expected to be alone, found that another process changed it");
+    throw std::runtime_error(
+        cannot("minimise", options.name, "another process has just changed it; run the command again"));
   std::vector<Json> rows;
   for (std::size_t i = 0; i < summary["signatures"].size(); ++i) {  // the commonest first: each shard gets some of them
     if (i % options.shard.of == options.shard.number - 1) rows.push_back(summary["signatures"][i]);
@@ -245,7 +248,7 @@ int minimize_directory(MinimizeOptions options) {
     maps += map_case(under_test, fuzz::case_file(directory, kind.at("simplest")), kind.at("subject"), options.again);
   });
   if (interrupted) {
-    fmt::print(stderr, "graze: interrupted; minimised {} of {} signatures; run the same command to go on\n",
+    fmt::print(stderr, "graze: interrupted; minimised {} of {} signatures; run the same command to resume\n",
                reports::grouped(count), reports::grouped(rows.size()));
     return kInterrupted;
   }
@@ -285,35 +288,41 @@ int minimize_directory(MinimizeOptions options) {
 
 void add_minimize(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "minimize", "Shrink a case, or all of a campaign, to the simplest pair that fails in the same way");
+      "minimize", "Shrink a case, or every case of a campaign, to the simplest pair that fails in the same way");
   command->footer("Example: graze minimize campaign");
   auto options = std::make_shared<MinimizeOptions>();
   command
-      ->add_option("case", options->name,
-                   "A campaign's directory, a file of its cases/, or STRATUM:SEED:INDEX; a directory's results go into "
-                   "its cases/")
+      ->add_option(
+          "case", options->name,
+          "Campaign directory, file of pairs, or STRATUM:SEED:INDEX; the results of a campaign go into its cases/")
       ->required();
-  command->add_option("--out", options->out, "Write the results, and the originals behind them, to this file")
-      ->check(not_empty());
+  command->add_option("--out", options->out, "File for the minimised pairs, each followed by its original")
+      ->check(not_empty())
+      ->option_text("FILE");
   add_exact_input(*command, options->exact_input);
-  command->add_flag("--again", options->again, "Of a directory, also what is minimised already");
-  command->add_option("--threads", options->threads, "Threads; 0 for one on each core; results do not depend on it")
+  command->add_flag("--again", options->again, "Minimise every case again, even those that have a result");
+  command
+      ->add_option("--threads", options->threads,
+                   "Number of threads; 0 means one per core. Results do not depend on it")
       ->transform(whole_number(0, 4096))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("N");
   add_shard_option(
       *command, options->shard,
-      "Of a directory, only the K-th of N parts of its signatures; without it, what is left, and the kinds");
+      "Part of a campaign's signatures to minimise: the K-th of N. When all parts are done, run without it");
   add_lane_options(*command, options->lanes);
+  command->get_option("--lanes")->default_str("those of the campaign, else all");
   command->callback([options, &status] {
     if (!fs::is_directory(options->name)) {
-      if (!options->shard.whole()) throw UsageError("expected --shard only with a campaign's directory, found a case");
+      if (!options->shard.whole())
+        throw UsageError("--shard is for campaign directories alone, and " + options->name + " is none");
       status = minimize_case(*options);
       return;
     }
     try {
       status = minimize_directory(*options);
     } catch (const Json::exception&) {
-      throw std::runtime_error(options->name + "/summary.json: expected a campaign's summary, found something else");
+      throw std::runtime_error(cannot("use", options->name + "/summary.json", "it is not the summary of a campaign"));
     }
   });
 }

@@ -74,7 +74,7 @@ TEST_F(Minimize, CtrlCSaysWhatWasDoneAndTheSameCommandGoesOn) {
     const Ran ran = shell(signal_at_write(signal, 20) + "graze minimize parts");
     ASSERT_EQ(ran.status, 130) << ran.out << ran.err;
     EXPECT_TRUE(std::regex_search(ran.err, std::regex("graze: interrupted; minimised [0-9]+ of [0-9]+ signatures; "
-                                                      "run the same command to go on\n$")))
+                                                      "run the same command to resume\n$")))
         << ran.err;
     EXPECT_EQ(ran.out, "");
     expect_done("test -z \"$(ls parts/cases | grep part)\"");
@@ -117,7 +117,7 @@ TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   EXPECT_EQ(kinds["lanes"], (nlohmann::json{"moller_1997/f32/cpu", "moller_1997/f64/cpu"}));
   expect_done("graze kinds host | grep 'signatures belong to no kind'");
   expect_done("graze report host | grep 'signatures belong to no kind of failure'");
-  expect_error("graze minimize host --lanes 'moller_*/cuda-*'", 2, "the campaign did not run it");
+  expect_error("graze minimize host --lanes 'moller_*/cuda-*'", 2, {"the campaign did not run it"});
 }
 
 // Each file of cases says its signature; one that another wrote or moved there is not believed.
@@ -126,21 +126,20 @@ TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   const auto rows = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["signatures"];
   const std::string first = "c/" + rows.front()["case"].get<std::string>(), key = rows.front()["key"],
                     last = "c/" + rows.back()["case"].get<std::string>();
-  const std::string refused = first + ": expected the cases of the signature " + key + ", found ";
-  for (const auto& [edit, found] : {std::pair("cp " + last + ' ' + first, "another head"),
-                                    {"sed -i '$d' " + first, "3 of them"},
-                                    {"sed -i '$s/^[^ ]*/0x1.5p+3/' " + first, "another pair in line "},
-                                    {"sed -i '3s/^[^ ]*/0x1.5p+3/' " + first, "another pair in line 3"},
-                                    {"sed -i '$s/margin=[^ ]*/margin=7/' " + first, "another pair in line "},
-                                    {"sed -i '$s/signature=/signature=area/' " + first, "another signature in line "},
-                                    {"rm " + first, "none"},
-                                    {"echo 1 2 3 > " + first, "other text: "}}) {
+  for (const auto& [edit, found] : {std::pair("cp " + last + ' ' + first, std::string("head")),
+                                    {"sed -i '$d' " + first, "3 cases"},
+                                    {"sed -i '$s/^[^ ]*/0x1.5p+3/' " + first, "pair"},
+                                    {"sed -i '3s/^[^ ]*/0x1.5p+3/' " + first, "line 3"},
+                                    {"sed -i '$s/margin=[^ ]*/margin=7/' " + first, "pair"},
+                                    {"sed -i '$s/signature=/signature=area/' " + first, "another signature"},
+                                    {"rm " + first, "missing"},
+                                    {"echo 1 2 3 > " + first, first + ":1"}}) {
     expect_done(edit);
     for (const char* reader : {"kinds", "minimize"})
-      expect_error(std::string("graze ") + reader + " c", 1, refused + found);
+      expect_error(std::string("graze ") + reader + " c", 1, {first, key, found});
     const Ran report = shell("graze report c");
     EXPECT_EQ(report.status, 1) << edit;
-    ASSERT_TRUE(report.err.starts_with("graze: " + refused + found)) << report.err;
+    ASSERT_TRUE(names(report.err.substr(0, report.err.size() - 1), {first, key, found}));
     const std::string again = report.err.substr(report.err.find("then: ") + 6);
     expect_done("rm -f " + first + " && " + again.substr(0, again.size() - 1) + " > /dev/null && graze minimize c && " +
                 "diff -r whole/cases c/cases && cmp whole/kinds.json c/kinds.json");
@@ -167,7 +166,7 @@ TEST_F(Minimize, CasesOnWhichOtherLanesAreWrongAreRefused) {
       ++forged;
       std::ofstream(shell.folder / "c" / one["case"]) << text;
       for (const char* reader : {"kinds", "minimize"})
-        expect_error(std::string("graze ") + reader + " c", 1, ", found another verdict of ");
+        expect_error(std::string("graze ") + reader + " c", 1, {one["case"], key, "verdict"});
     }
   }
   EXPECT_EQ(forged, 1);
@@ -191,24 +190,23 @@ TEST_F(Minimize, WhereNothingCanBeWrittenItSaysSoAtOnce) {
   const std::string read_only = "unshare -rm sh -c 'mount --bind c c && mount -o remount,bind,ro c && ";
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp c/kinds.json before");
   if (shell(read_only + "true'").status != 0) GTEST_SKIP() << "no mount namespaces here";
-  expect_error(read_only + "graze minimize c'", 1,
-               "c: expected a folder that can be written, found: Read-only file system");
+  expect_error(read_only + "graze minimize c'", 1, {"c", "Read-only file system"});
   expect_done("cmp before c/kinds.json");
 }
 
 TEST_F(Minimize, BadInputGetsOneLine) {
-  expect_error("graze minimize", 2, "case");
-  expect_error("graze minimize missing.pairs", 1, "missing.pairs: expected");
-  expect_error("graze minimize nowhere:1:2", 2, "found 'nowhere'");
-  expect_error("mkdir empty; graze minimize empty", 1, "empty: expected a campaign's directory");
+  expect_error("graze minimize", 2, {"case"});
+  expect_error("graze minimize missing.pairs", 1, {"missing.pairs", "No such file or directory"});
+  expect_error("graze minimize nowhere:1:2", 2, {"'nowhere'"});
+  expect_error("mkdir empty; graze minimize empty", 1, {"empty"});
   expect_error("mkdir odd; echo '{\"spec\": 1, \"signatures\": 2}' > odd/summary.json; graze minimize odd", 1,
-               "odd/summary.json: expected a campaign's summary");
+               {"odd/summary.json"});
   expect_error("echo '0 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5' > right.pairs; graze minimize right.pairs", 1,
-               "right.pairs: expected a case on which a lane is wrong");
-  expect_error("echo 'nan 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5' > nan.pairs; graze minimize nan.pairs", 1,
-               "nan.pairs: expected a case on which a lane is wrong");
-  expect_error("graze minimize exact_contact:1:1 --lanes nothing", 2, "found 'nothing'");
-  expect_error("graze minimize exact_contact:1:1 --out no/where.pairs > /dev/null", 1, "no/where.pairs");
+               {"right.pairs"});
+  expect_error("echo 'nan 0 0 1 0 0 0 1 0  0 0 5 1 0 5 0 1 5' > nan.pairs; graze minimize nan.pairs", 1, {"nan.pairs"});
+  expect_error("graze minimize exact_contact:1:1 --lanes nothing", 2, {"'nothing'"});
+  expect_error("graze minimize exact_contact:1:1 --out no/where.pairs > /dev/null", 1,
+               {"no/where.pairs", "No such file or directory"});
 }
 
 }  // namespace

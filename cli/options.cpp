@@ -70,7 +70,8 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
   };
   return command.add_option_function<std::vector<std::string>>(name, split, description)
       ->allow_extra_args(false)
-      ->option_text("GLOB,…");
+      ->option_text("GLOB,…")
+      ->default_str("all");
 }
 
 void add_shard_option(CLI::App& command, fuzz::Shard& shard, const char* description) {
@@ -123,7 +124,7 @@ CLI::Validator one_of(std::vector<std::string> words, Chosen chosen) {
 void expect_utf8(const std::string& what, const std::string& file) {
   const std::string text = fuzz::Json(file).dump(-1, ' ', false, fuzz::Json::error_handler_t::replace);
   if (fuzz::Json::parse(text) != file)
-    throw UsageError(what + ": expected a file name in UTF-8, which the results record, found " + text);
+    throw UsageError(what + ": the file name " + text + " is not UTF-8, as the results must be; rename the file");
 }
 
 CLI::Validator not_empty() {
@@ -132,18 +133,20 @@ CLI::Validator not_empty() {
 }
 
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
-  add_globs(command, "--lanes", options.globs, "Only lanes that match a pattern");
+  add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run");
   command
-      .add_option("--subject", options.subjects,
-                  "Your own code as lanes NAME/…: a shared object or a C, C++ or CUDA source, each with :FUNCTION, "
-                  "or cmd:COMMAND; any number of times (docs/your_own_code.md)")
+      .add_option(
+          "--subject", options.subjects,
+          "Your own code, as lanes NAME/…. WHAT is a shared object or a C, C++ or CUDA source with :FUNCTION, or "
+          "cmd:COMMAND; see docs/your_own_code.md. May be repeated")
       ->allow_extra_args(false)
       ->option_text("NAME=WHAT");
   command
-      .add_option("--flags", options.flags, "For the compiler, of subjects that are sources: --flags='-O3 -Iinclude'")
+      .add_option("--flags", options.flags,
+                  "Compiler flags for subjects that are sources, such as --flags='-O3 -Iinclude'")
       ->allow_extra_args(false)
       ->option_text("TEXT");
-  command.add_option("--subject-timeout", options.timeout, "Seconds that a subject may take for a pair")
+  command.add_option("--subject-timeout", options.timeout, "Time limit of a subject for one pair, in seconds")
       ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");
@@ -154,12 +157,12 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
   static_assert(static_cast<int>(fuzz::Executor::automatic) == 0 && static_cast<int>(fuzz::Executor::device) == 1 &&
                 static_cast<int>(fuzz::Executor::twin) == 2 && static_cast<int>(fuzz::Executor::both) == 3);
   command
-      .add_option(
-          "--executor", options.executor,
-          "What runs the CUDA lanes: auto (the device where there is one, else its twin), device, twin, or both "
-          "(compared)")
+      .add_option("--executor", options.executor,
+                  "Executor of the CUDA lanes. auto: the device if there is one, else its twin; both: device and twin, "
+                  "compared")
       ->transform(one_of({"auto", "device", "twin", "both"}, Chosen::place))
-      ->option_text("auto|device|twin|both");
+      ->option_text("auto|device|twin|both")
+      ->default_str("auto");
 }
 
 void open_subjects_of(const std::filesystem::path& name) {

@@ -147,7 +147,7 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
   EXPECT_EQ(alone.out.find("PASSED"), std::string::npos);
   EXPECT_NE(alone.out.find("graze, which has to be on the PATH"), std::string::npos) << alone.out << alone.err;
   expect_error(again + "graze repro p" + subject + "--lanes 'own/*/cuda-fma' --emit cuda", 1,
-               "one of the CUDA lanes is wrong");
+               {"CUDA lanes", "--lanes"});
 #ifdef GRAZE_NVCC_DIR
   write("false");
   emit("cuda", "case.cu");
@@ -227,10 +227,7 @@ TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
       "export XDG_CACHE_HOME=$PWD/cache; graze fuzz --pairs 20 --subject own=./own.cu:meet --executor twin --out e");
   if (own.err.find("NVRTC") != std::string::npos) GTEST_SKIP() << "no NVRTC";
   EXPECT_EQ(own.status, 2);
-  EXPECT_TRUE(
-      own.err.starts_with("graze: 'own/*': expected a lane that runs here, found only some left out (no twin: "))
-      << own.err;
-  EXPECT_EQ(std::count(own.err.begin(), own.err.end(), '\n'), 1) << own.err;
+  EXPECT_TRUE(names(own.err.substr(0, own.err.find_last_not_of('\n') + 1), {"'own/*'", "no twin"}));
 }
 
 TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
@@ -238,7 +235,7 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   const std::string fuzz =
       "export XDG_CACHE_HOME=$PWD/cache; graze fuzz --subject own=./own.c --pairs 400 "
       "--lanes 'own/f32/cpu,moller*/f32/cpu' --out c --fail-above ";
-  expect_error(fuzz + "0", 1, "graze: own: expected at most 0 wrong pairs, found ");
+  expect_error(fuzz + "0", 1, {"own", "0", "--fail-above"});
   const Ran ran = shell(fuzz + "0");
   const std::size_t again = ran.err.find("again: ");
   ASSERT_NE(again, std::string::npos) << ran.err;
@@ -265,7 +262,7 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   EXPECT_EQ(shell(fuzz + "0").err, ran.err);
   // Without a subject any lane counts.
   const std::string ours = "graze fuzz --pairs 400 --out d --fail-above ";
-  expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, "moller_1997: expected at most 0 wrong pairs");
+  expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, {"moller_1997", "0", "--fail-above"});
   expect_done("graze fuzz --pairs 400 --out e --lanes 'exact/f32/cpu' --fail-above 0");
 }
 

@@ -90,21 +90,27 @@ int plan(const PlanOptions& options) {
 
 void add_plan(CLI::App& app, int& status) {
   CLI::App* command =
-      app.add_subcommand("plan", "How long a campaign takes and how much disk, from what its pairs cost here");
+      app.add_subcommand("plan", "Estimate the time and disk space of a campaign from a measurement on this machine");
   command->footer("Example: graze plan --pairs 1e10 --lanes '*/f32/cpu' --cores 64");
   auto options = std::make_shared<PlanOptions>();
-  command->add_option("--pairs", options->pairs, "Pairs in all")
+  command->add_option("--pairs", options->pairs, "Number of pairs in total")
       ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str();
-  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+      ->capture_default_str()
+      ->option_text("N");
+  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   add_lane_options(*command, options->lanes);
-  CLI::Option* cores =
-      command->add_option("--cores", options->cores, "Cores that run it")->transform(whole_number(1, 10'000'000));
-  command->add_option("--gpus", options->gpus, "GPUs that run it; the rate is measured on one, or given")
+  CLI::Option* cores = command->add_option("--cores", options->cores, "Number of cores that run it")
+                           ->transform(whole_number(1, 10'000'000))
+                           ->capture_default_str()
+                           ->option_text("N");
+  command
+      ->add_option("--gpus", options->gpus,
+                   "Number of GPUs that run it; the rate is measured on one, or given by --rate")
       ->transform(whole_number(1, 10'000'000))
-      ->excludes(cores);
-  command->add_option("--rate", options->rate, "Pairs a second of one core or GPU, instead of measuring it")
+      ->excludes(cores)
+      ->option_text("N");
+  command->add_option("--rate", options->rate, "Pairs per second of one core or GPU; measured by default")
       ->check(number(1e-3, 1e15))
       ->option_text("PAIRS");
   command->add_flag("--json", options->json, "Print one JSON object");

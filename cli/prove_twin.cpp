@@ -24,7 +24,7 @@ cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions
     return named.build->twin.empty() || !matches_any(options.lanes, named.lane);
   });
   if (lanes.subjects.empty()) return cuda::prove_twin(options);
-  if (builds.empty()) throw std::runtime_error("expected a CUDA source with a twin, found none");
+  if (builds.empty()) throw std::runtime_error("none of the subjects is a CUDA source with a twin");
   if (out.empty())
     out = subjects::proof_file(subjects::opened(parse_lane_name(builds[0].lane)->subject)->file).string();
   return cuda::prove_subjects(builds, options);
@@ -50,25 +50,32 @@ int prove(const cuda::ProofOptions& options, const LaneOptions& lanes, std::stri
 void add_prove_twin(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "prove-twin",
-      "On a GPU: compare each CUDA lane with its explicit PTX and its twin, bit for bit; exit 1 on any difference");
-  command->footer("Example: graze prove-twin --pairs 10000000000 --out proof.json");
+      "Compare each CUDA lane on the GPU with its explicit PTX and its twin, bit for bit; exit with 1 if any differ");
+  command->footer("Example: graze prove-twin --pairs 1e10 --out proof.json");
   auto options = std::make_shared<cuda::ProofOptions>();
   auto out = std::make_shared<std::string>();
   auto lanes = std::make_shared<LaneOptions>();
-  command->add_option("--pairs", options->pairs, "Pairs a lane, all strata together")
+  command->add_option("--pairs", options->pairs, "Number of pairs per lane, shared by all strata")
       ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str();
-  command->add_option("--twin-pairs", options->twin_pairs, "Of them, by the twin too")
+      ->capture_default_str()
+      ->option_text("N");
+  command->add_option("--twin-pairs", options->twin_pairs, "Number of these pairs that the twin replays as well")
       ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("N");
   command->add_option("--seed", options->seed, "Seed of all strata")
       ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->option_text("N");
   add_lane_options(*command, *lanes, Executors::twins);
-  command->add_flag("--wrong-rule", options->wrong_rule, "Contract the wrong product first: the proof must then fail");
+  command->add_flag("--wrong-rule", options->wrong_rule,
+                    "Use a wrong rule of contraction on purpose; the comparison must then fail");
   command
-      ->add_option("--out", *out, "File of the record: proof.json, or FILE.cu.proof.json of a subject, where it counts")
-      ->check(not_empty());
+      ->add_option(
+          "--out", *out,
+          "File for the record (default: proof.json; for a subject FILE.cu.proof.json, where graze looks for it)")
+      ->check(not_empty())
+      ->option_text("FILE");
   command->callback([options, lanes, out, &status] {
     options->lanes = lanes->globs;
     options->progress = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };

@@ -63,7 +63,7 @@ std::vector<std::string> lanes_of(const std::vector<std::string>& globs) {
       if (matches_any({glob}, lane.id) && std::find(ids.begin(), ids.end(), lane.id) == ids.end())
         ids.push_back(lane.id);
     }
-    if (ids.size() == before) throw UsageError("--lanes: expected a pattern that matches a lane, found '" + glob + "'");
+    if (ids.size() == before) throw UsageError("no lane matches '" + printable(glob) + "'; `graze lanes` lists them");
   }
   return ids;
 }
@@ -158,7 +158,7 @@ std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::T
   for (const std::string& lane : lanes_of(options.lanes)) {
     for (const std::string& executor : options.executors) runs.push_back({lane, executor, {}, {}});
   }
-  if (options.any && runs.size() > 1) throw UsageError("--any: expected one lane and one executor, found more");
+  if (options.any && runs.size() > 1) throw UsageError("--any works with one lane and one executor alone");
   const query::Context context;
   const std::atomic<bool>& interrupted = catch_interrupts();
   for (Run& run : runs) {
@@ -190,9 +190,10 @@ std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::T
 
 void query_mesh(const QueryOptions& options, int& status) {
   if (options.files.size() != 2)
-    throw UsageError(fmt::format("expected a reference and a mesh, found {} files", options.files.size()));
+    throw UsageError(
+        fmt::format("graze query needs two files, a reference and a mesh, and got {}", options.files.size()));
   if (options.any && (!options.obj.empty() || !options.pairs.empty()))
-    throw UsageError("--any: expected neither --obj nor --pairs, which have all hits");
+    throw UsageError("--any does not go with --obj or --pairs, which hold all hits");
   const std::vector<query::Triangle> references = read_references(options.files[0]),
                                      triangles = read_mesh(options.files[1]);
   const std::vector<Run> runs = runs_of(options, references, triangles, status);
@@ -231,34 +232,37 @@ void add_query(CLI::App& app, int& status) {
   auto options = std::make_shared<QueryOptions>();
   command
       ->add_option("files", options->files,
-                   "The reference, a text file of nine numbers or MESH#FACE, and the mesh (OFF, OBJ, STL, PLY)")
+                   "Reference triangle (a text file of nine numbers, or MESH#FACE) and mesh (OFF, OBJ, STL or PLY)")
       ->option_text("REF MESH");
-  command->add_option("--self", options->self, "Instead: the pairs of this mesh's own triangles that pierce each other")
+  command
+      ->add_option("--self", options->self,
+                   "Mesh to test against itself: the triangles that pierce each other are found instead")
       ->check(not_empty())
       ->excludes("files")
       ->option_text("MESH");
-  CLI::Option* any = command->add_flag("--any", options->any, "Stop at the first triangle that does");
-  command->add_flag("--all", options->all, "Find all (the default)")->excludes(any);
+  CLI::Option* any = command->add_flag("--any", options->any, "Stop at the first hit");
+  command->add_flag("--all", options->all, "Find all hits (default)")->excludes(any);
   options->executors = {"auto"};
-  command->add_option("--executor", options->executors, "What decides; several are compared")
+  command->add_option("--executor", options->executors, "Executors that decide; several are compared")
       ->delimiter(',')
       ->transform(one_of(kExecutors, Chosen::word))
-      ->option_text("auto|one-core|all-cores|one-gpu|all-gpus,…");
-  add_globs(*command, "--lanes", options->lanes, "Which lanes decide, `exact` by default; several are compared");
-  command->add_flag("--json", options->json, "One JSON object");
-  command->add_option("--obj", options->obj, "Write reference and hits as an OBJ file")
+      ->option_text("auto|one-core|all-cores|one-gpu|all-gpus,…")
+      ->default_str("auto");
+  add_globs(*command, "--lanes", options->lanes, "Patterns of the lanes that decide; several are compared")
+      ->default_str("exact");
+  command->add_flag("--json", options->json, "Print one JSON object");
+  command->add_option("--obj", options->obj, "OBJ file for the reference and the hits")
       ->check(not_empty())
       ->option_text("FILE");
-  command->add_option("--pairs", options->pairs, "Write the hits as pairs")->check(not_empty())->option_text("FILE");
-  command
-      ->add_option("--mismatches", options->mismatches,
-                   "Where triangles go on which lanes or executors differ (mismatches.pairs)")
+  command->add_option("--pairs", options->pairs, "File of pairs for the hits")->check(not_empty())->option_text("FILE");
+  command->add_option("--mismatches", options->mismatches, "File for triangles on which lanes or executors disagree")
       ->check(not_empty())
+      ->default_str("mismatches.pairs")
       ->option_text("FILE");
   command->callback([options, &status] {
     if (options->self.empty()) return query_mesh(*options, status);
     if (options->any || !options->lanes.empty() || options->executors != std::vector<std::string>{"auto"})
-      throw UsageError("--self: expected neither --any, --lanes nor --executor: it is exact, on all cores");
+      throw UsageError("--self is exact and runs on all cores; leave out --any, --lanes and --executor");
     query_self({options->self, options->json, options->obj, options->pairs});
   });
 }

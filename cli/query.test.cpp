@@ -129,29 +129,25 @@ TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
 }
 
 TEST_F(QueryCommand, ErrorsAreOneLine) {
-  expect_error("graze query", 2, "expected a reference and a mesh, found 0 files\n");
-  expect_error("graze query ref.txt", 2, "found 1 files\n");
-  expect_error("graze query ref.txt no.obj", 1, "no.obj: expected a mesh file");
-  expect_error("graze query no.txt mesh.obj", 1,
-               "no.txt: expected a file of nine numbers for each reference, found none\n");
-  expect_error("echo 1 2 3 > r; graze query r mesh.obj", 1, "r: expected nine numbers for each reference, found 3\n");
-  expect_error("echo 1 2 x > r; graze query r mesh.obj", 1,
-               "r:1: expected a coordinate that is finite in float32, found \"x\"");
-  expect_error("graze query mesh.obj#6 mesh.obj", 1, "mesh.obj: expected a face below 6, found 6\n");
-  expect_error("graze query mesh.obj#a mesh.obj", 2, "expected MESH#FACE with a whole number, found 'a'\n");
-  expect_error("graze query ref.txt mesh.obj --lanes nosuch", 2,
-               "expected a pattern that matches a lane, found 'nosuch'\n");
-  expect_error("graze query ref.txt mesh.obj --executor twin", 2, "one-gpu or all-gpus, found 'twin'");
+  expect_error("graze query", 2, {"two files", "0"});
+  expect_error("graze query ref.txt", 2, {"two files", "1"});
+  expect_error("graze query ref.txt no.obj", 1, {"no.obj", "No such file or directory"});
+  expect_error("graze query no.txt mesh.obj", 1, {"no.txt", "No such file or directory"});
+  expect_error("echo 1 2 3 > r; graze query r mesh.obj", 1, {"r", "3"});
+  expect_error("echo 1 2 x > r; graze query r mesh.obj", 1, {"r:1", "\"x\""});
+  expect_error("graze query mesh.obj#6 mesh.obj", 1, {"mesh.obj", "6", "6"});
+  expect_error("graze query mesh.obj#a mesh.obj", 2, {"'a'"});
+  expect_error("graze query ref.txt mesh.obj --lanes nosuch", 2, {"'nosuch'"});
+  expect_error("graze query ref.txt mesh.obj --executor twin", 2, {"'twin'"});
   expect_error("graze query ref.txt mesh.obj --executor one-core --lanes 'moller_1997/f32/cuda-fma'", 2,
-               "expected a lane of the host for cores");
-  expect_error("graze query ref.txt mesh.obj --any --lanes '*/f32/cpu'", 2,
-               "expected one lane and one executor, found more\n");
-  expect_error("graze query ref.txt mesh.obj --any --pairs p", 2, "expected neither --obj nor --pairs");
-  expect_error("graze query --self mesh.obj --any", 2, "--self: expected neither --any, --lanes nor --executor");
-  expect_error("graze query --self mesh.obj ref.txt", 2, "--self");
-  expect_error("mkdir d; graze query ref.txt mesh.obj --pairs d", 1, "d");
+               {"host", "moller_1997/f32/cuda-fma"});
+  expect_error("graze query ref.txt mesh.obj --any --lanes '*/f32/cpu'", 2, {"--any", "one lane"});
+  expect_error("graze query ref.txt mesh.obj --any --pairs p", 2, {"--any", "--obj", "--pairs"});
+  expect_error("graze query --self mesh.obj --any", 2, {"--self", "--any", "--lanes", "--executor"});
+  expect_error("graze query --self mesh.obj ref.txt", 2, {"--self"});
+  expect_error("mkdir d; graze query ref.txt mesh.obj --pairs d", 1, {"d"});
   if (shell("graze query ref.txt mesh.obj --executor one-gpu").status != 0)
-    expect_error("graze query ref.txt mesh.obj --executor one-gpu", 1, "expected a CUDA device, found none: ");
+    expect_error("graze query ref.txt mesh.obj --executor one-gpu", 1, {"no CUDA device"});
 }
 
 TEST_F(QueryCommand, BenchMeasuresAndCompares) {
@@ -206,9 +202,9 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
   EXPECT_EQ(count("<polyline"), executors.size());
   EXPECT_EQ(count("<circle"), 2 * executors.size());  // two sizes
   EXPECT_NE(out("graze bench --triangles 1000").find("thesis, 1,000"), std::string::npos);
-  expect_error("graze bench --triangles 0", 2, "expected a whole number from 1 to");
-  expect_error("graze bench --mesh no.obj", 1, "no.obj: expected a mesh file");
-  expect_error("graze bench --triangles 10 --lanes nosuch", 2, "found 'nosuch'");
+  expect_error("graze bench --triangles 0", 2, {"--triangles", "'0'", "1"});
+  expect_error("graze bench --mesh no.obj", 1, {"no.obj", "No such file or directory"});
+  expect_error("graze bench --triangles 10 --lanes nosuch", 2, {"'nosuch'"});
 }
 
 }  // namespace

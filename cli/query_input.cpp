@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/files.h"
@@ -18,7 +20,7 @@ namespace {
 
 std::vector<query::Triangle> read_numbers(const std::string& file) {
   if (!std::filesystem::is_regular_file(file))
-    throw std::runtime_error(file + ": expected a file of nine numbers for each reference, found none");
+    throw std::runtime_error(cannot("read", file, std::filesystem::is_directory(file) ? EISDIR : ENOENT));
   std::string text = fuzz::read_whole(file);
   std::replace(text.begin(), text.end(), ',', ' ');
   strata::Lines lines({file, text}, '#');
@@ -44,7 +46,8 @@ std::vector<query::Triangle> read_references(const std::string& name) {
   const std::string file = name.substr(0, hash);
   const std::vector<query::Triangle> triangles = read_mesh(file);
   if (*face >= triangles.size())
-    throw std::runtime_error(fmt::format("{}: expected a face below {}, found {}", file, triangles.size(), *face));
+    throw std::runtime_error(
+        fmt::format("{} has no face {}: it has {}, numbered from 0", file, *face, triangles.size()));
   return {triangles[*face]};
 }
 

@@ -8,6 +8,7 @@
 
 #include "cli/commands.h"
 #include "cli/results.h"
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
@@ -63,15 +64,16 @@ std::string page_of(const std::string& file) {
     const Json costs = reports::stored_costs(fs::path(file).replace_filename("costs.json"), report);
     return reports::page(report, costs, reports::make_choices(fs::path(file).parent_path()));
   } catch (const Json::exception&) {
-    throw std::runtime_error(file + ": expected a report of `graze report`, found something else");
+    throw std::runtime_error(cannot("use", file, "it is not a report of `graze report`"));
   }
 }
 
 void report(const ReportOptions& options) {
   const int named = !options.directory.empty() + !options.from.empty() + !options.compare.empty();
-  if (named != 1) throw UsageError(fmt::format("expected one of DIR, --compare and --from, found {}", named));
+  if (named != 1)
+    throw UsageError(fmt::format("graze report needs exactly one of DIR, --compare and --from, and got {}", named));
   if (options.from.empty() != options.out.empty())
-    throw UsageError("expected --from and --out together, found one of them");
+    throw UsageError("--from and --out need each other; add the other one");
   if (!options.from.empty()) {
     write_result(options.out, page_of(options.from));
     fmt::print("Wrote {}\n", options.out);
@@ -96,20 +98,23 @@ void report(const ReportOptions& options) {
 
 void add_report(CLI::App& app, int&) {
   CLI::App* command =
-      app.add_subcommand("report", "Turn a campaign into one page that works offline, and into JSON and CSV tables");
+      app.add_subcommand("report", "Write a campaign as one web page that works offline, and as JSON and CSV tables");
   command->footer("Example: graze report campaign");
   auto options = std::make_shared<ReportOptions>();
-  command->add_option("directory", options->directory,
-                      "A campaign's directory, into which report.html, report.json and the tables go");
   command
-      ->add_option(
-          "--compare", options->compare,
-          "Two campaigns: the report of the second, with what has changed since the first, as compare.html and "
-          "compare.json in its directory")
+      ->add_option("directory", options->directory,
+                   "Campaign directory; report.html, report.json and the tables are written into it")
+      ->option_text("DIR");
+  command
+      ->add_option("--compare", options->compare,
+                   "Two campaigns: a report of the second and its changes since the first, as compare.html and "
+                   "compare.json in the "
+                   "second directory")
       ->expected(2)
       ->option_text("DIR1 DIR2");
-  command->add_option("--from", options->from, "A report.json, of which only the page is made, as --out");
-  command->add_option("--out", options->out, "Where that page goes")->check(not_empty());
+  command->add_option("--from", options->from, "Existing report.json, from which only the page is written, to --out")
+      ->option_text("FILE");
+  command->add_option("--out", options->out, "File for the page of --from")->check(not_empty())->option_text("FILE");
   command->callback([options] { report(*options); });
 }
 

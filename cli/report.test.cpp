@@ -38,20 +38,18 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     write("c/summary.json", other);
     for (const std::string& reader : readers) {
       if (&reader != &readers[0] && place != std::string("/disagreements")) continue;
-      expect_error("graze " + reader, 1,
-                   "c/summary.json: expected what campaign.sqlite says: " + std::string(place).substr(1, 4));
+      expect_error("graze " + reader, 1, {"c/summary.json", "campaign.sqlite"});
     }
   }
   write("c/summary.json", summary);
   nlohmann::ordered_json kinds = nlohmann::ordered_json::parse(contents(shell.folder / "c/kinds.json")), more = kinds;
   more["kinds"][0]["pairs"] = more["kinds"][0]["pairs"].get<std::uint64_t>() + 1;
   write("c/kinds.json", more);
-  expect_error("graze kinds c", 1, "c/kinds.json: expected what `graze minimize` writes");
+  expect_error("graze kinds c", 1, {"c/kinds.json", "graze minimize"});
   // Kinds that are left out, and a lane, a stratum and a margin that are none: no failure is hidden, or made up.
   const auto refused = [&](const std::string& found) {
     for (const char* reader : {"kinds c", "report c", "corpus add c --corpus r"})
-      expect_error(std::string("graze ") + reader, 1,
-                   "c/kinds.json: expected what `graze minimize` writes, found " + found);
+      expect_error(std::string("graze ") + reader, 1, {"c/kinds.json", found, "graze minimize c"});
   };
   more = kinds;
   more["kinds"] = nlohmann::ordered_json::array();
@@ -67,7 +65,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     refused(found);
   }
   expect_done("head -c 300 c/kinds.json > k; cp k c/kinds.json");
-  refused("something else; remove this file, then: graze minimize c");
+  refused("damaged");
   write("c/kinds.json", kinds);
   expect_done("graze kinds c > /dev/null");
 
@@ -77,14 +75,14 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     if (run.contains("costs")) run["costs"]["lanes"]["exact/f32/cpu"]["thesis"]["middle"] = -1;
   }
   write("c/timings.json", timings);
-  expect_error("graze report c", 1, "c/timings.json: expected costs of exact/f32/cpu on 1 to 1024 pairs of thesis");
+  expect_error("graze report c", 1, {"c/timings.json", "exact/f32/cpu", "thesis"});
   std::ofstream(shell.folder / "c/timings.json") << timed;
   costs = nlohmann::ordered_json::parse(contents(shell.folder / "c/costs.json"));
   for (const auto& [field, value] : {std::pair("middle", -1), {"pairs", 1'000'000}}) {
     nlohmann::ordered_json other = costs;
     other["rows"][0][field] = value;
     write("c/costs.json", other);
-    expect_error("graze report --from c/report.json --out r.html", 1, "c/costs.json: expected ");
+    expect_error("graze report --from c/report.json --out r.html", 1, {"c/costs.json"});
   }
   write("c/costs.json", costs);
 
@@ -93,30 +91,29 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     nlohmann::ordered_json other = report;
     other["rates"][0]["wrong"][part] = 12345678;
     write("r.json", other);
-    expect_error("graze report --from r.json --out r.html", 1, "r.json: expected a share of at most ");
+    expect_error("graze report --from r.json --out r.html", 1, {"r.json"});
   }
   report["strata"][0]["pairs"] = 1;
   write("r.json", report);
-  expect_error("graze report --from r.json --out r.html", 1, "r.json: expected 3000 pairs in its strata");
+  expect_error("graze report --from r.json --out r.html", 1, {"r.json", "3000"});
 
   // Without its database a summary is compared with itself.
   std::filesystem::remove(shell.folder / "c/campaign.sqlite");
   expect_done("graze report c | grep 'checked only against each other'");
-  for (const auto& [place, value, said] :
-       {std::tuple("/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", 1230,
-                   "degenerate: expected at most "),
-        {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/declined", 3,
-         "wrong of moller_1997/f32/cpu by margin, found "},
-        {"/strata/degenerate/intersects", 1001, "degenerate: expected at most 1000 pairs that intersect, found 1001"},
-        {"/strata/degenerate/pairs", 1001, "degenerate: expected 1001 pairs by margin, found 1000"},
-        {"/spec/pairs", 2999, "expected exactly 2999 pairs in all strata, found 3000"},
-        {"/disagreements", 3001, "expected at most 3000 disagreements, found 3001"},
-        {"/signatures/0/count", 3001, "expected at most 3000 pairs of the signature "}}) {
+  using Words = std::vector<std::string>;
+  for (const auto& [place, value, words] :
+       {std::tuple("/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", 1230, Words{"degenerate", "1230"}),
+        {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/declined", 3, {"moller_1997/f32/cpu", "margin"}},
+        {"/strata/degenerate/intersects", 1001, {"degenerate", "intersect", "1000", "1001"}},
+        {"/strata/degenerate/pairs", 1001, {"degenerate", "margin", "1001", "1000"}},
+        {"/spec/pairs", 2999, {"pairs", "2999", "3000"}},
+        {"/disagreements", 3001, {"disagreements", "3000", "3001"}},
+        {"/signatures/0/count", 3001, {"signature", "3000", "3001"}}}) {
     nlohmann::ordered_json other = summary;
     other[nlohmann::ordered_json::json_pointer(place)] = value;
     write("c/summary.json", other);
-    expect_error("graze report c", 1, "c/summary.json: ");
-    expect_error("graze kinds c", 1, said);
+    expect_error("graze report c", 1, {"c/summary.json"});
+    expect_error("graze kinds c", 1, words);
   }
 }
 
@@ -179,16 +176,15 @@ TEST_F(Report, ComparesTwoCampaigns) {
 }
 
 TEST_F(Report, BadUseIsOneLine) {
-  expect_error("graze report", 2, "expected one of DIR, --compare and --from, found 0");
-  expect_error("graze report none", 1, "none: expected a campaign's directory with summary.json, found none");
-  expect_error("graze report --from x.json", 2, "expected --from and --out together");
-  expect_error("echo '{}' > x.json; graze report --from x.json --out y.html", 1, "x.json: expected a report");
-  expect_error("mkdir d; echo '{\"spec\": 1, \"strata\": 2}' > d/summary.json; graze report d", 1,
-               "d/summary.json: expected a campaign's summary, found something else");
+  expect_error("graze report", 2, {"--compare", "--from", "0"});
+  expect_error("graze report none", 1, {"none", "summary.json"});
+  expect_error("graze report --from x.json", 2, {"--from", "--out"});
+  expect_error("echo '{}' > x.json; graze report --from x.json --out y.html", 1, {"x.json"});
+  expect_error("mkdir d; echo '{\"spec\": 1, \"strata\": 2}' > d/summary.json; graze report d", 1, {"d/summary.json"});
   expect_done(std::string(kFuzz) + "--out c > /dev/null");
-  expect_error("ulimit -f 40; graze report c", 1, "c/report.json: expected to write it, found: File too large");
+  expect_error("ulimit -f 40; graze report c", 1, {"c/report.json", "File too large"});
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "c/report.json"));
-  expect_error("rm c/cases/*; graze report c", 1, "c/cases/");
+  expect_error("rm c/cases/*; graze report c", 1, {"c/cases"});
 }
 
 }  // namespace

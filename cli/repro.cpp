@@ -94,21 +94,20 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
 
 void add_repro(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "repro",
-      "Run a stored case again, or the pair named STRATUM:SEED:INDEX; exit 1 when a verdict changed; or print it as a "
-      "program");
+      "repro", "Run a stored case again, or print it as a program; exit with 1 if a verdict has changed");
   command->footer("Example: graze repro near_edge_edge:1:42");
   auto name = std::make_shared<std::string>();
   auto lanes = std::make_shared<LaneOptions>();
-  command->add_option("case", *name, "A file of a campaign's cases/, or STRATUM:SEED:INDEX")->required();
+  command->add_option("case", *name, "File of pairs, such as one of a campaign's cases/, or STRATUM:SEED:INDEX")
+      ->required();
   add_lane_options(*command, *lanes);
   auto emitted = std::make_shared<std::string>();
   command
       ->add_option(
           "--emit", *emitted,
-          "Print a self-contained program or file instead, of the first case with a wrong lane that it can "
-          "show (choose by --lanes): cpp and gtest show a CPU lane, cuda a CUDA lane, gtest also one of your own CUDA "
-          "code; python and cgal the truth")
+          "Language of a self-contained program to print instead, for the first case on which a lane of --lanes is "
+          "wrong. "
+          "cpp and gtest show a CPU lane, cuda a CUDA lane, gtest also your own CUDA code, python and cgal the truth")
       ->transform(one_of(std::vector<std::string>(std::begin(reports::kSnippetKinds), std::end(reports::kSnippetKinds)),
                          Chosen::word))
       ->option_text("cpp|cuda|python|obj|cgal|gtest");

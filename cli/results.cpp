@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/own_files.h"
@@ -18,12 +19,11 @@ namespace fs = std::filesystem;
 
 void refuse_folder(const fs::path& out, const std::string& own) {
   throw UsageError(
-      fmt::format("{}: expected a new or an empty folder, or {}, found other things; choose another --out, or --force",
-                  out.string(), own));
+      cannot("write into", out, "it holds other files; choose a new or an empty folder, " + own + ", or add --force"));
 }
 
 [[noreturn]] void refuse_unwritable(const fs::path& out, std::error_code error) {
-  throw std::runtime_error(out.string() + ": expected a folder that can be written, found: " + error.message());
+  throw std::runtime_error(cannot("write into", out, error.message()));
 }
 
 fs::path made(const fs::path& out, const char* own) {
@@ -44,13 +44,13 @@ void add_force(CLI::App& app) {
     if (std::any_of(std::begin(places), std::end(places),
                     [&](const char* name) { return verb->get_option_no_throw(name); }))
       verb->add_flag("--force", fuzz::may_replace_foreign,
-                     "Replace files that graze did not write, and use folders with other things");
+                     "Replace files that graze did not write, and use folders that hold other files");
   }
 }
 
 void expect_replaceable(const fs::path& file, const std::string& text) {
   if (!fuzz::may_replace_foreign && !fuzz::may_replace(file, text))
-    throw UsageError(file.string() + ": expected no file, or one that graze wrote, found another; --force replaces it");
+    throw UsageError(cannot("replace", file, "graze did not write it; choose another name, or add --force"));
 }
 
 void write_result(const fs::path& file, const std::string& text) {
@@ -67,7 +67,7 @@ void expect_writable(const fs::path& folder) {
 }
 
 void expect_campaign_folder(const fs::path& out) {
-  if (!fuzz::may_replace_foreign && !fuzz::may_hold_campaign(out)) refuse_folder(out, "a campaign's");
+  if (!fuzz::may_replace_foreign && !fuzz::may_hold_campaign(out)) refuse_folder(out, "a campaign directory");
 }
 
 ResultFolder::ResultFolder(const std::string& out, const char* own)

@@ -11,8 +11,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string>
+#include <vector>
+
+#include "core/message_testing.h"
 
 namespace graze::cli {
 
@@ -52,6 +56,12 @@ class Shell {
   std::filesystem::path folder;
 };
 
+// The verbs that the program's --help lists: the names at the beginning of its rows.
+inline std::vector<std::string> verbs_in_help(const Shell& shell, const std::string& program) {
+  std::istringstream names(shell(program + " --help | sed -n 's/^  \\([a-z][a-z-]*\\) .*/\\1/p'").out);
+  return {std::istream_iterator<std::string>(names), {}};
+}
+
 // To stand before a command: it gets the signal before its `write`-th write to a file (signal_at_write.cpp).
 inline std::string signal_at_write(int signal, int write) {
   return "ASAN_OPTIONS=verify_asan_link_order=0 GRAZE_SIGNAL=" + std::to_string(signal) +
@@ -75,12 +85,12 @@ class CommandTest : public testing::Test {
                  before + "; do sleep 0.02; kill -0 $p || exit 99; done; kill -" + signal + " $p; wait $p");
   }
 
-  // One line on stderr that holds `part`, and this exit status.
-  void expect_error(const std::string& command, int status, const std::string& part) const {
+  // One line on stderr that names these words (core/message_testing.h), and this exit status.
+  void expect_error(const std::string& command, int status, const std::vector<std::string>& words) const {
     const Ran ran = shell(command);
     EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;
-    EXPECT_NE(ran.err.find(part), std::string::npos) << command << '\n' << ran.err;
-    EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;
+    EXPECT_TRUE(ran.err.ends_with('\n')) << command << '\n' << ran.err;
+    EXPECT_TRUE(names(ran.err.substr(0, ran.err.size() - 1), words)) << command;
   }
 };
 

@@ -33,7 +33,7 @@ analysis::SceneSample sample_of_pairs(const std::string& file) {
   std::vector<Pair> pairs;
   for (const corpus::Entry& entry : corpus::read_pairs(file)) {
     if (!is_finite(entry.pair))
-      throw std::runtime_error(fmt::format("{}:{}: expected finite coordinates, found others", file, entry.line));
+      throw std::runtime_error(fmt::format("cannot measure {}, line {}: a coordinate is not finite", file, entry.line));
     pairs.push_back(entry.pair);
   }
   return analysis::sample_of(pairs);
@@ -44,9 +44,10 @@ void scene(const SceneVerb& options) {
   expect_utf8("--poses", options.poses);
   const bool pairs = fs::path(options.files[0]).extension() == ".pairs";
   if (pairs && options.files.size() > 1)
-    throw UsageError(fmt::format("expected one file of pairs, found {} files", options.files.size()));
+    throw UsageError(
+        fmt::format("graze scene measures one file of pairs at a time, and got {} files", options.files.size()));
   if (!options.poses.empty() && (pairs || options.files.size() > 1))
-    throw UsageError("--poses: expected one mesh, found " +
+    throw UsageError("--poses is for one mesh, and got " +
                      (pairs ? "pairs" : fmt::format("{} files", options.files.size())));
   analysis::SceneSample sample;
   strata::SceneMeshes meshes;
@@ -72,8 +73,7 @@ void scene(const SceneVerb& options) {
   try {
     strata::parse_scene("scene", text);
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(
-        fmt::format("{}: expected what a scene can hold, found {}", options.files[0], error.what()));
+    throw std::runtime_error(fmt::format("cannot write a scene of {}: {}", options.files[0], error.what()));
   }
   if (options.out.empty()) {
     std::cout << text;
@@ -88,29 +88,35 @@ void scene(const SceneVerb& options) {
 }  // namespace
 
 void add_scene(CLI::App& app, int&) {
-  CLI::App* command =
-      app.add_subcommand("scene", "Measure meshes or pairs: extent, sizes, grid, kinds of pairs; a scene to draw from");
+  CLI::App* command = app.add_subcommand(
+      "scene",
+      "Measure meshes or pairs, and write a scene that pairs can be drawn from: extent, sizes, grid, kinds of pairs");
   command->footer("Example: graze scene arm.off table.stl --units mm --out arm.toml");
   auto options = std::make_shared<SceneVerb>();
   command
-      ->add_option("files", options->files,
-                   "Meshes (OFF, OBJ, STL, PLY): of one its own pairs count, of several the pairs between them; or one "
-                   "file of pairs (.pairs)")
-      ->required();
+      ->add_option(
+          "files", options->files,
+          "Meshes (OFF, OBJ, STL or PLY) or one file of pairs (.pairs). One mesh is measured against itself, several "
+          "against each other")
+      ->required()
+      ->option_text("FILE");
   command
       ->add_option("--poses", options->poses,
-                   "The mesh at each of these poses: CSV, twelve numbers a line, the three rows of a matrix (R | t)")
+                   "CSV file of poses of the mesh, one per line: twelve numbers, the three rows of a matrix (R | t)")
       ->check(not_empty())
       ->option_text("FILE");
-  command->add_option("--units", options->units, "What the coordinates are in")
+  command->add_option("--units", options->units, "Unit of the coordinates")
       ->check(not_empty())
-      ->capture_default_str();
-  command->add_option("--out", options->out, "The scene's file; without it, standard output")->check(not_empty());
+      ->capture_default_str()
+      ->option_text("NAME");
+  command->add_option("--out", options->out, "File for the scene (default: standard output)")
+      ->check(not_empty())
+      ->option_text("FILE");
   command->callback([options] { scene(*options); });
 }
 
 void add_scene_option(CLI::App& command, std::string& file) {
-  command.add_option("--scene", file, "Draw within this scene, a file that `graze scene` makes or a person writes")
+  command.add_option("--scene", file, "Scene to draw pairs in, a file that `graze scene` or a person has written")
       ->check(not_empty())
       ->option_text("FILE");
 }
@@ -135,8 +141,8 @@ strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::ui
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out) {
   std::string text;
   for (const strata::LeftOut& row : left_out)
-    text +=
-        fmt::format("{}  {}: {}\n", text.empty() ? "\nLeft out, as the scene has none such:\n" : "", row.id, row.why);
+    text += fmt::format("{}  {}: {}\n", text.empty() ? "\nLeft out, because the scene cannot contain them:\n" : "",
+                        row.id, row.why);
   return text;
 }
 

@@ -57,8 +57,9 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   expect_done("graze scene hills.off --out hills.toml");
   const Ran ran = shell(fuzz + "--threads 1 --out one");
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("\nLeft out, as the scene has none such:\n  thesis: its triangles are fixed numbers"),
-            std::string::npos)
+  EXPECT_NE(
+      ran.out.find("\nLeft out, because the scene cannot contain them:\n  thesis: its triangles are fixed numbers"),
+      std::string::npos)
       << ran.out;
   EXPECT_NE(
       ran.out.find(
@@ -95,9 +96,8 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   // The same scene with a comment goes on; another scene is another campaign, and its names are not these.
   expect_done("sed -i '1i # mine' hills.toml && " + fuzz + "--out one");
   expect_done("sed -i 's/^units.*/units = \"m\"/' hills.toml");
-  expect_error(fuzz + "--out one", 2, "one");
-  expect_error("graze explain '" + id + "@" + of + numbers + "'", 1,
-               "hills.toml: expected the scene " + of + ", found hills.toml#");
+  expect_error(fuzz + "--out one", 2, {"one"});
+  expect_error("graze explain '" + id + "@" + of + numbers + "'", 1, {"hills.toml", of});
   EXPECT_EQ(vertices_of(id + "@one" + numbers), vertices);
 }
 
@@ -130,32 +130,30 @@ TEST_F(SceneVerb, PosesAndSeveralMeshes) {
   expect_done(
       "cp hills.off b.off && graze scene hills.off b.off --out two.toml && grep -q '\"hills.off\", \"b.off\"' "
       "two.toml");
-  expect_error("graze scene hills.off b.off --poses p.csv", 2, "--poses: expected one mesh, found 2 files");
+  expect_error("graze scene hills.off b.off --poses p.csv", 2, {"--poses", "2"});
 }
 
 TEST_F(SceneVerb, WrongUseIsOneLine) {
-  expect_error("graze scene missing.off", 1, "missing.off: expected a mesh file");
-  expect_error("cp hills.off $'\\xff.off'; graze scene $'\\xff.off'", 2, "expected a file name in UTF-8");
+  expect_error("graze scene missing.off", 1, {"missing.off", "No such file or directory"});
+  expect_error("cp hills.off $'\\xff.off'; graze scene $'\\xff.off'", 2, {"UTF-8"});
   expect_error(
       "printf '1 0 0 0 0 1 0 0 0 0 1 0\\n1 0 0 9e37 0 1 0 0 0 0 1 0\\n' > p.csv; graze scene hills.off --poses p.csv",
-      1, "hills.off: expected");
-  expect_error("graze scene mm.toml", 1, "expected a file of extension .off, .obj, .stl or .ply, found .toml");
-  expect_error("graze fuzz --scene missing.toml", 1,
-               "missing.toml: expected a scene's file, found none that can be opened");
-  expect_error("graze fuzz --scene .", 1, ".: expected a scene's file");
+      1, {"hills.off"});
+  expect_error("graze scene mm.toml", 1, {".off", ".obj", ".stl", ".ply", ".toml"});
+  expect_error("graze fuzz --scene missing.toml", 1, {"missing.toml", "No such file or directory"});
+  expect_error("graze fuzz --scene .", 1, {".", "not a regular file"});
   expect_error("printf 'extent = [0, 1]\\nedges = [1, nan]\\n' > bad.toml; graze fuzz --scene bad.toml", 1,
-               "bad.toml:2: expected a number from ");
-  expect_error("printf 'extnt = [0, 1]\\n' > bad.toml; graze fuzz --scene bad.toml", 1, "did you mean 'extent'?");
-  expect_error("graze fuzz --scene mm.toml --strata 'nearly_*'", 2, "found 'nearly_*'");
-  expect_error("graze fuzz --scene mm.toml --strata thesis", 2,
-               "expected a stratum that the scene can contain, found thesis: its triangles are fixed numbers");
-  expect_error("graze fuzz --scene mm.toml --mesh hills.off", 2, "--scene");
+               {"bad.toml:2"});
+  expect_error("printf 'extnt = [0, 1]\\n' > bad.toml; graze fuzz --scene bad.toml", 1, {"'extent'"});
+  expect_error("graze fuzz --scene mm.toml --strata 'nearly_*'", 2, {"'nearly_*'"});
+  expect_error("graze fuzz --scene mm.toml --strata thesis", 2, {"thesis", "fixed numbers"});
+  expect_error("graze fuzz --scene mm.toml --mesh hills.off", 2, {"--scene"});
   expect_error(
       "graze scene hills.off --out hills.toml > /dev/null; sed -i '$d' hills.off; echo 3 0 1 3 >> hills.off; graze "
       "fuzz "
       "--scene hills.toml",
-      1, "hills.off: expected the content ");
-  expect_error("graze explain near_edge_edge@mm.toml:x:1", 2, "expected a whole number");
+      1, {"hills.off"});
+  expect_error("graze explain near_edge_edge@mm.toml:x:1", 2, {"whole number", "'x'"});
 }
 
 }  // namespace

@@ -130,6 +130,48 @@ TEST_F(TerminalTest, TheLiveLineNeverWraps) {
   EXPECT_LT(widest(text), 40) << text;
 }
 
+// The lines of a text that are no example: an example is copied, so it is one line.
+std::string without_examples(const std::string& text) {
+  std::istringstream in(text);
+  std::string kept;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("Example: ")) kept += line + '\n';
+  }
+  return kept;
+}
+
+TEST_F(TerminalTest, HelpFitsAnyTerminalAndIsTheSameInEveryPipe) {
+  std::vector<std::string> verbs = {"", "corpus add ", "corpus list ", "corpus verify "};
+  for (const std::string& verb : verbs_in_help(shell, "graze")) verbs.push_back(verb + ' ');
+  for (const std::string& verb : verbs) {
+    const std::string help = "graze " + verb + "--help";
+    const std::string piped = shell(help).out;
+    EXPECT_EQ(shell("COLUMNS=40 " + help).out, piped) << help;
+    EXPECT_EQ(without_colour(on_terminal(shell, help, 100)), piped) << help;
+    for (const unsigned short columns : std::initializer_list<unsigned short>{50, 80, 140})
+      EXPECT_LE(widest(without_examples(on_terminal(shell, help, columns))), columns) << help;
+    EXPECT_LE(widest(on_terminal(shell, help, 80)), 80) << help;
+  }
+  EXPECT_GT(widest(on_terminal(shell, "graze --help", 140)), 100);
+}
+
+TEST_F(ScreenTest, HelpGroupsTheVerbsByTaskAndSaysDefaults) {
+  const std::string help = shell("graze --help").out;
+  std::size_t last = 0;
+  for (const std::string part : {"\nFind ", "  hunt ", "\nUnderstand ", "  explain ", "\nChoose ", "  tune ",
+                                 "\nScale ", "  merge ", "\nKeep ", "  corpus ", "\nOptions:\n"}) {
+    const std::size_t at = help.find(part, last);
+    ASSERT_NE(at, std::string::npos) << part << help;
+    last = at;
+  }
+  EXPECT_EQ(verbs_in_help(shell, "graze").size(), 25u);
+  const std::string fuzz = shell("graze fuzz --help").out;
+  for (const std::string part :
+       {"Usage: graze fuzz [OPTIONS]\n", "--pairs N ", "(default: 1000000)", "(default: auto)"})
+    EXPECT_NE(fuzz.find(part), std::string::npos) << part << fuzz;
+  EXPECT_NE(shell("graze check --help").out.find("Usage: graze check [OPTIONS] FILE\n"), std::string::npos);
+}
+
 TEST_F(TerminalTest, StrataAreOneLineEachForProgramsAndWrappedForPeople) {
   const std::string piped = shell("graze strata").out, shown = on_terminal(shell, "graze strata", 80);
   EXPECT_LE(widest(shown), 80);

@@ -49,12 +49,12 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
   for (const char* k : {"1", "3"}) ASSERT_EQ(shell(fuzz + "--shard " + k + "/3 --out p-" + k).status, 0);
-  expect_error("graze merge p-* --out all", 1, "expected 3 shards, found none that is 2/3; it is run by: graze fuzz");
-  const std::string missing = command_in(shell("graze merge p-1 p-3 --out all").err, "it is run by: ");
+  expect_error("graze merge p-* --out all", 1, {"2/3", "graze fuzz"});
+  const std::string missing = command_in(shell("graze merge p-1 p-3 --out all").err, "to run it: ");
   ASSERT_EQ(shell(missing).status, 0) << missing;
   EXPECT_EQ(shell("graze merge p-1 p-3 shard-2 --out all").status, 0);
   expect_same("whole", "all");
-  expect_error("graze merge p-1 p-3 shard-2 --out all", 2, "expected a new or an empty directory");
+  expect_error("graze merge p-1 p-3 shard-2 --out all", 2, {"empty", "--out"});
 
   // Of what is damaged, too; what checks is kept.
   expect_done(
@@ -63,7 +63,7 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
       "WHERE id = 2'); c.commit()\"");
   const std::string said = shell("graze merge p-1 p-3 shard-2 --out again").err;
   const std::string repair = command_in(said, "copy it again, or: ");
-  EXPECT_NE(said.find("p-3/campaign.sqlite: expected the file that the run left, hash "), std::string::npos) << said;
+  EXPECT_TRUE(has_word(said, "p-3/campaign.sqlite") && has_word(said, "hash")) << said;
   ASSERT_EQ(shell(repair).status, 0) << repair;
   EXPECT_EQ(shell("graze merge p-1 p-3 shard-2 --out again").status, 0);
   expect_same("whole", "again");
@@ -79,13 +79,12 @@ TEST_F(Shards, MergingGoesThroughLinksAndSaysFirstWhereItCannotGo) {
   expect_done("cd a && " + merge + "./b/../c/ && cmp c/summary.json ../empty/summary.json");
   expect_done("cd a && mkdir -p x/y && ln -s x/y into && " + merge +
               "into/../c && cmp x/c/summary.json ../empty/summary.json");
-  expect_error("cd a && " + merge + "loop", 2, "loop: expected a new or an empty directory, found: ");
-  expect_error("mkdir here && cd here && " + merge + ".", 2, ".: is the working directory, which cannot be replaced");
+  expect_error("cd a && " + merge + "loop", 2, {"loop", "Too many levels of symbolic links"});
+  expect_error("mkdir here && cd here && " + merge + ".", 2, {".", "working directory"});
   expect_done("test -z \"$(ls *.part a/*.part 2> /dev/null)\" && test -z \"$(ls -A here)\"");
   const std::string mounted = "mkdir -p m && cd a && unshare -rm sh -c 'mount -t tmpfs none ../m && ";
   if (shell(mounted + "true'").status != 0) GTEST_SKIP() << "no mount namespaces here";
-  expect_error(mounted + merge + "../m'", 2,
-               "../m: is a mount point, which cannot be replaced; use a new directory in");
+  expect_error(mounted + merge + "../m'", 2, {"../m", "mount point", "--out"});
   expect_done(mounted + merge + "../m/campaign && cmp ../m/campaign/summary.json ../empty/summary.json'");
 }
 
@@ -100,21 +99,19 @@ TEST_F(Shards, MinimizingTakesShardsOfTheSignatures) {
             "diff -r whole/cases parts/cases")
           .status,
       0);
-  expect_error("graze minimize uniform:1:1 --shard 1/2", 2, "expected --shard only with a campaign's directory");
+  expect_error("graze minimize uniform:1:1 --shard 1/2", 2, {"--shard"});
 }
 
 TEST_F(Shards, WrongUseIsOneLine) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
-  for (const char* text : {"0/3", "4/3", "3", "x"})
-    expect_error(fuzz + "--shard " + text + " --out a", 2, "expected K/N");
-  expect_error(fuzz + "--shard 1/3 --fail-above 0 --out a", 2, "--fail-above");
-  expect_error(fuzz + "--scratch here --out a", 2, "--scratch: expected --shard");
+  for (const char* text : {"0/3", "4/3", "3", "x"}) expect_error(fuzz + "--shard " + text + " --out a", 2, {"K/N"});
+  expect_error(fuzz + "--shard 1/3 --fail-above 0 --out a", 2, {"--fail-above"});
+  expect_error(fuzz + "--scratch here --out a", 2, {"--scratch", "--shard"});
   ASSERT_EQ(shell(fuzz + "--shard 1/3 --out a").status, 0);
-  expect_error(fuzz + "--shard 2/3 --out a", 2,
-               "a: holds another shard: expected 2/3, found 1/3; choose another --out");
-  expect_error(fuzz + "--out a", 2, "a: holds another shard: expected none, found 1/3");
-  expect_error("graze report a", 1, "summary.json");
-  expect_error("graze merge --out b", 2, "");
+  expect_error(fuzz + "--shard 2/3 --out a", 2, {"a", "1/3", "2/3", "--out"});
+  expect_error(fuzz + "--out a", 2, {"a", "1/3"});
+  expect_error("graze report a", 1, {"summary.json"});
+  expect_error("graze merge --out b", 2, {"parts"});
   EXPECT_EQ(Json::parse(shell(fuzz + "--shard 1/3 --out a --json").out)["pairs"], 300);
 }
 
@@ -126,7 +123,7 @@ TEST_F(Shards, TwoProcessesOfOneShardAreRefused) {
                           "kill -STOP $!; " +
                           fuzz + scratch + "; echo second $?; kill -TERM $!; kill -CONT $!; wait $!; echo first $?");
     EXPECT_EQ(ran.out, "second 1\nfirst 130\n") << ran.err;
-    EXPECT_NE(ran.err.find("expected to be alone, found: another process at work in it"), std::string::npos) << ran.err;
+    EXPECT_NE(ran.err.find("another process"), std::string::npos) << ran.err;
   }
 }
 
@@ -139,7 +136,7 @@ TEST_F(Shards, ScenesPoliciesAndSubjectsMergeToo) {
       "--lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/rel:24,mine/f32/cpu' ";
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0) << shell(fuzz + "--out whole").err;
   for (const char* k : {"1", "2"}) ASSERT_EQ(shell(fuzz + "--shard " + k + "/3 --out p-" + k).status, 0);
-  ASSERT_EQ(shell(command_in(shell("graze merge p-1 p-2 --out all").err, "it is run by: ")).status, 0);
+  ASSERT_EQ(shell(command_in(shell("graze merge p-1 p-2 --out all").err, "to run it: ")).status, 0);
   EXPECT_EQ(shell("graze merge p-1 p-2 shard-3 --out all").status, 0);
   expect_same("whole", "all");
 }
@@ -149,7 +146,7 @@ TEST_F(Shards, OfAHuntMergeByKind) {
   const Ran first = shell(hunt + "--shard 1/2 --out p-1");
   if (first.err.find("libFuzzer") != std::string::npos) GTEST_SKIP() << first.err;
   EXPECT_TRUE(first.out.starts_with("Shard 1/2: 1,500 pairs, ")) << first.out << first.err;
-  const std::string missing = command_in(shell("graze merge p-1 --out all").err, "it is run by: ");
+  const std::string missing = command_in(shell("graze merge p-1 --out all").err, "to run it: ");
   ASSERT_EQ(shell(missing).status, 0) << missing;
   const Ran status = shell("graze status p-1 shard-2 --json");
   EXPECT_EQ(status.status, 0) << status.err;
@@ -161,7 +158,7 @@ TEST_F(Shards, OfAHuntMergeByKind) {
       shell("graze merge shard-2 p-1 --out all && graze kinds all && graze report all && graze minimize all");
   EXPECT_EQ(merged.status, 0) << merged.err;
   EXPECT_NE(merged.out.find("\n3,000 pairs: some lane is wrong on "), std::string::npos) << merged.out;
-  expect_error(hunt + "--out all", 2, "merged of shards");
+  expect_error(hunt + "--out all", 2, {"merged", "shards"});
 }
 
 TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
@@ -200,23 +197,21 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
   ASSERT_EQ(whole["state"], "done");
   const auto refused = [&](const std::string& text, const std::string& found) {
     std::ofstream(shell.folder / "c/status.json") << text;
-    expect_error("graze status c", 1, "c/status.json: expected " + found);
+    expect_error("graze status c", 1, {"c/status.json", found});
   };
-  const std::string else_found = "what a run says of itself, found something else";
-  for (const std::string& text : {std::string(), std::string("[]"), whole.dump().substr(0, 90)})
-    refused(text, else_found);
-  for (const auto& [field, value, found] :
-       {std::tuple<const char*, Json, std::string>("done", 399, "all 400 pairs of a run that is done, found 399"),
-        {"done", 401, "at most 400 pairs done"},
-        {"disagreements", 401, "at most 400 pairs done and as many disagreements"},
-        {"disagreements", 18446744073709551616.0, else_found},
-        {"signatures", -1, else_found},
-        {"state", "unknown", "running, done, stopped or failed as state"},
-        {"state", nullptr, else_found},
-        {"shard", "2/1", "K/N as shard"},
-        {"rate", -1, "a rate and a time of at least 0"},
-        {"ways", {1}, else_found},
-        {"updated", "x", "a whole number as updated"}}) {
+  const std::string damaged = "damaged";
+  for (const std::string& text : {std::string(), std::string("[]"), whole.dump().substr(0, 90)}) refused(text, damaged);
+  for (const auto& [field, value, found] : {std::tuple<const char*, Json, std::string>("done", 399, "399 done"),
+                                            {"done", 401, "401 done"},
+                                            {"disagreements", 401, "401 disagreements"},
+                                            {"disagreements", 18446744073709551616.0, damaged},
+                                            {"signatures", -1, damaged},
+                                            {"state", "unknown", "unknown"},
+                                            {"state", nullptr, damaged},
+                                            {"shard", "2/1", "2/1"},
+                                            {"rate", -1, "rate"},
+                                            {"ways", {1}, damaged},
+                                            {"updated", "x", "updated"}}) {
     Json other = whole;
     other[field] = value;
     refused(other.dump(), found);
@@ -224,14 +219,27 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
   for (const char* field : {"state", "shard", "pairs", "done", "disagreements", "signatures", "updated"}) {
     Json other = whole;
     other.erase(field);
-    refused(other.dump(), else_found);
+    refused(other.dump(), damaged);
   }
   std::filesystem::remove(shell.folder / "c/status.json");
-  expect_error("graze status c", 1, "c/status.json: expected what the run of this campaign says of itself, found none");
+  expect_error("graze status c", 1, {"c/status.json", "missing"});
   std::filesystem::remove(shell.folder / "c/campaign.sqlite");
   expect_done("graze status c | grep 'not begun'");
   std::ofstream(shell.folder / "c/status.json") << whole;
   expect_done("graze status c | grep ' done '");
+}
+
+// A shard's folder is no larger than planned, nor is the merged campaign's without its cases.
+TEST_F(Shards, ThePlannedDiskIsEnough) {
+  const std::string of = " --pairs 20000 --strata 'near_*' --lanes '*/f32/cpu' ";
+  const Json plan = Json::parse(shell("graze plan --json --cores 2" + of).out);
+  ASSERT_EQ(plan["shards"], 2);
+  for (const char* k : {"1", "2"}) {
+    ASSERT_EQ(shell("graze fuzz" + of + "--shard " + k + "/2 --out s-" + k).status, 0);
+    EXPECT_LE(std::stod(shell(std::string("cat s-") + k + "/* | wc -c").out), plan["shard_bytes"].get<double>());
+  }
+  ASSERT_EQ(shell("graze merge s-1 s-2 --out all").status, 0);
+  EXPECT_LE(std::stod(shell("cat all/campaign.sqlite | wc -c").out), plan["merged_bytes"].get<double>());
 }
 
 // mpirun refuses to run as root unless it is told to.

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <ctime>
 #include <iostream>
 #include <set>
@@ -12,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/progress.h"
 #include "cli/results.h"
+#include "core/cannot.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/run_status.h"
@@ -59,9 +61,8 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
   const Json status = fuzz::read_status(directory);
   if (status.is_null()) {
     if (fuzz::has_database(directory))
-      throw std::runtime_error((directory / "status.json").string() +
-                               ": expected what the run of this campaign says of itself, found none (`graze merge` "
-                               "leaves none)");
+      throw std::runtime_error(
+          cannot("open", directory / "status.json", "it is missing beside a database (`graze merge` writes none)"));
     return row;
   }
   const std::int64_t silent = std::time(nullptr) - status.at("updated").get<std::int64_t>();
@@ -181,15 +182,21 @@ int status_command(const StatusOptions& options) {
 
 void add_status(CLI::App& app, int& status) {
   CLI::App* command =
-      app.add_subcommand("status", "How far shards are; exit status 1 where one failed, was killed or stalls");
+      app.add_subcommand("status", "Show how far shards are; exit with 1 if one has failed, was killed or has stalled");
   command->footer("Example: graze status shard-*");
   auto options = std::make_shared<StatusOptions>();
-  command->add_option("directories", options->directories, "Directories of shards or campaigns, of one by mpirun also")
-      ->required();
-  command->add_option("--stalled", options->stalled, "Seconds without a word after which a run counts as stalled")
+  command
+      ->add_option("directories", options->directories,
+                   "Directories of shards or campaigns, also of those that mpirun started")
+      ->required()
+      ->option_text("DIR");
+  command
+      ->add_option("--stalled", options->stalled,
+                   "Time without a sign of life after which a run counts as stalled, in seconds")
       ->transform(whole_number(1, 1'000'000'000))
-      ->capture_default_str();
-  command->add_option("--prometheus", options->prometheus, "Write the same to this file in Prometheus' text format")
+      ->capture_default_str()
+      ->option_text("SECONDS");
+  command->add_option("--prometheus", options->prometheus, "File for the same figures in Prometheus' text format")
       ->check(not_empty())
       ->option_text("FILE");
   command->add_flag("--json", options->json, "Print one JSON object");

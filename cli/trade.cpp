@@ -111,7 +111,7 @@ int trade(TradeOptions options) {
   }
   if (options.device) {
     std::string why_not;
-    if (!cuda::open_device(why_not)) throw std::runtime_error("--device: expected a CUDA device, found " + why_not);
+    if (!cuda::open_device(why_not)) throw std::runtime_error("--device needs a CUDA device: " + why_not);
     options.lanes.executor = fuzz::Executor::device;
   }
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
@@ -160,13 +160,14 @@ int trade(TradeOptions options) {
 
 void add_trade(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "trade", "Measure errors against nanoseconds a pair, and how far from ordinary pairs each lane stays right");
+      "trade", "Measure errors against nanoseconds per pair, and how extreme pairs may be before a lane fails");
   command->footer("Example: graze trade --strata 'near_*' --pairs 20k");
   const auto options = std::make_shared<TradeOptions>();
   add_lane_options(*command, options->lanes, Executors::twins);
-  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  command->get_option("--lanes")->default_str("common CPU lanes, or CUDA lanes with --device");
+  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
-  command->add_option("--pairs", options->pairs, "Pairs to count errors on")
+  command->add_option("--pairs", options->pairs, "Number of pairs on which errors are counted")
       ->transform(whole_number(1000, kMostWhole))
       ->capture_default_str()
       ->option_text("N");
@@ -175,7 +176,7 @@ void add_trade(CLI::App& app, int& status) {
       ->capture_default_str()
       ->option_text("N");
   command->add_flag("--device", options->device,
-                    "Measure the CUDA lanes on the first device, on pairs that lie there and with copies");
+                    "Measure the CUDA lanes on the first device, with pairs in its memory and with copies");
   command->add_option("--out", options->out, "Folder for trade.json and the pictures")
       ->check(not_empty())
       ->capture_default_str()

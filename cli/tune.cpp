@@ -71,13 +71,13 @@ int tune(const TuneOptions& options) {
   if (!lane || lane->algorithm < 0) {
     std::vector<std::string> ids;
     for (const Lane& row : published_lanes()) ids.push_back(row.id);
-    throw UsageError("expected a published lane (see `graze lanes`), found '" + printable(options.lane) + "'" +
+    throw UsageError("there is no published lane '" + printable(options.lane) + "'; `graze lanes` lists them" +
                      did_you_mean(options.lane, ids));
   }
   std::string why_not;
   const bool on_device = lane->is_cuda() && cuda::open_device(why_not);
   if (!on_device && (!cuda::block_on_host(*lane) || (!lane->is_cuda() && !runs_on_this_cpu(*lane))))
-    throw UsageError(lane->id + ": expected a lane of this processor, of a device here, or one with a twin");
+    throw UsageError("cannot run " + lane->id + " here: there is no such processor or device, and it has no twin");
   analysis::TuneSpec spec;
   spec.sweep = on_device ? analysis::device_sweep([lane](const std::string& policy) {
     return policy.empty() ? *lane : lane_under(*lane, policy);
@@ -90,7 +90,8 @@ int tune(const TuneOptions& options) {
       drawn(options.scene, options.seed, std::max<std::uint64_t>(options.pairs / 10, 1), options.strata).sources;
   // A mesh's own pairs do not change with the seed: the choice is judged on them, and not made on them.
   std::erase_if(spec.sources, [](const strata::PairSource& source) { return source.id == "mesh"; });
-  if (spec.sources.empty()) throw UsageError("expected pairs that a seed draws, found only a mesh's own");
+  if (spec.sources.empty())
+    throw UsageError("the pairs of a mesh do not depend on the seed, so none are left to choose on; add --strata");
   spec.sites = analysis::sites_asked(*lane, spec.sources);
   spec.forbid = static_cast<analysis::Forbid>(options.forbid);
   spec.max_rate = options.max_rate;
@@ -132,33 +133,39 @@ int tune(const TuneOptions& options) {
 
 void add_tune(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "tune", "Find the epsilon policy that serves a lane: sweep tolerances on some pairs, judge the best on others");
-  command->footer(
-      "Example: graze tune moller_1997/f32/cpu --strata 'near_*' --forbid false-negative --max-rate 1e-3 --pairs 20k");
+      "tune", "Find the best tolerance for a lane: sweep tolerances on some pairs, and judge the best on others");
+  command->footer("Example: graze tune moller_1997/f32/cpu --forbid false-negative --pairs 20k");
   const auto options = std::make_shared<TuneOptions>();
-  command->add_option("lane", options->lane, "The lane, without a policy")->required()->option_text("LANE");
-  add_globs(*command, "--strata", options->strata, "Only strata that match a pattern");
+  command->add_option("lane", options->lane, "Lane, without a policy")->required()->option_text("LANE");
+  add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command
-      ->add_option("--pairs", options->pairs, "Pairs to judge the choice on; it is made on a tenth of as many others")
+      ->add_option("--pairs", options->pairs,
+                   "Number of pairs that judge the choice; it is made on a tenth as many others")
       ->transform(whole_number(10, kMostWhole))
       ->capture_default_str()
       ->option_text("N");
-  command->add_option("--seed", options->seed, "Seed of the pairs; those to judge on have the next one")
+  command
+      ->add_option("--seed", options->seed,
+                   "Seed of the pairs that the choice is made on; those that judge it have the next seed")
       ->transform(whole_number(0, kMostWhole - 1))
       ->capture_default_str()
       ->option_text("N");
   command
       ->add_option("--forbid", options->forbid,
-                   "What must not be: false negatives, false positives, or any wrong verdict")
+                   "Errors to avoid: false negatives, false positives, or any wrong verdict")
       ->transform(one_of({"false-negative", "false-positive", "any"}, Chosen::place))
-      ->option_text("false-negative|false-positive|any");
-  command->add_option("--max-rate", options->max_rate, "How often it may be at most")
+      ->option_text("false-negative|false-positive|any")
+      ->default_str("any");
+  command->add_option("--max-rate", options->max_rate, "Highest rate of such errors")
       ->check(number(1e-15, 1.0))
       ->capture_default_str()
       ->option_text("RATE");
-  command->add_option("--threads", options->threads, "Threads; 0: one on each core")
+  command
+      ->add_option("--threads", options->threads,
+                   "Number of threads; 0 means one per core. Results do not depend on it")
       ->transform(whole_number(0, 4096))
+      ->capture_default_str()
       ->option_text("N");
   command->add_option("--out", options->out, "Folder for tune.json, curves.svg, policy.h and the smallest cases")
       ->check(not_empty())

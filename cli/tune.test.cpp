@@ -46,10 +46,10 @@ TEST_F(Policies, AreLanesOnEveryVerb) {
 }
 
 TEST_F(Policies, RefusedOnesGetOneLine) {
-  expect_error("graze repro uniform:1:1 --lanes 'moller_1997/f32/cpu/rel:x'", 2, "\"rel:x\"");
+  expect_error("graze repro uniform:1:1 --lanes 'moller_1997/f32/cpu/rel:x'", 2, {"\"rel:x\""});
   expect_error("graze repro uniform:1:1 --lanes 'projected_sat/f32/cpu/bound'", 2,
-               "projected_sat is wrong on some pairs without any rounding");
-  expect_error("graze repro uniform:1:1 --lanes 'nothing/f32/cpu/rel:1'", 2, "nothing/f32/cpu/rel:1");
+               {"projected_sat is wrong on some pairs without any rounding"});
+  expect_error("graze repro uniform:1:1 --lanes 'nothing/f32/cpu/rel:1'", 2, {"nothing/f32/cpu/rel:1"});
 }
 
 TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
@@ -125,12 +125,12 @@ int main() {
 }
 
 TEST_F(TuneCommand, BadInputGetsOneLine) {
-  expect_error("graze tune", 2, "lane");
-  expect_error("graze tune moller_1997/f32/cp", 2, "did you mean 'moller_1997/f32/cpu'?");
-  expect_error("graze tune exact/f32/cpu", 2, "expected a published lane");
-  expect_error("graze tune moller_1997/f32/cpu --max-rate 0", 2, "--max-rate");
-  expect_error("graze tune moller_1997/f32/cpu --strata nothing", 2, "nothing");
-  expect_error("graze tune moller_1997/f32/cuda-fast", 2, "twin");
+  expect_error("graze tune", 2, {"lane"});
+  expect_error("graze tune moller_1997/f32/cp", 2, {"'moller_1997/f32/cpu'"});
+  expect_error("graze tune exact/f32/cpu", 2, {"published", "'exact/f32/cpu'"});
+  expect_error("graze tune moller_1997/f32/cpu --max-rate 0", 2, {"--max-rate"});
+  expect_error("graze tune moller_1997/f32/cpu --strata nothing", 2, {"nothing"});
+  expect_error("graze tune moller_1997/f32/cuda-fast", 2, {"twin"});
 }
 
 TEST_F(TuneCommand, HelpHasAnExampleThatRuns) {
@@ -181,7 +181,7 @@ TEST_F(TradeCommand, NamesTheLanesThatItLeavesOut) {
   const auto json = json_of(shell.folder / "t/trade.json");
   EXPECT_EQ(json["lanes_left_out"]["why"]["moller_1997/f32/cuda-fma"], "only --device times CUDA lanes");
   expect_error(trade + "--lanes 'moller_1997/f32/cpu,moller_1997/f32/cuda-fma' --out u", 2,
-               "'moller_1997/f32/cuda-fma': expected a lane that runs here, found only some left out");
+               {"'moller_1997/f32/cuda-fma'"});
   const Ran foreign = shell(trade + "--subject mine=mine.c --lanes '*/f32/cpu' --out v");
   ASSERT_EQ(foreign.status, 0) << foreign.err;
   EXPECT_EQ(foreign.err, "graze: left out (trade times no foreign code): mine/f32/cpu\n");
@@ -199,7 +199,7 @@ TEST_F(TradeCommand, DrawsWithinAScene) {
   const Ran tuned = shell("graze tune moller_1997/f64/cpu --scene hall.toml --pairs 2000 --out u");
   EXPECT_EQ(tuned.status, 0) << tuned.err;
   EXPECT_NE(tuned.out.find("extreme_scale: your coordinates stay within 0 … 108"), std::string::npos) << tuned.out;
-  expect_error("graze tune moller_1997/f64/cpu --scene nowhere.toml", 1, "nowhere.toml");
+  expect_error("graze tune moller_1997/f64/cpu --scene nowhere.toml", 1, {"nowhere.toml"});
 }
 
 TEST_F(TradeCommand, HelpHasAnExampleThatRuns) {

@@ -53,8 +53,7 @@ void add_folder(const fs::path& folder, Viewed& viewed) {
     if (entry.path().extension() == ".pairs") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
-  if (files.empty())
-    throw std::runtime_error(folder.string() + ": expected *.pairs in it, or in its cases/, found none");
+  if (files.empty()) throw std::runtime_error("there is no *.pairs in " + folder.string() + ", nor in its cases/");
   for (const fs::path& file : files) add_cases(file.string(), viewed, campaign ? 1 : reports::kMostViewedPairs);
 }
 
@@ -113,7 +112,7 @@ void add_query(const std::string& reference, const std::string& file, Viewed& vi
   const std::vector<query::Triangle> references = read_references(reference);
   if (references.size() != 1)
     throw std::runtime_error(
-        fmt::format("{}: expected one reference, found {}", printable(reference), references.size()));
+        fmt::format("graze view shows one reference, and {} has {}", printable(reference), references.size()));
   const Lane* exact = find_lane("exact/f32/cpu");
   const std::vector<query::Triangle> mesh = read_mesh(file);
   std::vector<Triangle> others;
@@ -167,8 +166,8 @@ void open_page(const std::string& page) {
 void view(const std::string& what, const std::string& mesh, const std::string& out) {
   if (!reports::has_viewer()) {
     throw std::runtime_error(
-        "view: expected a build with the viewer, found one without: it takes Node with npm, clang and wasi-libc, "
-        "which scripts/setup installs");
+        "the viewer is not in this build: it needs Node with npm, clang and wasi-libc; run scripts/setup to install "
+        "them and build");
   }
   const Viewed viewed = viewed_of(what, mesh);
   write_result(out, reports::viewer_page(viewed));
@@ -184,19 +183,24 @@ void view(const std::string& what, const std::string& mesh, const std::string& o
 
 void add_view(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
-      "view", "Write one page that shows a pair in 3-D and decides every verdict anew while you drag, and open it");
+      "view", "Write and open a web page that shows a pair in 3-D and decides it again on every lane while you drag");
   command->footer("Example: graze view thesis:1:0");
   auto what = std::make_shared<std::string>(), mesh = std::make_shared<std::string>(),
        out = std::make_shared<std::string>("view.html");
-  command->add_option("what", *what,
-                      "A file of pairs, a campaign's or any folder of them, a mesh (OFF, OBJ, STL, PLY), or "
-                      "STRATUM:SEED:INDEX; without it the special cases of 2012");
+  command->add_option(
+      "what", *what,
+      "File of pairs, campaign directory or folder of such files, mesh (OFF, OBJ, STL or PLY), or STRATUM:SEED:INDEX "
+      "(default: the special cases of the thesis of 2012)");
   command
       ->add_option("mesh", *mesh,
-                   "A mesh, all of whose triangles are shown against the first argument, a reference as graze query "
-                   "takes it: a file with nine numbers, or MESH#FACE")
+                   "Mesh whose triangles are shown against WHAT, which is then a reference triangle as for `graze "
+                   "query`: a file of "
+                   "nine numbers, or MESH#FACE")
       ->check(not_empty());
-  command->add_option("--out", *out, "The page")->check(not_empty())->capture_default_str()->option_text("FILE");
+  command->add_option("--out", *out, "File for the page")
+      ->check(not_empty())
+      ->capture_default_str()
+      ->option_text("FILE");
   command->callback([what, mesh, out] { view(*what, *mesh, *out); });
 }
 

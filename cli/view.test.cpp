@@ -89,9 +89,8 @@ TEST_F(ViewCommand, QueriesAndTheirResults) {
   EXPECT_EQ(shell("graze view hits.obj#0 hits.obj").out, "Wrote view.html: 3 pairs, 3 triangles\n");
   EXPECT_EQ(shell("echo 9 9 9 9 8 9 8 9 9 > far.txt; graze view far.txt tent.obj").out,
             "Wrote view.html: 1 pair, 3 triangles\n");
-  expect_error("echo 9 9 9 9 8 9 8 9 9 >> ref.txt; graze view ref.txt tent.obj", 1,
-               "ref.txt: expected one reference, found 2");
-  expect_error("graze view far.txt no.obj", 1, "no.obj: expected a mesh file");
+  expect_error("echo 9 9 9 9 8 9 8 9 9 >> ref.txt; graze view ref.txt tent.obj", 1, {"ref.txt", "2"});
+  expect_error("graze view far.txt no.obj", 1, {"no.obj", "No such file or directory"});
   expect_done("graze view thesis:1:0");
   EXPECT_EQ(data("view.html")["opens"], "pair");
 }
@@ -100,15 +99,16 @@ TEST_F(ViewCommand, BadInputGetsOneLine) {
   std::filesystem::create_directory(shell.folder / "empty");
   std::ofstream(shell.folder / "flat.off") << "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
   std::ofstream(shell.folder / "words.pairs") << "one two\n";
-  for (const auto& [arguments, status, part] :
-       {std::tuple{"missing.pairs", 1, "missing.pairs: expected a file of pairs, found none"},
-        {"empty", 1, "empty: expected *.pairs in it, or in its cases/, found none"},
-        {"flat.off", 1, "flat.off: expected at least one pair of triangles whose boxes overlap, found none"},
-        {"words.pairs", 1, "words.pairs:1: expected"},
-        {"nowhere:1:1", 2, "expected a stratum"},
-        {"lattice:1:x", 2, "expected a whole number, found 'x'"},
-        {"lattice:1:1 --out empty", 1, "empty"}}) {
-    expect_error(std::string("graze view ") + arguments, status, part);
+  using Words = std::vector<std::string>;
+  for (const auto& [arguments, status, words] :
+       {std::tuple{"missing.pairs", 1, Words{"missing.pairs", "No such file or directory"}},
+        {"empty", 1, {"empty", "*.pairs"}},
+        {"flat.off", 1, {"flat.off", "boxes"}},
+        {"words.pairs", 1, {"words.pairs:1"}},
+        {"nowhere:1:1", 2, {"'nowhere'"}},
+        {"lattice:1:x", 2, {"lattice:1:x", "'x'"}},
+        {"lattice:1:1 --out empty", 1, {"empty", "Is a directory"}}}) {
+    expect_error(std::string("graze view ") + arguments, status, words);
   }
 }
 

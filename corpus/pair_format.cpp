@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 #include <system_error>
 
+#include "core/cannot.h"
 #include "core/text.h"
 #include "strata/mesh_readers/soup.h"
 
@@ -214,7 +216,7 @@ bool PairReader::read_line(std::string& text) {
     if (++length <= kLongestLine) text += c;
     if (length == kLongestLine + 1) break;
   }
-  if (in_.bad()) throw FormatError(where() + ": expected text, found an error of reading");
+  if (in_.bad()) throw FormatError(cannot("read", where(), errno != 0 ? errno : EIO));
   if (length > kLongestLine) {
     throw FormatError(where() + ": expected a line of at most " + std::to_string(kLongestLine) +
                       " bytes, found a longer one");
@@ -297,13 +299,9 @@ std::optional<Entry> PairReader::next() {
 
 std::ifstream open_pairs(const std::filesystem::path& file) {
   std::error_code ignored;
-  const std::string name = file.string();
-  if (!std::filesystem::exists(file, ignored)) throw FormatError(name + ": expected a file of pairs, found none");
-  if (std::filesystem::is_directory(file, ignored)) {
-    throw FormatError(name + ": expected a file of pairs, found a folder");
-  }
+  if (std::filesystem::is_directory(file, ignored)) throw FormatError(cannot("read", file, EISDIR));
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw FormatError(name + ": expected a file of pairs, found one that cannot be opened");
+  if (!in) throw FormatError(cannot("read", file, errno));
   return in;
 }
 

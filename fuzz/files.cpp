@@ -9,10 +9,10 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <stdexcept>
 
+#include "core/cannot.h"
 #include "core/stop.h"
 #include "fuzz/own_files.h"
 
@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPart = ".graze.part";  // behind the name of a file that is being written
 
-[[noreturn]] void fail(const fs::path& file, const char* expected, const std::string& found) {
-  throw std::runtime_error(file.string() + ": expected " + expected + ", found: " + found);
+[[noreturn]] void fail(const char* act, const fs::path& file, int error) {
+  throw std::runtime_error(cannot(act, file, error));
 }
 
 struct Handle {
@@ -79,7 +79,7 @@ void write_into(const fs::path& file, bool pipe, bool standard_output, const std
   std::cout.flush();
   std::fflush(stdout);
   const Handle own{standard_output ? dup(STDOUT_FILENO) : opened(file, pipe)};
-  if (own.number < 0 || !write_all(own.number, text)) fail(file, "to write it", std::strerror(errno));
+  if (own.number < 0 || !write_all(own.number, text)) fail("write", file, errno);
 }
 
 // Opens the file for this writer alone: another one waits until this one has moved it to its place.
@@ -102,8 +102,9 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
   const std::string beside = file.string() + kPart;
   Handle part{opened_alone(beside)};
   struct stat state {};
-  if (part.number < 0) fail(asked, "to write it", std::strerror(errno));
-  if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode)) fail(beside, "no such file", "a device or a pipe");
+  if (part.number < 0) fail("write", asked, errno);
+  if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode))
+    throw std::runtime_error(cannot("write", asked, beside + " is in the way and is no file; remove it"));
   bool done =
       ftruncate(part.number, 0) == 0 && write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
   // A full disk may show only on closing; the file itself stays open, and so locked, until it is in its place.
@@ -111,7 +112,7 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
   const int error = errno;
   unlink(beside.c_str());
-  fail(asked, "to write it", std::strerror(error));
+  fail("write", asked, error);
 }
 
 }  // namespace
@@ -126,7 +127,7 @@ std::string read_whole(const fs::path& file) {
   const Handle in{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
   if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR)) return {};
   struct stat state {};
-  if (in.number < 0 || fstat(in.number, &state) != 0) fail(file, "to read it", std::strerror(errno));
+  if (in.number < 0 || fstat(in.number, &state) != 0) fail("read", file, errno);
   std::string text;
   char bytes[65536];
   while (true) {
@@ -138,7 +139,7 @@ std::string read_whole(const fs::path& file) {
     } else if (errno == EAGAIN) {
       wait_for(in.number, POLLIN);
     } else if (errno != EINTR) {
-      fail(file, "to read it", std::strerror(errno));
+      fail("read", file, errno);
     }
   }
 }
@@ -146,8 +147,8 @@ std::string read_whole(const fs::path& file) {
 void write_whole(const fs::path& file, const std::string& text) {
   struct stat there {};
   const bool exists = stat(file.c_str(), &there) == 0;
-  if (!exists && errno != ENOENT) fail(file, "to write it", std::strerror(errno));
-  if (exists && S_ISDIR(there.st_mode)) fail(file, "a file", "a folder");
+  if (!exists && errno != ENOENT) fail("write", file, errno);
+  if (exists && S_ISDIR(there.st_mode)) fail("write", file, EISDIR);
   // The standard output may be a file too: replaced, it would lose what else is printed.
   const bool standard_output = exists && is_standard_output(there);
   if (exists && (standard_output || !S_ISREG(there.st_mode)))
@@ -158,14 +159,15 @@ void write_whole(const fs::path& file, const std::string& text) {
 
 FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
     : handle_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (handle_ < 0) fail(folder, "a folder", std::strerror(errno));
+  if (handle_ < 0) fail("open the folder", folder, errno);
   if (flock(handle_, when_taken == WhenTaken::wait     ? LOCK_EX
                      : when_taken == WhenTaken::refuse ? LOCK_EX | LOCK_NB
                                                        : LOCK_SH | LOCK_NB) == 0)
     return;
   const int error = errno;
   close(handle_);
-  fail(folder, "to be alone", error == EWOULDBLOCK ? "another process at work in it" : std::strerror(error));
+  if (error != EWOULDBLOCK) fail("lock", folder, error);
+  throw std::runtime_error(cannot("use", folder, "another process is using it; wait until it has ended"));
 }
 
 FolderLock::~FolderLock() { close(handle_); }

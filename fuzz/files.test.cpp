@@ -2,6 +2,7 @@
 // What stands where a file is written: links, devices, pipes and folders stay what they are.
 #include "fuzz/files.h"
 #include "core/error.h"
+#include "core/message_testing.h"
 #include "core/stop.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/own_files.h"
@@ -68,7 +69,7 @@ TEST_F(Files, LinksAreWrittenThrough) {
   EXPECT_EQ(read_whole(folder_ / "far/none_yet"), "first");
   for (const char* link : {"link", "second", "dangling"}) EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
   fs::create_symlink("circle", folder_ / "circle");
-  EXPECT_NE(refusal(folder_ / "circle").find("circle: expected to write it, found: "), std::string::npos);
+  EXPECT_TRUE(names(refusal(folder_ / "circle"), {(folder_ / "circle").string(), "Too many levels of symbolic links"}));
 }
 
 TEST_F(Files, PipesStayPipes) {
@@ -112,7 +113,7 @@ TEST_F(Files, DevicesStayDevices) {
 
 TEST_F(Files, FoldersAreRefusedInBothDirections) {
   fs::create_directories(folder_ / "sub");
-  EXPECT_EQ(refusal(folder_ / "sub"), (folder_ / "sub").string() + ": expected a file, found: a folder");
+  EXPECT_TRUE(names(refusal(folder_ / "sub"), {(folder_ / "sub").string(), "Is a directory"}));
   EXPECT_THROW(read_whole(folder_ / "sub"), std::runtime_error);
   EXPECT_EQ(read_whole(folder_ / "none"), "");
   EXPECT_EQ(read_whole(folder_ / "none" / "none"), "");

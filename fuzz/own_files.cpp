@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "fuzz/files.h"
 
@@ -67,7 +68,7 @@ void expect_own(const fs::path& file, const std::string& text) {
   const std::string mark =
       text.starts_with('{') && key != text.npos ? text.substr(0, text.find('"', key + 1) + 1) : mark_of(text);
   if (read_whole(file).find(mark) != 0 && !may_replace(file, text))
-    throw UsageError(file.string() + ": expected no file, or one that graze wrote, found another; --force replaces it");
+    throw UsageError(cannot("replace", file, "graze did not write it; choose another name, or add --force"));
 }
 
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {

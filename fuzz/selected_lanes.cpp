@@ -82,7 +82,7 @@ void expect_each_runs(const SelectedLanes& under_test) {
     for (const LaneLeftOut& row : under_test.left_out) {
       if (matches_any({pattern}, row.id)) of_pattern.push_back(row);
     }
-    throw UsageError(fmt::format("'{}': expected a lane that runs here, found only some {}", printable(pattern),
+    throw UsageError(fmt::format("no lane of '{}' runs here: {}", printable(pattern),
                                  fmt::join(left_out_in_words(of_pattern), "; ")));
   }
 }
@@ -144,8 +144,7 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
     if (std::none_of(lanes().begin(), lanes().end(), [&](const Lane& lane) { return matches_any({glob}, lane.id); })) {
       std::vector<std::string> ids;
       for (const Lane& lane : lanes()) ids.push_back(lane.id);
-      throw UsageError("expected a lane (see `graze lanes`), found '" + printable(glob) + "'" +
-                       did_you_mean(glob, ids));
+      throw UsageError("no lane matches '" + printable(glob) + "'; `graze lanes` lists them" + did_you_mean(glob, ids));
     }
   }
   SelectedLanes under_test;

@@ -106,7 +106,7 @@ void graze_context::answer(const graze_query& query, graze_answer& answer) {
   if (failed) std::rethrow_exception(failed);
   if (found.cancelled) throw QueryError(GRAZE_CANCELLED, "cancelled by the progress callback");
   if (found.position != question.triangles && !(query.mode == GRAZE_ANY && found.hits != 0))
-    throw QueryError(GRAZE_FAILED, "expected all triangles to be answered, found some that are not");
+    throw QueryError(GRAZE_FAILED, "some triangles were not answered: this is a bug of graze");
 }
 
 void graze_context::run(const graze_query& query, graze_answer& result) noexcept {
@@ -120,7 +120,7 @@ void graze_context::run(const graze_query& query, graze_answer& result) noexcept
   } catch (const DeviceFailure& error) {
     set(result, error.out_of_memory ? GRAZE_NO_MEMORY : GRAZE_DEVICE_FAILED, error.what());
   } catch (const std::bad_alloc&) {
-    set(result, GRAZE_NO_MEMORY, "expected memory for the query, found none");
+    set(result, GRAZE_NO_MEMORY, "there is not enough memory for the query");
   } catch (const std::exception& error) {
     set(result, GRAZE_FAILED, error.what());
   } catch (...) {

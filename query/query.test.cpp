@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "core/message_testing.h"
 #include "query/testing.h"
 
 namespace {
@@ -355,7 +356,7 @@ TEST(Query, WithoutADeviceItSaysSo) {
     query.executor = executor;
     const Answer answer = Context().run(query);
     EXPECT_EQ(answer.status, GRAZE_NO_DEVICE);
-    EXPECT_TRUE(answer.what().starts_with("executor: expected a CUDA device, found none: ")) << answer.what();
+    EXPECT_TRUE(names(std::string(answer.what()), {"executor", "no CUDA device"}));
   }
 }
 
@@ -426,7 +427,7 @@ TEST(Query, LackOfMemoryIsAValueWhereverItBegins) {
         } else {
           failures += 1;
           EXPECT_EQ(answer.status, GRAZE_NO_MEMORY) << n << ' ' << answer.what();
-          EXPECT_EQ(answer.what(), "expected memory for the query, found none");
+          EXPECT_TRUE(names(std::string(answer.what()), {"memory"}));
           EXPECT_LE(answer.position, triangles.size());
         }
       }

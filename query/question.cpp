@@ -132,7 +132,7 @@ void check_outputs(const graze_query& query, const Question& question) {
 int device_count(const std::string& wanted) {
   std::string why_not;
   const int count = cuda::count_query_devices(why_not);
-  if (count == 0) throw QueryError(GRAZE_NO_DEVICE, wanted + ": expected a CUDA device, found none: " + why_not);
+  if (count == 0) throw QueryError(GRAZE_NO_DEVICE, wanted + ": there is no CUDA device: " + why_not);
   return count;
 }
 

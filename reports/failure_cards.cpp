@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "analysis/signature.h"
+#include "core/cannot.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
@@ -174,7 +175,8 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
   const std::filesystem::path file = fuzz::case_file(directory, simplest);
   const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
   if (entries.empty() || fuzz::pair_text(entries.front().pair) != simplest.at("pair").get<std::string>())
-    throw corpus::FormatError(file.string() + ": expected the pair of kinds.json first, found another");
+    throw corpus::FormatError(
+        cannot("use", file, "its first pair is not that of kinds.json; run `graze minimize` again"));
   const corpus::Entry& entry = entries.front();
   const Verdict truth = verdict_of(corpus::text_of(entry, "truth"));
   const bool minimised = corpus::field(entry, "kind") != nullptr;

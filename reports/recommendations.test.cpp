@@ -76,7 +76,7 @@ TEST(Recommendations, CostsThatAreNotMeasuredAreNotSettled) {
 TEST(Recommendations, AnExactLaneThatErrsIsNotRecommended) {
   const CampaignCounts counts = counts_with({{"exact/f32/cpu", 1}, {"moller_1997/f32/cpu", 900}});
   EXPECT_EQ(lane_to_use(counts, nullptr).text,
-            "exact/f32/cpu is wrong on 2 of 20,000 pairs, which must not be: trust no exact lane before that is "
+            "exact/f32/cpu is not right on 2 of 20,000 pairs, which must not be: trust no exact lane before that is "
             "explained.");
   const CampaignCounts none = counts_with({{"moller_1997/f32/cpu", 900}});
   EXPECT_FALSE(lane_to_use(none, nullptr).known);

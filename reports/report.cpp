@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/checked_summary.h"
@@ -132,11 +133,9 @@ Json make_report(const std::filesystem::path& directory) {
     add_signatures(report, directory, summary, counts);
     return report;
   } catch (const Json::exception&) {
-    throw corpus::FormatError((directory / "summary.json").string() +
-                              ": expected a campaign's summary, found something else");
+    throw corpus::FormatError(cannot("use", directory / "summary.json", "it is not the summary of a campaign"));
   } catch (const std::logic_error&) {  // a text that is no number, or no signature
-    throw corpus::FormatError((directory / "summary.json").string() +
-                              ": expected a campaign's summary, found something else");
+    throw corpus::FormatError(cannot("use", directory / "summary.json", "it is not the summary of a campaign"));
   }
 }
 
@@ -148,9 +147,9 @@ void checked(const std::filesystem::path& file, const char* what, Check check) {
   try {
     check();
   } catch (const Json::exception&) {
-    throw corpus::FormatError(fmt::format("{}: expected {}, found something else", file.string(), what));
+    throw corpus::FormatError(cannot("use", file, fmt::format("it does not hold {}", what)));
   } catch (const std::runtime_error& error) {
-    throw corpus::FormatError(file.string() + ": " + error.what());
+    throw corpus::FormatError(cannot("use", file, error.what()));
   }
 }
 
@@ -193,7 +192,7 @@ std::string report_text(const Json& report) {
 Json read_report(const std::filesystem::path& file) {
   Json report = Json::parse(fuzz::read_whole(file), nullptr, false);
   if (!report.is_object() || report.value("format", Json()) != 2)
-    throw corpus::FormatError(file.string() + ": expected a report of `graze report`, found something else");
+    throw corpus::FormatError(cannot("use", file, "it is not a report of `graze report`"));
   checked(file, "a report of `graze report`", [&] { expect_possible_report(report); });
   return report;
 }

@@ -73,7 +73,7 @@ struct Image {
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
     std::string bytes(size, '\0');
     if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, colours.data(), 0, kPalette))
-      throw std::runtime_error(std::string("expected libpng to write a picture, found: ") + image.message);
+      throw std::runtime_error(std::string("cannot make a PNG picture: ") + image.message);
     bytes.resize(size);
     return bytes;
   }

@@ -7,12 +7,14 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
 
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "strata/mesh_readers/lines.h"
 
@@ -26,11 +28,15 @@ using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>; 
 constexpr std::size_t kMostCandidates = std::size_t{1} << 28;  // 2 GiB of indices
 
 std::string read_bytes(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw std::runtime_error(cannot("read", file, EISDIR));
   std::ifstream in(file, std::ios::binary);
-  if (!in || !std::filesystem::is_regular_file(file)) fail(file.string(), "a mesh file", "none that can be opened");
+  if (!in) throw std::runtime_error(cannot("read", file, errno));
+  if (!std::filesystem::is_regular_file(file))
+    throw std::runtime_error(cannot("read", file, "it is not a regular file"));
   std::string bytes(std::filesystem::file_size(file), '\0');
   if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-    fail(file.string(), "its " + std::to_string(bytes.size()) + " bytes", "an error of reading");
+    throw std::runtime_error(cannot("read", file, errno != 0 ? errno : EIO));
   return bytes;
 }
 
@@ -50,11 +56,11 @@ void add_mesh(MeshPairs& pairs, const std::filesystem::path& file) {
   const std::string bytes = read_bytes(file);
   pairs.content_hash = fnv1a(bytes, pairs.content_hash);
   const Soup soup = read_soup(file, bytes);
-  if (soup.triangles.empty()) fail(file.string(), "at least one triangle", "none");
+  if (soup.triangles.empty()) throw std::runtime_error("there is no triangle in " + file.string());
   for (const auto& [i, j, k] : soup.triangles)
     pairs.triangles.push_back({soup.vertices[i], soup.vertices[j], soup.vertices[k]});
   if (pairs.triangles.size() > std::numeric_limits<std::uint32_t>::max())
-    fail(file.string(), "fewer than 2^32 triangles", "more");
+    throw std::runtime_error(cannot("use", file, "there are 2^32 triangles or more"));
   std::string skipped;
   for (const auto& [what, count] : soup.skipped)
     skipped += (skipped.empty() ? "" : ", ") + std::to_string(count) + ' ' + what;
@@ -102,7 +108,7 @@ std::vector<Pose> read_poses(const std::filesystem::path& file, std::uint64_t& h
     if (lines.words().size() > pose.size()) lines.fail_at(pose.size(), "the end of the line after 12 numbers");
     poses.push_back(pose);
   }
-  if (poses.empty()) fail(file.string(), "at least one pose", "none");
+  if (poses.empty()) throw std::runtime_error("there is no pose in " + file.string());
   return poses;
 }
 
@@ -121,8 +127,9 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
                                    const std::vector<Pose>& poses) {
   const std::vector<Triangle> mesh = std::move(pairs.triangles);
   if (poses.size() > kMostTriangles / mesh.size())
-    fail(file.string(), "poses of at most 2^26 triangles in all",
-         std::to_string(poses.size()) + " of " + std::to_string(mesh.size()));
+    throw std::runtime_error(cannot("use", file,
+                                    std::to_string(poses.size()) + " poses of " + std::to_string(mesh.size()) +
+                                        " triangles are more than 2^26 triangles"));
   pairs.triangles.clear();
   std::vector<std::size_t> ends;
   for (const Pose& pose : poses) {
@@ -130,8 +137,8 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
       pairs.triangles.push_back({moved(pose, t[0]), moved(pose, t[1]), moved(pose, t[2])});
       for (const Vec3<float>& v : pairs.triangles.back()) {
         if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
-          fail(file.string(), "poses that keep coordinates finite in float32",
-               "pose " + std::to_string(ends.size() + 1));
+          throw std::runtime_error(cannot(
+              "use", file, "pose " + std::to_string(ends.size() + 1) + " moves a vertex beyond the range of float32"));
       }
     }
     ends.push_back(pairs.triangles.size());
@@ -143,7 +150,7 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
 void pair_up(MeshPairs& result, const std::vector<std::size_t>& ends, const std::filesystem::path& file) {
   const auto add = [&](const Box& p, const Box& q) {
     if (result.candidates.size() == kMostCandidates) {
-      fail(file.string(), "at most 2^28 pairs of triangles whose boxes overlap", "more");
+      throw std::runtime_error(cannot("use", file, "more than 2^28 pairs of triangles have boxes that overlap"));
     }
     result.candidates.push_back(std::minmax({p.info(), q.info()}));
   };
@@ -176,7 +183,8 @@ MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std
   }
   if (!poses.empty()) ends = put_poses(result, poses, read_poses(poses, result.content_hash));
   pair_up(result, ends, files[0]);
-  if (result.candidates.empty()) fail(files[0].string(), "at least one pair of triangles whose boxes overlap", "none");
+  if (result.candidates.empty())
+    throw std::runtime_error(cannot("draw pairs from", files[0], "no two triangles have boxes that overlap"));
   return result;
 }
 

@@ -17,7 +17,7 @@ std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs,
                      [&](const StratumInfo& row) { return matches_any({glob}, row.id); })) {
       std::vector<std::string> ids;
       for (const StratumInfo& row : kStrata) ids.emplace_back(row.id);
-      throw UsageError("expected a stratum (see `graze strata`), found '" + printable(glob) + "'" +
+      throw UsageError("no stratum matches '" + printable(glob) + "'; `graze strata` lists them" +
                        did_you_mean(glob, ids));
     }
   }

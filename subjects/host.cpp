@@ -127,7 +127,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
       refuse(fmt::format("{}: expected a description for version {} of graze/subject.h, found {}", file,
                          GRAZE_SUBJECT_ABI, subject.abi));
     if (!subject.f32 && !subject.f64 && !subject.block_f32 && !subject.block_f64)
-      refuse(fmt::format("{}: expected a description with a function, found one without", file));
+      refuse(fmt::format("the description in {} names no function; set f32, f64, block_f32 or block_f64", file));
     return subject;
   }
   graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};

@@ -60,10 +60,10 @@ signed char answer_of_line(const std::string& line) {
 LineProtocol::LineProtocol(const std::string& command) {
   int to[2], from[2];
   if (pipe2(to, O_CLOEXEC) != 0 || pipe2(from, O_CLOEXEC) != 0)
-    throw std::runtime_error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot make a pipe to '{}': {}", command, std::strerror(errno)));
   std::signal(SIGPIPE, SIG_IGN);
   const pid_t worker = getpid(), program = fork();
-  if (program < 0) throw std::runtime_error(fmt::format("cannot start a process: {}", std::strerror(errno)));
+  if (program < 0) throw std::runtime_error(fmt::format("cannot start '{}': {}", command, std::strerror(errno)));
   if (program == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != worker) _exit(0);

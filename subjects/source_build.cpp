@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <cctype>
+#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
 
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 
@@ -54,22 +56,24 @@ GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = graze_f32 ? gra
 )";
 
 std::string text_of(const fs::path& file) {
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
-  if (!(text << in.rdbuf())) throw std::runtime_error(file.string() + ": expected a source, found none");
+  if (!in || (!(text << in.rdbuf()) && errno != 0)) throw std::runtime_error(cannot("read", file, errno));
+  if (!text) throw std::runtime_error("there is no code in " + file.string());
   return text.str();
 }
 
 void write(const fs::path& file, std::string_view text) {
   std::ofstream out(file, std::ios::binary);
-  if (!(out << text << std::flush)) throw std::runtime_error(file.string() + ": expected room for it, found none");
+  if (!(out << text << std::flush)) throw std::runtime_error(cannot("write", file, errno));
 }
 
 // Returns: what the command wrote; its exit status in `status`.
 std::string output_of(const std::string& command, int& status) {
   std::string text;
   FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) throw std::runtime_error("expected a shell, found none");
+  if (!pipe) throw std::runtime_error(cannot("start a shell for", command, errno));
   char bytes[4096];
   for (std::size_t count; (count = fread(bytes, 1, sizeof bytes, pipe)) > 0;) text.append(bytes, count);
   status = pclose(pipe);
@@ -134,7 +138,9 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   int status = 0;
   const std::string version = output_of(compiler + " --version 2>&1", status);
   const std::string identity = version.substr(0, version.find('\n'));  // below it are paths
-  if (status != 0) throw std::runtime_error("expected a compiler " + compiler + " for " + name + ", found none");
+  if (status != 0)
+    throw std::runtime_error(cannot(
+        "compile", name, "there is no compiler '" + compiler + "'; install one, or name it in " + (c ? "CC" : "CXX")));
   std::string command =
       fmt::format("{} {} -O2 -fPIC -shared {}", compiler, c ? "-std=gnu11" : "-std=c++20", variant.flags);
   for (const std::string& flag : flags) command += ' ' + shell_word(flag);

@@ -160,10 +160,9 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
 // recorded: the hash of the code that a campaign ran; empty where any will do.
 void expect_code(const Opened& subject, const std::string& recorded) {
   if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
-    throw std::runtime_error(
-        fmt::format("{}: expected the code that the campaign ran ({}), found that it has changed ({}); "
-                    "--subject {}=… takes it as it is now",
-                    subject.wanted.what, recorded, found, subject.wanted.name));
+    throw std::runtime_error(fmt::format(
+        "{} has changed since the campaign ran: its hash is {}, not {}; --subject {}=… takes it as it is now",
+        subject.wanted.what, found, recorded, subject.wanted.name));
 }
 
 // The device's build where there is a device, else its twin. A build with neither is a lane that says why.
@@ -227,12 +226,13 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
   const Opened wish = parsed(wanted);
   if (const Opened* there = opened(wanted.name)) {
     if (there->hash == wish.hash && there->wanted.what == wanted.what && there->wanted.flags == wanted.flags) return;
-    throw UsageError(fmt::format("--subject {}: expected one subject of this name, found two", wanted.name));
+    throw UsageError(
+        fmt::format("--subject {0}: another subject has the name {0} already; choose another", wanted.name));
   }
   for (const Lane& lane : lanes()) {
     if (lane.info->id == wanted.name)
       throw UsageError(
-          fmt::format("--subject {}: expected a name of its own, found that of a published algorithm", wanted.name));
+          fmt::format("--subject {0}: a published algorithm has the name {0}; choose another", wanted.name));
   }
   entries().push_back({wish, "", "", "", "", {}, {}, {}});
   Entry& entry = entries().back();

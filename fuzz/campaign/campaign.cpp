@@ -107,7 +107,8 @@ StoreSpec store_spec(const Campaign& campaign) {
 
 std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& campaign, EngineChoice choice) {
   if (choice == EngineChoice::cpu || (choice == EngineChoice::automatic && !campaign.under_test->device)) return {};
-  if (!campaign.under_test->device) throw std::runtime_error("expected a CUDA device for the GPU engine, found none");
+  if (!campaign.under_test->device)
+    throw std::runtime_error("--engine gpu needs a CUDA device, and there is none; use --engine cpu");
   std::string hindrance;
   for (std::size_t l = 0; l < campaign.under_test->lanes.size(); ++l) {
     if (!campaign.under_test->on_device(l) || campaign.under_test->on_both(l))
@@ -115,7 +116,8 @@ std::vector<std::unique_ptr<cuda::DeviceEngine>> choose_engines(const Campaign& 
   }
   if (hindrance.empty()) return cuda::open_engines(campaign.under_test->lanes);
   if (choice == EngineChoice::automatic) return {};
-  throw UsageError("expected lanes that run on the device alone for the GPU engine, found " + hindrance);
+  throw UsageError("--engine gpu runs lanes on the device alone, and " + hindrance +
+                   " does not run there; choose other --lanes");
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
@@ -19,8 +20,7 @@ namespace fs = std::filesystem;
 
 NamedScene scene_of_campaign(const fs::path& directory) {
   const Json spec = recorded_spec(directory);
-  if (!spec.contains("scene"))
-    throw std::runtime_error(directory.string() + ": expected a campaign in a scene, found none");
+  if (!spec.contains("scene")) throw std::runtime_error(cannot("draw from", directory, "its campaign has no scene"));
   return recorded_scene(spec["scene"]);
 }
 
@@ -54,12 +54,12 @@ Pair draw_again(const SceneCase& named) {
   const std::string file = whole ? named.scene : named.scene.substr(0, hash);
   const NamedScene scene = fs::is_directory(file) ? scene_of_campaign(file) : open_scene(file);
   if (!whole && scene.name().substr(scene.name().rfind('#')) != named.scene.substr(hash))
-    throw std::runtime_error(
-        fmt::format("{}: expected the scene {}, found {}; a campaign's directory has its own: {}@DIR:{}:{}", file,
-                    named.scene, scene.name(), named.id, named.seed, named.index));
+    throw std::runtime_error(cannot(
+        "draw from", file,
+        fmt::format("the scene has changed: it is {}, not {}; a campaign directory has its own scene: {}@DIR:{}:{}",
+                    scene.name(), named.scene, named.id, named.seed, named.index)));
   const strata::SceneSources drawn = sources_of(scene, named.seed, 1, {named.id});
-  if (drawn.sources.size() != 1)
-    throw UsageError(named.id + ": expected one stratum of the scene, found a pattern of several");
+  if (drawn.sources.size() != 1) throw UsageError(named.id + " matches several strata of the scene; name one");
   return drawn.sources.front().pair(named.index);
 }
 

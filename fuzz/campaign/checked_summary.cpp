@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/cannot.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/counts_json.h"
@@ -22,7 +23,9 @@ struct Impossible : std::runtime_error {
 };
 
 void expect(bool possible, const std::string& expected, std::uint64_t found) {
-  if (!possible) throw Impossible(fmt::format("expected {}, found {}", expected, found));
+  if (!possible)
+    throw Impossible(
+        fmt::format("its counts contradict each other: {} are possible, {} are recorded", expected, found));
 }
 
 std::uint64_t count(const Json& row, const char* field) {
@@ -41,14 +44,15 @@ void expect_split(const std::string& where, const Json& rows, const Json& stratu
     for (const auto& [lane, unused] : row.at("wrong").items()) {
       const std::uint64_t of_lane = count(row["wrong"], lane.c_str());
       expect(of_lane <= count(row, "pairs"),
-             fmt::format("at most {} wrong of {} at {} {}", count(row, "pairs"), lane, where, name), of_lane);
+             fmt::format("at most {} wrong verdicts of {} at {} {}", count(row, "pairs"), lane, where, name), of_lane);
       wrong[lane] += of_lane;
     }
   }
-  expect(pairs == count(stratum, "pairs"), fmt::format("{} pairs by {}", count(stratum, "pairs"), where), pairs);
+  expect(pairs == count(stratum, "pairs"), fmt::format("exactly {} pairs by {}", count(stratum, "pairs"), where),
+         pairs);
   for (const auto& [lane, row] : stratum.at("lanes").items())
     expect(wrong[lane] == counts_of(row).wrong(),
-           fmt::format("{} wrong of {} by {}", counts_of(row).wrong(), lane, where), wrong[lane]);
+           fmt::format("exactly {} wrong verdicts of {} by {}", counts_of(row).wrong(), lane, where), wrong[lane]);
 }
 
 void expect_possible(const Json& stratum) {
@@ -125,23 +129,22 @@ Json checked_summary(const fs::path& directory) {
   const fs::path file = directory / "summary.json";
   const std::string text = read_whole(file);
   if (text.empty())
-    throw std::runtime_error(directory.string() + ": expected a campaign's directory with summary.json, found none");
+    throw std::runtime_error(cannot("open", directory, "it is not a campaign directory: it has no summary.json"));
   const Json summary = Json::parse(text, nullptr, false);
   try {
-    if (!summary.is_object())
-      throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
+    if (!summary.is_object()) throw corpus::FormatError(cannot("use", file, "it is not the summary of a campaign"));
     if (has_database(directory)) {
       const Json expected = summary_of_database(directory);
       if (summary != expected)
-        throw Impossible(fmt::format("expected what {} says: {}; the command that began the campaign writes it again",
+        throw Impossible(fmt::format("it contradicts {}: {}; run the command that began the campaign to write it again",
                                      kDatabase, first_difference(expected, summary)));
     } else {
       expect_possible_summary(summary);
     }
   } catch (const Impossible& error) {
-    throw std::runtime_error(file.string() + ": " + error.what());
+    throw std::runtime_error(cannot("use", file, error.what()));
   } catch (const Json::exception&) {
-    throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
+    throw corpus::FormatError(cannot("use", file, "it is not the summary of a campaign"));
   }
   return summary;
 }

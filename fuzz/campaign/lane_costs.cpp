@@ -55,22 +55,21 @@ void expect_possible_costs(const Json& costs, const std::vector<std::string>& la
                            const std::vector<std::string>& sources, std::uint64_t pairs) {
   const auto expect_one_of = [](const std::vector<std::string>& known, const std::string& name, const char* what) {
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw std::runtime_error(fmt::format("expected costs of {} of the campaign, found {}", what, shown(name)));
+      throw std::runtime_error(fmt::format("it has costs of {}, which is no {} of the campaign", shown(name), what));
   };
   const std::uint64_t most = std::min(kPairsTimed, pairs);
   if (costs.at("passes").get_ref<const Json::number_unsigned_t&>() == 0)
-    throw std::runtime_error("expected costs of a pass or more, found none");
+    throw std::runtime_error("it has costs of no passes");
   for (const auto& [lane, rows] : costs.at("lanes").get_ref<const Json::object_t&>()) {
-    expect_one_of(lanes, lane, "lanes");
+    expect_one_of(lanes, lane, "lane");
     for (const auto& [source, row] : rows.get_ref<const Json::object_t&>()) {
-      expect_one_of(sources, source, "strata");
+      expect_one_of(sources, source, "stratum");
       const std::uint64_t timed = row.at("pairs").get_ref<const Json::number_unsigned_t&>();
       const double low = row.at("low").get<double>(), middle = row.at("middle").get<double>(),
                    high = row.at("high").get<double>();
       if (timed == 0 || timed > most || !(0 < low && low <= middle && middle <= high))
-        throw std::runtime_error(
-            fmt::format("expected costs of {} on 1 to {} pairs of {}, quartiles in their order, found {}", lane, most,
-                        source, shown(row.dump())));
+        throw std::runtime_error(fmt::format("it has impossible costs of {} on {}, of at most {} pairs: {}", lane,
+                                             source, most, shown(row.dump())));
     }
   }
 }

@@ -17,7 +17,7 @@ inline constexpr int kPassesTimed = 9;
 Json measure_costs(const Campaign& campaign);
 
 // Of costs that a file holds: lanes and sources are those of a campaign of so many pairs, and times can be.
-// Throws: std::runtime_error that says what was expected; Json::exception for another shape.
+// Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
                            const std::vector<std::string>& sources, std::uint64_t pairs);
 

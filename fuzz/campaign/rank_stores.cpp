@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/cannot.h"
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/own_files.h"
@@ -35,16 +36,15 @@ void take_in_ranks(const Campaign& campaign, Store& store) {
       try {
         if (const StoreSpec found = recorded_store(directory);
             found.spec != of_rank.spec || found.build != of_rank.build)
-          throw std::runtime_error(directory.string() +
-                                   ": expected the store of a rank of this campaign, found another's");
+          throw std::runtime_error(cannot("use", directory, "it holds a rank of another campaign; remove it"));
         for_each_row(of_rank, [&](const PairRange& range, const StoredCounts& counts) {
           if (!store.holds(range)) store.commit(range, counts);  // else taken in by a run that was killed then
           pairs += range.pairs;
         });
       } catch (const DamagedStore& error) {
         const std::string what = error.what();
-        throw std::runtime_error(what.substr(0, what.rfind("; ")) + "; its pairs are judged again once you remove " +
-                                 directory.string());
+        throw std::runtime_error(what.substr(0, what.rfind("; ")) + "; remove " + directory.string() +
+                                 " to judge its pairs again");
       }
       append_timing(campaign.directory, {{"pairs", pairs}, {"seconds", 0}, {"machine", machine_name()}});
     }

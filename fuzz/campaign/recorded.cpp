@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/cannot.h"
 #include "core/text.h"
 #include "fuzz/campaign/campaign_scene.h"
 #include "strata/mesh.h"
@@ -30,7 +31,8 @@ std::vector<strata::PairSource> recorded_sources(const Json& spec) {
     const auto mesh = std::make_shared<strata::MeshPairs>(strata::read_mesh_pairs(
         files.at(0), files.size() > 1 ? std::optional<std::filesystem::path>(files[1]) : std::nullopt));
     if (fmt::format("{:016x}", mesh->content_hash) != spec["mesh"].at("content").get<std::string>())
-      throw std::runtime_error(files[0] + ": expected the mesh of the campaign, found another");
+      throw std::runtime_error(
+          cannot("draw the campaign's pairs from", files[0], "the mesh has changed since the campaign ran"));
     of_mesh = {"mesh", mesh->size(), [mesh](std::uint64_t index) { return mesh->pair(index); }};
     pairs -= std::min(pairs, of_mesh->pairs);
   }
@@ -47,7 +49,8 @@ SelectedLanes recorded_lanes(const Json& spec) {
   for (const std::string id : spec.at("lanes")) {
     add_policy_lanes(id);
     const Lane* lane = find_lane(id);
-    if (!lane) throw std::runtime_error(printable(id) + ": expected a lane that this build knows, found none");
+    if (!lane)
+      throw std::runtime_error("the campaign ran the lane " + printable(id) + ", which this build does not have");
     under_test.lanes.push_back(lane);
     under_test.on_host.push_back(nullptr);
   }

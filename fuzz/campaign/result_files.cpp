@@ -10,6 +10,7 @@
 
 #include "analysis/signature.h"
 #include "analysis/tally.h"
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "fuzz/campaign/checked_summary.h"
@@ -151,9 +152,9 @@ corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Js
   const std::string again = has_database(directory)
                                 ? "remove this file, then: " + command_of(recorded_spec(directory), {}, directory)
                                 : "take this file from a copy of the campaign";
-  return corpus::FormatError(fmt::format("{}: expected the cases of the signature {}, found {}; {}",
-                                         case_file(directory, row).string(), row.at("key").get<std::string>(), found,
-                                         again));
+  return corpus::FormatError(cannot("use", case_file(directory, row),
+                                    fmt::format("{}; it should hold the cases of the signature {}; {}", found,
+                                                row.at("key").get<std::string>(), again)));
 }
 
 std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, const Json& row) {
@@ -164,31 +165,31 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
     return wrong_cases(directory, row, found);
   };
   if (!recorded || row.at("case") != case_name(key))
-    throw corpus::FormatError(fmt::format("{}: expected a signature and the name of its file, found {} and {}",
-                                          (directory / "summary.json").string(), row.at("key").dump(),
-                                          row.at("case").dump()));
+    throw corpus::FormatError(
+        cannot("use", directory / "summary.json",
+               fmt::format("{} is not the file of the signature {}", row.at("case").dump(), row.at("key").dump())));
   const std::filesystem::path file = case_file(directory, row);
   const std::string text = read_whole(file);
-  if (text.empty()) throw refuse("none");
+  if (text.empty()) throw refuse("it is missing or empty");
   std::vector<corpus::Entry> entries;
   try {
     entries = corpus::read_pairs(file);
   } catch (const corpus::FormatError& error) {
-    throw refuse("other text: " + std::string(error.what()));
+    throw refuse(std::string("it is not a file of pairs: ") + error.what());
   }
   const std::string head = signature_line(key, count);
-  if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("another head");
+  if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
   std::size_t kept = 0;
   for (const corpus::Entry& entry : entries) {
     const bool result = corpus::field(entry, "kind") != nullptr;
     const std::optional<analysis::Signature> own = analysis::parse_signature(corpus::text_of(entry, "signature"));
     kept += !result;
     if (!own || own->subject != recorded->subject || (!result && *own != *recorded))
-      throw refuse(fmt::format("another signature in line {}", entry.line));
+      throw refuse(fmt::format("line {} has another signature", entry.line));
     if (!has_its_truth(entry, *own) || (!result && !is_drawn(entry)))
-      throw refuse(fmt::format("another pair in line {}", entry.line));
+      throw refuse(fmt::format("line {} has a pair that does not belong to the campaign", entry.line));
   }
-  if (kept != std::min<std::uint64_t>(count, kKeptCases)) throw refuse(fmt::format("{} of them", kept));
+  if (kept != std::min<std::uint64_t>(count, kKeptCases)) throw refuse(fmt::format("it has {} cases", kept));
   return entries;
 }
 

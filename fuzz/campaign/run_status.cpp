@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <fstream>
 #include <set>
 
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "fuzz/files.h"
@@ -34,28 +36,26 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
   return ways;
 }
 
-// Throws: std::runtime_error that says what was expected; Json::exception for another shape.
+// Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
 void expect_possible(const Json& status) {
   const std::string state = status.at("state"), shard = status.at("shard");
   if (state != "running" && state != "done" && state != "stopped" && state != "failed")
-    throw std::runtime_error("expected running, done, stopped or failed as state, found " + shown(state));
-  if (!parse_shard(shard)) throw std::runtime_error("expected K/N as shard, found " + shown(shard));
+    throw std::runtime_error("its state is not running, done, stopped or failed, but " + shown(state));
+  if (!parse_shard(shard)) throw std::runtime_error("its shard is not K/N, but " + shown(shard));
   for (const char* count : {"pairs", "done", "disagreements", "signatures"})
     status.at(count).get_ref<const Json::number_unsigned_t&>();
   const std::uint64_t pairs = status["pairs"], done = status["done"], disagreements = status["disagreements"];
-  if (done > pairs || disagreements > done)
-    throw std::runtime_error(fmt::format("expected at most {} pairs done and as many disagreements, found {} and {}",
-                                         pairs, done, disagreements));
-  if (state == "done" && done != pairs)
-    throw std::runtime_error(fmt::format("expected all {} pairs of a run that is done, found {}", pairs, done));
+  if (done > pairs || disagreements > done || (state == "done" && done != pairs))
+    throw std::runtime_error(fmt::format("its counts contradict each other: {}, {} pairs, {} done, {} disagreements",
+                                         state, pairs, done, disagreements));
   const Json& left = status.at("seconds_left");
   if (status.at("rate").get<double>() < 0 || (!left.is_null() && left.get<double>() < 0))
     throw std::runtime_error(
-        fmt::format("expected a rate and a time of at least 0, found {} and {}", status["rate"].dump(), left.dump()));
+        fmt::format("its rate or its time left is below 0: {}, {}", status["rate"].dump(), left.dump()));
   status.at("ways").get<std::vector<std::string>>();
   for (const char* whole : {"process", "updated"}) {
     if (!status.at(whole).is_number_integer())
-      throw std::runtime_error(fmt::format("expected a whole number as {}, found {}", whole, status[whole].dump()));
+      throw std::runtime_error(fmt::format("{} is not a whole number, but {}", whole, shown(status[whole].dump())));
   }
   status.at("host").get_ref<const std::string&>();
   for (const char* text : {"why", "hash"}) {
@@ -111,12 +111,13 @@ void RunStatus::end(const std::string& state, const std::string& why) {
 }
 
 std::string file_hash(const fs::path& file) {
+  errno = 0;
   std::ifstream in(file, std::ios::binary);
   std::uint64_t hash = fnv1a("");
   std::string bytes(1 << 20, '\0');
   while (in.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), in.gcount() > 0)
     hash = fnv1a({bytes.data(), static_cast<std::size_t>(in.gcount())}, hash);
-  if (in.bad() || !in.eof()) throw std::runtime_error(file.string() + ": expected to read it, found an error");
+  if (in.bad() || !in.eof()) throw std::runtime_error(cannot("read", file, errno != 0 ? errno : EIO));
   return fmt::format("{:016x}", hash);
 }
 
@@ -134,9 +135,9 @@ Json read_status(const fs::path& directory) {
   try {
     expect_possible(status);
   } catch (const Json::exception&) {
-    throw std::runtime_error(file.string() + ": expected what a run says of itself, found something else");
+    throw std::runtime_error(cannot("use", file, "it is damaged; the next status of the run replaces it"));
   } catch (const std::runtime_error& error) {
-    throw std::runtime_error(file.string() + ": " + error.what());
+    throw std::runtime_error(cannot("use", file, error.what()));
   }
   return status;
 }

@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "fuzz/files.h"
 
@@ -16,12 +19,13 @@ namespace fs = std::filesystem;
 // The file, whole, under its name or not at all, also after a crash of the machine.
 void copy_whole(const fs::path& from, const fs::path& to) {
   const fs::path part = to.string() + ".part";
-  fs::copy_file(from, part, fs::copy_options::overwrite_existing);
-  const int file = open(part.c_str(), O_RDONLY | O_CLOEXEC);
-  const bool kept = file >= 0 && fsync(file) == 0;
+  std::error_code error;
+  fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
+  const int file = error ? -1 : open(part.c_str(), O_RDONLY | O_CLOEXEC);
+  if (!error && (file < 0 || fsync(file) != 0)) error = {errno, std::generic_category()};
   if (file >= 0) close(file);
-  if (!kept) throw std::runtime_error(to.string() + ": expected room for it, found none");
-  fs::rename(part, to);
+  if (!error) fs::rename(part, to, error);
+  if (error) throw std::runtime_error(cannot("write", to, error.message()));
 }
 
 }  // namespace
@@ -34,9 +38,7 @@ void fetch_from_directory(const Campaign& campaign) {
   std::error_code error;
   for (const fs::path& folder : {campaign.scratch, campaign.directory}) {
     fs::create_directories(folder, error);
-    if (error)
-      throw std::runtime_error(folder.string() +
-                               ": expected a directory that can be written, found: " + error.message());
+    if (error) throw std::runtime_error(cannot("make the directory", folder, error.message()));
   }
   const FolderLock alone(campaign.scratch, FolderLock::WhenTaken::refuse);
   if (fs::exists(campaign.scratch / kDatabase) || !fs::exists(campaign.directory / kDatabase)) return;

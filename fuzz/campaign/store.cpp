@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/cannot.h"
 #include "core/margin/axis.h"
 #include "fuzz/counts_json.h"
 
@@ -17,9 +18,7 @@ const std::filesystem::path& with_folders(const StoreSpec& spec) {
   const std::filesystem::path& directory = spec.directory;
   std::error_code error;
   std::filesystem::create_directories(spec.shard.whole() ? directory / "cases" : directory, error);
-  if (error)
-    throw std::runtime_error(directory.string() +
-                             ": expected a directory that can be written, found: " + error.message());
+  if (error) throw std::runtime_error(cannot("make the directory", directory, error.message()));
   return directory;
 }
 

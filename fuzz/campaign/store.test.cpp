@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "core/message_testing.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/result_files.h"
@@ -81,9 +82,7 @@ class StoreTest : public testing::Test {
 
   static void expect_one_line_of_damage(const Campaign& c, const std::string& what) {
     const std::string said = refusal(c);
-    EXPECT_TRUE(said.starts_with(file(c).string() + ": expected ")) << what << ": " << said;
-    EXPECT_EQ(said.find('\n'), std::string::npos) << what << ": " << said;
-    EXPECT_NE(said.find("; --discard-damaged keeps the batches that check"), std::string::npos) << what << ": " << said;
+    EXPECT_TRUE(names(said, {file(c).string(), "damaged", "--discard-damaged"})) << what;
   }
 
   fs::path root_;
@@ -160,17 +159,17 @@ TEST_F(StoreTest, RangesThatTheStoreDoesNotHoldAreFoundOut) {
   for (const PairRange& range : {PairRange{0, 0, 400}, {0, 399, 1}, {1, 200, 200}})
     EXPECT_EQ(refused({}, range), "") << range.first;
   for (const PairRange& range : {PairRange{0, 0, 401}, {0, 399, 2}, {0, 400, 1}, {0, 500, 3}})
-    EXPECT_NE(refused({}, range).find("do not agree; --discard-damaged"), std::string::npos) << range.first;
+    EXPECT_TRUE(names(refused({}, range), {"do not agree", "--discard-damaged"})) << range.first;
   for (const PairRange& range : {PairRange{0, 100, 100}, {0, 199, 1}})
     EXPECT_EQ(refused(middle, range), "") << range.first;
   for (const PairRange& range : {PairRange{0, 99, 2}, {0, 0, 50}, {0, 199, 2}, {0, 200, 1}, {0, 300, 10}})
-    EXPECT_NE(refused(middle, range).find("do not agree; --discard-damaged"), std::string::npos) << range.first;
+    EXPECT_TRUE(names(refused(middle, range), {"do not agree", "--discard-damaged"})) << range.first;
 }
 
-TEST(FirstDifference, SaysWhatWasExpectedAndFound) {
-  EXPECT_EQ(first_difference({{"scene", "B\u00e4r"}}, {{"scene", 7}}), "scene \"B\u00e4r\", found 7");
-  EXPECT_EQ(first_difference({{"lanes", {"a", "b"}}}, {{"lanes", {"a"}}}), "lanes/1 \"b\", found none");
-  EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"b", true}}), "b none, found true");
+TEST(FirstDifference, NamesThePlaceAndBothValues) {
+  EXPECT_EQ(first_difference({{"scene", "B\u00e4r"}}, {{"scene", 7}}), "scene is 7, not \"B\u00e4r\"");
+  EXPECT_EQ(first_difference({{"lanes", {"a", "b"}}}, {{"lanes", {"a"}}}), "lanes/1 is none, not \"b\"");
+  EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"b", true}}), "b is true, not none");
 }
 
 TEST_F(StoreTest, DamageOfAnotherCampaignIsNoReasonToDiscardIt) {
@@ -187,21 +186,20 @@ TEST_F(StoreTest, DamageOfAnotherCampaignIsNoReasonToDiscardIt) {
 
 TEST_F(StoreTest, OtherBuildsFormatsAndProcessesAreRefused) {
   Campaign c = in_seven_rows("mine");
-  const std::string refused = "wrong use: " + c.directory.string() + ": ";
   const std::string flags = c.build["flags"].dump();
   c.build["flags"] = "-g";
-  EXPECT_EQ(refusal(c),
-            refused + "was begun by another build: expected flags \"-g\", found " + flags + "; choose another --out");
+  EXPECT_TRUE(
+      names(refusal(c), {"wrong use", c.directory.string(), "another build", "flags", "\"-g\"", flags, "--out"}));
   c.spec["seed"] = 9;
   c.spec["strata"] = {"lattice"};
-  EXPECT_EQ(refusal(c), refused + "holds another campaign: expected seed 9, found 3; choose another --out");
+  EXPECT_TRUE(names(refusal(c), {"wrong use", c.directory.string(), "another campaign", "seed", "9", "3", "--out"}));
   c = campaign("mine");
   {
     const Store held(store_spec(c));
-    EXPECT_EQ(refusal(c), c.directory.string() + ": expected to be alone, found: another process at work in it");
+    EXPECT_TRUE(names(refusal(c), {c.directory.string(), "another process"}));
   }
   SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 3");
-  EXPECT_EQ(refusal(c), file(c).string() + ": expected format 5, found 3; choose another --out");
+  EXPECT_TRUE(names(refusal(c), {file(c).string(), "format 5", "format 3", "--out"}));
 }
 
 // Crashes and the like are counted of foreign lanes, also behind lanes of ours, and of no others.
@@ -345,8 +343,7 @@ TEST_P(EveryBit, ChangesNothingInSilence) {
     } catch (const std::exception& error) {
       ++refused;
       const std::string said = error.what();
-      ASSERT_TRUE(said.starts_with(file(c).string() + ": expected ")) << "bit " << bit << ": " << said;
-      ASSERT_EQ(said.find('\n'), std::string::npos) << "bit " << bit << ": " << said;
+      ASSERT_TRUE(names(said, {file(c).string()})) << "bit " << bit;
     }
   }
   std::cout << refused << " refused, " << same << " the same, " << again << " judged again\n";

@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <limits>
 #include <memory>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "fuzz/files.h"
@@ -35,25 +37,25 @@ std::string one_line(std::string text) {
   return text;
 }
 
-// Calls body(); its errors become one line that names the file.
+// Calls body(); its errors become one line that names the file. database: which knows the system's reason, if any.
 template <class Body>
-auto in_one_line(const fs::path& file, const Body& body) {
-  constexpr const char* kGoOn = "--discard-damaged keeps the batches that check";
+auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQLite::Database>& database = {}) {
+  constexpr const char* kGoOn = "add --discard-damaged to keep the batches whose checksum is right";
   try {
     return body();
   } catch (const Damaged& error) {
-    throw DamagedStore(
-        fmt::format("{}: expected a whole database, found damage: {}; {}", file.string(), error.what(), kGoOn));
+    throw DamagedStore(cannot("use", file, fmt::format("it is damaged: {}; {}", error.what(), kGoOn)));
   } catch (const SQLite::Exception& error) {
-    const int code = error.getErrorCode();
-    const std::string what = fmt::format("{}: expected ", file.string());
+    const int code = error.getErrorCode(), system = database ? sqlite3_system_errno(database->getHandle()) : 0;
     if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
-      throw std::runtime_error(what + "to be alone, found another process that uses this campaign");
-    if (code == SQLITE_FULL) throw std::runtime_error(what + "room on the disk, found none");
+      throw std::runtime_error(cannot("use", file, "another process is using this campaign; wait until it has ended"));
+    if (code == SQLITE_FULL) throw std::runtime_error(cannot("write", file, ENOSPC));
     if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY || code == SQLITE_PERM || code == SQLITE_IOERR)
-      throw std::runtime_error(what + "to read and write it, found: " + one_line(error.what()));
-    throw DamagedStore(fmt::format("{}a Graze campaign database, found a foreign or damaged file ({}); {}", what,
-                                   one_line(error.what()), kGoOn));
+      throw std::runtime_error(system != 0 ? cannot("read and write", file, system)
+                                           : cannot("read and write", file, one_line(error.what())));
+    throw DamagedStore(cannot(
+        "use", file,
+        fmt::format("it is no campaign database of graze, or it is damaged ({}); {}", one_line(error.what()), kGoOn)));
   }
 }
 
@@ -71,11 +73,12 @@ std::int64_t number(SQLite::Database& database, const char* sql) { return databa
 bool is_fresh(SQLite::Database& database, const fs::path& file) {
   const std::int64_t application = number(database, "PRAGMA application_id");
   if (application == 0 && number(database, "SELECT count(*) FROM sqlite_schema") == 0) return true;
-  const std::string expected = file.string() + ": expected ";
   if (application != kApplicationId)
-    throw std::runtime_error(expected + "a Graze campaign database, found another program's; choose another --out");
+    throw std::runtime_error(cannot("use", file, "it is the database of another program; choose another --out"));
   if (const auto format = number(database, "PRAGMA user_version"); format != kFormat)
-    throw std::runtime_error(fmt::format("{}format {}, found {}; choose another --out", expected, kFormat, format));
+    throw std::runtime_error(
+        cannot("use", file,
+               fmt::format("it has format {}, and this build reads format {}; choose another --out", format, kFormat)));
   return false;
 }
 
@@ -109,10 +112,10 @@ std::string first_difference(const Json& expected, const Json& found) {
   for (const Json& side : {ours, theirs}) {
     for (const auto& [place, unused] : side.items()) {
       if (ours.contains(place) && theirs.contains(place) && ours[place] == theirs[place]) continue;
-      return fmt::format("{} {}, found {}", place.substr(1), value(ours, place), value(theirs, place));
+      return fmt::format("{} is {}, not {}", place.substr(1), value(theirs, place), value(ours, place));
     }
   }
-  return "the same, found another order";
+  return "the order is another one";
 }
 
 namespace {
@@ -123,13 +126,14 @@ void compare(const StoreSpec& spec, const std::string& text) {
   const Json found = Json::parse(text);
   if (const std::string shard = found.value("shard", "none"), own = spec.shard.whole() ? "none" : spec.shard.name();
       found["spec"] == spec.spec && shard != own)
-    throw UsageError(fmt::format("{}: holds another shard: expected {}, found {}; choose another --out",
-                                 spec.directory.string(), own, shard));
+    throw UsageError(cannot("use", spec.directory,
+                            fmt::format("it holds another shard, {} instead of {}; choose another --out", shard, own)));
   const bool another = found["spec"] != spec.spec;
-  throw UsageError(
-      fmt::format("{}: {}: expected {}; choose another --out", spec.directory.string(),
-                  another ? "holds another campaign" : "was begun by another build",
-                  another ? first_difference(spec.spec, found["spec"]) : first_difference(spec.build, found["build"])));
+  throw UsageError(cannot(
+      "use", spec.directory,
+      fmt::format(
+          "{}: {}; choose another --out", another ? "it holds another campaign" : "another build began its campaign",
+          another ? first_difference(spec.spec, found["spec"]) : first_difference(spec.build, found["build"]))));
 }
 
 // The ranges seen so far, of each source by their first pair.
@@ -270,8 +274,7 @@ Salvage salvage(const StoreSpec& spec) {
     }
     kept = rows_that_check(database, spec, fnv1a(text), seen);
     if (!known && kept.empty() && seen > 0)
-      throw std::runtime_error(
-          file.string() + ": expected a batch of this campaign, found none in what can be read; choose another --out");
+      throw std::runtime_error(cannot("recover", file, "no batch of this campaign can be read; choose another --out"));
   } catch (const SQLite::Exception&) {  // nothing can be read
   }
   Salvage result{kept.size(), 0, file.string() + ".damaged"};
@@ -295,59 +298,73 @@ Salvage salvage(const StoreSpec& spec) {
 }  // namespace
 
 StoreFile::StoreFile(const StoreSpec& spec) : spec_(spec), file_(database_file(spec)), campaign_(fnv1a(text_of(spec))) {
-  in_one_line(file_, [&] {
-    SQLite::Database& database = database_.emplace(opened(file_));
-    const bool fresh = is_fresh(database, file_);
-    if (fresh && fs::exists(spec.directory / "summary.json"))
-      throw UsageError(spec.directory.string() + ": holds results but not their database; choose another --out");
-    // A write-ahead log: a killed process loses only the transaction under way.
-    database.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
-    if (fresh) return begin(database, text_of(spec));
-    const std::string found = one_line(database.execAndGet("PRAGMA quick_check(1)").getString());
-    if (found != "ok") throw Damaged(found);
-    compare(spec, recorded_text(database));
-  });
+  in_one_line(
+      file_,
+      [&] {
+        SQLite::Database& database = database_.emplace(opened(file_));
+        const bool fresh = is_fresh(database, file_);
+        if (fresh && fs::exists(spec.directory / "summary.json"))
+          throw UsageError(
+              cannot("resume", spec.directory, "it holds results but not their database; choose another --out"));
+        // A write-ahead log: a killed process loses only the transaction under way.
+        database.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
+        if (fresh) return begin(database, text_of(spec));
+        const std::string found = one_line(database.execAndGet("PRAGMA quick_check(1)").getString());
+        if (found != "ok") throw Damaged(found);
+        compare(spec, recorded_text(database));
+      },
+      database_);
 }
 
 void StoreFile::for_each(const std::function<void(std::int64_t, const PairRange&, const StoredCounts&)>& visit) {
-  in_one_line(file_, [&] {
-    Coverage coverage(spec_);
-    SQLite::Statement query(*database_, kColumns);
-    while (query.executeStep()) {
-      const CheckedRow row = checked_row(query, spec_, campaign_);
-      coverage.take(row.range);
-      visit(query.getColumn(0).getInt64(), row.range, row.counts);
-    }
-  });
+  in_one_line(
+      file_,
+      [&] {
+        Coverage coverage(spec_);
+        SQLite::Statement query(*database_, kColumns);
+        while (query.executeStep()) {
+          const CheckedRow row = checked_row(query, spec_, campaign_);
+          coverage.take(row.range);
+          visit(query.getColumn(0).getInt64(), row.range, row.counts);
+        }
+      },
+      database_);
 }
 
 void StoreFile::shrink() {
-  in_one_line(file_, [&] { database_->exec("VACUUM"); });
+  in_one_line(
+      file_, [&] { database_->exec("VACUUM"); }, database_);
 }
 
 StoredCounts StoreFile::counts(std::int64_t id) {
-  return in_one_line(file_, [&] {
-    SQLite::Statement query(*database_, std::string(kColumns) + "WHERE id = ?");
-    query.bind(1, id);
-    if (!query.executeStep()) throw Damaged(fmt::format("batch {} is gone", id));
-    return checked_row(query, spec_, campaign_).counts;
-  });
+  return in_one_line(
+      file_,
+      [&] {
+        SQLite::Statement query(*database_, std::string(kColumns) + "WHERE id = ?");
+        query.bind(1, id);
+        if (!query.executeStep()) throw Damaged(fmt::format("batch {} is gone", id));
+        return checked_row(query, spec_, campaign_).counts;
+      },
+      database_);
 }
 
 std::int64_t StoreFile::put(const PairRange& range, const StoredCounts& counts,
                             const std::vector<std::int64_t>& replaced) {
-  return in_one_line(file_, [&] {
-    SQLite::Transaction transaction(*database_);
-    for (const std::int64_t id : replaced) database_->exec(fmt::format("DELETE FROM batch WHERE id = {}", id));
-    const std::int64_t id = insert(*database_, campaign_, range, to_bytes(counts));
-    transaction.commit();
-    return id;
-  });
+  return in_one_line(
+      file_,
+      [&] {
+        SQLite::Transaction transaction(*database_);
+        for (const std::int64_t id : replaced) database_->exec(fmt::format("DELETE FROM batch WHERE id = {}", id));
+        const std::int64_t id = insert(*database_, campaign_, range, to_bytes(counts));
+        transaction.commit();
+        return id;
+      },
+      database_);
 }
 
 StoreSpec recorded_store(const fs::path& directory) {
   const fs::path file = directory / kDatabase;
-  if (!fs::exists(file)) throw std::runtime_error(file.string() + ": expected a campaign or a shard, found none");
+  if (!fs::exists(file)) throw std::runtime_error(cannot("read", file, ENOENT));
   return in_one_line(file, [&] {
     OpenedToRead store(directory);
     if (is_fresh(store.database, file)) throw Damaged("it is empty");

@@ -14,6 +14,7 @@
 #include <deque>
 #include <set>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/campaign/run_status.h"
@@ -78,8 +79,8 @@ class Hunter {
     threads_ = hunt.campaign.threads > 0 ? hunt.campaign.threads : tbb::info::default_concurrency();
     store_.emplace(store_spec(hunt.campaign));
     if (fs::exists(merged_rounds_file(hunt.campaign.directory)))
-      throw UsageError(hunt.campaign.directory.string() +
-                       ": holds a hunt that was merged of shards, which is done; choose another --out");
+      throw UsageError(
+          cannot("resume", hunt.campaign.directory, "it is a finished hunt, merged from shards; choose another --out"));
     checksum_ = hunt_checksum(hunt.campaign.spec, hunt.campaign.build);
     fs::create_directories(folder());
     for (const auto& file : fs::directory_iterator(folder())) {

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/message_testing.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign_testing.h"
 #include "fuzz/campaign/run_status.h"
@@ -302,15 +303,10 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
     }
     return "";
   };
-  EXPECT_NE(refusal({{parts[0], parts[2]}, root_ / "none", false})
-                .find("none that is 2/3; it is run by: graze hunt --runs 5000"),
-            std::string::npos);
-  EXPECT_NE(refusal({parts, root_ / "none", true}).find("merged when all are done"), std::string::npos);
+  EXPECT_TRUE(names(refusal({{parts[0], parts[2]}, root_ / "none", false}), {"2/3", "graze hunt --runs 5000"}));
+  EXPECT_TRUE(names(refusal({parts, root_ / "none", true}), {"--partial", "hunt"}));
   std::ofstream(parts[1] / "hunt/000001.round", std::ios::app) << "x";
-  const std::string damaged = refusal({parts, root_ / "none", false});
-  EXPECT_NE(damaged.find("part-2/hunt: expected the rounds of its 1667 pairs, found those of 1411"), std::string::npos)
-      << damaged;
-  EXPECT_NE(damaged.find("--shard 2/3"), std::string::npos) << damaged;
+  EXPECT_TRUE(names(refusal({parts, root_ / "none", false}), {"part-2/hunt", "1667", "1411", "--shard 2/3"}));
   run_shard("part-2", {2, 3});  // that round again
   merge({parts, root_ / "repaired", false});
   expect_same_hunt("merged", "repaired");

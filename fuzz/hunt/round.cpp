@@ -7,9 +7,11 @@
 #include <unistd.h>
 
 #include <bitset>
+#include <cerrno>
 #include <csignal>
 #include <cstring>
 
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "fuzz/files.h"
 #include "fuzz/hunt/round_bytes.h"
@@ -186,7 +188,7 @@ bool has_libfuzzer() { return true; }
 pid_t start_round(const RoundTask& task, const std::filesystem::path& file) {
   const pid_t parent = getpid(), child = fork();
   if (child < 0)
-    throw std::runtime_error(fmt::format("expected a process for a round, found: {}", std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot start a process for a round of the hunt: {}", std::strerror(errno)));
   if (child > 0) return child;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) leave(1);
@@ -248,7 +250,7 @@ pid_t start_round(const RoundTask&, const std::filesystem::path&) { throw std::l
 RoundResult round_result(const RoundTask& task, const std::filesystem::path& file) {
   const std::string bytes = read_whole(file);
   if (bytes.empty())
-    throw std::runtime_error("expected the result of a round, found that its process ended without one");
+    throw std::runtime_error(cannot("read", file, "the process of this round of the hunt ended without a result"));
   return parse_result(bytes, task);
 }
 

@@ -147,8 +147,8 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   ASSERT_EQ(error_of(whole.dump()), "");
   for (const char* text : {"", "{", "[]", "7", R"({"kinds": []})", R"({"summary": 1, "cases": 2, "kinds": []})"}) {
     const std::string error = error_of(text);
-    EXPECT_TRUE(error.starts_with(file.string() + ": expected what `graze minimize` writes, found ")) << text << error;
-    EXPECT_TRUE(error.ends_with("; remove this file, then: graze minimize " + directory_.string())) << error;
+    EXPECT_TRUE(error.starts_with("cannot use " + file.string() + ": it is damaged")) << text << error;
+    EXPECT_TRUE(error.ends_with("; remove it, then run: graze minimize " + directory_.string())) << error;
   }
   const auto refused = [&](const char* place, const Json& value) {
     Json other = whole;

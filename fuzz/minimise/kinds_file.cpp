@@ -9,6 +9,7 @@
 #include <set>
 
 #include "analysis/signature.h"
+#include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
@@ -42,11 +43,11 @@ struct Case {
 
 Case read_case(const fs::path& directory, const Json& row) {
   Case c{row.at("key"), row.at("case"), row.at("count"), {}, {}, corpus::read_pairs(case_file(directory, row))};
-  if (c.entries.empty()) throw wrong_cases(directory, row, "none");
+  if (c.entries.empty()) throw wrong_cases(directory, row, "it has no case");
   for (corpus::Entry& entry : c.entries) entry.written.clear();  // there are many
   const auto signature = analysis::parse_signature(c.key),
              of_first = analysis::parse_signature(corpus::text_of(c.entries.front(), "signature"));
-  if (!signature || !of_first) throw wrong_cases(directory, row, "another signature");
+  if (!signature || !of_first) throw wrong_cases(directory, row, "its first line has another signature");
   c.signature = *signature;
   c.of_first = *of_first;
   return c;
@@ -116,9 +117,9 @@ void expect_places(const Known& known, const Json& kind) {
       if (const std::string* stratum = corpus::field(entry, "stratum")) ++strata[*stratum];
     }
   }
-  expect(kind.at("pairs") == pairs, fmt::format("{} pairs of {}", kind["pairs"].dump(), pairs));
+  expect(kind.at("pairs") == pairs, fmt::format("a kind with {} pairs instead of {}", kind["pairs"].dump(), pairs));
   expect(kind.at("signatures") == places.size(),
-         fmt::format("{} signatures of {}", kind["signatures"].dump(), places.size()));
+         fmt::format("a kind with {} signatures instead of {}", kind["signatures"].dump(), places.size()));
   expect(kind.at("margins").get<Counts>() == margins, "other margins than those of its signatures");
   expect(kind.at("strata").get<Counts>() == strata, "other strata than those of its cases");
   const LaneReason reason{nullptr, kind.at("cause"), kind.at("line"), false, false};
@@ -254,10 +255,9 @@ std::string hash_of_cases(const fs::path& directory, const Json& summary) {
 Json read_kinds(const fs::path& directory) {
   const fs::path file = directory / "kinds.json";
   if (!fs::exists(file)) return nullptr;
-  const auto refused = [&](const std::string& found) {
+  const auto refused = [&](const std::string& why) {
     return corpus::FormatError(
-        fmt::format("{}: expected what `graze minimize` writes, found {}; remove this file, then: graze minimize {}",
-                    file.string(), found, shell_word(directory.string())));
+        cannot("use", file, why + "; remove it, then run: graze minimize " + shell_word(directory.string())));
   };
   const Json stored = Json::parse(read_whole(file), nullptr, false);
   try {
@@ -269,9 +269,9 @@ Json read_kinds(const fs::path& directory) {
                     stored.at("kinds"));
     return stored["kinds"];
   } catch (const Json::exception&) {
-    throw refused("something else");
+    throw refused("it is damaged");
   } catch (const Impossible& error) {
-    throw refused(error.what());
+    throw refused(std::string("it contradicts the summary or the cases: it has ") + error.what());
   }
 }
 

@@ -272,15 +272,16 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pa
     for (std::size_t l = first; l < first + count; ++l) {
       const Lane& lane = *under_test.lanes[l];
       const DecideBlock on_host = cuda::block_on_host(lane);
-      if (!on_host) throw std::runtime_error(lane.id + ": expected a twin to minimise with, found none");
+      if (!on_host)
+        throw std::runtime_error("cannot minimise with " + lane.id + ": it has no twin; choose other --lanes");
       failure.lanes.push_back(&lane);
       failure.on_host.push_back(on_host);
       failure.verdicts.push_back(verdicts[l]);
     }
     if (!counts(failure, pair)) return;
     if (!failure.lanes.front()->foreign && !fails_alike(failure, pair)) {
-      throw std::runtime_error(std::string(failure.lanes.front()->info->id) +
-                               ": expected the twins to say what the device says, found that they differ");
+      throw std::runtime_error("cannot minimise with the twins of " + std::string(failure.lanes.front()->info->id) +
+                               ": their verdicts differ from the device's");
     }
     failures.push_back(std::move(failure));
   });
@@ -329,7 +330,7 @@ void confirm(const SelectedLanes& under_test, const Failure& failure, const Pair
   if (!can_shrink(failure)) return;  // its pair is the first one, and to ask again would be of no use
   const std::vector<Failure> failures = failures_of(under_test, pair);
   if (std::find(failures.begin(), failures.end(), failure) == failures.end())
-    throw std::runtime_error("expected the minimised pair to fail as the original does, found that it does not");
+    throw std::runtime_error("the minimised pair does not fail as the original does: this is a bug of graze");
 }
 
 }  // namespace graze::fuzz

@@ -70,8 +70,9 @@ std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const 
         continue;
       throw wrong_cases(
           directory, row,
-          fmt::format("another verdict of {} in line {} (the file is not the campaign's, or {} has changed)", lane->id,
-                      entry.line, lane->id));
+          fmt::format(
+              "in line {} the verdict of {} differs: either the file is not the campaign's, or the lane has changed",
+              entry.line, lane->id));
     }
   }
   return entries;

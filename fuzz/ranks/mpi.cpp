@@ -18,7 +18,12 @@ constexpr int kTag = 1, kTagOfNothing = 2;
 constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;  // MPI counts bytes in an int
 
 void check(int code, const char* what) {
-  if (code != MPI_SUCCESS) throw std::runtime_error(std::string(what) + ": expected MPI to do it, found an error");
+  if (code != MPI_SUCCESS) {
+    char text[MPI_MAX_ERROR_STRING];
+    int length = 0;
+    MPI_Error_string(code, text, &length);
+    throw std::runtime_error(std::string(what) + " failed: " + std::string(text, static_cast<std::size_t>(length)));
+  }
 }
 
 class MpiRanks final : public Ranks {

@@ -78,10 +78,8 @@ std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std:
   plan = Json::parse(ranks.from_root(plan.dump()));
   if (plan.contains("error")) return {};
   if (plan["build"] != campaign.build)
-    throw std::runtime_error(
-        fmt::format("rank {}: expected the root's build and device, found another: expected {}; "
-                    "run shards instead",
-                    ranks.rank, first_difference(plan["build"], campaign.build)));
+    throw std::runtime_error(fmt::format("rank {} has another build or device than rank 0: {}; run shards instead",
+                                         ranks.rank, first_difference(plan["build"], campaign.build)));
   std::vector<PairRange> gaps;
   for (const Json& gap : plan["gaps"]) gaps.push_back({gap[0], gap[1], gap[2]});
   const Blocks blocks(gaps, plan["size"]);

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "core/cannot.h"
+
 namespace graze::fuzz {
 
 bool started_by_mpirun() {
@@ -25,12 +27,12 @@ std::unique_ptr<Ranks> open_ranks() {
   const std::filesystem::path library =
       std::filesystem::read_symlink("/proc/self/exe").parent_path() / "libgraze_mpi.so";
   if (!std::filesystem::exists(library))
-    throw std::runtime_error(library.string() +
-                             ": expected it for a start by mpirun, found none; this build found no MPI");
+    throw std::runtime_error(
+        cannot("start by mpirun without", library, "this build found no MPI; install MPI and build again"));
   void* handle = dlopen(library.c_str(), RTLD_NOW | RTLD_GLOBAL);  // Open MPI's parts look for its names globally
-  if (!handle) throw std::runtime_error(std::string("expected MPI's libraries, found: ") + dlerror());
+  if (!handle) throw std::runtime_error(cannot("load", library, dlerror()));
   const auto open = reinterpret_cast<Ranks* (*)()>(dlsym(handle, "graze_open_ranks"));
-  if (!open) throw std::runtime_error(library.string() + ": expected that of this build, found another");
+  if (!open) throw std::runtime_error(cannot("load", library, "it belongs to another build"));
   return std::unique_ptr<Ranks>(open());
 }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "analysis/signature.h"
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "fuzz/campaign/checked_summary.h"
@@ -77,7 +78,7 @@ std::vector<FoundFailure> found_in_kinds(const std::filesystem::path& directory,
     const std::filesystem::path file = case_file(directory, kind.at("simplest"));
     const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
     const std::string* signature = entries.empty() ? nullptr : corpus::field(entries.front(), "signature");
-    if (!signature) throw corpus::FormatError(file.string() + ": expected a case with a signature, found none");
+    if (!signature) throw corpus::FormatError(cannot("add", file, "its first case has no signature"));
     const std::string key = kind.at("key");
     if (!matches_any(globs, *signature) && !matches_any(globs, key)) continue;
     if (taken[kind.at("subject")]++ >= most) continue;
@@ -95,10 +96,10 @@ std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directo
   Json kinds;
   try {
     if (!summary.at("complete").get<bool>())
-      throw UsageError(directory.string() + ": expected a finished campaign, found one that was interrupted");
+      throw UsageError(cannot("add", directory, "its campaign is not finished; finish it with `graze fuzz`"));
     kinds = kinds_of(directory, summary);
   } catch (const Json::exception&) {
-    throw corpus::FormatError(file.string() + ": expected a campaign's summary, found something else");
+    throw corpus::FormatError(cannot("use", file, "it is not the summary of a campaign"));
   }
   return found_in_kinds(directory, summary, kinds, globs, most);
 }
@@ -153,7 +154,8 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
     }
   }
   if (!without_lanes(found) || without_lanes(found) != without_lanes(failure.signature)) {
-    throw std::runtime_error(fmt::format("expected a pair with the signature {}, found {}", failure.signature, found));
+    throw std::runtime_error(
+        fmt::format("the pair does not fail as recorded: its signature is {}, not {}", found, failure.signature));
   }
 
   RegressionCase c{fmt::format("{}_{:016x}", algorithm, fnv1a(failure.signature)),

@@ -202,7 +202,7 @@ Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> run, cons
       if (lane->exact) {  // its record is the truth, whatever the file says
         ++result.compared;
         if (mark_now != '.')
-          change(fmt::format("{}: expected the truth, {}, found {}", lane->id, truth_now,
+          change(fmt::format("{}: the truth is {}, the verdict is {}", lane->id, truth_now,
                              verdict_of_mark(mark_now, truth_now)));
       } else if (known != c.marks.end()) {
         if (known->second == '~') continue;

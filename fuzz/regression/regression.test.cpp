@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/message_testing.h"
 #include "fuzz/regression/found_failure.h"
 
 namespace graze::fuzz {
@@ -95,16 +96,14 @@ TEST_F(Regression, AFileReadsAsItWasWritten) {
 }
 
 TEST_F(Regression, BadLinesAreNamed) {
-  EXPECT_EQ(read_error("state=failing", "state=broken"),
-            ":3: expected a state (failing, fixed or flaky), found 'broken'");
-  EXPECT_EQ(read_error("count=7", "count=-7"), ":3: expected a whole number as count, found '-7'");
-  EXPECT_EQ(read_error("count=7", "times=7"), ":3: expected a field count, found none");
-  EXPECT_EQ(read_error("lanes=guigue_devillers_2003:", "lanes=;guigue_devillers_2003:"),
-            ":3: expected a subject and the marks of its lanes in lanes, found ''");
-  EXPECT_EQ(read_error("moller_1997:-f32/cpu,", "moller_1997:f32/cpu,-f32/cpu,").substr(0, 52),
-            ":3: expected a mark and a lane of moller_1997 in lan");
-  EXPECT_EQ(read_error("signature=" + kSignature, "signature=point"),
-            ":3: expected the signature of a failure, found 'point'");
+  EXPECT_TRUE(names(read_error("state=failing", "state=broken"), {":3", "failing", "fixed", "flaky", "'broken'"}));
+  EXPECT_TRUE(names(read_error("count=7", "count=-7"), {":3", "count", "'-7'"}));
+  EXPECT_TRUE(names(read_error("count=7", "times=7"), {":3", "count"}));
+  EXPECT_TRUE(
+      names(read_error("lanes=guigue_devillers_2003:", "lanes=;guigue_devillers_2003:"), {":3", "lanes", "''"}));
+  EXPECT_TRUE(
+      names(read_error("moller_1997:-f32/cpu,", "moller_1997:f32/cpu,-f32/cpu,"), {":3", "moller_1997", "lanes"}));
+  EXPECT_TRUE(names(read_error("signature=" + kSignature, "signature=point"), {":3", "signature", "'point'"}));
   write_regressions(file, corpus);
   const corpus::Entry twice = corpus::read_pairs(file).front();
   std::ofstream again(file, std::ios::app);
@@ -235,7 +234,7 @@ TEST_F(Regression, AnExactLaneThatIsWrongIsAChange) {
   liars.wrong.insert("exact/f32/cpu");
   const Verified found = verify(corpus, liars.lanes, liars.decide());
   ASSERT_EQ(found.changes.size(), 1u);
-  EXPECT_EQ(found.changes[0].what, "exact/f32/cpu: expected the truth, intersects, found disjoint (wrong)");
+  EXPECT_TRUE(names(found.changes[0].what, {"exact/f32/cpu", "intersects", "disjoint (wrong)"}));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "fuzz/campaign/lane_costs.h"
@@ -43,9 +44,9 @@ std::vector<StoreSpec> read_records(const std::vector<fs::path>& parts) {
   for (const fs::path& part : parts) {
     stores.push_back(recorded_store(part));
     if (stores.back().spec == stores.front().spec) continue;
-    throw std::runtime_error(fmt::format("{}: holds a part of another campaign: expected {}, as {}; leave one out",
-                                         part.string(), first_difference(stores.front().spec, stores.back().spec),
-                                         stores.front().directory.string()));
+    throw std::runtime_error(fmt::format(
+        "cannot merge {} and {}: they are parts of different campaigns: {}; leave one out",
+        stores.front().directory.string(), part.string(), first_difference(stores.front().spec, stores.back().spec)));
   }
   return stores;
 }
@@ -72,18 +73,17 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
   }
   if (!undone.empty()) {
     throw std::runtime_error(
-        fmt::format("{}: expected all of its pairs, found {}; go on: {}", named(*undone.front()),
-                    undone.size() == 1 ? "that it is not done"
-                                       : fmt::format("that it and {} other shards are not done", undone.size() - 1),
+        fmt::format("cannot merge {}: it {} not done; to go on, run: {}", named(*undone.front()),
+                    undone.size() == 1 ? "is" : fmt::format("and {} other shards are", undone.size() - 1),
                     command_of(spec, undone.front()->shard, undone.front()->directory)));
   }
   const std::uint64_t of = stores.front().shard.of;
   const bool alike =
       of > 1 && std::all_of(stores.begin(), stores.end(), [&](auto& store) { return store.shard.of == of; });
   if (!alike) {
-    throw std::runtime_error(
-        fmt::format("expected all pairs, found {} of them in none of these; merge them --partial into {} and go on: {}",
-                    missing, out.string(), command_of(spec, {}, out)));
+    throw std::runtime_error(fmt::format(
+        "cannot merge: {} pairs are in none of these directories; merge these with --partial into {}, then run: {}",
+        missing, out.string(), command_of(spec, {}, out)));
   }
   std::set<std::uint64_t> lacking;
   for (std::uint64_t k = 1; k <= of; ++k) lacking.insert(k);
@@ -95,11 +95,11 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
   });
   const fs::path folder = stores.front().directory.parent_path();
   std::string command = command_of(spec, {*lacking.begin(), of}, folder / fmt::format("shard-{}", *lacking.begin()));
-  throw std::runtime_error(lacking.size() == 1
-                               ? fmt::format("expected {} shards, found none that is {}/{}; it is run by: {}", of,
-                                             *lacking.begin(), of, command)
-                               : fmt::format("expected {} shards, found none that are {}; the first is run by: {}", of,
-                                             fmt::join(lacking, ", "), command));
+  throw std::runtime_error(
+      lacking.size() == 1
+          ? fmt::format("cannot merge: shard {}/{} is missing; to run it: {}", *lacking.begin(), of, command)
+          : fmt::format("cannot merge: shards {} of {} are missing; to run the first: {}", fmt::join(lacking, ", "), of,
+                        command));
 }
 
 // Throws: std::runtime_error where the file is not what the finished run sealed.
@@ -107,14 +107,15 @@ void expect_sealed(const StoreSpec& store) {
   const Json status = read_status(store.directory);
   if (status.is_null() || status["state"] != "done" || !status.contains("hash")) return;
   if (const std::string found = file_hash(store.directory / kDatabase); found != status["hash"])
-    throw DamagedStore(fmt::format("{}: expected the file that the run left, hash {}, found hash {}; copy it again, or",
-                                   (store.directory / kDatabase).string(), printable(status["hash"].get<std::string>()),
-                                   found));
+    throw DamagedStore(
+        cannot("merge", store.directory / kDatabase,
+               fmt::format("it has changed since the run ended: its hash is {}, not {}; copy it again, or", found,
+                           printable(status["hash"].get<std::string>()))));
 }
 
 void expect_new(const fs::path& out) {
   if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
-    throw UsageError(out.string() + ": expected a new or an empty directory, found other things; choose another --out");
+    throw UsageError(cannot("use", out, "it holds other files; choose a new or an empty directory as --out"));
 }
 
 // The folder that `out` means, without links; the finished campaign is renamed to it.
@@ -122,15 +123,16 @@ void expect_new(const fs::path& out) {
 fs::path place_of(const fs::path& out) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(behind_links(out), error);
-  if (error) throw UsageError(out.string() + ": expected a new or an empty directory, found: " + error.message());
+  if (error) throw UsageError(cannot("use", out, error.message()));
   expect_new(out);
   if (!place.has_filename()) place = place.parent_path();
   if (place == fs::current_path(error))
-    throw UsageError(out.string() + ": is the working directory, which cannot be replaced; run the command elsewhere");
+    throw UsageError(cannot("replace", out, "it is the working directory; run the command elsewhere"));
   struct statx found {};
   if (statx(AT_FDCWD, place.c_str(), 0, STATX_TYPE, &found) == 0 && (found.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
-    throw UsageError(fmt::format("{}: is a mount point, which cannot be replaced; use a new directory in it: --out {}",
-                                 out.string(), shell_word((out / "campaign").string())));
+    throw UsageError(
+        cannot("replace", out,
+               "it is a mount point; use a new directory in it: --out " + shell_word((out / "campaign").string())));
   return place;
 }
 
@@ -140,11 +142,8 @@ fs::path folder_beside(const fs::path& place) {
   fs::path part = place;
   part += ".part";
   fs::create_directories(part, error);
-  if (error)
-    throw std::runtime_error(part.string() + ": expected a directory that can be written, found: " + error.message());
-  if (!may_fill(part, {}))
-    throw UsageError(part.string() +
-                     ": expected no folder, or what a merge that was killed left, found other things; remove it");
+  if (error) throw std::runtime_error(cannot("make the directory", part, error.message()));
+  if (!may_fill(part, {})) throw UsageError(cannot("use", part, "it holds files that no merge left; remove it"));
   return part;
 }
 
@@ -174,9 +173,9 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
     try {
       add_timings(store, timings["runs"], stores.size(), by_machine);
     } catch (const Json::exception&) {
-      throw std::runtime_error(file.string() + ": expected a campaign's timings, found something else");
+      throw std::runtime_error(cannot("use", file, "it does not hold the timings of a campaign"));
     } catch (const std::runtime_error& error) {
-      throw std::runtime_error(file.string() + ": " + error.what());
+      throw std::runtime_error(cannot("use", file, error.what()));
     }
   }
   return by_machine;
@@ -196,9 +195,9 @@ void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::ui
     }
     if (kept != held[i])
       throw std::runtime_error(
-          fmt::format("{}: expected the rounds of its {} pairs, found those of {}; copy it again, or: {}",
-                      rounds_folder(store.directory).string(), held[i], kept,
-                      command_of(store.spec, store.shard, store.directory)));
+          cannot("merge", rounds_folder(store.directory),
+                 fmt::format("it has the rounds of {} pairs, but the database has {}; copy it again, or run: {}", kept,
+                             held[i], command_of(store.spec, store.shard, store.directory))));
   }
   std::sort(rounds.begin(), rounds.end(), [](const KeptRound& l, const KeptRound& r) { return l.first < r.first; });
   auto found = std::make_shared<HuntRounds>();
@@ -229,8 +228,8 @@ Json common_build(const Json& one, const Json& other, const fs::path& directory)
     build->erase("executors");
   }
   if (common != rest)
-    throw std::runtime_error(fmt::format("{}: was run by another build: expected {}; leave it out", directory.string(),
-                                         first_difference(common, rest)));
+    throw std::runtime_error(cannot(
+        "merge", directory, fmt::format("another build ran it: {}; leave it out", first_difference(common, rest))));
   common = one;
   const auto merge_words = [](Json& into, const Json& from) {
     if (from.is_null()) return;
@@ -251,7 +250,7 @@ Outcome write_merged(const Campaign& campaign, const Sums& sums) {
 }
 
 Outcome merge(const MergeOptions& options) {
-  if (options.parts.empty()) throw UsageError("expected directories of shards, found none");
+  if (options.parts.empty()) throw UsageError("graze merge needs the directories of shards");
   std::vector<StoreSpec> stores = read_records(options.parts);
   Campaign campaign;
   campaign.spec = stores.front().spec;
@@ -259,8 +258,7 @@ Outcome merge(const MergeOptions& options) {
   campaign.sources = recorded_sources(campaign.spec);
   const bool hunt = campaign.spec.contains("hunt");
   if (hunt && options.partial)
-    throw UsageError(
-        "--partial: expected parts of a campaign, found those of a hunt, which are merged when all are done");
+    throw UsageError("--partial does not work for a hunt; merge its parts when all are done");
   campaign.build = stores.front().build;
   for (StoreSpec& store : stores) {
     campaign.build = common_build(campaign.build, store.build, store.directory);
@@ -268,9 +266,10 @@ Outcome merge(const MergeOptions& options) {
   }
   // The pairs of the cases are drawn again, here.
   if (const Json here = build_info({}); campaign.build.at("commit") != here["commit"])
-    throw std::runtime_error(fmt::format("{}: expected shards of this build, commit {}, found {}",
-                                         stores.front().directory.string(), here["commit"].get<std::string>(),
-                                         printable(campaign.build["commit"].get<std::string>())));
+    throw std::runtime_error(
+        cannot("merge", stores.front().directory,
+               fmt::format("the build of commit {} ran it, and this build is of commit {}; use that build",
+                           printable(campaign.build["commit"].get<std::string>()), here["commit"].get<std::string>())));
   const SelectedLanes under_test = recorded_lanes(campaign.spec);
   campaign.under_test = &under_test;
   const std::map<std::string, Json> timings = timings_of(stores);
@@ -297,13 +296,15 @@ Outcome merge(const MergeOptions& options) {
         });
       } catch (const DamagedStore& error) {
         const std::string again = command_of(campaign.spec, stores[i].shard, stores[i].directory);
-        throw std::runtime_error(hunt ? fmt::format("{} remove it: {}", error.what(), again)
-                                      : fmt::format("{}: {} --discard-damaged", error.what(), again));
+        const std::string what = error.what();
+        throw std::runtime_error(hunt ? what.substr(0, what.rfind("; ")) +
+                                            "; copy it again, or remove it and run: " + again
+                                      : what + ": " + again + " --discard-damaged");
       } catch (const Sums::Overlap& overlap) {
-        throw std::runtime_error(fmt::format(
-            "{} and {}: expected parts that have no pairs in common, found {} of {} from {} on in both; leave one out",
-            named(stores[overlap.before]), named(stores[overlap.now]), overlap.pairs.pairs,
-            campaign.sources[static_cast<std::size_t>(overlap.pairs.source)].id, overlap.pairs.first));
+        throw std::runtime_error(
+            fmt::format("cannot merge {} and {}: both have {} pairs of {} from {} on; leave one out",
+                        named(stores[overlap.before]), named(stores[overlap.now]), overlap.pairs.pairs,
+                        campaign.sources[static_cast<std::size_t>(overlap.pairs.source)].id, overlap.pairs.first));
       }
     }
     if (!partial) expect_no_gaps(stores, sums, options.out);
@@ -313,7 +314,7 @@ Outcome merge(const MergeOptions& options) {
     for (const auto& [machine, run] : timings) append_timing(campaign.directory, run, outcome.oracle);
     std::error_code error;
     fs::rename(campaign.directory, place, error);  // over an empty folder too
-    if (error) throw std::runtime_error(options.out.string() + ": cannot put the campaign there: " + error.message());
+    if (error) throw std::runtime_error(cannot("put the campaign into", options.out, error.message()));
     fs::remove(beside, unimportant);
     return outcome;
   } catch (...) {

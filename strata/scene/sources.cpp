@@ -8,6 +8,7 @@
 #include <memory>
 #include <numeric>
 
+#include "core/cannot.h"
 #include "core/error.h"
 #include "core/lanes/lanes.h"
 #include "core/text.h"
@@ -98,8 +99,10 @@ std::shared_ptr<const Meshes> open_meshes(const SceneFile& scene, const std::fil
   meshes->pairs =
       read_bodies(files, scene.meshes.poses.empty() ? std::filesystem::path() : folder / scene.meshes.poses);
   if (meshes->pairs.content_hash != scene.meshes.content)
-    throw std::runtime_error(fmt::format("{}: expected the content {:016x} that the scene names, found {:016x}",
-                                         files[0].string(), scene.meshes.content, meshes->pairs.content_hash));
+    throw std::runtime_error(cannot("use", files[0],
+                                    fmt::format("the mesh has changed since the scene was measured: its hash is "
+                                                "{:016x}, not {:016x}; run `graze scene` again",
+                                                meshes->pairs.content_hash, scene.meshes.content)));
   for (const auto& triangle : meshes->pairs.triangles) {
     for (const Vec3<float>& v : triangle) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -107,8 +110,8 @@ std::shared_ptr<const Meshes> open_meshes(const SceneFile& scene, const std::fil
         const auto& [low, high] = scene.extent[static_cast<std::size_t>(axis)];
         if (as_float32(low) <= x && x <= as_float32(high)) continue;
         throw std::runtime_error(
-            fmt::format("{}: expected coordinates within the scene's extent, {} to {} in {}, found {}",
-                        files[0].string(), low, high, "xyz"[axis], x));
+            cannot("use", files[0],
+                   fmt::format("{} = {} is outside the scene's extent, {} to {}", "xyz"[axis], x, low, high)));
       }
     }
   }
@@ -131,8 +134,9 @@ void expect_names(const std::vector<std::string>& globs) {
   for (const MeshSourceInfo& row : kMeshSources) ids.emplace_back(row.id);
   for (const std::string& glob : globs) {
     if (std::none_of(ids.begin(), ids.end(), [&](const std::string& id) { return matches_any({glob}, id); }))
-      throw UsageError("expected a stratum (see `graze strata`), mesh, mesh_ulps or mesh_moved, found '" +
-                       printable(glob) + "'" + did_you_mean(glob, ids));
+      throw UsageError("no stratum matches '" + printable(glob) +
+                       "'; `graze strata` lists them, and a scene has mesh, mesh_ulps and mesh_moved" +
+                       did_you_mean(glob, ids));
   }
 }
 
@@ -197,7 +201,7 @@ SceneSources scene_sources(const SceneFile& file, const std::filesystem::path& f
   for (std::size_t s = strata; s < weights.size(); ++s)
     weights[s] = (of_strata > 0 ? of_strata : 1) / static_cast<double>(weights.size() - strata);
   if (result.sources.empty())
-    throw UsageError(fmt::format("expected a stratum that the scene can contain, found {}: {}", result.left_out[0].id,
+    throw UsageError(fmt::format("the scene cannot contain {}: {}; choose other --strata", result.left_out[0].id,
                                  result.left_out[0].why));
   share(result.sources, weights, pairs);
   for (PairSource& source : result.sources) {

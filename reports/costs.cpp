@@ -28,13 +28,13 @@ std::optional<Cost> Costs::of(std::size_t lane, const std::vector<std::size_t>& 
 std::optional<Costs> costs_of(const Json& timings, const CampaignCounts& counts) {
   if (!timings.is_object()) return std::nullopt;
   std::optional<Costs> costs;
-  std::vector<std::string> lanes, strata;
+  std::vector<std::string> lanes, sources;
   for (const ReportLane& lane : counts.lanes) lanes.push_back(lane.id);
-  for (const StratumCounts& stratum : counts.strata) strata.push_back(stratum.id);
+  for (const StratumCounts& stratum : counts.strata) sources.push_back(stratum.id);
   for (const Json& run : timings.value("runs", Json::array())) {
     if (!run.contains("costs")) continue;
     const Json& found = run["costs"];
-    fuzz::expect_possible_costs(found, lanes, strata, counts.pairs);
+    fuzz::expect_possible_costs(found, lanes, sources, counts.pairs);
     costs = Costs{run.value("machine", "an unknown machine"), found.at("passes"), {}};
     for (const ReportLane& lane : counts.lanes) {
       auto& row = costs->of_stratum.emplace_back(counts.strata.size());

@@ -20,6 +20,8 @@ Json quartiles(std::vector<double> passes) {
   return {{"low", rounded(cost.low)}, {"middle", rounded(cost.middle)}, {"high", rounded(cost.high)}};
 }
 
+constexpr std::uint64_t kMostPasses = 1'000'000;
+
 }  // namespace
 
 Json measure_costs(const Campaign& campaign) {
@@ -58,16 +60,17 @@ void expect_possible_costs(const Json& costs, const std::vector<std::string>& la
       throw std::runtime_error(fmt::format("it has costs of {}, which is no {} of the campaign", shown(name), what));
   };
   const std::uint64_t most = std::min(kPairsTimed, pairs);
-  if (costs.at("passes").get_ref<const Json::number_unsigned_t&>() == 0)
-    throw std::runtime_error("it has costs of no passes");
+  const auto is_one_to = [](const Json& count, std::uint64_t limit) {
+    return count.is_number_integer() && count >= 1 && count <= limit;
+  };
+  if (!is_one_to(costs.at("passes"), kMostPasses)) throw std::runtime_error("it has costs of no passes");
   for (const auto& [lane, rows] : costs.at("lanes").get_ref<const Json::object_t&>()) {
     expect_one_of(lanes, lane, "lane");
     for (const auto& [source, row] : rows.get_ref<const Json::object_t&>()) {
       expect_one_of(sources, source, "stratum");
-      const std::uint64_t timed = row.at("pairs").get_ref<const Json::number_unsigned_t&>();
       const double low = row.at("low").get<double>(), middle = row.at("middle").get<double>(),
                    high = row.at("high").get<double>();
-      if (timed == 0 || timed > most || !(0 < low && low <= middle && middle <= high))
+      if (!is_one_to(row.at("pairs"), most) || !(0 < low && low <= middle && middle <= high))
         throw std::runtime_error(fmt::format("it has impossible costs of {} on {}, of at most {} pairs: {}", lane,
                                              source, most, shown(row.dump())));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/minimise/kinds.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -178,7 +179,12 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   for (const char* lane : {"x", "", "/", "moller_1997/f32", "exact/f32/cpu"}) refused("/kinds/0/lanes", {lane});
   refused("/kinds/0/lanes", {subject + "/f32/banana"});
   refused("/kinds/0/lanes", Json::array());
-  refused("/kinds/0/settled", {0, 0});
+  for (std::size_t i = 0; i < whole["kinds"].size(); ++i) {
+    const std::uint64_t audited = whole["kinds"][i]["settled"][1];
+    if (audited == 0) continue;
+    refused(fmt::format("/kinds/{}/settled", i).c_str(), {0, audited - 1});
+    break;
+  }
   refused("/kinds/0/settled", {1, 1'000'000'000});
   refused("/kinds/0/settled", {1, 2, 3});
   for (const char* part : {"key", "subject", "cause", "line", "shape", "simplest/case", "simplest/pair",
@@ -194,14 +200,14 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
     verdicts[lane] = verdict;
     refused("/kinds/0/simplest/verdicts", verdicts);
   }
-  for (std::size_t i = 0; i < whole["kinds"].size(); ++i) {
+  for (std::size_t i = 0; i < whole["kinds"].size(); i += 7) {
     Json other = whole["kinds"];
-    other.push_back(other[i]);
-    refused("/kinds", other);
-    other = whole["kinds"];
     other.erase(i);
     refused("/kinds", other);
   }
+  Json twice = whole["kinds"];
+  twice.push_back(twice[0]);
+  refused("/kinds", twice);
   fs::remove(file);
 }
 

@@ -162,7 +162,6 @@ void add_hunt(CLI::App& app, int& status) {
       ->capture_default_str()
       ->option_text("N");
   command->add_option("--out", options->out, "Directory of the search; an unfinished search in it is resumed")
-      ->take_last()
       ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");

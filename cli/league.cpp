@@ -179,7 +179,6 @@ void add_league(CLI::App& app, int& status) {
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command->add_option("--out", options->out, "Directory for league.json, league.md and drawings")
-      ->take_last()
       ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");

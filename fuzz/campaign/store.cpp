@@ -83,7 +83,7 @@ void Store::add(const PairRange& range, const StoredCounts& counts) {
   total.gmp += counts.gmp;
   total.exact += counts.exact;
   for (const auto& [key, found] : counts.signatures) signatures_[key].add(found);
-  for (const auto& [lane, found] : counts.executor_mismatches) executors_apart_[lane].add(found);
+  for (const auto& [lane, found] : counts.executor_mismatches) executor_mismatches_[lane].add(found);
 }
 
 std::uint64_t Store::done(int source) const {

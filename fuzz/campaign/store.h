@@ -60,7 +60,7 @@ class Store {
 
   const std::map<std::string, SignatureCount>& signatures() const { return signatures_; }  // by key
   // Pairs on which a device and its twin differ, by lane.
-  const std::map<std::string, SignatureCount>& executor_mismatches() const { return executors_apart_; }
+  const std::map<std::string, SignatureCount>& executor_mismatches() const { return executor_mismatches_; }
 
  private:
   struct Row {
@@ -76,7 +76,7 @@ class Store {
   StoreFile file_;
   std::vector<std::map<std::uint64_t, Row>> rows_;                      // of each source, by their first pair
   std::vector<StoredCounts> of_source_;                                 // but for signatures and executor_mismatches
-  std::map<std::string, SignatureCount> signatures_, executors_apart_;  // of all sources
+  std::map<std::string, SignatureCount> signatures_, executor_mismatches_;  // of all sources
 };
 
 }  // namespace graze::fuzz

@@ -52,6 +52,28 @@ TEST_F(ForeignCode, NothingOutlivesACampaignOrItsKill) {
   expect_none_sleeps();
 }
 
+// The compiler waits for ever for what is in the pipe; a verb that catches no signals ends in order all the same.
+TEST_F(ForeignCode, ACompilerEndsWithGraze) {
+  ASSERT_EQ(shell("mkfifo pipe.h && echo '#include \"pipe.h\"' > waits.cpp").status, 0);
+  const std::string verbs[] = {"fuzz --lanes 'w/*' --strata uniform --pairs 10 --out o", "check pair.txt"};
+  for (const std::string& verb : verbs) {
+    for (const auto& [signal, status] : {std::pair{"TERM", 130}, {"INT", 130}, {"KILL", 137}}) {
+      const Ran ran = shell("export XDG_CACHE_HOME=$PWD/cache; set -m; graze " + verb +
+                            " --subject w=./waits.cpp & p=$!; until pgrep -f \"$PWD/cache.* -E\" > /dev/null; do "
+                            "sleep 0.02; kill -0 $p || exit 99; done; kill -" +
+                            signal + " $p; wait $p");
+      EXPECT_EQ(ran.status, status) << verb << ran.err;
+      if (status == 130) {
+        EXPECT_EQ(ran.err, "graze: interrupted\n");
+      }
+      EXPECT_EQ(shell("for i in $(seq 600); do pgrep -f \"$PWD/cache\" > /dev/null || ls cache/graze | grep -q "
+                      "unfinished || exit 0; sleep 0.1; done; exit 1")
+                    .status,
+                0);
+    }
+  }
+}
+
 TEST_F(ForeignCode, OptionsOfSubjectsAreWithinBounds) {
   for (const std::string seconds : {"nan", "inf", "-1", "0", "1e9", "1s"})
     expect_error("graze check pair.txt --subject s=cmd:true --subject-timeout=" + seconds, 2, {"0.001", "86400"});

@@ -4,11 +4,6 @@
 #include <csignal>
 
 namespace graze::cli {
-namespace {
-
-extern "C" void request_stop(int) { stop_requested = true; }
-
-}  // namespace
 
 const std::atomic<bool>& catch_interrupts() {
   std::signal(SIGINT, request_stop);

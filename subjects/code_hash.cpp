@@ -97,7 +97,10 @@ std::uint64_t hash_of_file(const fs::path& file) {
 CodeHash hash_of_library(const fs::path& file) { return {hash_of_file(file), "the libraries that it loads"}; }
 
 CodeHash hash_of_command(const std::string& command) {
-  CodeHash code{fnv1a(command), "what its files load"};
+  const bool is_expanded = command.find_first_of("$`*?[~{") != command.npos;
+  CodeHash code{fnv1a(command), is_expanded ? "the files that the shell puts in for $, `, *, ?, [, ~ or {, or of what "
+                                              "its files load"
+                                            : "what its files load"};
   const std::vector<std::string> words = words_of(command);
   const auto is_setting = [](const std::string& word) { return word.find('=') != word.npos; };  // NAME=VALUE
   const auto program = std::find_if_not(words.begin(), words.end(), is_setting);

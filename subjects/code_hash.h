@@ -20,7 +20,8 @@ std::uint64_t hash_of_file(const std::filesystem::path& file);
 
 CodeHash hash_of_library(const std::filesystem::path& file);
 
-// Of the command's text, the program that it starts, and the files that it names.
+// Of the command's text, the program that it starts, and the files that it names as they stand there: what a shell
+// would put in for variables and patterns is not known.
 CodeHash hash_of_command(const std::string& command);
 
 // Of a compiler's flags, and of the files that they name.

@@ -12,6 +12,7 @@
 #include <sys/mount.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/statvfs.h>
 #include <sys/syscall.h>
 #include <sys/utsname.h>
 #include <sys/vfs.h>
@@ -27,6 +28,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -83,6 +85,53 @@ bool hide_terminals(const std::vector<std::string>& others) {
     const bool is_private = mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;  // not so in a chroot
     return is_private && mount("/dev/null", file.c_str(), nullptr, MS_BIND, nullptr) == 0;
   });
+}
+
+// Where control groups are mounted, as the system's list of mounts has it: with spaces and the like as \040.
+std::vector<std::string> control_groups() {
+  std::vector<std::string> found;
+  std::ifstream in("/proc/self/mountinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t type = line.find(" - cgroup");  // and cgroup2
+    if (type == line.npos) continue;
+    std::istringstream words(line);
+    std::string skipped, written, place;
+    words >> skipped >> skipped >> skipped >> skipped >> written;
+    for (std::size_t i = 0; i < written.size(); ++i) {
+      const bool escaped = written[i] == '\\' && i + 3 < written.size();
+      place.push_back(escaped ? static_cast<char>(std::stoi(written.substr(i + 1, 3), nullptr, 8)) : written[i]);
+      i += escaped ? 3 : 0;
+    }
+    found.push_back(place);
+  }
+  return found;
+}
+
+// In the new namespace: root, or a user whom a part of the groups belongs to, could freeze the supervisor there, or
+// take its memory and processor.
+bool hide_control_groups() {
+  for (const std::string& place : control_groups()) {
+    // What is mounted on a mount that others share, as in a chroot, would be seen by them.
+    if (mount("none", place.c_str(), nullptr, MS_PRIVATE, nullptr) != 0 &&
+        (errno == ENOENT || errno == EINVAL || errno == EACCES))
+      continue;  // it lies below another mount, or cannot be reached
+    if (mount("tmpfs", place.c_str(), "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k") != 0)
+      return false;
+  }
+  return true;
+}
+
+// In the new namespace, where that can be. In a chroot it cannot: what is mounted there would be seen outside.
+void make_read_only(const std::string& folder) {
+  const char* at = folder.c_str();
+  struct statvfs now {};
+  if (folder.empty() || statvfs(at, &now) != 0 || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0)
+    return;
+  unsigned long flags = MS_BIND | MS_REMOUNT | MS_RDONLY;  // and those of the mount, which a user may not take away
+  if (now.f_flag & ST_NOSUID) flags |= MS_NOSUID;
+  if (now.f_flag & ST_NODEV) flags |= MS_NODEV;
+  if (now.f_flag & ST_NOEXEC) flags |= MS_NOEXEC;
+  if (mount(at, at, nullptr, MS_BIND, nullptr) == 0) mount("none", at, nullptr, flags, nullptr);
 }
 
 // In the new namespace: its own /proc, without which nobody there could be found.
@@ -157,7 +206,7 @@ std::uint64_t bytes_of(pid_t process, std::uint64_t most) {
 
 }  // namespace
 
-void enter_containment(bool namespaces, std::uint64_t shared_bytes) {
+void enter_containment(bool namespaces, std::uint64_t shared_bytes, const std::string& read_only) {
   const uid_t user = geteuid();
   const gid_t group = getegid();
   const std::vector<std::string> terminals = terminals_of_parent();
@@ -169,8 +218,9 @@ void enter_containment(bool namespaces, std::uint64_t shared_bytes) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       close(answer[0]);
       const bool ready = (user == 0 || map_user(user, group)) && keep_mounts_private() && mount_proc() &&
-                         limit_shared_memory(shared_bytes) && hide_terminals(terminals);
+                         limit_shared_memory(shared_bytes) && hide_terminals(terminals) && hide_control_groups();
       if (!ready || write(answer[1], "y", 1) != 1) _exit(0);
+      make_read_only(read_only);
       limit_tasks();
       close(answer[1]);
       return;

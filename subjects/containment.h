@@ -6,15 +6,17 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <string>
 
 namespace graze::subjects {
 
 // The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Returns
 // in the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own
-// processes, and has only shared memory of its own, and which the system ends with it. Where no namespace can be had,
-// returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of memory that is shared by
-// name.   Requires: one thread.
-void enter_containment(bool namespaces, std::uint64_t shared_bytes);
+// processes, has only shared memory of its own and no control groups, and which the system ends with it. Where no
+// namespace can be had, returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of
+// memory that is shared by name. read_only: a folder that cannot be written to in the namespace; empty for none.
+// Requires: one thread.
+void enter_containment(bool namespaces, std::uint64_t shared_bytes, const std::string& read_only = "");
 
 // The descriptor that becomes readable when the process ends; -1 where there is no such process.
 int open_process(pid_t process);

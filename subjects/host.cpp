@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // graze-subject-host: what foreign code runs in. Started by graze, not by a person, as the supervisor of
-//   graze-subject-host KIND WHAT NAME SCALAR MEMORY SECONDS DESCRIBE NAMESPACES
+//   graze-subject-host KIND WHAT NAME SCALAR MEMORY SECONDS DESCRIBE NAMESPACES CACHE
 // which starts itself again as the process that loads the code and forks workers from it:
 //   graze-subject-host --worker KIND WHAT NAME SCALAR MEMORY DESCRIBE
+// or as the supervisor of a program that builds something, and whose temporary files are in the folder SCRATCH:
+//   graze-subject-host --run SECONDS SCRATCH NAMESPACES WORD...
 // KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object, and what it exports; see graze/subject.h
 //                         command TEXT "" f32             a program; see subjects/README.md
 //                         device FILE "" f32|f64          PTX of cuda/subject; by graze-subject-device, with CUDA
 // MEMORY: MiB that the code may take; a device's driver takes what it wants. SECONDS: for a pair or a block. DESCRIBE:
-// 1 asks a program to describe itself. NAMESPACES: 0 does without a process namespace.
+// 1 asks a program to describe itself. NAMESPACES: 0 does without a process namespace. CACHE: a folder that the code
+// cannot write to; empty for none.
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
@@ -351,7 +354,14 @@ int load_and_fork(const std::string& kind, const std::string& what, const std::s
 int host(int argc, char** argv) {
   if (argc == 8 && std::strcmp(argv[1], "--worker") == 0)
     return load_and_fork(argv[2], argv[3], argv[4], argv[5], argv[6], *argv[7] == '1');
-  if (argc != 9) {
+  if (argc > 5 && std::strcmp(argv[1], "--run") == 0) {
+    fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
+    close_range(kControlFd + 1, ~0u, 0);
+    setenv("TMPDIR", argv[3], 1);
+    enter_containment(*argv[4] == '1', std::uint64_t{1} << 30);
+    return supervise_program(std::strtod(argv[2], nullptr), argv[3], argv + 5);
+  }
+  if (argc != 10) {
     fmt::print(stderr, "graze-subject-host: is started by graze\n");
     return 2;
   }
@@ -363,7 +373,7 @@ int host(int argc, char** argv) {
   limits.seconds = std::strtod(argv[6], nullptr);
   limits.program = std::strcmp(argv[1], "command") == 0;
   limits.bytes = on_device ? 0 : std::strtoull(argv[5], nullptr, 10) << 20;
-  enter_containment(!on_device && *argv[8] == '1', limits.bytes);
+  enter_containment(!on_device && *argv[8] == '1', limits.bytes, argv[9]);
   char worker[] = "--worker";
   char* const arguments[] = {argv[0], worker, argv[1], argv[2], argv[3], argv[4], argv[5], argv[7], nullptr};
   return supervise(limits, arguments);

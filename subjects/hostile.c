@@ -16,6 +16,7 @@
 #include <sys/resource.h>
 #include <sys/shm.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -184,4 +185,46 @@ static void open_terminals(void) {
   abort();
 }
 ATTACK(opens_terminals, open_terminals())
+static int put(const char* folder, const char* file, const char* text) {
+  char name[300];
+  snprintf(name, sizeof name, "%s/%s", folder, file);
+  const int fd = open(name, O_WRONLY);
+  const int done = fd >= 0 && write(fd, text, strlen(text)) > 0;
+  if (fd >= 0) close(fd);
+  return done;
+}
+static int parent_of(int process) {
+  char name[40];
+  int parent = 0;
+  snprintf(name, sizeof name, "/proc/%d/stat", process);
+  FILE* file = fopen(name, "r");
+  if (file && fscanf(file, "%*d %*s %*c %d", &parent) != 1) parent = 0;
+  if (file) fclose(file);
+  return parent;
+}
+// The process that loaded this code, its supervisor and itself, by control groups of either version.
+static int freeze(void) {
+  const char* roots[] = {"/sys/fs/cgroup/freezer", "/sys/fs/cgroup/unified", "/sys/fs/cgroup"};
+  const char* test = getenv("GRAZE_HOSTILE_TEST");
+  for (int i = 0; i < 3; ++i) {
+    char group[200], number[20];
+    snprintf(group, sizeof group, "%s/graze-hostile-%s", roots[i], test ? test : "torture");
+    if (mkdir(group, 0700) != 0 && errno != EEXIST) continue;
+    const int processes[] = {parent_of(getppid()), getppid(), getpid()};
+    for (int p = 0; p < 3; ++p) {
+      snprintf(number, sizeof number, "%d", processes[p]);
+      put(group, "cgroup.procs", number);
+    }
+    if (put(group, "freezer.state", "FROZEN") || put(group, "cgroup.freeze", "1")) return 1;
+  }
+  return 0;
+}
+ATTACK(freezes_supervisor, if (freeze()) for (;;) pause(); abort())
+static int write_to_cache(void) {
+  char name[300];
+  const char* cache = getenv("XDG_CACHE_HOME");
+  snprintf(name, sizeof name, "%s/graze/hostile", cache ? cache : "");
+  return open(name, O_WRONLY | O_CREAT, 0600) >= 0;
+}
+ATTACK(writes_to_cache, if (!write_to_cache()) abort())
 ATTACK(kills_all, if (alone()) kill(-1, SIGKILL); abort())

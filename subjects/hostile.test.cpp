@@ -2,9 +2,11 @@
 // What foreign code may do to the processes around it, and that each of it is a verdict of its own pair.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -13,10 +15,12 @@
 #include <sstream>
 #include <thread>
 
+#include "core/programs/run_program.h"
 #include "core/stop.h"
 #include "strata/strata.h"
 #include "subjects/containment.h"
 #include "subjects/process.h"
+#include "subjects/source_build.h"
 
 namespace graze::subjects {
 namespace {
@@ -46,6 +50,8 @@ struct Hostile : testing::Test {
     fs::create_directories(folder);
     mark = "GRAZE_HOSTILE_TEST=" + std::to_string(getpid());
     setenv("GRAZE_HOSTILE_TEST", std::to_string(getpid()).c_str(), 1);
+    fs::create_directories(folder / "cache/graze");
+    setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
     for (std::uint64_t i = 0; i < 40; ++i) pairs.push_back(strata::generate(1, strata::Stratum::uniform, i));
     build("libhostile.so", GRAZE_SOURCE_DIR "/subjects/hostile.c -lpthread");
     terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -54,7 +60,7 @@ struct Hostile : testing::Test {
     if (bystander == 0) execlp("sleep", "sleep", "1000", nullptr);
   }
   static void TearDownTestSuite() {
-    unsetenv("GRAZE_HOSTILE_TEST");  // not of what other suites start
+    for (const char* name : {"GRAZE_HOSTILE_TEST", "XDG_CACHE_HOME"}) unsetenv(name);  // not of what other suites start
     kill(bystander, SIGKILL);
     waitpid(bystander, nullptr, 0);
     if (terminal >= 0) close(terminal);
@@ -196,6 +202,8 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"writes_a_large_file"},
                                {"limits_others"},
                                {"opens_terminals", false},
+                               {"freezes_supervisor", false},
+                               {"writes_to_cache", false},
                                {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {
@@ -330,6 +338,138 @@ TEST_F(Hostile, ARequestToStopEndsEveryWait) {
   EXPECT_THROW(describe({"library", slow.string(), ""}), Stopped);
   stop_requested = false;
   expect_nothing_left();
+}
+
+// A group of processes that can be frozen; empty where this user has none.
+fs::path freezing_group(const std::string& name) {
+  for (const fs::path root : {"/sys/fs/cgroup/freezer", "/sys/fs/cgroup/unified", "/sys/fs/cgroup"}) {
+    const fs::path group = root / ("graze-hostile-" + name);
+    std::error_code none;
+    if (!fs::create_directory(group, none)) continue;
+    if (access((group / "freezer.state").c_str(), W_OK) == 0 || access((group / "cgroup.freeze").c_str(), W_OK) == 0)
+      return group;
+    fs::remove(group, none);
+  }
+  return {};
+}
+
+// Without a mount namespace, root can freeze the supervisor, which then says nothing and cannot be ended either.
+TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
+  const fs::path group = freezing_group(std::to_string(getpid()));
+  if (group.empty()) GTEST_SKIP() << "no control groups for this user";
+  const std::vector<Pair> all = pairs;
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), [](const Pair& pair) { return !is_bad(pair); }), pairs.end());
+  ASSERT_FALSE(pairs.empty());
+  pairs.resize(1);
+  {
+    Code code{"library", (folder / "libhostile.so").string(), "freezes_supervisor", "f32", 0.1, 256};
+    code.namespaces = false;
+    ForeignProcesses subject(code, Scalar::f32);
+    EXPECT_EQ(verdicts(subject), std::vector<Verdict>{Verdict::crashed});  // of some kind
+    EXPECT_EQ(subject.failure(pairs[0]), Verdict::timed_out);
+    std::jthread request([] {
+      usleep(500'000);
+      stop_requested = true;
+    });
+    EXPECT_THROW(verdicts(subject), Stopped);
+    stop_requested = false;
+  }
+  pairs = all;
+  EXPECT_FALSE(left_over().empty());
+  // Once more where one of them, thawed, freezes all again.
+  for (int times = 0; times < 1000 && rmdir(group.c_str()) != 0; ++times) {
+    const bool second = fs::exists(group / "cgroup.freeze");
+    std::ofstream(group / (second ? "cgroup.freeze" : "freezer.state")) << (second ? "0" : "THAWED") << std::flush;
+    usleep(10'000);
+  }
+  EXPECT_FALSE(fs::exists(group));
+  expect_nothing_left();
+}
+
+// A compiler waits for ever for a header that is a pipe, and as for data that is one.
+TEST_F(Hostile, WhatBuildsASubjectEndsWithARequestToStopAndWithGraze) {
+  for (const char* name : {"pipe.h", "pipe.bin"}) ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
+  std::ofstream(folder / "header.c") << "#include \"pipe.h\"\nint intersects(const float*, const float*);";
+  std::ofstream(folder / "data.c") << "__asm__(\".incbin \\\"" + (folder / "pipe.bin").string() +
+                                          "\\\"\");\nint intersects(const float* a, const float* b) { return 1; }";
+  const auto unfinished = [] {
+    std::size_t count = 0;
+    for (const auto& entry : fs::directory_iterator(cache_folder()))
+      count += entry.path().filename().string().starts_with("unfinished-");
+    return count;
+  };
+  for (const char* source : {"header.c", "data.c"}) {
+    SCOPED_TRACE(source);
+    const auto build = [&] { build_source(folder / source, "intersects", kVariants[0], {}); };
+    std::jthread request([&] {
+      while (unfinished() == 0) usleep(1000);
+      usleep(300'000);
+      stop_requested = true;
+    });
+    EXPECT_THROW(build(), Stopped);
+    stop_requested = false;
+    expect_nothing_left();
+    EXPECT_EQ(unfinished(), 0u);
+
+    const pid_t asking = fork();
+    if (asking == 0) {
+      build();
+      _exit(0);
+    }
+    while (unfinished() == 0) usleep(1000);
+    usleep(300'000);
+    EXPECT_EQ(kill(asking, SIGKILL), 0);
+    int status = 0;
+    waitpid(asking, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status));
+    expect_nothing_left();
+    EXPECT_EQ(unfinished(), 0u);
+  }
+}
+
+TEST_F(Hostile, FilesThatAKilledBuildLeftAreRemovedADayLater) {
+  const fs::path cache = folder / "old";
+  for (const char* name : {"unfinished-old", "unfinished-new", "kept"}) {
+    fs::create_directories(cache / name / "part");
+    const bool is_new = name == std::string_view("unfinished-new");
+    fs::last_write_time(cache / name, fs::file_time_type::clock::now() - std::chrono::hours(is_new ? 23 : 25));
+  }
+  const Scratch scratch(cache);
+  EXPECT_FALSE(fs::exists(cache / "unfinished-old"));
+  EXPECT_TRUE(fs::exists(cache / "unfinished-new") && fs::exists(cache / "kept") && fs::exists(scratch.path()));
+}
+
+TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
+  const Scratch scratch(folder);
+  for (const bool namespaces : {true, false}) {
+    std::string said;
+    const auto run = [&](const std::string& command, double seconds) {
+      return run_program({{"sh", "-c", command}, seconds, namespaces}, scratch.path(), said);
+    };
+    EXPECT_EQ(run("setsid sleep 1000 & echo one; echo two >&2; exit 3", 600), 3);
+    EXPECT_EQ(said, "one\ntwo\n");
+    EXPECT_EQ(run("kill -9 $$", 600), 128 + SIGKILL);
+    EXPECT_EQ(run("echo $TMPDIR", 600), 0);
+    EXPECT_EQ(said, scratch.path().string() + '\n');
+    EXPECT_EQ(run_program({{"no-such-program"}, 600, namespaces}, scratch.path(), said), 127);
+    EXPECT_EQ(said, "No such file or directory\n");
+    EXPECT_THROW(run("setsid sleep 1000 & sleep 1001", 0.2), std::runtime_error);
+    const pid_t asking = fork();
+    if (asking == 0) {
+      const Scratch own(folder / "killed");
+      run_program({{"sh", "-c", "setsid sleep 1000 & echo > " + (folder / "started").string() + "; sleep 1001"},
+                   600,
+                   namespaces},
+                  own.path(), said);
+      _exit(0);
+    }
+    while (!fs::exists(folder / "started")) usleep(1000);
+    kill(asking, SIGKILL);
+    waitpid(asking, nullptr, 0);
+    expect_nothing_left();
+    fs::remove(folder / "started");
+    EXPECT_EQ(count_in(folder / "killed"), 0u);
+  }
 }
 
 // What a fork leaves is one process for each pair, and no worker beside the worker.

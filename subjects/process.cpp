@@ -3,41 +3,26 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <spawn.h>
 #include <sys/mman.h>
-#include <sys/socket.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
-#include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
 
+#include "core/programs/supervisor_process.h"
 #include "core/stop.h"
-#include "subjects/process_state.h"
 #include "subjects/questions.h"
-
-extern char** environ;
+#include "subjects/source_build.h"
 
 namespace graze::subjects {
 namespace {
 
-constexpr int kLookEvery = 50;  // ms, whether a stop is requested
 constexpr std::size_t kMostFailuresKept = std::size_t{1} << 20;
-
-// Beside the running program.
-std::filesystem::path host_program(const Code& code) {
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
-  return self.parent_path() / (code.kind == "device" ? "graze-subject-device" : "graze-subject-host");
-}
 
 // Memory that this process alone can write.
 int pairs_memory(void*& at) {
@@ -73,39 +58,55 @@ std::string fit(const char* text) {
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
+// What graze and the supervisor share of the pairs.
+class SharedPairs {
+ public:
+  SharedPairs() : fd_(pairs_memory(at_)) {}
+  ~SharedPairs() {
+    close(fd_);
+    munmap(at_, kPairsBytes);
+  }
+  SharedPairs(const SharedPairs&) = delete;
+  SharedPairs& operator=(const SharedPairs&) = delete;
+  int fd() const { return fd_; }
+  void* at() const { return at_; }
+
+ private:
+  void* at_ = nullptr;
+  int fd_;
+};
+
+std::vector<std::string> arguments_of(const Code& code, bool describe) {
+  return {code.kind,
+          code.what,
+          code.name,
+          code.scalar,
+          std::to_string(code.memory),
+          fmt::format("{}", code.timeout),
+          describe ? "1" : "0",
+          code.namespaces ? "1" : "0",
+          cache_folder()};
+}
+
 }  // namespace
 
-// A supervisor and its end of the socket.
 class HostProcess {
  public:
-  HostProcess(const Code& code, bool describe) {
-    const int pairs = pairs_memory(pairs_);
-    int sockets[2];
-    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) != 0)
-      throw std::system_error(errno, std::generic_category(), "cannot make a socket for a subject");
-    socket_ = sockets[0];
-    try {
-      spawn(code, describe, sockets[1], pairs);
-      for (const int fd : {sockets[1], pairs}) close(fd);
-      char bytes[sizeof(Loaded)] = {};
-      std::string why;
-      if (receive(bytes, sizeof bytes) != sizeof bytes || !read_loaded(bytes, loaded_)) {
-        why = "ended its supervisor while it was loaded";
-      } else if (loaded_.says == Says::refused) {
-        why = loaded_.text;
-      } else {
-        return;
-      }
-      // Of a library, what the system says names the file.
-      throw CannotLoad(code.kind == "library" && why.find(code.what) == why.npos ? code.what + ": " + why : why);
-    } catch (...) {
-      end();
-      throw;
+  HostProcess(const Code& code, bool describe)
+      : supervisor_(code.kind == "device" ? "graze-subject-device" : "graze-subject-host", arguments_of(code, describe),
+                    pairs_.fd(), -1) {
+    char bytes[sizeof(Loaded)] = {};
+    std::string why;
+    if (supervisor_.receive(bytes, sizeof bytes) != sizeof bytes || !read_loaded(bytes, loaded_)) {
+      why = "ended its supervisor while it was loaded";
+    } else if (loaded_.says == Says::refused) {
+      why = loaded_.text;
+    } else {
+      return;
     }
+    // Of a library, what the system says names the file.
+    throw CannotLoad(code.kind == "library" && why.find(code.what) == why.npos ? code.what + ": " + why : why);
   }
-  ~HostProcess() { end(); }
-  HostProcess(const HostProcess&) = delete;
-  HostProcess& operator=(const HostProcess&) = delete;
 
   struct CannotLoad : std::runtime_error {
     using std::runtime_error::runtime_error;
@@ -113,97 +114,31 @@ class HostProcess {
 
   const Loaded& loaded() const { return loaded_; }
 
-  // Returns: the answers; nothing where the supervisor ended, and this object is of no use any more.
+  // Returns: the answers; nothing where the supervisor cannot go on, and this object is of no use any more.
   std::optional<Answers> ask(const Pair* pairs, std::size_t count, bool in_double) {
     if (in_double) {
-      std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_));
+      std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_.at()));
     } else {
-      std::memcpy(pairs_, pairs, count * sizeof(Pair));
+      std::memcpy(pairs_.at(), pairs, count * sizeof(Pair));
     }
     const Block block{static_cast<std::uint32_t>(count)};
     Answers answers;
-    if (send(socket_, &block, sizeof block, MSG_NOSIGNAL) != sizeof block ||
-        receive(reinterpret_cast<char*>(&answers), sizeof answers) != sizeof answers || answers.count != count)
+    if (!supervisor_.send(&block, sizeof block) || supervisor_.receive(&answers, sizeof answers) != sizeof answers ||
+        answers.count != count)
       return std::nullopt;
     return answers;
   }
 
+  bool silent() const { return supervisor_.silent(); }
+
  private:
-  // Waits for a message.   Returns: its bytes; at most 0 where the supervisor ended.   Throws: Stopped.
-  ssize_t receive(char* to, std::size_t size) {
-    for (;;) {
-      pollfd ready{socket_, POLLIN, 0};
-      if (poll(&ready, 1, kLookEvery) > 0) return recv(socket_, to, size, MSG_DONTWAIT);
-      if (stop_requested) throw Stopped();
-      if (is_stopped(process_)) return -1;  // as a subject without a namespace of its own can do
-    }
-  }
-
-  void spawn(const Code& code, bool describe, int socket, int pairs) {
-    // Above the descriptors of the supervisor, so that none is closed by the next.
-    int from[] = {socket, pairs};
-    for (int& fd : from) fd = fcntl(fd, F_DUPFD_CLOEXEC, 16);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, from[0], kControlFd);
-    posix_spawn_file_actions_adddup2(&actions, from[1], kSupervisorPairsFd);
-    // A session of its own: Ctrl-C and the terminal are the asking process's business.
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-    sigset_t signals;
-    sigfillset(&signals);
-    posix_spawnattr_setsigdefault(&attributes, &signals);
-    sigemptyset(&signals);
-    posix_spawnattr_setsigmask(&attributes, &signals);
-    const std::string program = host_program(code), memory = std::to_string(code.memory),
-                      seconds = fmt::format("{}", code.timeout);
-    const char* words[] = {
-        program.c_str(), code.kind.c_str(), code.what.c_str(),    code.name.c_str(),           code.scalar.c_str(),
-        memory.c_str(),  seconds.c_str(),   describe ? "1" : "0", code.namespaces ? "1" : "0", nullptr};
-    const int error =
-        posix_spawn(&process_, program.c_str(), &actions, &attributes, const_cast<char**>(words), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-    for (const int fd : from) close(fd);
-    if (error != 0) {
-      process_ = -1;
-      throw std::system_error(error, std::generic_category(), "cannot start " + program);
-    }
-  }
-
-  // The supervisor ends all processes when the socket closes; one that does not is ended itself.
-  void end() {
-    if (socket_ >= 0) close(socket_);
-    if (process_ > 0) {
-      using Clock = std::chrono::steady_clock;
-      const auto until = Clock::now() + std::chrono::seconds(is_stopped(process_) ? 0 : 6);
-      int status = 0;
-      pid_t ended = 0;
-      for (int wait = 0; (ended = waitpid(process_, &status, WNOHANG)) == 0 && Clock::now() < until; wait = 1)
-        poll(nullptr, 0, wait);
-      if (ended == 0) {
-        kill(process_, SIGKILL);
-        while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
-        }
-      }
-    }
-    if (pairs_ != MAP_FAILED) munmap(pairs_, kPairsBytes);
-    socket_ = -1;
-    process_ = -1;
-    pairs_ = MAP_FAILED;
-  }
-
-  void* pairs_ = MAP_FAILED;
-  int socket_ = -1;
-  pid_t process_ = -1;
+  SharedPairs pairs_;
+  SupervisorProcess supervisor_;
   Loaded loaded_{};
 };
 
 Description describe(const Code& code) {
+  const StopSignals stops;
   const HostProcess process(code, true);
   const Loaded& c = process.loaded();
   return {c.has_f32 != 0,    c.has_f64 != 0,          c.outside,     fit(c.version), fit(c.source),
@@ -240,11 +175,13 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
   const bool in_double = scalar_ == Scalar::f64 && code_.kind != "device";
   std::unique_ptr<HostProcess> process = idle_or_new();
   bool loads = process != nullptr;
+  signed char how = kCrashed;  // where there is no answer about a pair
   // Answers about pairs; nothing where the supervisor ended, or the code can be loaded no more.
   const auto ask = [&](const Pair* of, std::size_t size) {
     std::optional<Answers> answers;
     if (!process && loads) loads = (process = idle_or_new()) != nullptr;
     if (process) answers = process->ask(of, size, in_double);
+    how = process && process->silent() ? kTimedOut : kCrashed;
     if (!answers) process.reset();
     return answers;
   };
@@ -258,7 +195,7 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
       answers.emplace();
       for (std::size_t i = 0; i < size; ++i) {
         const std::optional<Answers> of_pair = ask(pairs + begin + i, 1);
-        answers->answers[i] = of_pair ? of_pair->answers[0] : static_cast<signed char>(kCrashed);
+        answers->answers[i] = of_pair ? of_pair->answers[0] : how;
       }
     }
     nanoseconds =

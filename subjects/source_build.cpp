@@ -4,15 +4,19 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 
 #include "core/cannot.h"
 #include "core/fnv1a.h"
+#include "core/programs/kept_file.h"
+#include "core/programs/run_program.h"
 #include "core/text.h"
 
 namespace graze::subjects {
@@ -69,14 +73,10 @@ void write(const fs::path& file, std::string_view text) {
   if (!(out << text << std::flush)) throw std::runtime_error(cannot("write", file, errno));
 }
 
-// Returns: what the command wrote; its exit status in `status`.
-std::string output_of(const std::string& command, int& status) {
+// Returns: what the shell's command wrote; its exit status in `status`.
+std::string output_of(const std::string& command, const Scratch& scratch, int& status) {
   std::string text;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) throw std::runtime_error(cannot("start a shell for", command, errno));
-  char bytes[4096];
-  for (std::size_t count; (count = fread(bytes, 1, sizeof bytes, pipe)) > 0;) text.append(bytes, count);
-  status = pclose(pipe);
+  status = run_program({{"/bin/sh", "-c", command}}, scratch.path(), text);
   return text;
 }
 
@@ -90,17 +90,59 @@ std::string first_error(const std::string& text) {
   return first.empty() ? "the compiler failed and said nothing" : first;
 }
 
-// What the build depends on beside the preprocessed source, the flags and the files that they name.
-std::string not_covered(const std::string& preprocessed, const std::vector<std::string>& flags) {
-  for (const std::string& flag : flags) {
-    if (flag.starts_with("-l") || flag.starts_with("-Wl,") || flag.starts_with("-Xlinker") || flag.starts_with("@"))
-      return "the libraries that its flags link";
+bool links_libraries(const std::vector<std::string>& flags) {
+  return std::any_of(flags.begin(), flags.end(), [](const std::string& flag) {
+    return flag.starts_with("-l") || flag.starts_with("-Wl,") || flag.starts_with("-Xlinker") || flag.starts_with("@");
+  });
+}
+
+// Whether assembler code in the preprocessed source may include files, as far as its text shows.
+bool may_include_by_assembler(std::string preprocessed) {
+  for (char& c : preprocessed) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return preprocessed.find("incbin") != preprocessed.npos || preprocessed.find(".include") != preprocessed.npos;
+}
+
+// GNU as writes a list of the files that it read; clang's own assembler does not. What is compiled when it is linked
+// (-flto) passes an assembler at other times.
+bool assembler_lists_files(const std::string& compiler, const std::vector<std::string>& flags, const Scratch& scratch) {
+  if (std::any_of(flags.begin(), flags.end(), [](const std::string& flag) { return flag.starts_with("-flto"); }))
+    return false;
+  static std::map<std::string, bool> known;
+  const auto found = known.find(compiler);
+  if (found != known.end()) return found->second;
+  const std::string list = (scratch.path() / "probe.d").string();
+  int status = 0;
+  output_of(fmt::format("{} -x assembler -c /dev/null -o {} -Wa,--MD,{}", compiler,
+                        shell_word((scratch.path() / "probe.o").string()), shell_word(list)),
+            scratch, status);
+  return known[compiler] = status == 0 && fs::exists(list);
+}
+
+// The files in the assembler's list, one a line, but those of the build's own folder, and names that are no file's.
+std::string listed_files(const fs::path& list, const fs::path& own) {
+  std::string text = text_of(list), file, files;
+  text = text.substr(std::min(text.find(": "), text.size())) + ' ';
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    if (text[i] == '\\' && i + 1 < text.size() && text[i + 1] != '\n') {
+      file.push_back(text[++i]);
+    } else if (text[i] == '$' && text[i + 1] == '$') {
+      file.push_back(text[++i]);
+    } else if (text[i] != ' ' && text[i] != '\n' && text[i] != '\\') {
+      file.push_back(text[i]);
+    } else {
+      if (!file.starts_with(own.string() + '/') && fs::is_regular_file(file)) files += file + '\n';
+      file.clear();
+    }
   }
-  std::string text = preprocessed;
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (text.find("incbin") != text.npos || text.find(".include") != text.npos)
-    return "the files that its assembler code includes";
-  return "";
+  return files;
+}
+
+// The hash, continued by the names and contents of the files that an assembler read.   Throws: std::runtime_error.
+std::uint64_t hash_of_listed(const std::string& files, std::uint64_t hash) {
+  std::istringstream lines(files);
+  for (std::string file; std::getline(lines, file);)
+    hash = fnv1a(fmt::format("{}\n{:016x}\n", file, hash_of_file(file)), hash);
+  return hash;
 }
 
 }  // namespace
@@ -135,8 +177,10 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   const bool describes_itself = source_describes_itself(source);
   const char* chosen = std::getenv(c ? "CC" : "CXX");
   const std::string compiler = chosen && *chosen ? chosen : c ? "cc" : "c++";
+  const fs::path folder = cache_folder();
+  const Scratch scratch(folder);
   int status = 0;
-  const std::string version = output_of(compiler + " --version 2>&1", status);
+  const std::string version = output_of(compiler + " --version", scratch, status);
   const std::string identity = version.substr(0, version.find('\n'));  // below it are paths
   if (status != 0)
     throw std::runtime_error(cannot(
@@ -153,35 +197,50 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   const std::string defines =
       fmt::format("#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n", name, function, expected);
   // All that is included could change too: the preprocessor's output is what the result depends on.
-  const fs::path folder = cache_folder();
   const fs::path header = folder / "include/graze/subject.h";
   if (!fs::exists(header) || text_of(header) != kHeader) write_atomically(header, kHeader);
-  const fs::path part = folder / fmt::format("part-{}-{}{}", getpid(), variant.id, c ? ".c" : ".cpp");
-  const fs::path object = fs::path(part).replace_extension(".so"), errors = fs::path(part).replace_extension(".txt");
-  const auto clean = [&] {
-    std::error_code ignored;
-    for (const fs::path& file : {part, object, errors}) fs::remove(file, ignored);
-  };
-  write(part, defines + wrapped);
-  command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(part.string()));
-  const std::string preprocessed = output_of(command + " -E -P 2>/dev/null", status);
+  const fs::path whole = scratch.path() / (c ? "whole.c" : "whole.cpp"), object = scratch.path() / "whole.so",
+                 list = scratch.path() / "assembled.d";
+  write(whole, defines + wrapped);
+  command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(whole.string()));
+  const std::string preprocessed = output_of(command + " -E -P 2>/dev/null", scratch, status);
   const std::uint64_t of_flags = hash_of_flags(flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
-  const Built kept{folder / fmt::format("{:016x}.so", fnv1a(preprocessed, of_flags)), not_covered(preprocessed, flags)};
-  if (status == 0 && kept.not_covered.empty() && fs::exists(kept.file)) {
-    clean();
-    return kept;
+  const std::uint64_t hash = fnv1a(preprocessed, of_flags);
+  // Which files its assembler code includes is known once it was built: their list is kept.
+  const fs::path kept_list = folder / fmt::format("{:016x}.files", hash);
+  const auto named = [&](std::uint64_t of_all) { return folder / fmt::format("{:016x}.so", of_all); };
+  Built built;
+  if (links_libraries(flags)) {
+    built.not_covered = "the libraries that its flags link";
+  } else if (may_include_by_assembler(preprocessed) && !assembler_lists_files(compiler, flags, scratch)) {
+    built.not_covered = "the files that its assembler code includes";
+  } else if (status == 0) {
+    try {
+      built.file = named(hash_of_listed(kept_content(kept_list).value_or(""), hash));
+      if (kept_content(built.file)) return built;
+    } catch (const std::runtime_error&) {  // a file of the list is not there any more
+    }
   }
+  const bool lists = assembler_lists_files(compiler, flags, scratch);
+  if (lists) command += " -Wa,--MD," + shell_word(list.string());
   const std::string said =
-      output_of(fmt::format("{} -o {} -Wl,-z,defs 2>&1", command, shell_word(object.string())), status);
+      output_of(fmt::format("{} -o {} -Wl,-z,defs", command, shell_word(object.string())), scratch, status);
   if (status != 0) {
-    clean();
     std::string error = first_error(said);
     if (error.find(expected) != error.npos) error = name + ": " + expected;
     throw std::runtime_error(error);
   }
-  fs::rename(object, kept.file);
-  clean();
-  return kept;
+  const std::string files = lists && fs::exists(list) ? listed_files(list, scratch.path()) : "";
+  built.file = named(hash_of_listed(files, hash));
+  if (files.empty()) {
+    std::error_code ignored;
+    fs::remove(kept_list, ignored);
+  } else {
+    write(list, files);
+    keep_file(list, kept_list);
+  }
+  keep_file(object, built.file);
+  return built;
 }
 
 }  // namespace graze::subjects

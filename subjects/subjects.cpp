@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "core/lanes/lanes.h"
+#include "core/stop.h"
 #include "core/text.h"
 #include "cuda/subject/cuda_subject.h"
 #include "cuda/twin/twin.h"
@@ -252,6 +253,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
                                      printable(wish.function)));
     }
     if (wish.kind == "cuda") return add_cuda_lanes(entry, on_device, recorded);
+    const StopSignals stops;  // not while NVRTC compiles, which cannot be stopped
     std::vector<std::pair<Variant, Code>> builds;
     std::vector<Built> built_files;
     if (wish.kind == "source") {
@@ -292,6 +294,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
                                      entry.opened.code.hash);
     }
     expect_code(entry.opened, recorded);
+    if (stop_requested) throw Stopped();
     entry.opened.description = description;
     describe_info(entry, description);
     add_lanes(std::move(made));

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <regex>
 #include <thread>
 
@@ -18,6 +19,7 @@
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 #include "subjects/process.h"
+#include "subjects/source_build.h"
 
 namespace graze::subjects {
 namespace {
@@ -496,7 +498,7 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
 
 // Whether the cached build may be run: never one of other files.
 TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
-  const fs::path object = folder / "helper.o", data = folder / "data.bin";
+  const fs::path object = folder / "helper.o", data = folder / "some $data.bin";
   const auto build = [&](bool less) {
     write("helper.c", std::string("int helper(float a, float b) { return ") + (less ? "a < b" : "a >= b") + "; }");
     ASSERT_EQ(std::system(("cd " + folder.string() +
@@ -508,21 +510,34 @@ TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
   const fs::path calls = write("calls.c", R"(int helper(float, float);
 int intersects(const float a[9], const float b[9]) { return helper(a[0], b[0]); }
 )");
-  const fs::path reads = write("reads.c", "#define DATA \"" + data.string() + R"("
-__asm__(".data\ndata: .incbin \"" DATA "\"\n.hidden data\n.text\n");
+  const std::string reading[] = {R"(".data\ndata: .incbin \"")", R"(".data\ndata: ." "inc" "bin \"")",
+                                 R"(".data\ndata: \x2einc\142in \"")"};
+  const auto reads = [&](std::size_t spelling) {
+    return write(
+        "reads" + std::to_string(spelling) + ".c",
+        "#define DATA \"" + data.string() + "\"\n__asm__(" + reading[spelling] + R"( DATA "\"\n.hidden data\n.text\n");
 extern const char data[] __attribute__((visibility("hidden")));
 int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0] < b[0] : a[0] >= b[0]; }
 )");
+  };
+  const bool lists = std::system(("cc -x assembler -c /dev/null -o " + (folder / "none.o").string() + " -Wa,--MD," +
+                                  (folder / "none.d").string() + " 2> /dev/null")
+                                     .c_str()) == 0;
   struct Case {
     std::string name;
     fs::path source;
     std::vector<std::string> flags;
     bool covered;
   };
-  for (const Case& c :
-       {Case{"object", calls, {object.string()}, true}, Case{"for_linker", calls, {"-Wl," + object.string()}, false},
-        Case{"by_name", calls, {"-L" + folder.string(), "-Wl,-u,helper", "-lhelper"}, false},
-        Case{"incbin", reads, {}, false}}) {
+  std::vector<Case> cases{Case{"object", calls, {object.string()}, true},
+                          Case{"for_linker", calls, {"-Wl," + object.string()}, false},
+                          Case{"by_name", calls, {"-L" + folder.string(), "-Wl,-u,helper", "-lhelper"}, false},
+                          Case{"incbin", reads(0), {}, lists}, Case{"incbin_when_linked", reads(0), {"-flto"}, false}};
+  if (lists) {  // by an assembler that does not list what it reads, only the plain spelling is found
+    cases.push_back({"incbin_in_parts", reads(1), {}, true});
+    cases.push_back({"incbin_in_numbers", reads(2), {}, true});
+  }
+  for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
     nlohmann::ordered_json rows[2];
     for (const bool less : {true, false}) {
@@ -540,6 +555,46 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
       EXPECT_NE(rows[0]["hash"], rows[1]["hash"]);
     }
   }
+}
+
+TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
+  const fs::path source =
+                     write("keeps.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }"),
+                 other = write("keeps_other.c",
+                               "int intersects(const float a[9], const float b[9]) { return a[0] >= b[0]; }");
+  const auto build = [](const fs::path& from) { return build_source(from, "intersects", kVariants[0], {}).file; };
+  const fs::path kept = build(source), kept_other = build(other);
+  const auto changed = fs::last_write_time(kept);
+  ASSERT_EQ(build(source), kept);
+  EXPECT_EQ(fs::last_write_time(kept), changed);
+  const auto size = fs::file_size(kept);
+  for (const std::function<void()>& damage : std::vector<std::function<void()>>{
+           [&] { fs::copy_file(kept_other, kept, fs::copy_options::overwrite_existing); },
+           [&] { fs::copy_file(folder / "libbad.so", kept, fs::copy_options::overwrite_existing); },
+           [&] { fs::resize_file(kept, size / 2); }, [&] { fs::resize_file(kept, 0); },
+           [&] { std::fstream(kept, std::ios::in | std::ios::out).seekp(100) << 'x'; }}) {
+    damage();
+    ASSERT_EQ(build(source), kept);
+    EXPECT_EQ(fs::file_size(kept), size);
+    ForeignProcesses subject({"library", kept.string(), ""}, Scalar::f32);
+    std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
+    subject.decide(pairs.data(), pairs.size(), yes.data(), none.data());
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      ASSERT_EQ(yes[i / 64] >> i % 64 & 1, left_of(pairs[i]) == Verdict::intersects) << i;
+  }
+}
+
+// The files that a shell puts in are not known, and it says so.
+TEST_F(Subjects, ACommandThatAShellExpandsIsNotCovered) {
+  for (const std::string command : {"python3 $PWD/s.py", "python3 s.p?", "python3 *.py", "python3 ~+/s.py",
+                                    "python3 $(cat list)", "python3 `cat list`", "python3 [s].py", "python3 {s,}.py"})
+    EXPECT_TRUE(hash_of_command(command).not_covered.starts_with("the files that the shell puts in")) << command;
+  EXPECT_EQ(hash_of_command("python3 s.py").not_covered, "what its files load");
+  const fs::path script = write("named.py", "one");
+  const std::string command = "python3 " + script.string() + " $ARGUMENT";
+  const std::uint64_t one = hash_of_command(command).hash;
+  write("named.py", "two");
+  EXPECT_NE(hash_of_command(command).hash, one);
 }
 
 TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {

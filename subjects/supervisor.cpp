@@ -18,11 +18,13 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
 #include <optional>
 #include <string>
 
+#include "core/programs/process_state.h"
+#include "core/programs/supervisor_process.h"
 #include "subjects/containment.h"
-#include "subjects/process_state.h"
 #include "subjects/questions.h"
 
 namespace graze::subjects {
@@ -37,6 +39,9 @@ constexpr int kMostLoads = 3;                                // in vain, for one
 Time after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
+
+// graze takes a supervisor that says nothing for one that cannot go on.
+void tell_alive() { send(kControlFd, &kAlive, sizeof kAlive, MSG_NOSIGNAL | MSG_DONTWAIT); }
 
 class Supervisor {
  public:
@@ -155,6 +160,7 @@ class Supervisor {
     wait_for(news, 3, static_cast<int>(std::max<long>(0, left)));
     if (news[2].revents) leave();  // nobody waits for the answers
     if (Clock::now() >= next_look_) {
+      tell_alive();
       reap();
       over_limits_ = !within_limits();
     }
@@ -240,6 +246,7 @@ class Supervisor {
       if (news[0].revents & POLLIN) return true;
       if (news[0].revents || news[1].revents) return false;
       if (Clock::now() < next_look_) continue;
+      tell_alive();
       reap();
       if (is_stopped(loader_)) break;
       if (within_limits()) continue;
@@ -278,12 +285,14 @@ class Supervisor {
     syscall(SYS_pidfd_send_signal, worker_fd_, SIGKILL, nullptr, 0);
     const Time until = after(5);
     while (!has_ended(worker_fd_) && Clock::now() < until) poll(nullptr, 0, 1);
+    tell_alive();
     close(worker_fd_);
     worker_ = worker_fd_ = -1;
     if (!end_children(loader_) || has_ended(loader_fd_)) end_all();
   }
 
   void end_all() {
+    tell_alive();
     if (!end_children(-1)) _exit(1);  // it starts processes faster than they end: the namespace ends with this one
     for (int* fd : {&talk_, &loader_fd_, &worker_fd_}) {
       if (*fd >= 0) close(*fd);
@@ -341,5 +350,34 @@ class Supervisor {
 }  // namespace
 
 int supervise(const Limits& limits, char* const* arguments) { return Supervisor(limits, arguments).run(); }
+
+int supervise_program(double seconds, const std::string& scratch, char* const* words) {
+  const Time until = after(seconds);
+  const pid_t self = getpid(), program = fork();
+  if (program == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != self) _exit(0);
+    execvp(words[0], words);
+    fmt::print(stderr, "{}\n", std::strerror(errno));
+    _exit(127);
+  }
+  const int process = program > 0 ? open_process(program) : -1;
+  int status = -1;
+  bool ended = false, wanted = true;
+  while (process >= 0 && wanted && !ended && Clock::now() < until) {
+    pollfd news[] = {{process, POLLIN, 0}, {kControlFd, POLLRDHUP, 0}};
+    if (poll(news, 2, 1000) < 0 && errno != EINTR) break;
+    ended = news[0].revents;
+    wanted = !news[1].revents;
+    tell_alive();
+  }
+  if (ended && waitpid(program, &status, 0) == program)
+    status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  end_children(-1);
+  std::error_code ignored;
+  if (wanted) wanted = send(kControlFd, &status, sizeof status, MSG_NOSIGNAL) == sizeof status;
+  if (!wanted) std::filesystem::remove_all(scratch, ignored);
+  return 0;
+}
 
 }  // namespace graze::subjects

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace graze::subjects {
 
@@ -19,5 +20,10 @@ struct Limits {
 // arguments: of the process that loads the code, which is this program again.
 // Returns: the exit status.
 int supervise(const Limits& limits, char* const* arguments);
+
+// Runs one program, ends all that it started, and then tells graze its exit status as an int; -1 where it ran too long.
+// When graze closes kControlFd before, also removes `scratch`, the folder of its files.
+// Returns: the exit status.
+int supervise_program(double seconds, const std::string& scratch, char* const* words);
 
 }  // namespace graze::subjects

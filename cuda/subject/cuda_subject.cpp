@@ -11,6 +11,8 @@
 
 #include "core/error.h"
 #include "core/fnv1a.h"
+#include "core/programs/kept_file.h"
+#include "core/programs/run_program.h"
 #include "cuda/subject/machine_code.h"
 #include "cuda/subject/nvrtc.h"
 #include "cuda/subject/twin_build.h"
@@ -55,7 +57,7 @@ bool same_machine_code(const CudaBuild& build, const twin::Module& module, const
   const std::uint64_t hash =
       fnv1a(fmt::format("{} {}", ptxas.string(), changed), fnv1a(written.str(), fnv1a(build.ptx)));
   const fs::path kept = cache / fmt::format("code-{:016x}", hash);
-  if (std::ifstream in(kept); in) return in.get() == '1';
+  if (const auto verdict = kept_content(kept)) return *verdict == "1";
 
   const Scratch scratch(cache);
   bool same = true;
@@ -65,7 +67,7 @@ bool same_machine_code(const CudaBuild& build, const twin::Module& module, const
   const fs::path verdict = scratch.path() / "verdict";
   if (!(std::ofstream(verdict) << (same ? '1' : '0')).flush())
     throw std::runtime_error(verdict.string() + ": cannot be written");
-  fs::rename(verdict, kept);
+  keep_file(verdict, kept);
   return same;
 }
 

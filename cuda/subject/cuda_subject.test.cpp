@@ -8,9 +8,9 @@
 #include <iterator>
 
 #include "core/error.h"
+#include "core/programs/run_program.h"
 #include "cuda/subject/machine_code.h"
 #include "cuda/subject/nvrtc.h"
-#include "cuda/subject/twin_build.h"
 #include "cuda/twin/twin_library.h"
 
 namespace graze::cuda {
@@ -198,6 +198,10 @@ TEST_F(CudaSubject, KeepsWhatItBuilds) {
   for (const auto& entry : fs::directory_iterator(scratch_.path() / "cache"))
     EXPECT_TRUE(entry.path().filename().string().starts_with("twin-") ||
                 entry.path().filename().string().starts_with("code-"));
+  // What is not as it was built is built again.
+  fs::resize_file(first[1].twin, fs::file_size(first[1].twin) - 100);
+  EXPECT_EQ(build(kSimple)[1].twin, first[1].twin);
+  EXPECT_EQ(content(elsewhere[1].twin), content(first[1].twin));
   // Comments do not change what a proof holds for.
   EXPECT_EQ(build(std::string("// a comment\n") + kSimple)[1].hash, first[1].hash);
 }

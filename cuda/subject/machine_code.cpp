@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/subject/machine_code.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdint>
@@ -14,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-extern char** environ;
+#include "core/programs/run_program.h"
 
 namespace graze::cuda {
 namespace {
@@ -69,35 +66,11 @@ fs::path find_ptxas(const fs::path& library) {
   return {};
 }
 
-int run_program(const std::vector<std::string>& words, const fs::path& scratch, std::string& output) {
-  const fs::path log = scratch / "output.txt";
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&actions, 1, 2);
-  pid_t child = 0;
-  const int failure = posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure != 0) {
-    output = std::strerror(failure);
-    return -1;
-  }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  output = content(log);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
 std::map<std::string, std::string> assemble(const fs::path& ptxas, const std::string& ptx, const fs::path& scratch) {
   const fs::path in = scratch / "code.ptx", out = scratch / "code.cubin";
   std::ofstream(in, std::ios::binary) << ptx;
   std::string said;
-  if (run_program({ptxas.string(), "-arch=sm_90", in.string(), "-o", out.string()}, scratch, said) != 0)
+  if (run_program({{ptxas.string(), "-arch=sm_90", in.string(), "-o", out.string()}}, scratch, said) != 0)
     throw std::runtime_error("ptxas: " + said.substr(0, said.find('\n')));
   return read_cubin(out);
 }

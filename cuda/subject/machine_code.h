@@ -20,8 +20,4 @@ std::filesystem::path find_ptxas(const std::filesystem::path& library);
 std::map<std::string, std::string> assemble(const std::filesystem::path& ptxas, const std::string& ptx,
                                             const std::filesystem::path& scratch);
 
-// Runs a program without a shell. Returns: its exit status, and in `output` what it prints to both streams; -1 when it
-// cannot be started or does not exit.
-int run_program(const std::vector<std::string>& words, const std::filesystem::path& scratch, std::string& output);
-
 }  // namespace graze::cuda

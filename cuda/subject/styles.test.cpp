@@ -13,10 +13,10 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/programs/run_program.h"
 #include "cuda/subject/cuda_subject.h"
 #include "cuda/subject/machine_code.h"
 #include "cuda/subject/nvrtc.h"
-#include "cuda/subject/twin_build.h"
 #include "cuda/twin/twin_library.h"
 #include "strata/strata.h"
 
@@ -95,8 +95,8 @@ std::vector<std::int8_t> on_host(const std::string& style, Scalar scalar, const 
       "-1 : is != 0;\n  }}\n}}\n",
       kStyles.string(), style, real);
   std::string said;
-  if (run_program({"c++", "-std=c++20", "-O1", "-fPIC", "-shared", "-ffp-contract=off", "-frounding-math", "-w", "-o",
-                   out.string(), in.string()},
+  if (run_program({{"c++", "-std=c++20", "-O1", "-fPIC", "-shared", "-ffp-contract=off", "-frounding-math", "-w", "-o",
+                    out.string(), in.string()}},
                   scratch.path(), said) != 0)
     throw std::runtime_error(said);
   void* library = dlopen(out.c_str(), RTLD_NOW | RTLD_LOCAL);

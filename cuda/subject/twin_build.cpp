@@ -2,7 +2,6 @@
 #include "cuda/subject/twin_build.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -10,7 +9,8 @@
 #include <vector>
 
 #include "core/fnv1a.h"
-#include "cuda/subject/machine_code.h"
+#include "core/programs/kept_file.h"
+#include "core/programs/run_program.h"
 #include "cuda/twin/generator/cpp_writer.h"
 
 namespace graze::cuda {
@@ -40,7 +40,7 @@ std::string compiler() {
 std::string version_of(const std::string& program, const fs::path& cache) {
   const Scratch scratch(cache);
   std::string said;
-  if (run_program({program, "--version"}, scratch.path(), said) != 0)
+  if (run_program({{program, "--version"}}, scratch.path(), said) != 0)
     throw std::runtime_error(fmt::format("expected a C++ compiler, '{}' ($CXX, else c++), for the twin: {}", program,
                                          said.substr(0, said.find('\n'))));
   return said.substr(0, said.find('\n'));
@@ -59,18 +59,6 @@ std::string source_of(const twin::Module& module, Scalar scalar) {
 
 }  // namespace
 
-Scratch::Scratch(const fs::path& within) {
-  fs::create_directories(within);
-  std::string name = (within / "unfinished-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error(within.string() + ": no folder can be made there");
-  path_ = name;
-}
-
-Scratch::~Scratch() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
 fs::path build_twin(const twin::Module& module, Scalar scalar, bool contracted, const fs::path& cache) {
   const std::string source = source_of(module, scalar);
   std::vector<std::string> words = {compiler(),          "-std=c++20",      "-O2", "-fPIC",           "-shared",
@@ -84,7 +72,7 @@ fs::path build_twin(const twin::Module& module, Scalar scalar, bool contracted, 
   std::uint64_t hash = fnv1a(version_of(compiler(), cache), fnv1a(source));
   for (const std::string& word : words) hash = fnv1a(word, fnv1a(" ", hash));
   const fs::path library = cache / fmt::format("twin-{:016x}.so", hash);
-  if (fs::exists(library)) return library;  // whole: it came by rename
+  if (kept_content(library)) return library;
 
   const Scratch scratch(cache);
   const fs::path in = scratch.path() / "twin.cpp", out = scratch.path() / "twin.so";
@@ -92,13 +80,13 @@ fs::path build_twin(const twin::Module& module, Scalar scalar, bool contracted, 
     throw std::runtime_error(in.string() + ": cannot be written");
   words.insert(words.end(), {"-o", out.string(), in.string()});
   std::string said;
-  if (run_program(words, scratch.path(), said) != 0) {
+  if (run_program({words}, scratch.path(), said) != 0) {
     const auto error = said.find("error");
     const auto start = error == said.npos ? 0 : said.rfind('\n', error) + 1;  // npos + 1 is 0
     throw std::runtime_error(fmt::format("the twin does not compile by {}: {}", compiler(),
                                          said.substr(start, said.find('\n', start) - start)));
   }
-  fs::rename(out, library);
+  keep_file(out, library);
   return library;
 }
 

@@ -16,17 +16,4 @@ namespace graze::cuda {
 std::filesystem::path build_twin(const twin::Module& module, Scalar scalar, bool contracted,
                                  const std::filesystem::path& cache);
 
-// A new folder for files on their way, removed with its owner.
-class Scratch {
- public:
-  explicit Scratch(const std::filesystem::path& within);
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch();
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 }  // namespace graze::cuda

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "core/programs/run_program.h"
 #include "cuda/subject/machine_code.h"
-#include "cuda/subject/twin_build.h"
 #include "cuda/twin/generator/ptx_writer.h"
 
 namespace graze::cuda {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subjects that attack what runs them (subjects/hostile.c), in campaigns that end by themselves, are stopped or are killed. Then the
-campaign has an end, the other lanes have the verdicts of a campaign without them, and no process is left."""
+"""Subjects that attack what runs them (subjects/hostile.c), in campaigns that end by themselves, are stopped or are killed, also while
+a subject is compiled. Then the campaign has an end, the other lanes have the verdicts of a campaign without them, and no process is left."""
 import json
 import os
 import pathlib
@@ -49,12 +49,36 @@ def must_leave_nothing(turn):
     raise Violation(f"expected no process after the end, found {left_over(turn.bench)}")
 
 
+def must_end_while_it_compiles(turn):
+    """The compiler waits for ever: in a header or in data that is a pipe."""
+    pipe, source = turn.folder / "pipe", turn.folder / "waits.c"
+    os.mkfifo(pipe)
+    reads = turn.random.choice([f'#include "{pipe}"\n', f'__asm__(".incbin \\"{pipe}\\"");\n'])
+    source.write_text(reads + "int intersects(const float a[9], const float b[9]) { return 1; }\n")
+    started = turn.start("fuzz", "--subject", f"w={source}", "--lanes", "w/*", "--pairs", "10", "--out", "never")
+    time.sleep(0.2 + turn.random.random())
+    way = turn.random.choice([signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
+    os.kill(started[0].pid, way)
+    ran = turn.finish(started, kill_after=ENDS)
+    if ran.late:
+        raise Violation(f"expected an end within {ENDS} s of signal {way}, found none")
+    if ran.status not in (130, -way):  # in order, before it began
+        raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
+    must_leave_nothing(turn)
+    if way == signal.SIGKILL:  # a moment without a compiler leaves them to a later graze
+        return
+    left = list((turn.bench.folder / "cache/graze").glob("unfinished-*"))
+    if left:
+        raise Violation(f"expected no temporary files, found {left}")
+
+
 def counts_of_ours(campaign):
     strata = json.loads((campaign / "summary.json").read_text())["strata"]
     return {stratum: (counts["pairs"], counts["lanes"][OURS]) for stratum, counts in strata.items()}
 
 
 def foreign(turn):
+    must_end_while_it_compiles(turn)
     for attempt in range(ATTEMPTS):
         name = turn.random.choice(attacks())
         seed = str(turn.random.randrange(1 << 32))

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-namespace graze::subjects {
+namespace graze {
 
 // What the system says a process is at: 'R' running, 'D' waiting for a device, 'S' sleeping, 'T' or 't' stopped, 'Z'
 // ended; 0 where there is none.
@@ -23,4 +23,4 @@ inline bool is_stopped(pid_t process) {
   return state == 'T' || state == 't';
 }
 
-}  // namespace graze::subjects
+}  // namespace graze

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/programs/kept_file.h"
+
+#include <cerrno>
+#include <cinttypes>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "core/cannot.h"
+#include "core/fnv1a.h"
+
+namespace graze {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string line_of(std::string_view bytes, const fs::path& kept) {
+  char line[40];
+  std::snprintf(line, sizeof line, "\ngraze %016" PRIx64 "\n", fnv1a(bytes, fnv1a(kept.filename().string())));
+  return line;
+}
+
+}  // namespace
+
+void keep_file(const fs::path& made, const fs::path& kept) {
+  std::ofstream out(made, std::ios::binary | std::ios::app);
+  if (!(out << line_of(content(made), kept)).flush()) throw std::runtime_error(cannot("write", made, errno));
+  fs::rename(made, kept);
+}
+
+std::optional<std::string> kept_content(const fs::path& kept) {
+  std::error_code none;
+  if (!fs::is_regular_file(kept, none)) return std::nullopt;
+  std::string bytes = content(kept);
+  const std::size_t line = bytes.rfind("\ngraze ");
+  if (line == bytes.npos) return std::nullopt;
+  const std::string found = bytes.substr(line);
+  bytes.resize(line);
+  return found == line_of(bytes, kept) ? std::optional(bytes) : std::nullopt;
+}
+
+}  // namespace graze

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/programs/run_program.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "core/cannot.h"
+#include "core/programs/supervisor_process.h"
+#include "core/stop.h"
+#include "core/text.h"
+
+namespace graze {
+
+namespace fs = std::filesystem;
+
+Scratch::Scratch(const fs::path& within) {
+  fs::create_directories(within);
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(within, none)) {
+    const bool is_ours = entry.path().filename().string().starts_with("unfinished-");
+    const auto written = entry.last_write_time(none);
+    if (is_ours && !none && fs::file_time_type::clock::now() - written > std::chrono::hours(24))
+      fs::remove_all(entry.path(), none);
+  }
+  std::string name = (within / "unfinished-XXXXXX").string();
+  if (!mkdtemp(name.data())) throw std::runtime_error(cannot("make the folder", name, errno));
+  path_ = name;
+}
+
+Scratch::~Scratch() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+int run_program(const Program& program, const fs::path& scratch, std::string& output) {
+  const StopSignals stops;
+  const std::string log = scratch / "output.txt";
+  const int to = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (to < 0) throw std::runtime_error(cannot("write", log, errno));
+  std::vector<std::string> arguments{"--run", std::to_string(program.seconds), scratch, program.namespaces ? "1" : "0"};
+  arguments.insert(arguments.end(), program.words.begin(), program.words.end());
+  SupervisorProcess supervisor("graze-subject-host", arguments, -1, to);
+  close(to);
+  std::string text;  // for a message
+  for (const std::string& word : program.words) text += (text.empty() ? "" : " ") + word;
+  int status = -1;
+  if (supervisor.receive(&status, sizeof status) != sizeof status)
+    throw std::runtime_error(shown(text) + ": expected its end, found that its supervisor was ended");
+  if (status < 0)
+    throw std::runtime_error(shown(text) + ": expected an end within " + rounded_up(program.seconds, 4) +
+                             " s, found none; it was killed");
+  std::ifstream in(log, std::ios::binary);
+  output.assign(std::istreambuf_iterator<char>(in), {});
+  return status;
+}
+
+}  // namespace graze

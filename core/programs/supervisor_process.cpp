@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/programs/supervisor_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <system_error>
+
+#include "core/programs/process_state.h"
+#include "core/stop.h"
+
+extern char** environ;
+
+namespace graze {
+namespace {
+
+constexpr int kLookEvery = 50;  // ms, whether a stop is requested
+// Looks of this process, not time: on a machine that is so busy that the supervisor waits, this process waits as well.
+constexpr int kMostSilentLooks = 10'000 / kLookEvery;
+
+}  // namespace
+
+SupervisorProcess::SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments, int shared,
+                                     int output) {
+  int sockets[2];
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) != 0)
+    throw std::system_error(errno, std::generic_category(), "cannot make a socket for " + program);
+  socket_ = sockets[0];
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  // Above the descriptors of the supervisor, so that none is closed by the next.
+  int from[] = {sockets[1], shared, output};
+  for (int& fd : from) fd = fd < 0 ? -1 : fcntl(fd, F_DUPFD_CLOEXEC, 16);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
+    if (output < 0) {
+      posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+    } else {
+      posix_spawn_file_actions_adddup2(&actions, from[2], stream);
+    }
+  }
+  posix_spawn_file_actions_adddup2(&actions, from[0], 3);
+  if (shared >= 0) posix_spawn_file_actions_adddup2(&actions, from[1], 4);
+  // A session of its own: Ctrl-C and the terminal are the asking process's business.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+  sigset_t signals;
+  sigfillset(&signals);
+  posix_spawnattr_setsigdefault(&attributes, &signals);
+  sigemptyset(&signals);
+  posix_spawnattr_setsigmask(&attributes, &signals);
+  const std::string file = std::filesystem::read_symlink("/proc/self/exe").parent_path() / program;
+  std::vector<char*> words{const_cast<char*>(file.c_str())};
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  const int error = posix_spawn(&process_, file.c_str(), &actions, &attributes, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  close(sockets[1]);
+  for (const int fd : from) {
+    if (fd >= 0) close(fd);
+  }
+  if (error != 0) {
+    close(socket_);
+    throw std::system_error(error, std::generic_category(), "cannot start " + file);
+  }
+}
+
+SupervisorProcess::~SupervisorProcess() {
+  using Clock = std::chrono::steady_clock;
+  close(socket_);
+  const auto has_ended = [&](int seconds) {
+    const auto until = Clock::now() + std::chrono::seconds(seconds);
+    for (int wait = 0;; wait = 1) {
+      const pid_t ended = waitpid(process_, nullptr, WNOHANG);
+      if (ended != 0 && !(ended < 0 && errno == EINTR)) return true;
+      if (Clock::now() >= until) return false;
+      poll(nullptr, 0, wait);
+    }
+  };
+  const bool hangs = silent_ || is_stopped(process_);
+  if (has_ended(hangs ? 0 : stop_requested ? 1 : 6) || (stop_requested && !hangs)) return;
+  kill(process_, SIGKILL);
+  has_ended(1);  // a frozen one does not: it is left
+}
+
+bool SupervisorProcess::send(const void* message, std::size_t size) const {
+  return ::send(socket_, message, size, MSG_NOSIGNAL) == static_cast<ssize_t>(size);
+}
+
+ssize_t SupervisorProcess::receive(void* to, std::size_t size) {
+  for (int looks = 0; looks < kMostSilentLooks;) {
+    pollfd ready{socket_, POLLIN, 0};
+    if (poll(&ready, 1, kLookEvery) > 0) {
+      const ssize_t received = recv(socket_, to, size, MSG_DONTWAIT);
+      if (received != sizeof kAlive) return received;
+      looks = 0;
+    } else {
+      ++looks;
+    }
+    if (stop_requested) throw Stopped();
+    if (is_stopped(process_)) return -1;  // as a subject without a namespace of its own can do
+  }
+  silent_ = true;
+  return -1;
+}
+
+}  // namespace graze

@@ -80,6 +80,13 @@ TEST_F(ForeignCode, OptionsOfSubjectsAreWithinBounds) {
   expect_error("graze check pair.txt --subject s=$(printf 'x%.0s' $(seq 100000)).so", 1, {"File name too long"});
 }
 
+TEST_F(ForeignCode, WhatCannotBeWrittenForACompilerIsSaidWithItsReason) {
+  expect_error(
+      "set -o pipefail; export XDG_CACHE_HOME=$PWD/cache; echo 'int intersects(const float* a, const float* b) "
+      "{ return 1; }' > a.c; (ulimit -f 0; graze check pair.txt --subject s=./a.c) 2>&1 | cat >&2",
+      1, {"cache/graze/include/graze/subject.h", "File too large"});
+}
+
 // Whether a constructor says that it has no function, or nonsense: one line says whose code it is.
 TEST_F(ForeignCode, ASubjectWithoutAFunctionIsNamed) {
   ASSERT_EQ(

@@ -115,6 +115,13 @@ TEST_F(Shards, WrongUseIsOneLine) {
   EXPECT_EQ(Json::parse(shell(fuzz + "--shard 1/3 --out a --json").out)["pairs"], 300);
 }
 
+TEST_F(Shards, WhatCannotBeCopiedFromScratchIsSaidWithItsReason) {
+  expect_error(
+      "mkdir out; ln -s none/part out/campaign.sqlite.part; graze fuzz --pairs 900 --strata uniform "
+      "--lanes 'moller*/f32/cpu' --shard 1/3 --scratch here --out out",
+      1, {"out/campaign.sqlite", "No such file or directory"});
+}
+
 TEST_F(Shards, TwoProcessesOfOneShardAreRefused) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 3000000 --strata 'near_*' --shard 1/2 --out a ";
   for (const char* scratch : {"", "--scratch local"}) {

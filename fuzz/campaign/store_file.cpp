@@ -37,6 +37,17 @@ std::string one_line(std::string text) {
   return text;
 }
 
+// The system's error that the database or its log met last, as errno has it; 0 for none.
+int last_errno(const SQLite::Database& database) {
+  int error = 0;
+  for (const int which : {SQLITE_FCNTL_FILE_POINTER, SQLITE_FCNTL_JOURNAL_POINTER}) {
+    sqlite3_file* file = nullptr;
+    sqlite3_file_control(database.getHandle(), "main", which, &file);
+    if (error == 0 && file && file->pMethods) file->pMethods->xFileControl(file, SQLITE_FCNTL_LAST_ERRNO, &error);
+  }
+  return error;
+}
+
 // Calls body(); its errors become one line that names the file. database: which knows the system's reason, if any.
 template <class Body>
 auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQLite::Database>& database = {}) {
@@ -46,7 +57,7 @@ auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQL
   } catch (const Damaged& error) {
     throw DamagedStore(cannot("use", file, fmt::format("it is damaged: {}; {}", error.what(), kGoOn)));
   } catch (const SQLite::Exception& error) {
-    const int code = error.getErrorCode(), system = database ? sqlite3_system_errno(database->getHandle()) : 0;
+    const int code = error.getErrorCode(), system = database ? last_errno(*database) : 0;
     if (code == SQLITE_BUSY || code == SQLITE_LOCKED)
       throw std::runtime_error(cannot("use", file, "another process is using this campaign; wait until it has ended"));
     if (code == SQLITE_FULL) throw std::runtime_error(cannot("write", file, ENOSPC));

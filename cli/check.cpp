@@ -81,7 +81,7 @@ void add_check(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("check", "Print the truth and every lane's verdict for the pairs of a file");
   command->footer("Example: echo '0 0 0 1 0 0 0 1 0  0 0 1 1 0 1 0 1 1' | graze check -");
   auto options = std::make_shared<CheckOptions>();
-  command->add_option("file", options->file, "File of pairs, 18 numbers per line; - is standard input")->required();
+  command->add_option("FILE", options->file, "File of pairs, 18 numbers per line; - is standard input")->required();
   add_lane_options(*command, options->lanes);
   add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "Print one JSON object per line, one line per pair");

@@ -166,7 +166,7 @@ void add_corpus(CLI::App& app, int& status) {
       "Example: graze corpus add near_edge_edge:1:42 --corpus regression", options);
   command
       ->add_option(
-          "cases", options->names,
+          "CASE", options->names,
           "Campaign directories (the first case of each signature is added), files of cases, or STRATUM:SEED:INDEX")
       ->required();
   add_globs(*command, "--signatures", options->signatures, "Patterns of the campaign's signatures to add");

@@ -134,7 +134,7 @@ void add_dump(CLI::App& app, int&) {
   command->footer("Example: graze dump near_edge_edge:1 --pairs 100 --lanes '*/f32/cpu'");
   auto options = std::make_shared<DumpOptions>();
   command
-      ->add_option("source", options->name, "Stratum, STRATUM:SEED (the seed is 1 by default), or campaign directory")
+      ->add_option("SOURCE", options->name, "Stratum, STRATUM:SEED (the seed is 1 by default), or campaign directory")
       ->required();
   static_assert(static_cast<int>(Format::pairs) == 0 && static_cast<int>(Format::csv) == 1);
   command

@@ -132,7 +132,7 @@ TEST_F(Dump, AMeshesPairsAreReadAgain) {
 }
 
 TEST_F(Dump, BadInputGetsOneLine) {
-  expect_error("graze dump", 2, {"source"});
+  expect_error("graze dump", 2, {"SOURCE"});
   expect_error("graze dump latice", 2, {"'latice'", "'lattice'"});
   expect_error("graze dump lattice:x", 2, {"STRATUM:SEED", "'x'"});
   expect_error("graze dump lattice --format xml", 2, {"pairs", "csv", "'xml'"});

@@ -196,7 +196,7 @@ void add_explain(CLI::App& app, int& status) {
       "Explain why lanes are wrong on a case: their values beside the exact ones, the cause, and what would help");
   command->footer("Example: graze explain near_edge_edge:1:7");
   auto options = std::make_shared<ExplainOptions>();
-  command->add_option("case", options->name, "File of pairs, or STRATUM:SEED:INDEX")->required();
+  command->add_option("CASE", options->name, "File of pairs, or STRATUM:SEED:INDEX")->required();
   add_lane_options(*command, options->lanes, Executors::twins);
   add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "Print one JSON object per line, one line per case, with all values");

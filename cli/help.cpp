@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
 #include <memory>
 
@@ -30,10 +29,8 @@ std::string row(const std::string& name, const std::string& meaning, int columns
 
 std::string placeholder(const CLI::Option& option) {
   if (!option.get_option_text().empty()) return option.get_option_text();
-  if (!option.get_positional()) return option.get_type_size() == 0 ? "" : option.get_type_name();
-  std::string name = option.get_name(true);
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::toupper(c); });
-  return name;
+  if (option.get_positional()) return option.get_name(true);
+  return option.get_type_size() == 0 ? "" : option.get_type_name();
 }
 
 std::string name_of(const CLI::Option& option) {

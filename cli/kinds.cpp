@@ -122,9 +122,7 @@ void add_kinds(CLI::App& app, int& status) {
   command->footer("Example: graze kinds campaign");
   auto directory = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false), all = std::make_shared<bool>(false);
-  command->add_option("directory", *directory, "Campaign directory, best after `graze minimize`")
-      ->required()
-      ->option_text("DIR");
+  command->add_option("DIR", *directory, "Campaign directory, best after `graze minimize`")->required();
   command->add_flag("--json", *json, "Print one JSON object per line, described in docs/formats.md");
   command->add_flag("--all", *all, "List rare kinds too");
   command->callback([directory, json, all, &status] { status = kinds_of(*directory, *json, *all); });

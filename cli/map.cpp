@@ -134,7 +134,7 @@ void add_map(CLI::App& app, int&) {
       app.add_subcommand("map", "Draw the verdicts around a case while two of its coordinates move by single ulps");
   command->footer("Example: graze map mixed_scale:1:3 --lanes '*/f32/cpu'");
   auto options = std::make_shared<MapOptions>();
-  command->add_option("case", options->name, "File of pairs, whose first pair is drawn, or STRATUM:SEED:INDEX")
+  command->add_option("CASE", options->name, "File of pairs, whose first pair is drawn, or STRATUM:SEED:INDEX")
       ->required();
   add_lane_options(*command, options->lanes, Executors::twins);
   command

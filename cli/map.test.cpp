@@ -40,7 +40,7 @@ TEST_F(MapCommand, BadInputGetsOneLine) {
   std::ofstream(shell.folder / "file");
   using Words = std::vector<std::string>;
   for (const auto& [arguments, status, words] :
-       {std::tuple{"", 2, Words{"case"}},
+       {std::tuple{"", 2, Words{"CASE"}},
         {"missing.pairs", 1, {"missing.pairs", "No such file or directory"}},
         {"nan.pairs", 1, {"nan.pairs", "not finite"}},
         {"lattice:1:1 --lanes nothing", 2, {"'nothing'"}},

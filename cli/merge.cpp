@@ -40,9 +40,8 @@ void add_merge(CLI::App& app, int& status) {
       app.add_subcommand("merge", "Join the shards of a campaign; the result is the same as that of one run");
   command->footer("Example: graze merge shard-* --out campaign");
   auto options = std::make_shared<MergeOptions>();
-  command->add_option("parts", options->parts, "Directories of shards, or of campaigns merged before, in any order")
-      ->required()
-      ->option_text("DIR");
+  command->add_option("DIR", options->parts, "Directories of shards, or of campaigns merged before, in any order")
+      ->required();
   command->add_option("--out", options->out, "Directory for the campaign, new or empty")
       ->required()
       ->check(not_empty())

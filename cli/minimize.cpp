@@ -290,7 +290,7 @@ void add_minimize(CLI::App& app, int& status) {
   auto options = std::make_shared<MinimizeOptions>();
   command
       ->add_option(
-          "case", options->name,
+          "CASE", options->name,
           "Campaign directory, file of pairs, or STRATUM:SEED:INDEX; the results of a campaign go into its cases/")
       ->required();
   command->add_option("--out", options->out, "File for the minimised pairs, each followed by its original")

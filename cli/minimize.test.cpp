@@ -190,7 +190,7 @@ TEST_F(Minimize, WhereNothingCanBeWrittenItSaysSoAtOnce) {
 }
 
 TEST_F(Minimize, BadInputGetsOneLine) {
-  expect_error("graze minimize", 2, {"case"});
+  expect_error("graze minimize", 2, {"CASE"});
   expect_error("graze minimize missing.pairs", 1, {"missing.pairs", "No such file or directory"});
   expect_error("graze minimize nowhere:1:2", 2, {"'nowhere'"});
   expect_error("mkdir empty; graze minimize empty", 1, {"empty"});

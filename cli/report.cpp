@@ -101,10 +101,8 @@ void add_report(CLI::App& app, int&) {
       app.add_subcommand("report", "Write a campaign as one web page that works offline, and as JSON and CSV tables");
   command->footer("Example: graze report campaign");
   auto options = std::make_shared<ReportOptions>();
-  command
-      ->add_option("directory", options->directory,
-                   "Campaign directory; report.html, report.json and the tables are written into it")
-      ->option_text("DIR");
+  command->add_option("DIR", options->directory,
+                      "Campaign directory; report.html, report.json and the tables are written into it");
   command
       ->add_option("--compare", options->compare,
                    "Two campaigns: a report of the second and its changes since the first, as compare.html and "

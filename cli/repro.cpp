@@ -98,7 +98,7 @@ void add_repro(CLI::App& app, int& status) {
   command->footer("Example: graze repro near_edge_edge:1:42");
   auto name = std::make_shared<std::string>();
   auto lanes = std::make_shared<LaneOptions>();
-  command->add_option("case", *name, "File of pairs, such as one of a campaign's cases/, or STRATUM:SEED:INDEX")
+  command->add_option("CASE", *name, "File of pairs, such as one of a campaign's cases/, or STRATUM:SEED:INDEX")
       ->required();
   add_lane_options(*command, *lanes);
   auto emitted = std::make_shared<std::string>();

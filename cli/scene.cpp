@@ -95,11 +95,10 @@ void add_scene(CLI::App& app, int&) {
   auto options = std::make_shared<SceneVerb>();
   command
       ->add_option(
-          "files", options->files,
+          "FILE", options->files,
           "Meshes (OFF, OBJ, STL or PLY) or one file of pairs (.pairs). One mesh is measured against itself, several "
           "against each other")
-      ->required()
-      ->option_text("FILE");
+      ->required();
   command
       ->add_option("--poses", options->poses,
                    "CSV file of poses of the mesh, one per line: twelve numbers, the three rows of a matrix (R | t)")

@@ -111,7 +111,7 @@ TEST_F(Shards, WrongUseIsOneLine) {
   expect_error(fuzz + "--shard 2/3 --out a", 2, {"a", "1/3", "2/3", "--out"});
   expect_error(fuzz + "--out a", 2, {"a", "1/3"});
   expect_error("graze report a", 1, {"summary.json"});
-  expect_error("graze merge --out b", 2, {"parts"});
+  expect_error("graze merge --out b", 2, {"DIR"});
   EXPECT_EQ(Json::parse(shell(fuzz + "--shard 1/3 --out a --json").out)["pairs"], 300);
 }
 

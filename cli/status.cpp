@@ -191,10 +191,8 @@ void add_status(CLI::App& app, int& status) {
   command->footer("Example: graze status shard-*");
   auto options = std::make_shared<StatusOptions>();
   command
-      ->add_option("directories", options->directories,
-                   "Directories of shards or campaigns, also of those that mpirun started")
-      ->required()
-      ->option_text("DIR");
+      ->add_option("DIR", options->directories, "Directories of shards or campaigns, also of those that mpirun started")
+      ->required();
   command
       ->add_option("--stalled", options->stalled,
                    "Time without a sign of life after which a run counts as stalled, in seconds")

@@ -136,7 +136,7 @@ void add_tune(CLI::App& app, int& status) {
       "tune", "Find the best tolerance for a lane: sweep tolerances on some pairs, and judge the best on others");
   command->footer("Example: graze tune moller_1997/f32/cpu --forbid miss --pairs 20k");
   const auto options = std::make_shared<TuneOptions>();
-  command->add_option("lane", options->lane, "Lane, without a policy")->required()->option_text("LANE");
+  command->add_option("LANE", options->lane, "Lane, without a policy")->required();
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   command

@@ -124,7 +124,7 @@ int main() {
 }
 
 TEST_F(TuneCommand, BadInputGetsOneLine) {
-  expect_error("graze tune", 2, {"lane"});
+  expect_error("graze tune", 2, {"LANE"});
   expect_error("graze tune moller_1997/f32/cp", 2, {"'moller_1997/f32/cpu'"});
   expect_error("graze tune exact/f32/cpu", 2, {"published", "'exact/f32/cpu'"});
   expect_error("graze tune moller_1997/f32/cpu --max-rate 0", 2, {"--max-rate"});

@@ -188,11 +188,11 @@ void add_view(CLI::App& app, int&) {
   auto what = std::make_shared<std::string>(), mesh = std::make_shared<std::string>(),
        out = std::make_shared<std::string>("view.html");
   command->add_option(
-      "what", *what,
+      "WHAT", *what,
       "File of pairs, campaign directory or folder of such files, mesh (OFF, OBJ, STL or PLY), or STRATUM:SEED:INDEX "
       "(default: the special cases of the thesis of 2012)");
   command
-      ->add_option("mesh", *mesh,
+      ->add_option("MESH", *mesh,
                    "Mesh whose triangles are shown against WHAT, which is then a reference triangle as for `graze "
                    "query`: a file of "
                    "nine numbers, or MESH#FACE")

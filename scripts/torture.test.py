@@ -78,7 +78,7 @@ def fuzz():
         lock(folder)
         new = not file.exists()
         if new and (folder / "summary.json").exists():
-            fail(f"{folder}: holds results but not their database; choose another --out")
+            fail(f"{folder}: it holds results but not their database; choose another --out")
         for again in range(2):
             database = sqlite3.connect(file, isolation_level=None)
             try:

@@ -87,7 +87,7 @@ def judge(turn, campaign):
     if turn.random.random() < 0.25:
         refuses_another_seed(turn, campaign, command)
     refused = turn.run(*command)
-    if turn.is_refused(refused, DATABASE, campaign.name + ": holds results but not their database"):
+    if turn.is_refused(refused, DATABASE, campaign.name + ": it holds results but not their database"):
         went_on = turn.run(*command, "--discard-damaged")
         # Another program's database, and results without one, are no damage; the line says what to do.
         if not (turn.is_refused(went_on, campaign.name) and "choose another --out" in went_on.err):

@@ -21,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int kLockAttempts = 10;  // a second
+
 constexpr const char* kPart = ".graze.part";  // behind the name of a file that is being written
 
 [[noreturn]] void fail(const char* act, const fs::path& file, int error) {
@@ -160,12 +162,19 @@ void write_whole(const fs::path& file, const std::string& text) {
 FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
     : handle_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (handle_ < 0) fail("open the folder", folder, errno);
-  if (flock(handle_, when_taken == WhenTaken::wait     ? LOCK_EX
-                     : when_taken == WhenTaken::refuse ? LOCK_EX | LOCK_NB
-                                                       : LOCK_SH | LOCK_NB) == 0)
-    return;
-  const int error = errno;
+  const int how = when_taken == WhenTaken::wait     ? LOCK_EX
+                  : when_taken == WhenTaken::refuse ? LOCK_EX | LOCK_NB
+                                                    : LOCK_SH | LOCK_NB;
+  // A process that was killed a moment ago may have a child that still ends.
+  int error = 0;
+  for (int attempt = 0; attempt < kLockAttempts && !stop_requested; ++attempt) {
+    if (flock(handle_, how) == 0) return;
+    error = errno;
+    if (error != EWOULDBLOCK && error != EINTR) break;
+    poll(nullptr, 0, 100);
+  }
   close(handle_);
+  if (stop_requested) throw Stopped();
   if (error != EWOULDBLOCK) fail("lock", folder, error);
   throw std::runtime_error(cannot("use", folder, "another process is using it; wait until it has ended"));
 }

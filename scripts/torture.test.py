@@ -68,6 +68,10 @@ def lock(folder):
 
 
 def fuzz():
+    if any(word.endswith("/waits.c") for word in words):  # its compiler waits
+        if MODE == "leaves":
+            subprocess.Popen(["sleep", "60"], start_new_session=True)
+        time.sleep(1000)
     folder = pathlib.Path(out)
     file = folder / "campaign.sqlite"
     seed = option("--seed")

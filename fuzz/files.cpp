@@ -167,7 +167,7 @@ FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
                                                     : LOCK_SH | LOCK_NB;
   // A process that was killed a moment ago may have a child that still ends.
   int error = 0;
-  for (int attempt = 0; attempt < kLockAttempts && !stop_requested; ++attempt) {
+  for (int attempt = 0; attempt == 0 || (attempt < kLockAttempts && !stop_requested); ++attempt) {
     if (flock(handle_, how) == 0) return;
     error = errno;
     if (error != EWOULDBLOCK && error != EINTR) break;

@@ -294,7 +294,9 @@ void add_fuzz(CLI::App& app, int& status) {
       ->transform(whole_number(0, 4096))
       ->capture_default_str()
       ->option_text("N");
-  command->add_option("--out", options->out, "Campaign directory; an unfinished campaign in it is resumed; the last --out counts")
+  command
+      ->add_option("--out", options->out,
+                   "Campaign directory; an unfinished campaign in it is resumed; the last --out counts")
       ->take_last()
       ->check(not_empty())
       ->capture_default_str()

@@ -46,7 +46,7 @@ TEST_F(LeagueCommand, DrawsWithinAScene) {
 TEST_F(LeagueCommand, LeavesATableAPageAndDrawings) {
   const Ran ran = shell(kRun);
   ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_NE(ran.out.find("on the same 1,000 pairs (general\n500, degenerate 500)"), std::string::npos) << ran.out;
+  EXPECT_NE(ran.out.find("on the same 1,000\npairs (general 500, degenerate 500)"), std::string::npos) << ran.out;
   const auto league = nlohmann::json::parse(contents(shell.folder / "found/league.json"));
   const std::string page = contents(shell.folder / "found/league.md");
   for (const auto& row : league["rows"]) {

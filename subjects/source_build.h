@@ -24,9 +24,9 @@ bool source_describes_itself(const std::filesystem::path& source);
 
 // Returns: the shared object's file, named by the hash of the preprocessed source, the flags, the files that they name,
 // those that the assembler says it read, and the compiler's first line of --version. It is built if it is not there as
-// it was built before, and always where that hash does not cover all that it is made of. It has `function` of the source, or the descriptions that the source makes
-// itself (see graze/subject.h), with the variant's flags and then `flags`. Throws: std::runtime_error with the
-// compiler's first error; Stopped.
+// it was built before, and always where that hash does not cover all that it is made of. It has `function` of the
+// source, or the descriptions that the source makes itself (see graze/subject.h), with the variant's flags and then
+// `flags`. Throws: std::runtime_error with the compiler's first error; Stopped.
 Built build_source(const std::filesystem::path& source, const std::string& function, const VariantInfo& variant,
                    const std::vector<std::string>& flags);
 

@@ -74,8 +74,8 @@ class Store {
   StoreSpec spec_;
   FolderLock lock_;
   StoreFile file_;
-  std::vector<std::map<std::uint64_t, Row>> rows_;                      // of each source, by their first pair
-  std::vector<StoredCounts> of_source_;                                 // but for signatures and executor_mismatches
+  std::vector<std::map<std::uint64_t, Row>> rows_;  // of each source, by their first pair
+  std::vector<StoredCounts> of_source_;             // but for signatures and executor_mismatches
   std::map<std::string, SignatureCount> signatures_, executor_mismatches_;  // of all sources
 };
 

@@ -359,11 +359,15 @@ def forged_kinds(turn):
         value = json.loads((campaign / name).read_text())
         edit(value)
         text = json.dumps(value, indent=1) + "\n"
-        (campaign / name).write_text(text[: len(text) // 2] if turn.random.random() < 0.2 and name != "timings.json" else text)
+        (campaign / name).write_text(
+            text[: len(text) // 2] if turn.random.random() < 0.2 and name != "timings.json" else text
+        )
         reader = turn.random.choice(readers)
         ran = turn.run(reader, campaign)
         if not turn.is_refused(ran, name):
-            raise Violation(f"expected {reader} to refuse a forged {name}, found status {ran.status}: {ran.out[-200:]!r}")
+            raise Violation(
+                f"expected {reader} to refuse a forged {name}, found status {ran.status}: {ran.out[-200:]!r}"
+            )
         turn.count("refused")
         shutil.rmtree(campaign)
 

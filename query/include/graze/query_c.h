@@ -36,9 +36,9 @@ enum graze_layout {
 #define GRAZE_MOST_TRIANGLES ((uint64_t)1 << 48)
 
 /* An array of triangles. Strides are in bytes, 0 where nothing lies between; everything is aligned as floats are. A
-   stride is a multiple of 4 and not less than an element's size; an array takes at most PTRDIFF_MAX bytes from its first
-   element to its last, and does not wrap around the end of the addresses; GRAZE_BAD_ARGUMENT otherwise. Whether there
-   is memory behind the pointer is not checked: the caller promises it. A negative stride is none. */
+   stride is a multiple of 4 and not less than an element's size; an array takes at most PTRDIFF_MAX bytes from its
+   first element to its last, and does not wrap around the end of the addresses; GRAZE_BAD_ARGUMENT otherwise. Whether
+   there is memory behind the pointer is not checked: the caller promises it. A negative stride is none. */
 typedef struct graze_triangles {
   uint64_t count;
   int layout;

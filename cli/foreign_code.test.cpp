@@ -83,7 +83,7 @@ TEST_F(ForeignCode, OptionsOfSubjectsAreWithinBounds) {
 TEST_F(ForeignCode, WhatCannotBeWrittenForACompilerIsSaidWithItsReason) {
   expect_error(
       "set -o pipefail; export XDG_CACHE_HOME=$PWD/cache; echo 'int intersects(const float* a, const float* b) "
-      "{ return 1; }' > a.c; (ulimit -f 0; graze check pair.txt --subject s=./a.c) 2>&1 | cat >&2",
+      "{ return 1; }' > a.c; (ulimit -f 1; graze check pair.txt --subject s=./a.c) 2>&1 | cat >&2",
       1, {"cache/graze/include/graze/subject.h", "File too large"});
 }
 

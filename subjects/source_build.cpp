@@ -183,8 +183,11 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   const std::string version = output_of(compiler + " --version", scratch, status);
   const std::string identity = version.substr(0, version.find('\n'));  // below it are paths
   if (status != 0)
-    throw std::runtime_error(cannot(
-        "compile", name, "there is no compiler '" + compiler + "'; install one, or name it in " + (c ? "CC" : "CXX")));
+    throw std::runtime_error(
+        cannot("compile", name,
+               status == 127  // as a shell has it
+                   ? fmt::format("there is no compiler '{}'; install one, or name it in {}", compiler, c ? "CC" : "CXX")
+                   : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
   std::string command =
       fmt::format("{} {} -O2 -fPIC -shared {}", compiler, c ? "-std=gnu11" : "-std=c++20", variant.flags);
   for (const std::string& flag : flags) command += ' ' + shell_word(flag);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each cause on a pair made for it, and laws of explanations over all strata.
+// Each cause on a pair made for it, and invariants of explanations over all strata.
 #include "analysis/explain.h"
 
 #include <gtest/gtest.h>

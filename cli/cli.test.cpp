@@ -270,7 +270,7 @@ TEST_F(Cli, AHuntIsACampaignForOtherVerbs) {
   EXPECT_EQ(contents(shell.folder / "h/summary.json"), summary);
   const Json row = Json::parse(summary)["signatures"][0];
   EXPECT_EQ(shell("graze repro h/" + row["case"].get<std::string>()).status, 0);
-  EXPECT_NE(shell("graze kinds h").out.find("moller_1997"), std::string::npos);
+  EXPECT_NE(shell("graze failures h").out.find("moller_1997"), std::string::npos);
   EXPECT_EQ(shell("graze minimize h").status, 0);
   EXPECT_EQ(shell("graze report h").status, 0);
   EXPECT_EQ(Json::parse(contents(shell.folder / "h/report.json"))["run"]["command"].dump().find(

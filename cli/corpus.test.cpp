@@ -49,7 +49,7 @@ TEST_F(CorpusVerb, TakesTheSimplestCaseOfEachKind) {
   campaign("c", "--pairs 5000 --strata lattice");
   const Ran added = shell("graze corpus add c --corpus r");
   const Ran ran = shell(
-      "graze kinds c --json | python3 -c 'import json,sys\n"
+      "graze failures c --json | python3 -c 'import json,sys\n"
       "for l in sys.stdin: k = json.loads(l); print(k[\"simplest\"][\"pair\"])' | sort -u > kinds;"
       "grep '^[-0-9].* failure=' r/cases.pairs | sed 's/ |.*//' | sort -u > kept;"
       "test -s kept && cmp kinds kept");

@@ -26,7 +26,7 @@ const std::vector<Verb>& verbs() {
       {"minimize", "p --lanes 'guigue*/f32/cpu'", "none.pairs"},
       {"corpus", "add p --corpus r", "verify --corpus none"},
       {"explain", "p --lanes 'guigue*/f32/cpu'", "none.pairs"},
-      {"kinds", "c", "none"},
+      {"failures", "c", "none"},
       {"league", "--subjects subjects.txt --pairs 40 --strata uniform --out l", "--subjects none.txt --out x"},
       {"map", "p --lanes moller_1997/f32/cpu --out map.png", "none.pairs --out x.png"},
       {"view", "", "none.pairs --out x.html"},
@@ -35,8 +35,9 @@ const std::vector<Verb>& verbs() {
       {"scene", "mesh.off", "none.off"},
       {"lanes", "", ""},
       {"strata", "", ""},
-      {"laws", "--pairs 40 --strata uniform --lanes moller_1997/f32/cpu --out laws", "--scene none.toml --out x"},
-      {"trade", "--pairs 1000 --strata uniform --lanes moller_1997/f32/cpu,exact/f32/cpu --out trade",
+      {"invariants", "--pairs 40 --strata uniform --lanes moller_1997/f32/cpu --out invariants",
+       "--scene none.toml --out x"},
+      {"pareto", "--pairs 1000 --strata uniform --lanes moller_1997/f32/cpu,exact/f32/cpu --out pareto",
        "--scene none.toml --out x"},
       {"tune", "moller_1997/f32/cpu --pairs 100 --strata uniform --out tuned",
        "moller_1997/f32/cpu --scene none.toml --out x"},
@@ -90,7 +91,7 @@ TEST_F(ExitStatus, InterruptedIs130) {
   expect_done(std::string("graze fuzz --pairs 20000 --strata 'near_*' --out many") + kMoller);
   EXPECT_EQ(interrupted(std::string("fuzz --pairs 1e9 --out f") + kMoller), 130);
   EXPECT_EQ(interrupted("minimize many"), 130);
-  EXPECT_EQ(interrupted("kinds many"), 130);
+  EXPECT_EQ(interrupted("failures many"), 130);
   EXPECT_EQ(interrupted("league --subjects subjects.txt --pairs 1e8 --out l"), 130);
   if (shell("graze hunt --runs 1 --out h1").status == 0) {
     EXPECT_EQ(interrupted("hunt --runs 1e9 --out h"), 130);

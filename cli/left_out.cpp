@@ -19,8 +19,8 @@ void add_hunt(CLI::App& app, int&) { add_left_out(app, "hunt"); }
 void add_league(CLI::App& app, int&) { add_left_out(app, "league"); }
 void add_view(CLI::App& app, int&) { add_left_out(app, "view"); }
 void add_dump(CLI::App& app, int&) { add_left_out(app, "dump"); }
-void add_laws(CLI::App& app, int&) { add_left_out(app, "laws"); }
-void add_trade(CLI::App& app, int&) { add_left_out(app, "trade"); }
+void add_invariants(CLI::App& app, int&) { add_left_out(app, "invariants"); }
+void add_pareto(CLI::App& app, int&) { add_left_out(app, "pareto"); }
 void add_tune(CLI::App& app, int&) { add_left_out(app, "tune"); }
 void add_prove_twin(CLI::App& app, int&) { add_left_out(app, "prove-twin"); }
 void add_query(CLI::App& app, int&) { add_left_out(app, "query"); }

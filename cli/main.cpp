@@ -25,14 +25,14 @@ struct Task {
 };
 const Task kTasks[] = {
     {"Find failures",
-     {graze::cli::add_fuzz, graze::cli::add_hunt, graze::cli::add_check, graze::cli::add_laws, graze::cli::add_strata,
-      graze::cli::add_scene}},
+     {graze::cli::add_fuzz, graze::cli::add_hunt, graze::cli::add_check, graze::cli::add_invariants,
+      graze::cli::add_strata, graze::cli::add_scene}},
     {"Understand failures",
-     {graze::cli::add_repro, graze::cli::add_minimize, graze::cli::add_explain, graze::cli::add_kinds,
+     {graze::cli::add_repro, graze::cli::add_minimize, graze::cli::add_explain, graze::cli::add_failures,
       graze::cli::add_map, graze::cli::add_view}},
     {"Choose algorithms and tolerances",
-     {graze::cli::add_lanes, graze::cli::add_tune, graze::cli::add_trade, graze::cli::add_league, graze::cli::add_query,
-      graze::cli::add_bench}},
+     {graze::cli::add_lanes, graze::cli::add_tune, graze::cli::add_pareto, graze::cli::add_league,
+      graze::cli::add_query, graze::cli::add_bench}},
     {"Scale to many machines", {graze::cli::add_plan, graze::cli::add_status, graze::cli::add_merge}},
     {"Keep and publish results",
      {graze::cli::add_report, graze::cli::add_corpus, graze::cli::add_dump, graze::cli::add_prove_twin}}};

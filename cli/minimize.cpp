@@ -216,7 +216,7 @@ int minimize_directory(MinimizeOptions options) {
     if (i % options.shard.of == options.shard.number - 1) rows.push_back(summary["signatures"][i]);
   }
   expect_writable(directory);
-  if (whole) fuzz::expect_own(directory / "kinds.json", Json{{"summary", ""}}.dump(1));
+  if (whole) fuzz::expect_own(directory / "failures.json", Json{{"summary", ""}}.dump(1));
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -261,8 +261,8 @@ int minimize_directory(MinimizeOptions options) {
   const double map_seconds = seconds_since(mapping);
   fuzz::write_kinds(directory, under_test, kinds);
   print_directory(options.name, all);
-  fmt::print("{} kinds of failure, listed by: graze kinds {}\nNext: graze report {}\n", reports::grouped(kinds.size()),
-             shell_word(options.name), shell_word(options.name));
+  fmt::print("{} kinds of failure, listed by: graze failures {}\nNext: graze report {}\n",
+             reports::grouped(kinds.size()), shell_word(options.name), shell_word(options.name));
 
   std::vector<double> times;
   double processor = 0, worst = 0;

@@ -113,9 +113,9 @@ TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   const Ran some = shell("graze minimize host --lanes 'moller_*'");
   EXPECT_EQ(some.status, 0) << some.err;
   EXPECT_NE(some.out.find("no selected lane is wrong on the others"), std::string::npos) << some.out;
-  const auto kinds = nlohmann::json::parse(contents(shell.folder / "host/kinds.json"));
+  const auto kinds = nlohmann::json::parse(contents(shell.folder / "host/failures.json"));
   EXPECT_EQ(kinds["lanes"], (nlohmann::json{"moller_1997/f32/cpu", "moller_1997/f64/cpu"}));
-  expect_done("graze kinds host | grep 'signatures belong to no kind'");
+  expect_done("graze failures host | grep 'signatures belong to no kind'");
   expect_done("graze report host | grep 'signatures belong to no kind of failure'");
   expect_error("graze minimize host --lanes 'moller_*/cuda-nofma'", 2, {"the campaign did not run it"});
 }
@@ -135,14 +135,14 @@ TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
                                     {"rm " + first, "missing"},
                                     {"echo 1 2 3 > " + first, first + ":1"}}) {
     expect_done(edit);
-    for (const char* reader : {"kinds", "minimize"})
+    for (const char* reader : {"failures", "minimize"})
       expect_error(std::string("graze ") + reader + " c", 1, {first, key, found});
     const Ran report = shell("graze report c");
     EXPECT_EQ(report.status, 1) << edit;
     ASSERT_TRUE(names(report.err.substr(0, report.err.size() - 1), {first, key, found}));
     const std::string again = report.err.substr(report.err.find("then: ") + 6);
     expect_done("rm -f " + first + " && " + again.substr(0, again.size() - 1) + " > /dev/null && graze minimize c && " +
-                "diff -r whole/cases c/cases && cmp whole/kinds.json c/kinds.json");
+                "diff -r whole/cases c/cases && cmp whole/failures.json c/failures.json");
   }
 }
 
@@ -165,7 +165,7 @@ TEST_F(Minimize, CasesOnWhichOtherLanesAreWrongAreRefused) {
       if (std::count(text.begin(), text.end(), '\n') != std::count(file.begin(), file.end(), '\n')) continue;
       ++forged;
       std::ofstream(shell.folder / "c" / one["case"]) << text;
-      for (const char* reader : {"kinds", "minimize"})
+      for (const char* reader : {"failures", "minimize"})
         expect_error(std::string("graze ") + reader + " c", 1, {one["case"], key, "verdict"});
     }
   }
@@ -173,25 +173,27 @@ TEST_F(Minimize, CasesOnWhichOtherLanesAreWrongAreRefused) {
 }
 
 TEST_F(Minimize, KindsAreTheOldOnesOrTheNewOnes) {
-  expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c && cp c/kinds.json whole");
+  expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c && cp c/failures.json whole");
   for (const char* seconds : {"0.05", "0.1", "0.2", "0.4"}) {
     shell(std::string("timeout -s KILL ") + seconds + " graze minimize c --again");
-    expect_done("cmp whole c/kinds.json");
+    expect_done("cmp whole c/failures.json");
   }
   // Those of cases that have changed since are not believed.
-  expect_done(std::string(kFuzz) + "--out d > /dev/null && graze kinds d > /dev/null && cp d/kinds.json of_originals");
+  expect_done(std::string(kFuzz) +
+              "--out d > /dev/null && graze failures d > /dev/null && cp d/failures.json of_originals");
   expect_done("graze minimize d --shard 1/1000 && graze report d > said");
   EXPECT_NE(contents(shell.folder / "said").find("The kinds of failure are not known yet"), std::string::npos)
       << contents(shell.folder / "said");
-  expect_done("cmp d/kinds.json of_originals && graze kinds d > /dev/null && ! cmp -s d/kinds.json of_originals");
+  expect_done(
+      "cmp d/failures.json of_originals && graze failures d > /dev/null && ! cmp -s d/failures.json of_originals");
 }
 
 TEST_F(Minimize, WhereNothingCanBeWrittenItSaysSoAtOnce) {
   const std::string read_only = "unshare -rm sh -c 'mount --bind c c && mount -o remount,bind,ro c && ";
-  expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp c/kinds.json before");
+  expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp c/failures.json before");
   if (shell(read_only + "true'").status != 0) GTEST_SKIP() << "no mount namespaces here";
   expect_error(read_only + "graze minimize c'", 1, {"c", "Read-only file system"});
-  expect_done("cmp before c/kinds.json");
+  expect_done("cmp before c/failures.json");
 }
 
 TEST_F(Minimize, BadInputGetsOneLine) {

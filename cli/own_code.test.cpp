@@ -212,8 +212,8 @@ TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
               std::string::npos)
         << file;
   shell("echo '" + std::string(kPair) + "' > p");
-  for (const char* verb : {"check p --executor twin", "explain p", "laws --pairs 19 --out l", "plan --executor twin",
-                           "corpus verify --executor twin"})
+  for (const char* verb : {"check p --executor twin", "explain p", "invariants --pairs 19 --out l",
+                           "plan --executor twin", "corpus verify --executor twin"})
     EXPECT_TRUE(shell(std::string("graze ") + verb + lanes).err.starts_with(ran.err)) << verb;
   // Of those that run nothing is said, and nothing is recorded.
   const Ran all =
@@ -288,7 +288,7 @@ TEST_F(OwnCodeTest, EveryVerbTakesWhatMisbehaves) {
                 "/*' --strata uniform --pairs 50 --out " + name);
     expect_done("graze minimize " + name + " > minimized");
     expect_done("graze report " + name);
-    const Ran kinds = shell("graze kinds " + name);
+    const Ran kinds = shell("graze failures " + name);
     EXPECT_NE(kinds.out.find(name + ": " + way.cause + ", "), std::string::npos) << kinds.out << kinds.err;
     EXPECT_NE(contents(shell.folder / name / "report.json").find(way.cause), std::string::npos);
     const std::string found =

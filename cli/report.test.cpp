@@ -27,7 +27,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   const auto write = [&](const char* file, const nlohmann::ordered_json& json) {
     std::ofstream(shell.folder / file) << json.dump(1) << '\n';
   };
-  const std::string readers[] = {"report c",   "report --compare c c",    "kinds c",
+  const std::string readers[] = {"report c",   "report --compare c c",    "failures c",
                                  "minimize c", "corpus add c --corpus r", "dump c"};
   for (const char* place : {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", "/strata/thesis/pairs",
                             "/disagreements", "/signatures/0/count", "/spec/seed", "/build/version"}) {
@@ -42,18 +42,19 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     }
   }
   write("c/summary.json", summary);
-  nlohmann::ordered_json kinds = nlohmann::ordered_json::parse(contents(shell.folder / "c/kinds.json")), more = kinds;
+  nlohmann::ordered_json kinds = nlohmann::ordered_json::parse(contents(shell.folder / "c/failures.json")),
+                         more = kinds;
   more["kinds"][0]["pairs"] = more["kinds"][0]["pairs"].get<std::uint64_t>() + 1;
-  write("c/kinds.json", more);
-  expect_error("graze kinds c", 1, {"c/kinds.json", "graze minimize"});
+  write("c/failures.json", more);
+  expect_error("graze failures c", 1, {"c/failures.json", "graze minimize"});
   // Kinds that are left out, and a lane, a stratum and a margin that are none: no failure is hidden, or made up.
   const auto refused = [&](const std::string& found) {
-    for (const char* reader : {"kinds c", "report c", "corpus add c --corpus r"})
-      expect_error(std::string("graze ") + reader, 1, {"c/kinds.json", found, "graze minimize c"});
+    for (const char* reader : {"failures c", "report c", "corpus add c --corpus r"})
+      expect_error(std::string("graze ") + reader, 1, {"c/failures.json", found, "graze minimize c"});
   };
   more = kinds;
   more["kinds"] = nlohmann::ordered_json::array();
-  write("c/kinds.json", more);
+  write("c/failures.json", more);
   refused("no kind of moller_1997/f32/cpu");
   for (const auto& [field, value, found] :
        {std::tuple<const char*, nlohmann::ordered_json, const char*>("lanes", {"x"}, "the lane \"x\", which is none"),
@@ -61,13 +62,13 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
         {"margins", {{"banana", kinds["kinds"][0]["pairs"]}}, "other margins"}}) {
     more = kinds;
     more["kinds"][0][field] = value;
-    write("c/kinds.json", more);
+    write("c/failures.json", more);
     refused(found);
   }
-  expect_done("head -c 300 c/kinds.json > k; cp k c/kinds.json");
+  expect_done("head -c 300 c/failures.json > k; cp k c/failures.json");
   refused("damaged");
-  write("c/kinds.json", kinds);
-  expect_done("graze kinds c > /dev/null");
+  write("c/failures.json", kinds);
+  expect_done("graze failures c > /dev/null");
 
   const std::string timed = contents(shell.folder / "c/timings.json");
   nlohmann::ordered_json timings = nlohmann::ordered_json::parse(timed), costs;
@@ -113,7 +114,7 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     other[nlohmann::ordered_json::json_pointer(place)] = value;
     write("c/summary.json", other);
     expect_error("graze report c", 1, {"c/summary.json"});
-    expect_error("graze kinds c", 1, words);
+    expect_error("graze failures c", 1, words);
   }
 }
 
@@ -124,7 +125,7 @@ TEST_F(Report, SameBytesWhateverTheThreads) {
               "--threads 2 --out two > /dev/null && graze minimize two && cp one/timings.json two && graze report two");
   expect_done(
       "for f in report.html report.json costs.json rates.csv margins.csv thresholds.csv extremes.csv signatures.csv "
-      "kinds.json; do "
+      "failures.json; do "
       "test -s one/$f && cmp one/$f two/$f || exit 1; done");
   const nlohmann::json report = json("one/report.json");
   ASSERT_GT(report["cards"].size(), 10u);
@@ -170,7 +171,7 @@ TEST_F(Report, ComparesTwoCampaigns) {
   EXPECT_EQ(report["compare"]["kinds_compared"], true);
   expect_done("test -s seed2/compare.html && test -s seed2/compare.csv");
   // A campaign without its kinds: what is not compared is said.
-  expect_done("rm seed1/kinds.json");
+  expect_done("rm seed1/failures.json");
   EXPECT_NE(shell("graze report --compare seed1 seed2").out.find("and kinds of failure are not compared.\n"),
             std::string::npos);
 }

@@ -88,8 +88,8 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   for (const std::string& scene : {of, std::string("hills.toml"), std::string("one")})
     EXPECT_EQ(vertices_of(id + "@" + scene + numbers), vertices) << scene;
   // What follows a campaign works on one in a scene.
-  expect_done("graze minimize one > minimised && graze kinds one > kinds && graze report one > report");
-  EXPECT_NE(contents(shell.folder / "one/kinds.json").find("@hills.toml#"), std::string::npos);
+  expect_done("graze minimize one > minimised && graze failures one > kinds && graze report one > report");
+  EXPECT_NE(contents(shell.folder / "one/failures.json").find("@hills.toml#"), std::string::npos);
   EXPECT_NE(contents(shell.folder / "one/report.json").find("--scene 'hills.toml' --pairs 20000"), std::string::npos);
   const Ran dumped = shell("graze dump one --pairs 40 --format pairs");
   EXPECT_NE(dumped.out.find("scene=" + of), std::string::npos) << dumped.err;

@@ -91,12 +91,14 @@ TEST_F(Shards, MergingGoesThroughLinksAndSaysFirstWhereItCannotGo) {
 TEST_F(Shards, MinimizingTakesShardsOfTheSignatures) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 900 --strata 'near_*' --lanes 'moller*/f32/cpu' ";
   ASSERT_EQ(shell(fuzz + "--out whole && cp -r whole parts && graze minimize whole").status, 0);
-  const Ran ran = shell("graze minimize parts --shard 2/3 && graze minimize parts --shard 1/3 && cat parts/kinds.json");
+  const Ran ran =
+      shell("graze minimize parts --shard 2/3 && graze minimize parts --shard 1/3 && cat parts/failures.json");
   EXPECT_NE(ran.out.find("shard 2/3: "), std::string::npos) << ran.out << ran.err;
   EXPECT_EQ(ran.status, 1);  // kinds are of all signatures
   EXPECT_EQ(
-      shell("graze minimize parts --shard 3/3 && graze minimize parts && diff whole/kinds.json parts/kinds.json && "
-            "diff -r whole/cases parts/cases")
+      shell(
+          "graze minimize parts --shard 3/3 && graze minimize parts && diff whole/failures.json parts/failures.json && "
+          "diff -r whole/cases parts/cases")
           .status,
       0);
   expect_error("graze minimize uniform:1:1 --shard 1/2", 2, {"--shard"});
@@ -162,7 +164,7 @@ TEST_F(Shards, OfAHuntMergeByKind) {
   EXPECT_GT(shards[0]["new"], 3);
   EXPECT_LT(shards[1]["new"], shards[0]["new"]);  // most of them the first has as well
   const Ran merged =
-      shell("graze merge shard-2 p-1 --out all && graze kinds all && graze report all && graze minimize all");
+      shell("graze merge shard-2 p-1 --out all && graze failures all && graze report all && graze minimize all");
   EXPECT_EQ(merged.status, 0) << merged.err;
   EXPECT_NE(merged.out.find("\n3,000 pairs: some lane is wrong on "), std::string::npos) << merged.out;
   expect_error(hunt + "--out all", 2, {"merged", "shards"});

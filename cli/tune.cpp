@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "analysis/trade.h"
+#include "analysis/pareto.h"
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "cli/screen.h"
@@ -124,7 +124,7 @@ int tune(const TuneOptions& options) {
     fmt::print("Next: graze check {} --lanes {}\n", shell_word((out / written.back()).string()),
                shell_word(lane->id + "," + chosen.id));
   } else {
-    fmt::print("Next: graze trade\n");
+    fmt::print("Next: graze pareto\n");
   }
   return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Policies as users meet them: lanes under a policy on every verb, `graze tune` and `graze trade`.
+// Policies as users meet them: lanes under a policy on every verb, `graze tune` and `graze pareto`.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace {
 
 class Policies : public CommandTest {};
 class TuneCommand : public CommandTest {};
-class TradeCommand : public CommandTest {};
+class ParetoCommand : public CommandTest {};
 
 nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
 
@@ -32,7 +32,7 @@ TEST_F(Policies, AreLanesOnEveryVerb) {
   EXPECT_EQ(summary["spec"]["lanes"].size(), 5u);
   EXPECT_GT(summary["strata"]["extreme_scale"]["lanes"]["moller_1997/f32/cpu/paper"]["false_positive"], 50);
   EXPECT_EQ(summary["strata"]["extreme_scale"]["lanes"]["moller_1997/f32/cpu/bound"]["false_positive"], 0);
-  expect_done("graze minimize c && graze kinds c > kinds && graze report c && graze dump c > /dev/null");
+  expect_done("graze minimize c && graze failures c > kinds && graze report c && graze dump c > /dev/null");
   EXPECT_NE(contents(shell.folder / "kinds").find("moller_1997: policy"), std::string::npos)
       << contents(shell.folder / "kinds");
   // A case of a lane under a policy, as a program that shows it.
@@ -140,13 +140,13 @@ TEST_F(TuneCommand, HelpHasAnExampleThatRuns) {
   expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9));
 }
 
-TEST_F(TradeCommand, SetsErrorsAgainstCosts) {
+TEST_F(ParetoCommand, SetsErrorsAgainstCosts) {
   const Ran ran = shell(
-      "graze trade --strata 'near_*,extreme_scale' --pairs 3000 --lanes "
+      "graze pareto --strata 'near_*,extreme_scale' --pairs 3000 --lanes "
       "'*/f32/cpu,exact/f32/cpu,moller_1997/f32/cpu/paper' --out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.out.find("\nScaled by 2^k"), std::string::npos) << ran.out;
-  const auto json = json_of(shell.folder / "t/trade.json");
+  const auto json = json_of(shell.folder / "t/pareto.json");
   ASSERT_EQ(json["lanes"].size(), 7u);
   double before = 0;
   for (const auto& row : json["lanes"]) {
@@ -165,35 +165,35 @@ TEST_F(TradeCommand, SetsErrorsAgainstCosts) {
                 ".svg 2> /dev/null || python3 -c 'import xml.dom.minidom as m; m.parse(\"t/" + picture + ".svg\")'");
   // Errors do not depend on the machine; costs do.
   expect_done(
-      "graze trade --strata 'near_*,extreme_scale' --pairs 3000 --lanes "
+      "graze pareto --strata 'near_*,extreme_scale' --pairs 3000 --lanes "
       "'*/f32/cpu,exact/f32/cpu,moller_1997/f32/cpu/paper' --out u > /dev/null && "
       "cmp t/scale.svg u/scale.svg && cmp t/offset.svg u/offset.svg");
 }
 
-TEST_F(TradeCommand, NamesTheLanesThatItLeavesOut) {
+TEST_F(ParetoCommand, NamesTheLanesThatItLeavesOut) {
   std::ofstream(shell.folder / "mine.c")
       << "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n";
-  const std::string trade = "graze trade --strata near_edge_edge --pairs 1000 ";
-  const Ran ran = shell(trade + "--lanes 'moller_1997/f32/c*fma,moller_1997/f32/cpu' --out t");
+  const std::string pareto = "graze pareto --strata near_edge_edge --pairs 1000 ";
+  const Ran ran = shell(pareto + "--lanes 'moller_1997/f32/c*fma,moller_1997/f32/cpu' --out t");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.err.find("graze: left out (only --device times CUDA lanes): moller_1997/f32/cuda-"), std::string::npos)
       << ran.err;
-  const auto json = json_of(shell.folder / "t/trade.json");
+  const auto json = json_of(shell.folder / "t/pareto.json");
   EXPECT_EQ(json["lanes_left_out"]["why"]["moller_1997/f32/cuda-fma"], "only --device times CUDA lanes");
-  expect_error(trade + "--lanes 'moller_1997/f32/cpu,moller_1997/f32/cuda-fma' --out u", 2,
+  expect_error(pareto + "--lanes 'moller_1997/f32/cpu,moller_1997/f32/cuda-fma' --out u", 2,
                {"'moller_1997/f32/cuda-fma'"});
-  const Ran foreign = shell(trade + "--subject mine=mine.c --lanes '*/f32/cpu' --out v");
+  const Ran foreign = shell(pareto + "--subject mine=mine.c --lanes '*/f32/cpu' --out v");
   ASSERT_EQ(foreign.status, 0) << foreign.err;
-  EXPECT_EQ(foreign.err, "graze: left out (trade times no foreign code): mine/f32/cpu\n");
+  EXPECT_EQ(foreign.err, "graze: left out (pareto times no foreign code): mine/f32/cpu\n");
   if (shell("graze lanes | grep -q 'available (device)'").status == 0) return;
   EXPECT_EQ(shell("graze bench --triangles 100 --lanes interval_overlap/f32/cuda-fma").err,
             "graze: left out (no CUDA device): interval_overlap/f32/cuda-fma\n");
 }
 
-TEST_F(TradeCommand, DrawsWithinAScene) {
+TEST_F(ParetoCommand, DrawsWithinAScene) {
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
   const Ran ran =
-      shell("graze trade --scene hall.toml --pairs 2000 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out t");
+      shell("graze pareto --scene hall.toml --pairs 2000 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out t");
   EXPECT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.out.find("extreme_scale: your coordinates stay within 0 … 108"), std::string::npos) << ran.out;
   const Ran tuned = shell("graze tune moller_1997/f64/cpu --scene hall.toml --pairs 2000 --out u");
@@ -202,8 +202,8 @@ TEST_F(TradeCommand, DrawsWithinAScene) {
   expect_error("graze tune moller_1997/f64/cpu --scene nowhere.toml", 1, {"nowhere.toml"});
 }
 
-TEST_F(TradeCommand, HelpHasAnExampleThatRuns) {
-  const Ran help = shell("graze trade --help");
+TEST_F(ParetoCommand, HelpHasAnExampleThatRuns) {
+  const Ran help = shell("graze pareto --help");
   const std::size_t at = help.out.find("Example: ");
   ASSERT_NE(at, std::string::npos);
   expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9));

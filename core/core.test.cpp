@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hand examples and laws over the whole lane table; other scalars and policies through the same source.
+// Hand examples and invariants over the whole lane table; other scalars and policies through the same source.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts as JSON: one set of keys, for campaigns, the league, tune, trade and reports.
+// Counts as JSON: one set of keys, for campaigns, the league, tune, pareto and reports.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -178,9 +178,9 @@ TEST_F(Files, GrazeKnowsItsOwn) {
   EXPECT_FALSE(replaces("graze-pairs 1, and a poem", "{}"));
   EXPECT_TRUE(replaces("lane,group\n1,2\n", "lane,group\n"));
   EXPECT_FALSE(replaces("a,b\n1,2\n", "lane,group\n"));
-  EXPECT_TRUE(replaces(R"({"pairs": 1, "seed": 2})", R"({"pairs": 3, "seed": 4, "laws": []})"));
+  EXPECT_TRUE(replaces(R"({"pairs": 1, "seed": 2})", R"({"pairs": 3, "seed": 4, "invariants": []})"));
   for (const char* other : {R"({"seed": 1, "pairs": 2})", R"({"pairs": 1})", "[1]", "{", "{}"})
-    EXPECT_FALSE(replaces(other, R"({"pairs": 3, "seed": 4, "laws": []})")) << other;
+    EXPECT_FALSE(replaces(other, R"({"pairs": 3, "seed": 4, "invariants": []})")) << other;
   EXPECT_TRUE(replaces("<!doctype html>\n<title>Graze: viewer</title>",
                        "<!DOCTYPE html>\n<title>Graze: discrepancy report</title>"));
   EXPECT_FALSE(replaces("<!DOCTYPE html>\n<title>My thesis</title>",
@@ -205,8 +205,8 @@ TEST_F(Files, ACampaignsFilesDoNotReplaceThoseOfAnother) {
   fs::create_symlink("victim", folder_ / "link.csv");
   EXPECT_THROW(write_whole(folder_ / "link.csv", "lane,group\n"), UsageError);
   EXPECT_EQ(read_whole(folder_ / "victim"), "precious");
-  std::ofstream(folder_ / "kinds.json") << "[1, 2]";
-  EXPECT_THROW(write_whole(folder_ / "kinds.json", "{\n \"summary\": 1\n}\n"), UsageError);
+  std::ofstream(folder_ / "failures.json") << "[1, 2]";
+  EXPECT_THROW(write_whole(folder_ / "failures.json", "{\n \"summary\": 1\n}\n"), UsageError);
   std::ofstream(folder_ / "summary.json") << "{\n \"spec\": damaged";
   write_whole(folder_ / "summary.json", summary);
   EXPECT_EQ(read_whole(folder_ / "summary.json"), summary);

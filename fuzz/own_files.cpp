@@ -57,8 +57,8 @@ bool may_replace(const fs::path& file, const std::string& text) {
 }
 
 void expect_own(const fs::path& file, const std::string& text) {
-  constexpr std::string_view kResults[] = {"summary.json", "status.json", "timings.json",
-                                           "kinds.json",   "hunt.json",   "margins.svg"};
+  constexpr std::string_view kResults[] = {"summary.json",  "status.json", "timings.json",
+                                           "failures.json", "hunt.json",   "margins.svg"};
   std::error_code none;
   const bool in_question =
       fs::is_symlink(fs::symlink_status(file, none)) ||

@@ -14,7 +14,7 @@ inline constexpr double kLeastSignatures = 14;
 
 // Fills `compare` of the second campaign's report: {"other": run, "headline", "differences": [sentence], "rates",
 // "gained", "lost": [{"key", "signatures", "count"}], "kinds_compared"}. Rates are compared by the names of lane and
-// stratum; kinds as `graze kinds` has them, null where they are not known.
+// stratum; kinds as `graze failures` has them, null where they are not known.
 void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json& before,
                     const nlohmann::ordered_json& kinds, const nlohmann::ordered_json& kinds_before);
 

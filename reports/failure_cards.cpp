@@ -176,7 +176,7 @@ Json card_of(const std::filesystem::path& directory, const CampaignCounts& count
   const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
   if (entries.empty() || fuzz::pair_text(entries.front().pair) != simplest.at("pair").get<std::string>())
     throw corpus::FormatError(
-        cannot("use", file, "its first pair is not that of kinds.json; run `graze minimize` again"));
+        cannot("use", file, "its first pair is not that of failures.json; run `graze minimize` again"));
   const corpus::Entry& entry = entries.front();
   const Verdict truth = verdict_of(corpus::text_of(entry, "truth"));
   const bool minimised = corpus::field(entry, "kind") != nullptr;
@@ -262,8 +262,8 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
     cards.push_back(card_of(directory, counts, kind, room, lacking));
   }
   if (kinds.size() > cards.size())
-    report["missing"].push_back(
-        fmt::format("Cards show the commonest {} of {} kinds; `graze kinds` lists all.", cards.size(), kinds.size()));
+    report["missing"].push_back(fmt::format("Cards show the commonest {} of {} kinds; `graze failures` lists all.",
+                                            cards.size(), kinds.size()));
   const std::size_t count = summary.at("signatures").size();
   for (std::size_t place = 0; place < std::min(count, kMostSignatures); ++place) {
     rows.push_back(signature_row(counts, summary.at("signatures")[place]));

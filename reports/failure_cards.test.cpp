@@ -189,7 +189,7 @@ TEST_F(FailureCards, WithoutTheMinimiserAReportSaysWhatItLacks) {
   const std::string missing = report_["missing"].dump();
   EXPECT_TRUE(contains(missing, fmt::format("{0} of {0} cards show a pair as it was found", cards))) << missing;
   EXPECT_TRUE(contains(missing, fmt::format("{0} of {0} cards have no ulp map", cards))) << missing;
-  EXPECT_EQ(contains(missing, "`graze kinds` lists all"), kinds_.size() > cards);
+  EXPECT_EQ(contains(missing, "`graze failures` lists all"), kinds_.size() > cards);
 }
 
 }  // namespace

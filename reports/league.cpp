@@ -61,7 +61,7 @@ Json row_json(const fuzz::LeagueRow& row) {
           {"total", counts_json(total)},
           {"clear", clear},
           {"order_dependent", share_json(row.order_dependent, row.order_sample)},
-          {"lawless", share_json(row.lawless, row.order_sample)},
+          {"breaks_invariant", share_json(row.breaks_invariant, row.order_sample)},
           {"flips", row.flips ? Json(*row.flips) : Json()}};
 }
 
@@ -172,7 +172,7 @@ constexpr Extra kExtras[] = {
        return row.at("total").at("outside") == 0 ? "-" : count_text(row.at("total").at("by_convention"));
      }},
     {"order", [](const Json&, const Json& row) { return count_of_sample(row.at("order_dependent")); }},
-    {"laws", [](const Json&, const Json& row) { return count_of_sample(row.at("lawless")); }},
+    {"invariants", [](const Json&, const Json& row) { return count_of_sample(row.at("breaks_invariant")); }},
     {"flips",
      [](const Json&, const Json& row) { return row.at("flips").is_null() ? "-" : count_text(row.at("flips")); }},
     {"ns a pair", nanoseconds_text},
@@ -380,7 +380,7 @@ CGAL's exact decision and that of `core/exact` are the truth of every pair, and 
 - **not repeated**: verdicts other than the truth that a fresh process did not repeat. They count as no error.
 - **by convention**: wrong verdicts on pairs that the library's documentation leaves out of its contract. They are no errors.
 - **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders, the same truth).
-- **laws**: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that rounds nothing, or on which a part of a triangle intersects and the whole does not.
+- **invariants**: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that rounds nothing, or on which a part of a triangle intersects and the whole does not.
 - **flips**: pairs on which the build with contraction gives another verdict, where there is source.
 - **ns a pair**: median of {repetitions} repetitions in turn on {timed} pairs of `uniform`, processor time in the subject's own process; {machine}, {date}.
 - "-": not measured.

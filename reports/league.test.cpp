@@ -81,8 +81,8 @@ TEST(LeaguePage, OfAnOlderGeneratorIsFound) {
     const std::size_t at = older.find(part);
     return at == older.npos ? "" : first_line_missing(older.erase(at, part.size()));
   };
-  EXPECT_TRUE(without(" | laws").starts_with("| lane |"));
-  EXPECT_TRUE(without("- **laws**: ").starts_with("- **laws**: "));
+  EXPECT_TRUE(without(" | invariants").starts_with("| lane |"));
+  EXPECT_TRUE(without("- **invariants**: ").starts_with("- **invariants**: "));
   EXPECT_EQ(without("## Shares\n"), "## Shares");
 }
 

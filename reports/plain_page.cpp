@@ -204,10 +204,10 @@ std::string compare_section(const Json& compare) {
   return text;
 }
 
-// What graze tune and graze trade say; their pictures are the SVG files beside the report.
+// What graze tune and graze pareto say; their pictures are the SVG files beside the report.
 std::string choices_section(const Json& choices) {
   std::string text;
-  for (const auto& [name, title] : {std::pair{"tuned", "Which tolerance"}, {"trade", "Errors against cost"}}) {
+  for (const auto& [name, title] : {std::pair{"tuned", "Which tolerance"}, {"pareto", "Errors against cost"}}) {
     if (choices.at(name).is_null()) continue;
     text += fmt::format("<h2>{}</h2>\n", title);
     for (const Json& sentence : choices.at(name).at("sentences")) text += paragraph(sentence);

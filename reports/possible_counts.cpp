@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "analysis/trade.h"
+#include "analysis/pareto.h"
 #include "analysis/tuning.h"
 #include "core/lanes/lanes.h"
 #include "core/margin/bucket.h"
@@ -178,7 +178,7 @@ void expect_lanes(const Json& part, std::size_t lanes) {
   }
 }
 
-// Of `graze tune` and `graze trade`: no lane errs on more pairs than there were, and quartiles are in order.
+// Of `graze tune` and `graze pareto`: no lane errs on more pairs than there were, and quartiles are in order.
 void expect_possible_errors(const Json& part) {
   if (part.is_object() && part.contains("declined") && part.contains("pairs")) {
     const std::uint64_t pairs = part["pairs"];
@@ -199,7 +199,7 @@ void expect_lane(const Json& id) {
   expect(parse_lane_name(id.get<std::string>()).has_value(), "the name of a lane", id);
 }
 
-// The bound is the one that `graze tune` and `graze trade` compute.
+// The bound is the one that `graze tune` and `graze pareto` compute.
 void expect_upper_bound(const Json& bound, std::uint64_t count, std::uint64_t of) {
   const double expected = analysis::upper_bound(count, of);
   expect(std::abs(bound.get<double>() - expected) <= 1e-9 * expected,
@@ -358,11 +358,11 @@ void expect_possible_tuned(const Json& tuned) {
          fmt::format("{} scale breaks, as its sentences say", breaks), tuned["scale_break"]);
 }
 
-void expect_possible_trade(const Json& trade) {
-  expect_shape(trade, "trade");
-  expect_possible_errors(trade);
-  const Json& lanes = trade.at("lanes");
-  const std::uint64_t pairs = trade.at("pairs");
+void expect_possible_pareto(const Json& pareto) {
+  expect_shape(pareto, "pareto");
+  expect_possible_errors(pareto);
+  const Json& lanes = pareto.at("lanes");
+  const std::uint64_t pairs = pareto.at("pairs");
   std::set<std::string> ids;
   for (const Json& row : lanes) {
     const std::string lane = row.at("lane");
@@ -375,7 +375,7 @@ void expect_possible_trade(const Json& trade) {
   }
   for (const Json& row : lanes) expect_domination(row, lanes);
   std::set<std::pair<std::string, std::string>> curves;
-  for (const Json& row : trade.at("extremes")) {
+  for (const Json& row : pareto.at("extremes")) {
     expect(ids.contains(row.at("lane")), "an extreme of a lane that was judged", row["lane"]);
     expect(std::any_of(std::begin(analysis::kExtremes), std::end(analysis::kExtremes),
                        [&](analysis::Extreme extreme) { return name(extreme) == row.at("extreme"); }),

@@ -12,6 +12,6 @@ void expect_possible_report(const nlohmann::ordered_json& report);
 void expect_possible_costs(const nlohmann::ordered_json& costs,
                            const nlohmann::ordered_json& report);  // of that report
 void expect_possible_tuned(const nlohmann::ordered_json& tuned);
-void expect_possible_trade(const nlohmann::ordered_json& trade);
+void expect_possible_pareto(const nlohmann::ordered_json& pareto);
 
 }  // namespace graze::reports

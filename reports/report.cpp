@@ -172,7 +172,7 @@ Json make_choices(const std::filesystem::path& directory) {
     checked(file, "what graze writes into it", [&] { expect_possible(found); });
     return found;
   };
-  return {{"tuned", read("tune.json", expect_possible_tuned)}, {"trade", read("trade.json", expect_possible_trade)}};
+  return {{"tuned", read("tune.json", expect_possible_tuned)}, {"pareto", read("pareto.json", expect_possible_pareto)}};
 }
 
 std::string report_text(const Json& report) {

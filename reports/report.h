@@ -16,7 +16,7 @@ nlohmann::ordered_json make_report(const std::filesystem::path& directory);
 // machine. null where the campaign has no timings of its lanes.   Throws: as make_report.
 nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
-// {"tuned", "trade"}: the tune.json and trade.json in the directory, null where they are not.
+// {"tuned", "pareto"}: the tune.json and pareto.json in the directory, null where they are not.
 // Throws: FormatError for one of another shape, or with counts that cannot be.
 nlohmann::ordered_json make_choices(const std::filesystem::path& directory);
 

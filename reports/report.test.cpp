@@ -17,9 +17,9 @@
 #include "reports/csv.h"
 #include "reports/failure_cards.h"
 #include "reports/page.h"
+#include "reports/pareto.h"
 #include "reports/tables.h"
 #include "reports/test_campaign.h"
-#include "reports/trade.h"
 #include "reports/tuning.h"
 
 namespace graze::reports {
@@ -130,16 +130,16 @@ TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
   }
   std::ofstream(timings) << timed;
 
-  const Json stored = Json::parse(fuzz::read_whole(folder / "kinds.json"));
+  const Json stored = Json::parse(fuzz::read_whole(folder / "failures.json"));
   for (const char* part : {"/simplest", "/simplest/case", "/simplest/pair", "/simplest/verdicts", "/simplest/lanes",
                            "/places", "/key", "/subject", "/worst", "/lanes", "/margins"}) {
     Json other = stored;
     const Json::json_pointer place("/kinds/0" + std::string(part));
     other[place.parent_pointer()].erase(place.back());
-    EXPECT_EQ(blamed(folder / "kinds.json", other.dump()), "the file") << part;
+    EXPECT_EQ(blamed(folder / "failures.json", other.dump()), "the file") << part;
   }
   for (const char* other : {"", "[]", R"({"kinds": []})", R"({"summary": 1, "kinds": 2})"})
-    EXPECT_EQ(blamed(folder / "kinds.json", other), "the file") << other;
+    EXPECT_EQ(blamed(folder / "failures.json", other), "the file") << other;
 
   const fs::path cases = folder / stored["kinds"][0]["simplest"]["case"].get<std::string>();
   std::string text = fuzz::read_whole(cases);
@@ -268,7 +268,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   tuned.scale.at_down = errors(400, 200, "rel:8", 60);
   tuned.interactions = {{"a", "b", errors(400, 1, "a", 60), errors(400, 2, "b", 60), errors(400, 3, "c", 60)}};
   const Json tune = tuning_json({"moller_1997/f32/cpu", analysis::Forbid::false_negative, 1e-3}, tuned);
-  const fs::path tune_file = root_ / "forged" / "tune.json", trade_file = root_ / "forged" / "trade.json";
+  const fs::path tune_file = root_ / "forged" / "tune.json", pareto_file = root_ / "forged" / "pareto.json";
   const auto tune_error = [&](const Json& json) {
     return error_of([&] { make_choices(root_ / "forged"); }, tune_file, json);
   };
@@ -304,18 +304,18 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   }
   fs::remove(tune_file);
 
-  analysis::Trade trade{"a machine", false, 0, {}, {}};
-  trade.offers = {{"moller_1997/f32/cpu", errors(400, 20, "", 20), {1, 2, 3}, {2, 3, 4}},
-                  {"exact/f32/cpu", errors(400, 0, "", 0), {0.5, 1, 1.5}, {2, 3, 4}}};
-  trade.curves = {
+  analysis::Pareto pareto{"a machine", false, 0, {}, {}};
+  pareto.offers = {{"moller_1997/f32/cpu", errors(400, 20, "", 20), {1, 2, 3}, {2, 3, 4}},
+                   {"exact/f32/cpu", errors(400, 0, "", 0), {0.5, 1, 1.5}, {2, 3, 4}}};
+  pareto.curves = {
       {"moller_1997/f32/cpu", analysis::Extreme::scale, {{-4, errors(400, 20, "", 20)}, {4, errors(400, 20, "", 20)}}}};
-  analysis::mark_dominated(trade.offers);
+  analysis::mark_dominated(pareto.offers);
   Json traded = {{"pairs", 400}, {"seed", 1}};
-  traded.update(trade_json(trade));
-  const auto trade_error = [&](const Json& json) {
-    return error_of([&] { make_choices(root_ / "forged"); }, trade_file, json);
+  traded.update(pareto_json(pareto));
+  const auto pareto_error = [&](const Json& json) {
+    return error_of([&] { make_choices(root_ / "forged"); }, pareto_file, json);
   };
-  expect_all_refused(traded, {"seed", "log2"}, trade_error);
+  expect_all_refused(traded, {"seed", "log2"}, pareto_error);
   const Json row = traded["lanes"][0];
   for (const auto& [place, value] : {std::pair<const char*, Json>("/lanes/0/bound", 0.01),
                                      {"/pairs", 401},
@@ -334,12 +334,12 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
                                      {"/extremes/1", traded["extremes"][0]}}) {
     Json other = traded;
     other[Json::json_pointer(place)] = value;
-    EXPECT_NE(trade_error(other), "") << place << ' ' << value;
+    EXPECT_NE(pareto_error(other), "") << place << ' ' << value;
   }
   for (const char* part : {"in_cache", "from_memory"}) {
     Json other = traded;
     other["lanes"][1].erase(part);
-    EXPECT_NE(trade_error(other), "") << part;
+    EXPECT_NE(pareto_error(other), "") << part;
   }
   fs::remove_all(root_ / "forged");
 }

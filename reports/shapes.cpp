@@ -26,7 +26,7 @@ constexpr const char* kShapes = R"({
   "interactions": [{"first": "policy_errors", "second": "policy_errors", "together": "policy_errors"}],
   "zero": "policy_errors", "curves": [{"site": "text", "tolerance": "text", "points": ["policy_errors"]}],
   "sentences": ["text"]},
-"trade": {"pairs": "count", "seed": "count", "machine": "text",
+"pareto": {"pairs": "count", "seed": "count", "machine": "text",
   "lanes": [{"lane": "text", "errors": "errors", "bound": "number", "in_cache?": "quartiles",
     "from_memory?": "quartiles", "resident?": "quartiles", "with_copies?": "quartiles", "dominated": "yes or no",
     "registers?": "count", "local_bytes?": "count", "active_threads?": "count", "failure": "text?"}],

@@ -19,7 +19,7 @@ TOPICS = (
     "policies",
     "minimiser",
     "search",
-    "laws",
+    "invariants",
     "subjects",
     "tests",
     "viewer",

@@ -94,7 +94,7 @@ class Measurements(unittest.TestCase):
             self.assertEqual(measurements.render(copy), measurements.render())
             for path, old, new in (
                 ("exact.toml", "value = 38.3,", "value = 38.4,"),
-                ("laws.toml", "[2.86, 20.4,", "[2.86, 20.5,"),
+                ("invariants.toml", "[2.86, 20.4,", "[2.86, 20.5,"),
                 ("machines.toml", "16 cores", "17 cores"),
             ):
                 text = (copy / path).read_text(encoding="utf-8")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hand examples and laws of the exact decision. analysis/truth_over_strata.test.cpp compares it with the oracle in
-// every stratum.
+// Hand examples and invariants of the exact decision. analysis/truth_over_strata.test.cpp compares it with the oracle
+// in every stratum.
 #include "core/exact/exact.h"
 
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "analysis/trade.h"
+#include "analysis/pareto.h"
 #include "core/text.h"
 
 namespace graze::fuzz {

@@ -12,7 +12,7 @@
 #include <span>
 
 #include "analysis/convention.h"
-#include "analysis/laws.h"
+#include "analysis/invariants.h"
 #include "analysis/neighbours.h"
 #include "analysis/tally.h"
 #include "core/lanes/verdicts.h"
@@ -99,32 +99,35 @@ struct Counting {
     }
   }
 
-  // Whether the verdict breaks a law other than those of orders, on an image within the contract.
-  bool breaks_a_law(const Pair& pair, Verdict of_pair) const {
+  // Whether the verdict breaks an invariant other than those of orders, on an image within the contract.
+  bool breaks_an_invariant(const Pair& pair, Verdict of_pair) const {
     std::vector<Pair> all;
-    std::vector<analysis::Law> laws;
-    for (const analysis::LawInfo& law : analysis::kLaws) {
-      if (law.law == analysis::Law::swap || law.law == analysis::Law::order) continue;
-      const std::vector<Pair> images = analysis::images(law.law, pair);
+    std::vector<analysis::Invariant> invariants;
+    for (const analysis::InvariantInfo& invariant : analysis::kInvariants) {
+      if (invariant.invariant == analysis::Invariant::swap || invariant.invariant == analysis::Invariant::order)
+        continue;
+      const std::vector<Pair> images = analysis::images(invariant.invariant, pair);
       all.insert(all.end(), images.begin(), images.end());
-      laws.resize(all.size(), law.law);
+      invariants.resize(all.size(), invariant.invariant);
     }
     const std::vector<Verdict> said = verdicts_of(*decide, all);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const bool open = laws[i] == analysis::Law::part && analysis::is_outside(*row.lane, all[i], relation_of(all[i]));
-      if (!open && analysis::breaks(laws[i], of_pair, said[i])) return true;
+      const bool open =
+          invariants[i] == analysis::Invariant::part && analysis::is_outside(*row.lane, all[i], relation_of(all[i]));
+      if (!open && analysis::breaks(invariants[i], of_pair, said[i])) return true;
     }
     return false;
   }
 
-  // On how many of the pairs the verdict changes with the order, or breaks another law; those within the contract.
+  // On how many of the pairs the verdict changes with the order, or breaks another invariant; those within the
+  // contract.
   void count_orders(std::span<const Pair> pairs, const std::vector<Relation>& truths) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (analysis::is_outside(*row.lane, pairs[i], truths[i])) continue;
       ++row.order_sample;
       const std::vector<Verdict> said = verdicts_of(*decide, analysis::orders(pairs[i]));
       row.order_dependent += std::adjacent_find(said.begin(), said.end(), std::not_equal_to<>()) != said.end();
-      row.lawless += breaks_a_law(pairs[i], said.front());
+      row.breaks_invariant += breaks_an_invariant(pairs[i], said.front());
     }
   }
 };

@@ -55,7 +55,8 @@ struct LeagueRow {
   const Lane* lane;
   std::array<LeagueCounts, kLeagueGroupCount> groups;
   std::uint64_t order_dependent = 0, order_sample = 0;  // of pairs within its contract, asked in their 72 orders
-  std::uint64_t lawless = 0;  // of the same, asked as analysis::kLaws says but for orders: mirrored, moved and so on
+  std::uint64_t breaks_invariant =
+      0;  // of the same, asked as analysis::kInvariants says but for orders: mirrored, moved and so on
   std::optional<std::uint64_t> flips;  // of all pairs; nothing without a `cpu-fma` lane that runs here
 };
 

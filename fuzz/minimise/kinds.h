@@ -56,8 +56,8 @@ Json find_kinds(
     const SelectedLanes& under_test, const std::filesystem::path& directory, const Json& summary,
     const std::function<bool()>& stop = [] { return false; });
 
-// The kinds in kinds.json; null without the file, and where the summary or a case has changed since. They are compared
-// with the summary and the cases: all but causes, lines, sentences, and verdicts of lanes of other subjects.
+// The kinds in failures.json; null without the file, and where the summary or a case has changed since. They are
+// compared with the summary and the cases: all but causes, lines, sentences, and verdicts of lanes of other subjects.
 // Throws: FormatError, with the command that writes the file again.
 Json read_kinds(const std::filesystem::path& directory);
 // The same, or those of the campaign's lanes, found now and stored.   Throws: as find_kinds; UsageError for lanes that

@@ -128,12 +128,12 @@ TEST_F(Kinds, StoredOnesAreWhole) {
     write_kinds(directory_, under_test_, damaged);
     EXPECT_THROW(read_kinds(directory_), corpus::FormatError) << field;
   }
-  fs::remove(directory_ / "kinds.json");
+  fs::remove(directory_ / "failures.json");
 }
 
 // Whatever else can be told from the summary and the cases is compared with them.
 TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
-  const fs::path file = directory_ / "kinds.json";
+  const fs::path file = directory_ / "failures.json";
   write_kinds(directory_, under_test_, kinds_);
   const Json whole = Json::parse(read_whole(file));
   const auto error_of = [&](const std::string& text) -> std::string {
@@ -221,7 +221,7 @@ TEST_F(Kinds, SignaturesWithoutAKindAreCounted) {
   EXPECT_EQ(read_kinds(directory_), kinds);
   EXPECT_GT(signatures_without_kind(summary_, kinds), 0u);
   EXPECT_LT(signatures_without_kind(summary_, kinds), summary_["signatures"].size());
-  fs::remove(directory_ / "kinds.json");
+  fs::remove(directory_ / "failures.json");
 }
 
 TEST_F(Kinds, StopWhenAsked) {

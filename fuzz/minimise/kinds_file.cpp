@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// kinds.json: it is believed where it agrees with the summary and the cases beside it.
+// failures.json: it is believed where it agrees with the summary and the cases beside it.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What in kinds.json cannot be, in words.
+// What in failures.json cannot be, in words.
 struct Impossible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -75,7 +75,7 @@ Known known_of(const fs::path& directory, const Json& summary, const Json& lanes
   return known;
 }
 
-// Throws: Json::exception where a row of kinds.json lacks something, or it is of another type.
+// Throws: Json::exception where a row of failures.json lacks something, or it is of another type.
 void expect_shape(const Json& kind) {
   using Texts = std::map<std::string, std::string>;
   for (const char* field : {"key", "subject", "cause", "line", "shape"}) kind.at(field).get_ref<const std::string&>();
@@ -253,7 +253,7 @@ std::string hash_of_cases(const fs::path& directory, const Json& summary) {
 }  // namespace
 
 Json read_kinds(const fs::path& directory) {
-  const fs::path file = directory / "kinds.json";
+  const fs::path file = directory / "failures.json";
   if (!fs::exists(file)) return nullptr;
   const auto refused = [&](const std::string& why) {
     return corpus::FormatError(
@@ -296,7 +296,7 @@ void write_kinds(const fs::path& directory, const SelectedLanes& under_test, con
                        {"cases", hash_of_cases(directory, summary_in(directory))},
                        {"lanes", lanes},
                        {"kinds", kinds}};
-  write_whole(directory / "kinds.json", stored.dump(1) + "\n");
+  write_whole(directory / "failures.json", stored.dump(1) + "\n");
 }
 
 std::size_t signatures_without_kind(const Json& summary, const Json& kinds) {

@@ -56,8 +56,8 @@ def command(bench, verb, out):
     few = ["--strata", "near_edge_edge,degenerate"]
     return {
         "tune": lambda: ["tune", "moller_1997/f32/cpu", *few, "--pairs", "2000", "--threads", "2", "--out", out],
-        "trade": lambda: [
-            "trade",
+        "pareto": lambda: [
+            "pareto",
             "--lanes",
             "moller_1997/f32/cpu,exact/f32/cpu",
             *few,
@@ -66,8 +66,8 @@ def command(bench, verb, out):
             "--out",
             out,
         ],
-        "laws": lambda: [
-            "laws",
+        "invariants": lambda: [
+            "invariants",
             "--lanes",
             "moller_1997/f32/cpu",
             *few,
@@ -85,7 +85,7 @@ def command(bench, verb, out):
     }[verb]()
 
 
-VERBS = ["tune", "trade", "laws", "league", "merge", "report", "view"]
+VERBS = ["tune", "pareto", "invariants", "league", "merge", "report", "view"]
 
 
 def begin(turn, verb, out):
@@ -276,22 +276,22 @@ def forged_summaries(turn):
     for attempt in range(4):
         campaign = turn.folder / f"campaign-{attempt}"
         shutil.copytree(reported, campaign)
-        name = turn.random.choice(["summary.json", "summary.json", "kinds.json", "report.json"])
+        name = turn.random.choice(["summary.json", "summary.json", "failures.json", "report.json"])
         value = json.loads((campaign / name).read_text())
         part = {
             "summary.json": ["strata", "signatures", "disagreements", "spec"],
-            "kinds.json": ["kinds"],
+            "failures.json": ["kinds"],
             "report.json": ["rates", "strata"],
         }[name]
         counts = {
-            "kinds.json": {"pairs", "signatures"},
+            "failures.json": {"pairs", "signatures"},
             "report.json": {"count", "of", "pairs", "intersects", "declined"},
         }.get(name)
         places = [place for place in leaves({key: value[key] for key in part}) if counts is None or place[-1] in counts]
         readers = [
             ["report", campaign],
             ["report", "--compare", reported, campaign],
-            ["kinds", campaign],
+            ["failures", campaign],
             ["minimize", campaign],
             ["dump", campaign],
             ["corpus", "add", campaign, "--corpus", turn.folder / "corpus"],
@@ -300,8 +300,8 @@ def forged_summaries(turn):
         changed(value, place, turn.random.choice([1, 7, 1 << 40]))
         if name == "report.json":
             readers = [["report", "--from", campaign / name, "--out", turn.folder / "page.html"]]
-        elif name == "kinds.json":
-            readers = [["report", campaign], ["kinds", campaign]]
+        elif name == "failures.json":
+            readers = [["report", campaign], ["failures", campaign]]
         elif turn.random.random() < 0.4:
             (campaign / "campaign.sqlite").unlink()
             value = json.loads((campaign / name).read_text())
@@ -347,7 +347,7 @@ def forged_kinds(turn):
 
     kinds = [without_kinds, without_some]
     kinds += [other_part(*pair) for pair in [("strata", {"lattice": 99}), ("margins", {"banana": 1}), ("lanes", ["x"])]]
-    edits = [("kinds.json", edit, ["kinds", "report"]) for edit in kinds]
+    edits = [("failures.json", edit, ["failures", "report"]) for edit in kinds]
     edits += [("timings.json", other_cost(*pair), ["report"]) for pair in [("middle", -1), ("pairs", 1000000)]]
     edits += [
         ("status.json", other_status(*pair), ["status"])
@@ -399,7 +399,7 @@ def forged_cases(turn):
                 "".join([*lines[:place], lines[place].replace(row["key"], other["key"]), *lines[place + 1 :]])
             )
         changed_file = file.read_text() != "".join(lines)
-        ran = turn.run(turn.random.choice(["report", "kinds", "minimize"]), campaign)
+        ran = turn.run(turn.random.choice(["report", "failures", "minimize"]), campaign)
         if changed_file and not turn.is_refused(ran, file.name):
             raise Violation(f"expected {file.name}, changed in way {choice}, to be refused, found status {ran.status}")
         turn.count("refused" if changed_file else "same")
@@ -439,7 +439,7 @@ def foreign_places(turn):
     tiny = [*turn.bench.campaign("tiny"), "--out"]
     for verb in [
         tiny,
-        *(command(turn.bench, name, folder)[:-1] for name in ("tune", "trade", "laws", "league", "merge")),
+        *(command(turn.bench, name, folder)[:-1] for name in ("tune", "pareto", "invariants", "league", "merge")),
     ]:
         ran = turn.run(*verb, folder)
         if not turn.is_refused(ran, folder.name, "in this build"):

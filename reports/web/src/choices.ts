@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `graze trade` and `graze tune` found, where their files lie in the campaign's folder.
+// What `graze pareto` and `graze tune` found, where their files lie in the campaign's folder.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, choice, code_block, copy_button, h, on_width, section } from './dom';
 import { count, figure, percent, percent_bound, power_of_two } from './format';
-import type { Errors, PolicyErrors, Report, Trade, Tuned } from './report';
+import type { Errors, PolicyErrors, Report, Pareto, Tuned } from './report';
 import { sortable_table } from './sortable_table';
 import { cell_text } from './pairs_of_cell';
 import { go_to } from './state';
 
-type Offer = Trade['lanes'][number];
+type Offer = Pareto['lanes'][number];
 
 const without_answer = (e: Errors) => e.false_negative + e.false_positive + e.declined;
 const share = (e: Errors) => (e.pairs ? without_answer(e) / e.pairs : 0);
 const cost = (offer: Offer) => (offer.resident ?? offer.in_cache)!;
 const far = (offer: Offer) => (offer.with_copies ?? offer.from_memory)!;
 const nanoseconds = (ns: number) => ns.toFixed(ns < 1 ? 4 : 1);
-const row_id = (lane: string) => `trade-${lane.replace(/[^a-z0-9]+/gi, '-')}`;
+const row_id = (lane: string) => `pareto-${lane.replace(/[^a-z0-9]+/gi, '-')}`;
 
 // Axis of shares: decades, and below them the line of those without any.
 function shares_axis(shares: number[]) {
@@ -36,11 +36,11 @@ function shares_axis(shares: number[]) {
 }
 
 // The picture of the answer: lanes by cost and by how often they give no right verdict; a press leads to the row.
-export function front(trade: Trade) {
-  const axis = shares_axis(trade.lanes.map((offer) => share(offer.errors)));
+export function front(pareto: Pareto) {
+  const axis = shares_axis(pareto.lanes.map((offer) => share(offer.errors)));
   const words = (offer: Offer) =>
     `${offer.lane}\n${nanoseconds(cost(offer).middle)} ns a pair\n${percent(share(offer.errors))} without a right verdict${offer.dominated ? '\nanother lane costs no more and errs no more' : ''}`;
-  const kept = trade.lanes.filter((offer) => !offer.dominated).sort((a, b) => cost(a).middle - cost(b).middle);
+  const kept = pareto.lanes.filter((offer) => !offer.dominated).sort((a, b) => cost(a).middle - cost(b).middle);
   const element = h('div', { class: 'chart', id: 'front-chart' });
   on_width(element, (width) => {
     const small = width < 520;
@@ -70,7 +70,7 @@ export function front(trade: Trade) {
           stroke: 'currentColor',
           strokeOpacity: 0.35,
         }),
-        Plot.dot(trade.lanes, {
+        Plot.dot(pareto.lanes, {
           x: (o: Offer) => cost(o).middle,
           y: (o: Offer) => axis.y(share(o.errors)),
           r: (o: Offer) => (o.dominated ? 3 : 5.5),
@@ -91,7 +91,7 @@ export function front(trade: Trade) {
               ),
             )),
         Plot.tip(
-          trade.lanes,
+          pareto.lanes,
           Plot.pointer({
             x: (o: Offer) => cost(o).middle,
             y: (o: Offer) => axis.y(share(o.errors)),
@@ -107,7 +107,7 @@ export function front(trade: Trade) {
       if (pointed) go_to(row_id(pointed.lane));
     });
     element.replaceChildren(
-      named(plot, `Lanes by cost and errors, on ${trade.machine}. ${trade.lanes.map(words).join('. ')}`),
+      named(plot, `Lanes by cost and errors, on ${pareto.machine}. ${pareto.lanes.map(words).join('. ')}`),
     );
   });
   return h(
@@ -118,13 +118,13 @@ export function front(trade: Trade) {
     h(
       'figcaption',
       {},
-      `Large: no lane costs less and errs less. Pairs ${trade.lanes[0]?.resident ? 'that lie on the device' : 'in cache, one core'}; ${trade.machine}.`,
+      `Large: no lane costs less and errs less. Pairs ${pareto.lanes[0]?.resident ? 'that lie on the device' : 'in cache, one core'}; ${pareto.machine}.`,
     ),
   );
 }
 
-export function trade_section(report: Report, trade: Trade) {
-  const on_device = trade.lanes.some((offer) => offer.resident);
+export function pareto_section(report: Report, pareto: Pareto) {
+  const on_device = pareto.lanes.some((offer) => offer.resident);
   const pairs_of = (offer: Offer) => {
     const lane = report.lanes.findIndex((one) => one.id === offer.lane);
     const shown =
@@ -211,14 +211,14 @@ export function trade_section(report: Report, trade: Trade) {
       },
     ],
     {
-      caption: `Errors on ${count(trade.lanes[0]?.errors.pairs ?? 0)} pairs, and costs on ${trade.machine}`,
-      class: 'plain trade',
+      caption: `Errors on ${count(pareto.lanes[0]?.errors.pairs ?? 0)} pairs, and costs on ${pareto.machine}`,
+      class: 'plain pareto',
       page: 60,
     },
   );
-  table.show(trade.lanes);
+  table.show(pareto.lanes);
   return section(
-    'trade',
+    'pareto',
     'Errors against cost',
     h(
       'p',
@@ -229,7 +229,7 @@ export function trade_section(report: Report, trade: Trade) {
     h(
       'ul',
       { class: 'answer' },
-      trade.sentences.map((text) => h('li', {}, text)),
+      pareto.sentences.map((text) => h('li', {}, text)),
     ),
   );
 }

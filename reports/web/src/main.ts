@@ -3,7 +3,7 @@
 import './style.css';
 import { kind_id } from './card';
 import { follow_viewer } from './card_viewer';
-import { trade_section, tuned_section } from './choices';
+import { pareto_section, tuned_section } from './choices';
 import { compare_section } from './compare';
 import { h } from './dom';
 import { count } from './format';
@@ -18,14 +18,14 @@ import { answer_section, run_section } from './run';
 import { side_by_side_section } from './side_by_side';
 import { follow_fragment } from './state';
 
-function build(report: Report, costs: Costs | null, { tuned, trade }: Choices) {
+function build(report: Report, costs: Costs | null, { tuned, pareto }: Choices) {
   document.head.append(heat_styles());
   const failures = failure_sections(report);
   const sections = [
-    answer_section(report, costs, trade),
+    answer_section(report, costs, pareto),
     compare_section(report),
     tuned && tuned_section(tuned),
-    trade && trade_section(report, trade),
+    pareto && pareto_section(report, pareto),
     league_section(report),
     ...failures.sections,
     margins_section(report),

@@ -43,7 +43,7 @@ export interface PolicyErrors extends Errors {
   broken: number;
 }
 
-// tune.json and trade.json, where they lie in the campaign's folder; docs/formats.md describes them.
+// tune.json and pareto.json, where they lie in the campaign's folder; docs/formats.md describes them.
 export interface Tuned {
   lane: string;
   forbid: 'false_negative' | 'false_positive' | 'any';
@@ -65,7 +65,7 @@ export interface Quartiles {
   middle: number;
   high: number;
 }
-export interface Trade {
+export interface Pareto {
   pairs: number;
   seed: number;
   machine: string;
@@ -90,7 +90,7 @@ export interface Trade {
 }
 export interface Choices {
   tuned: Tuned | null;
-  trade: Trade | null;
+  pareto: Pareto | null;
 }
 
 export interface Report {

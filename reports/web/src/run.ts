@@ -4,7 +4,7 @@ import { breakable, code_block, h, lazy_details, section, sentence, type Child }
 import { count, nanoseconds, percent } from './format';
 import { front } from './choices';
 import { glance } from './glance';
-import type { Costs, Report, Trade } from './report';
+import type { Costs, Report, Pareto } from './report';
 import { sortable_table } from './sortable_table';
 
 // "20 lanes: twin, verified on …", one line an evidence word.
@@ -153,7 +153,7 @@ function advice(text: string): Child[] {
 const kFirst = 2,
   kBeside = 4; // sentences above the picture on a phone, and beside it where there is room
 
-export function answer_section(report: Report, costs: Costs | null, trade: Trade | null) {
+export function answer_section(report: Report, costs: Costs | null, pareto: Pareto | null) {
   const said = (costs?.answer ?? report.answer).map((text) => h('li', {}, advice(text)));
   const list = (items: HTMLElement[], start: number) => items.length > 0 && h('ol', { class: 'answer', start }, items);
   return section(
@@ -164,7 +164,7 @@ export function answer_section(report: Report, costs: Costs | null, trade: Trade
       'div',
       { class: 'opening' },
       list(said.slice(0, kFirst), 1),
-      h('div', { class: 'pictures' }, trade && front(trade), glance(report, costs)),
+      h('div', { class: 'pictures' }, pareto && front(pareto), glance(report, costs)),
       list(said.slice(kFirst, kBeside), kFirst + 1),
     ),
     list(said.slice(kBeside), kBeside + 1),

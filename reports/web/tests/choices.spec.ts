@@ -7,23 +7,23 @@ import type { Page } from '@playwright/test';
 const choices = async (page: Page) =>
   JSON.parse((await page.locator('#choices').textContent())!) as {
     tuned: NonNullable<Choices['tuned']>;
-    trade: NonNullable<Choices['trade']>;
+    pareto: NonNullable<Choices['pareto']>;
   };
 
 test('the front is the first picture: a dot for each lane, and a press leads to its row', async ({ page }) => {
-  const { trade } = await choices(page);
+  const { pareto } = await choices(page);
   expect(await page.locator('main figure').first().getAttribute('id')).toBe('front');
-  await expect(page.locator('#front-chart svg g[data-mark="dot"] circle')).toHaveCount(trade.lanes.length);
-  await expect(page.locator('.trade tbody tr')).toHaveCount(trade.lanes.length);
+  await expect(page.locator('#front-chart svg g[data-mark="dot"] circle')).toHaveCount(pareto.lanes.length);
+  await expect(page.locator('.pareto tbody tr')).toHaveCount(pareto.lanes.length);
   const dot = page.locator('#front-chart svg g[data-mark="dot"] circle').first();
   await dot.hover();
   await dot.click({ force: true });
-  await expect(page).toHaveURL(/#trade-/);
-  const wrong = trade.lanes.filter((lane) => lane.errors.false_negative + lane.errors.false_positive > 0);
+  await expect(page).toHaveURL(/#pareto-/);
+  const wrong = pareto.lanes.filter((lane) => lane.errors.false_negative + lane.errors.false_positive > 0);
   expect(wrong.length).toBeGreaterThan(3);
   for (const lane of wrong) expect(lane.failure).toMatch(/^(\S+ ){17}\S+$/);
   await expect(
-    page.locator(`.trade code[title="graze check '${wrong[0].failure}' --lanes '${wrong[0].lane}'"]`),
+    page.locator(`.pareto code[title="graze check '${wrong[0].failure}' --lanes '${wrong[0].lane}'"]`),
   ).toHaveCount(1);
 });
 

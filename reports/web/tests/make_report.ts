@@ -36,7 +36,7 @@ export default function make_report() {
     );
     run('minimize', out, '--executor', 'twin');
     run('tune', 'moller_1997/f32/cpu', '--pairs', '5000', '--strata', 'near_*', '--out', out);
-    run('trade', '--pairs', '2000', '--strata', 'near_*', '--out', out);
+    run('pareto', '--pairs', '2000', '--strata', 'near_*', '--out', out);
   };
   campaign('campaign', '1', '900', '*/f32/*,moller_1997/f64/*');
   run('report', 'campaign');

@@ -61,19 +61,19 @@ test('real reports, costs and choices are what report.ts says', ({}, info) => {
   const campaign = read(GRAZE_REPORT!),
     compared = GRAZE_COMPARE ? read(GRAZE_COMPARE) : null,
     costs = beside('costs.json') as Costs;
-  const [tuned, trade] = [beside('tune.json'), beside('trade.json')];
+  const [tuned, pareto] = [beside('tune.json'), beside('pareto.json')];
   expect(campaign.cards.some((card) => card.maps && card.snippets.length && card.sentences.length)).toBe(true);
   if (compared) expect(compared.compare).not.toBeNull();
   expect(costs.rows.length).toBeGreaterThan(20);
   expect(tuned.curves.length).toBeGreaterThan(3);
-  expect(trade.lanes.length).toBeGreaterThan(10);
+  expect(pareto.lanes.length).toBeGreaterThan(10);
   const found = complaints(
     {
       campaign: ['Report', campaign],
       ...(compared ? { compared: ['Report', compared] } : {}),
       costs: ['Costs', costs],
-      choices: ['Choices', { tuned, trade }],
-      none: ['Choices', { tuned: null, trade: null }],
+      choices: ['Choices', { tuned, pareto }],
+      none: ['Choices', { tuned: null, pareto: null }],
     },
     info,
   );
@@ -83,7 +83,7 @@ test('real reports, costs and choices are what report.ts says', ({}, info) => {
 test('and others are told apart', ({}, info) => {
   const whole = read(process.env.GRAZE_REPORT!),
     costs = beside('costs.json'),
-    [tuned, trade] = [beside('tune.json'), beside('trade.json')];
+    [tuned, pareto] = [beside('tune.json'), beside('pareto.json')];
   const right: Report = {
     ...whole,
     rates: [],
@@ -106,7 +106,7 @@ test('and others are told apart', ({}, info) => {
       other_type: ['Report', { ...right, run: { ...right.run, seed: '1' } }],
       other_word: ['Report', { ...right, lanes: [{ ...right.lanes[0], scalar: 'f16' }] }],
       costs: ['Costs', { ...costs, passes: '9' }],
-      choices: ['Choices', { tuned, trade: { ...trade, machine: 1 } }],
+      choices: ['Choices', { tuned, pareto: { ...pareto, machine: 1 } }],
     },
     info,
   );

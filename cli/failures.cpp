@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze kinds`: what a campaign's failures have in common, a kind at a time.
+// `graze failures`: what a campaign's failures have in common, a kind at a time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -122,9 +122,9 @@ int kinds_of(const std::string& directory, bool json, bool all) {
 
 }  // namespace
 
-void add_kinds(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("kinds", "List the kinds of failure that a campaign found");
-  command->footer("Example: graze kinds campaign");
+void add_failures(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("failures", "List the kinds of failure that a campaign found");
+  command->footer("Example: graze failures campaign");
   auto directory = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false), all = std::make_shared<bool>(false);
   command->add_option("DIR", *directory, "Campaign directory, best after `graze minimize`")->required();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "analysis/trade.h"
+#include "analysis/pareto.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ Offer offer(std::uint64_t wrong, double nanoseconds, std::uint64_t declined = 0)
   return result;
 }
 
-TEST(Trade, TheFrontIsWhatNothingBeats) {
+TEST(Pareto, TheFrontIsWhatNothingBeats) {
   std::vector<Offer> offers = {offer(0, 40), offer(5, 30),    offer(5, 35), offer(9, 10),
                                offer(0, 41), offer(0, 9, 10), offer(9, 10)};
   mark_dominated(offers);
@@ -26,7 +26,7 @@ TEST(Trade, TheFrontIsWhatNothingBeats) {
   EXPECT_EQ(dominated, (std::vector<bool>{false, false, true, false, true, false, false}));
 }
 
-TEST(Trade, CostsAreOfAllPairsInTurn) {
+TEST(Pareto, CostsAreOfAllPairsInTurn) {
   const auto sources = strata::stratum_sources(1, 40, {"uniform", "lattice"});
   EXPECT_EQ(first_pairs(sources, 30).size(), 30u);
   EXPECT_EQ(first_pairs(sources, 100).size(), 40u);

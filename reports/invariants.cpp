@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/laws.h"
+#include "reports/invariants.h"
 
 #include <fmt/format.h>
 
@@ -13,21 +13,21 @@
 namespace graze::reports {
 namespace {
 
-using analysis::kLaws;
-using analysis::LawCase;
-using analysis::LawCount;
-using analysis::LawInfo;
+using analysis::InvariantCase;
+using analysis::InvariantCount;
+using analysis::InvariantInfo;
+using analysis::kInvariants;
 using Json = nlohmann::ordered_json;
 
-const std::optional<LawCase>& case_of(const analysis::LawsOfLane& lane, const LawInfo& law) {
-  return lane.simplest[static_cast<std::size_t>(law.law)];
+const std::optional<InvariantCase>& case_of(const analysis::InvariantsOfLane& lane, const InvariantInfo& invariant) {
+  return lane.simplest[static_cast<std::size_t>(invariant.invariant)];
 }
 
-std::string place_of(const analysis::LawSpec& spec, const LawCase& found) {
+std::string place_of(const analysis::InvariantSpec& spec, const InvariantCase& found) {
   return fmt::format("pair {} of {}", found.place.index, spec.sources[static_cast<std::size_t>(found.place.source)].id);
 }
 
-Json case_json(const analysis::LawSpec& spec, const std::optional<LawCase>& found) {
+Json case_json(const analysis::InvariantSpec& spec, const std::optional<InvariantCase>& found) {
   if (!found) return nullptr;
   return {{"from", place_of(spec, *found)},
           {"pair", coordinates_of(found->pair)},
@@ -37,12 +37,12 @@ Json case_json(const analysis::LawSpec& spec, const std::optional<LawCase>& foun
 }
 
 // The two entries of a case; the first is a pair on which the verdict is not the truth.
-std::vector<corpus::Entry> entries_of(const analysis::LawSpec& spec, const Lane& lane, const LawInfo& law,
-                                      const LawCase& found) {
+std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const Lane& lane,
+                                      const InvariantInfo& invariant, const InvariantCase& found) {
   const auto entry = [&](const Pair& pair, Verdict says, const std::string& from) {
     const Verdict truth = decide_one(spec.exact, pair);
     return corpus::Entry{pair,
-                         {{"law", std::string(law.id)},
+                         {{"invariant", std::string(invariant.id)},
                           {"lanes", lane.id},
                           {"from", from},
                           {"says", std::string(name(says))},
@@ -57,16 +57,17 @@ std::vector<corpus::Entry> entries_of(const analysis::LawSpec& spec, const Lane&
 
 // How much of the column "scale, in range" each power of two makes alone; empty where nothing is known, or nothing is
 // changed.
-std::string scales_table(const analysis::LawSpec& spec, const analysis::Laws& laws, const Screen& screen) {
+std::string scales_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
+                         const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};
   for (const int k : analysis::kScales) columns.push_back({fmt::format("2^{}", k)});
   TextTable table(columns);
   bool any = false;
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-    if (laws.lanes[l].total(analysis::Law::scale).in_range == 0) continue;
+    if (invariants.lanes[l].total(analysis::Invariant::scale).in_range == 0) continue;
     any = true;
     std::vector<Cell> cells{spec.lanes[l]->id};
-    for (const LawCount& count : laws.lanes[l].by_scale)
+    for (const InvariantCount& count : invariants.lanes[l].by_scale)
       cells.emplace_back(count.pairs == 0 ? "-" : bare_percent(count.in_range, count.pairs), count.in_range > 0);
     table.add(std::move(cells));
   }
@@ -78,19 +79,20 @@ std::string scales_table(const analysis::LawSpec& spec, const analysis::Laws& la
 
 }  // namespace
 
-std::string laws_table(const analysis::LawSpec& spec, const analysis::Laws& laws, const Screen& screen) {
+std::string invariants_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
+                             const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};
-  for (const LawInfo& law : kLaws) {
-    columns.push_back({std::string(law.id)});
-    if (law.law == analysis::Law::scale) columns.push_back({"scale, in range"});
+  for (const InvariantInfo& invariant : kInvariants) {
+    columns.push_back({std::string(invariant.id)});
+    if (invariant.invariant == analysis::Invariant::scale) columns.push_back({"scale, in range"});
   }
   TextTable table(columns);
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
     std::vector<Cell> cells{spec.lanes[l]->id};
-    for (const LawInfo& law : kLaws) {
-      const LawCount count = laws.lanes[l].total(law.law);
+    for (const InvariantInfo& invariant : kInvariants) {
+      const InvariantCount count = invariants.lanes[l].total(invariant.invariant);
       cells.emplace_back(count.pairs == 0 ? "-" : bare_percent(count.changed, count.pairs), count.changed > 0);
-      if (law.law != analysis::Law::scale) continue;
+      if (invariant.invariant != analysis::Invariant::scale) continue;
       const bool known = analysis::knows_range(*spec.lanes[l]) || count.changed == 0;
       cells.emplace_back(count.pairs == 0 || !known ? "-" : bare_percent(count.in_range, count.pairs),
                          count.in_range > 0);
@@ -102,17 +104,18 @@ std::string laws_table(const analysis::LawSpec& spec, const analysis::Laws& laws
              "although the question is the same (part: intersects, of a part of a triangle, where the whole is "
              "disjoint; in range: where nothing over- or underflows).",
              screen.columns) +
-         table.text(screen) + scales_table(spec, laws, screen);
+         table.text(screen) + scales_table(spec, invariants, screen);
 }
 
-std::vector<std::string> laws_sentences(const analysis::LawSpec& spec, const analysis::Laws& laws) {
+std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spec,
+                                              const analysis::Invariants& invariants) {
   std::vector<std::string> sentences;
   std::map<std::string_view, std::string> claimed;
   for (const Lane* lane : spec.lanes) {
     if (claimed.contains(lane->info->id)) continue;
-    for (const LawInfo& law : kLaws) {
-      if (analysis::claims(*lane, law.law))
-        claimed[lane->info->id] += (claimed[lane->info->id].empty() ? "" : ", ") + std::string(law.id);
+    for (const InvariantInfo& invariant : kInvariants) {
+      if (analysis::claims(*lane, invariant.invariant))
+        claimed[lane->info->id] += (claimed[lane->info->id].empty() ? "" : ", ") + std::string(invariant.id);
     }
     if (claimed[lane->info->id].empty()) claimed.erase(lane->info->id);
   }
@@ -125,66 +128,70 @@ std::vector<std::string> laws_sentences(const analysis::LawSpec& spec, const ana
         "pair on which nothing over- or underflows: " +
         text + ".");
   }
-  sentences.push_back(fmt::format(
-      "exact breaks no law on {} pairs and their {} images; CGAL and GMP none on {} of the pairs and their {} images.",
-      grouped(laws.pairs), grouped(laws.images), grouped(laws.by_oracle), grouped(laws.its_images)));
+  sentences.push_back(
+      fmt::format("exact breaks no invariant on {} pairs and their {} images; CGAL and GMP none on {} of the pairs and "
+                  "their {} images.",
+                  grouped(invariants.pairs), grouped(invariants.images), grouped(invariants.by_oracle),
+                  grouped(invariants.its_images)));
   return sentences;
 }
 
-Json laws_json(const analysis::LawSpec& spec, const analysis::Laws& laws) {
+Json invariants_json(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants) {
   Json what = Json::object(), lanes = Json::array();
-  for (const LawInfo& law : kLaws) what[std::string(law.id)] = law.what;
+  for (const InvariantInfo& invariant : kInvariants) what[std::string(invariant.id)] = invariant.what;
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-    const analysis::LawsOfLane& lane = laws.lanes[l];
+    const analysis::InvariantsOfLane& lane = invariants.lanes[l];
     const bool knows_range = analysis::knows_range(*spec.lanes[l]);
-    Json of_laws = Json::object();
-    for (const LawInfo& law : kLaws) {
+    Json of_invariants = Json::object();
+    for (const InvariantInfo& invariant : kInvariants) {
       Json strata = Json::object();
       for (std::size_t s = 0; s < spec.sources.size(); ++s) {
-        const LawCount& count = lane.counts[static_cast<std::size_t>(law.law)][s];
+        const InvariantCount& count = lane.counts[static_cast<std::size_t>(invariant.invariant)][s];
         strata[spec.sources[s].id] = {{"pairs", count.pairs}, {"changed", count.changed}};
       }
-      const LawCount all = lane.total(law.law);
+      const InvariantCount all = lane.total(invariant.invariant);
       Json factors = Json::array();
-      for (std::size_t k = 0; law.law == analysis::Law::scale && k < analysis::kScales.size(); ++k) {
-        const LawCount& count = lane.by_scale[k];
+      for (std::size_t k = 0; invariant.invariant == analysis::Invariant::scale && k < analysis::kScales.size(); ++k) {
+        const InvariantCount& count = lane.by_scale[k];
         factors.push_back({{"log2", analysis::kScales[k]},
                            {"pairs", count.pairs},
                            {"changed", count.changed},
                            {"in_range", knows_range ? Json(count.in_range) : Json()}});
       }
-      of_laws[std::string(law.id)] = {{"claimed", analysis::claims(*spec.lanes[l], law.law)},
-                                      {"pairs", all.pairs},
-                                      {"changed", all.changed},
-                                      {"in_range", knows_range ? Json(all.in_range) : Json()},
-                                      {"strata", strata},
-                                      {"case", case_json(spec, case_of(lane, law))}};
-      if (!factors.empty()) of_laws[std::string(law.id)]["by_factor"] = factors;
+      of_invariants[std::string(invariant.id)] = {{"claimed", analysis::claims(*spec.lanes[l], invariant.invariant)},
+                                                  {"pairs", all.pairs},
+                                                  {"changed", all.changed},
+                                                  {"in_range", knows_range ? Json(all.in_range) : Json()},
+                                                  {"strata", strata},
+                                                  {"case", case_json(spec, case_of(lane, invariant))}};
+      if (!factors.empty()) of_invariants[std::string(invariant.id)]["by_factor"] = factors;
     }
-    lanes.push_back({{"lane", spec.lanes[l]->id}, {"laws", of_laws}});
+    lanes.push_back({{"lane", spec.lanes[l]->id}, {"invariants", of_invariants}});
   }
-  return {{"laws", what},
+  return {{"invariants", what},
           {"truth",
-           {{"pairs", laws.pairs},
-            {"images", laws.images},
-            {"by_oracle", laws.by_oracle},
-            {"its_images", laws.its_images}}},
+           {{"pairs", invariants.pairs},
+            {"images", invariants.images},
+            {"by_oracle", invariants.by_oracle},
+            {"its_images", invariants.its_images}}},
           {"lanes", lanes}};
 }
 
-std::map<std::string, std::string> laws_cases(const analysis::LawSpec& spec, const analysis::Laws& laws) {
+std::map<std::string, std::string> invariants_cases(const analysis::InvariantSpec& spec,
+                                                    const analysis::Invariants& invariants) {
   std::map<std::string, std::string> files;
-  for (const LawInfo& law : kLaws) {
+  for (const InvariantInfo& invariant : kInvariants) {
     std::ostringstream text;
     corpus::write_header(text);
     bool any = false;
     for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-      const std::optional<LawCase>& found = case_of(laws.lanes[l], law);
+      const std::optional<InvariantCase>& found = case_of(invariants.lanes[l], invariant);
       if (!found) continue;
       any = true;
-      for (const corpus::Entry& entry : entries_of(spec, *spec.lanes[l], law, *found)) corpus::write_entry(text, entry);
+      for (const corpus::Entry& entry : entries_of(spec, *spec.lanes[l], invariant, *found))
+        corpus::write_entry(text, entry);
     }
-    if (any) files[std::string(law.id) + ".pairs"] = text.str();
+    if (any) files[std::string(invariant.id) + ".pairs"] = text.str();
   }
   return files;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "reports/trade.h"
+#include "reports/pareto.h"
 
 #include <fmt/format.h>
 
@@ -22,8 +22,8 @@ using analysis::Cost;
 using analysis::Extreme;
 using analysis::ExtremeCurve;
 using analysis::Offer;
+using analysis::Pareto;
 using analysis::PolicyErrors;
-using analysis::Trade;
 using Json = nlohmann::ordered_json;
 
 constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7, kLegend = 240;
@@ -76,17 +76,17 @@ std::vector<Offer> cheapest_first(std::vector<Offer> offers) {
 
 }  // namespace
 
-std::string trade_table(const Trade& trade, const Screen& screen) {
+std::string pareto_table(const Pareto& pareto, const Screen& screen) {
   std::vector<Column> columns = {{"lane", Align::left},
                                  {"ns a pair", Align::point},
-                                 {trade.on_device ? "with copies" : "from memory", Align::point},
+                                 {pareto.on_device ? "with copies" : "from memory", Align::point},
                                  {"false negatives"},
                                  {"false positives"},
                                  {"declined"},
                                  {"", Align::left}};
-  if (trade.on_device) columns.insert(columns.begin() + 3, {{"registers"}, {"local bytes"}, {"threads"}});
+  if (pareto.on_device) columns.insert(columns.begin() + 3, {{"registers"}, {"local bytes"}, {"threads"}});
   TextTable table(columns);
-  for (const Offer& offer : cheapest_first(trade.offers)) {
+  for (const Offer& offer : cheapest_first(pareto.offers)) {
     const PolicyErrors& e = offer.errors;
     const std::string words = offer.dominated ? "dominated"
                               : share(e) == 0 ? "none: under " + rounded_up(analysis::upper_bound(0, e.pairs), 1)
@@ -135,14 +135,14 @@ std::vector<std::string> extreme_sentences(const std::vector<ExtremeCurve>& curv
   return result;
 }
 
-Json trade_json(const Trade& trade) {
+Json pareto_json(const Pareto& pareto) {
   Json rows = Json::array(), extremes = Json::array();
-  for (const Offer& offer : cheapest_first(trade.offers)) {
+  for (const Offer& offer : cheapest_first(pareto.offers)) {
     rows.push_back({{"lane", offer.lane},
                     {"errors", errors_json(offer.errors)},
                     {"bound", analysis::upper_bound(offer.errors.not_right(), offer.errors.pairs)},
-                    {trade.on_device ? "resident" : "in_cache", cost_json(offer.near)},
-                    {trade.on_device ? "with_copies" : "from_memory", cost_json(offer.far)},
+                    {pareto.on_device ? "resident" : "in_cache", cost_json(offer.near)},
+                    {pareto.on_device ? "with_copies" : "from_memory", cost_json(offer.far)},
                     {"dominated", offer.dominated},
                     {"failure", offer.failure ? Json(numbers(*offer.failure)) : Json()}});
     if (offer.needs) {
@@ -151,7 +151,7 @@ Json trade_json(const Trade& trade) {
       rows.back()["active_threads"] = offer.needs->active_threads;
     }
   }
-  for (const ExtremeCurve& curve : trade.curves) {
+  for (const ExtremeCurve& curve : pareto.curves) {
     Json points = Json::array();
     for (const auto& [k, e] : curve.points) {
       Json point = {{"log2", k}};
@@ -160,17 +160,17 @@ Json trade_json(const Trade& trade) {
     }
     extremes.push_back({{"lane", curve.lane}, {"extreme", name(curve.extreme)}, {"points", std::move(points)}});
   }
-  return {{"machine", trade.machine},
+  return {{"machine", pareto.machine},
           {"lanes", std::move(rows)},
           {"extremes", std::move(extremes)},
-          {"sentences", extreme_sentences(trade.curves)}};
+          {"sentences", extreme_sentences(pareto.curves)}};
 }
 
-std::string trade_figure(const Trade& trade) {
+std::string pareto_figure(const Pareto& pareto) {
   std::string svg = begin("Share of pairs without a right verdict, against nanoseconds a pair on " +
-                          (trade.on_device ? trade.machine : "one core"));
+                          (pareto.on_device ? pareto.machine : "one core"));
   double low = 1e300, high = 0;
-  for (const Offer& offer : trade.offers) {
+  for (const Offer& offer : pareto.offers) {
     low = std::min(low, offer.near.middle);
     high = std::max(high, offer.near.middle);
   }
@@ -185,9 +185,9 @@ std::string trade_figure(const Trade& trade) {
     }
   }
   svg += svg_text((kLeft + kRight) / 2, 396, "middle",
-                  fmt::format("nanoseconds a pair, pairs {}", trade.on_device ? "on the device" : "in cache"));
+                  fmt::format("nanoseconds a pair, pairs {}", pareto.on_device ? "on the device" : "in cache"));
   std::string front;
-  for (const Offer& offer : cheapest_first(trade.offers)) {
+  for (const Offer& offer : cheapest_first(pareto.offers)) {
     const double x = x_of(offer.near.middle), y = y_of(share(offer.errors));
     const char* colour = offer.dominated ? "#999" : "#d55e00";
     svg += fmt::format(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze trade`: errors against nanoseconds, and how far from ordinary pairs each lane stays right.
+// `graze pareto`: errors against nanoseconds, and how far from ordinary pairs each lane stays right.
 #include <fmt/format.h>
 
-#include "analysis/trade.h"
+#include "analysis/pareto.h"
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "cli/screen.h"
@@ -12,7 +12,7 @@
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimise.h"
-#include "reports/trade.h"
+#include "reports/pareto.h"
 
 namespace graze::cli {
 namespace {
@@ -22,11 +22,11 @@ namespace fs = std::filesystem;
 constexpr std::size_t kPairsInCache = 256, kPairsFromMemory = std::size_t{1} << 19;  // 18 kB, 38 MB
 constexpr std::size_t kPairsOnDevice = std::size_t{1} << 22;                         // 302 MB
 
-struct TradeOptions {
+struct ParetoOptions {
   LaneOptions lanes;
   std::vector<std::string> strata;
   std::uint64_t pairs = 200'000, seed = 1;
-  std::string scene, out = "trade";
+  std::string scene, out = "pareto";
   bool device = false;
 };
 
@@ -39,12 +39,12 @@ struct Measured {
 
 // Why the lane's time cannot be measured: what twins and processes take is not what the code takes.
 std::string why_not_timed(const Lane& lane, bool device) {
-  if (lane.foreign) return "trade times no foreign code";
+  if (lane.foreign) return "pareto times no foreign code";
   if (device) return lane.is_cuda() ? "" : "--device times only CUDA lanes";
   return lane.decide ? "" : "only --device times CUDA lanes";
 }
 
-Measured measured(const TradeOptions& options, const fuzz::SelectedLanes& under_test) {
+Measured measured(const ParetoOptions& options, const fuzz::SelectedLanes& under_test) {
   Measured result;
   for (const Lane* lane : under_test.lanes) {
     result.ids.push_back(lane->id);
@@ -71,22 +71,22 @@ std::optional<Pair> smallest_failure(const Lane& lane, const analysis::PolicyErr
   return failures.empty() ? std::nullopt : std::optional(fuzz::minimise(failures[0], pair).pair);
 }
 
-analysis::Trade offers_of(const TradeOptions& options, const Measured& measured,
-                          const std::vector<strata::PairSource>& sources) {
-  analysis::Trade trade{fuzz::machine_name(), options.device, 0, {}, {}};
+analysis::Pareto offers_of(const ParetoOptions& options, const Measured& measured,
+                           const std::vector<strata::PairSource>& sources) {
+  analysis::Pareto pareto{fuzz::machine_name(), options.device, 0, {}, {}};
   for (const analysis::PolicyErrors& errors : measured.sweep(measured.ids, sources)) {
-    trade.offers.push_back({errors.policy, errors, {}, {}});
-    trade.offers.back().failure = smallest_failure(*measured.lanes[trade.offers.size() - 1], errors, sources);
+    pareto.offers.push_back({errors.policy, errors, {}, {}});
+    pareto.offers.back().failure = smallest_failure(*measured.lanes[pareto.offers.size() - 1], errors, sources);
   }
   if (options.device) {
     const cuda::DeviceCosts costs =
         cuda::measure_on_device(measured.lanes, analysis::first_pairs(sources, kPairsOnDevice), 21);
-    trade.machine = costs.device;
-    trade.threads_at_once = costs.threads_at_once;
+    pareto.machine = costs.device;
+    pareto.threads_at_once = costs.threads_at_once;
     for (std::size_t l = 0; l < costs.of.size(); ++l) {
-      trade.offers[l].near = analysis::quartiles(costs.of[l].resident);
-      trade.offers[l].far = analysis::quartiles(costs.of[l].with_copies);
-      trade.offers[l].needs = costs.of[l].needs;
+      pareto.offers[l].near = analysis::quartiles(costs.of[l].resident);
+      pareto.offers[l].far = analysis::quartiles(costs.of[l].with_copies);
+      pareto.offers[l].needs = costs.of[l].needs;
     }
   } else {
     std::vector<DecideBlock> timed;
@@ -94,15 +94,15 @@ analysis::Trade offers_of(const TradeOptions& options, const Measured& measured,
     const auto in_cache = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsInCache), 201);
     const auto from_memory = analysis::costs_of(timed, analysis::first_pairs(sources, kPairsFromMemory), 3);
     for (std::size_t l = 0; l < timed.size(); ++l) {
-      trade.offers[l].near = in_cache[l];
-      trade.offers[l].far = from_memory[l];
+      pareto.offers[l].near = in_cache[l];
+      pareto.offers[l].far = from_memory[l];
     }
   }
-  analysis::mark_dominated(trade.offers);
-  return trade;
+  analysis::mark_dominated(pareto.offers);
+  return pareto;
 }
 
-int trade(TradeOptions options) {
+int pareto(ParetoOptions options) {
   if (options.lanes.globs.empty() && options.device) {
     options.lanes.globs = {"*/cuda-fma", "exact/f32/cuda", "moller_1997/*/cuda-fma/paper",
                            "guigue_devillers_2003/*/cuda-fma/filtered"};
@@ -118,51 +118,51 @@ int trade(TradeOptions options) {
   say_left_out(leave_out(under_test, [&](const Lane& lane) { return why_not_timed(lane, options.device); }));
   const Measured lanes = measured(options, under_test);
   const strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
-  const ResultFolder folder(options.out, "trade.json");
-  analysis::Trade trade = offers_of(options, lanes, all.sources);
+  const ResultFolder folder(options.out, "pareto.json");
+  analysis::Pareto pareto = offers_of(options, lanes, all.sources);
   const auto some =
       drawn(options.scene, options.seed, std::max<std::uint64_t>(options.pairs / 50, 1000), options.strata).sources;
   for (const analysis::Extreme extreme : analysis::kExtremes) {
-    const std::size_t first = trade.curves.size();
-    for (const std::string& id : lanes.ids) trade.curves.push_back({id, extreme, {}});
+    const std::size_t first = pareto.curves.size();
+    for (const std::string& id : lanes.ids) pareto.curves.push_back({id, extreme, {}});
     for (const int k : analysis::exponents(extreme)) {
       const auto found = lanes.sweep(lanes.ids, analysis::made_extreme(some, extreme, k));
-      for (std::size_t l = 0; l < found.size(); ++l) trade.curves[first + l].points.emplace_back(k, found[l]);
+      for (std::size_t l = 0; l < found.size(); ++l) pareto.curves[first + l].points.emplace_back(k, found[l]);
     }
   }
 
   const fs::path& out = folder.path;
   const reports::Screen screen = output_screen();
-  fmt::print("{}", reports::trade_table(trade, screen));
+  fmt::print("{}", reports::pareto_table(pareto, screen));
   if (options.device) {
     fmt::print("{}",
                reports::wrapped(fmt::format("Registers and bytes of local memory of one thread, and threads that a "
                                             "multiprocessor of {} holds at once, of {}.",
-                                            trade.machine, trade.threads_at_once),
+                                            pareto.machine, pareto.threads_at_once),
                                 screen.columns));
   }
-  for (const std::string& sentence : reports::extreme_sentences(trade.curves))
+  for (const std::string& sentence : reports::extreme_sentences(pareto.curves))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(all.left_out));
-  nlohmann::ordered_json json = {{"pairs", trade.offers.front().errors.pairs}, {"seed", options.seed}};
+  nlohmann::ordered_json json = {{"pairs", pareto.offers.front().errors.pairs}, {"seed", options.seed}};
   fuzz::add_left_out(json, under_test);
-  json.update(reports::trade_json(trade));
-  write_result(out / "trade.json", json.dump(1) + "\n");
-  write_result(out / "front.svg", reports::trade_figure(trade));
+  json.update(reports::pareto_json(pareto));
+  write_result(out / "pareto.json", json.dump(1) + "\n");
+  write_result(out / "front.svg", reports::pareto_figure(pareto));
   for (const analysis::Extreme extreme : analysis::kExtremes)
-    write_result(out / (std::string(name(extreme)) + ".svg"), reports::extreme_figure(trade.curves, extreme));
-  fmt::print("Wrote {}/{{trade.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n", out.string());
+    write_result(out / (std::string(name(extreme)) + ".svg"), reports::extreme_figure(pareto.curves, extreme));
+  fmt::print("Wrote {}/{{pareto.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n", out.string());
   if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", shell_word(out.string()));
   return 0;
 }
 
 }  // namespace
 
-void add_trade(CLI::App& app, int& status) {
+void add_pareto(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "trade", "Measure errors against nanoseconds per pair, and how extreme pairs may be before a lane fails");
-  command->footer("Example: graze trade --strata 'near_*' --pairs 20k");
-  const auto options = std::make_shared<TradeOptions>();
+      "pareto", "Measure errors against nanoseconds per pair, and how extreme pairs may be before a lane fails");
+  command->footer("Example: graze pareto --strata 'near_*' --pairs 20k");
+  const auto options = std::make_shared<ParetoOptions>();
   add_lane_options(*command, options->lanes, Executors::twins);
   command->get_option("--lanes")->default_str("common CPU lanes, or CUDA lanes with --device");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
@@ -177,11 +177,11 @@ void add_trade(CLI::App& app, int& status) {
       ->option_text("N");
   command->add_flag("--device", options->device,
                     "Measure the CUDA lanes on the first device, with pairs in its memory and with copies");
-  command->add_option("--out", options->out, "Folder for trade.json and the pictures")
+  command->add_option("--out", options->out, "Folder for pareto.json and the pictures")
       ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");
-  command->callback([options, &status] { status = trade(*options); });
+  command->callback([options, &status] { status = pareto(*options); });
 }
 
 }  // namespace graze::cli

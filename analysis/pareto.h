@@ -29,7 +29,7 @@ std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector
 // The sources' first pairs, so many in all, in turn.
 std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
 
-// A lane of the trade: what it gets wrong, and what it takes.
+// A lane of the pareto: what it gets wrong, and what it takes.
 struct Offer {
   std::string lane;
   PolicyErrors errors;
@@ -70,7 +70,7 @@ struct ExtremeCurve {
 };
 
 // Lanes of one machine, and never of two.
-struct Trade {
+struct Pareto {
   std::string machine;
   bool on_device = false;
   int threads_at_once = 0;  // of a device's multiprocessor

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze laws` as a user runs it.
+// `graze invariants` as a user runs it.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -9,22 +9,23 @@
 namespace graze::cli {
 namespace {
 
-class LawsCommand : public CommandTest {};
+class InvariantsCommand : public CommandTest {};
 
 nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
 
-TEST_F(LawsCommand, LeavesTheSameBytesWhateverTheThreads) {
-  const std::string run = "graze laws --lanes '*/f32/cpu,moller_1997/f32/cuda-fma' --strata 'near_*' --pairs 600 ";
+TEST_F(InvariantsCommand, LeavesTheSameBytesWhateverTheThreads) {
+  const std::string run =
+      "graze invariants --lanes '*/f32/cpu,moller_1997/f32/cuda-fma' --strata 'near_*' --pairs 600 ";
   const Ran first = shell(run + "--threads 1 --out one"), second = shell(run + "--threads 3 --out three");
   ASSERT_EQ(first.status, 0) << first.err;
   ASSERT_EQ(second.status, 0) << second.err;
   expect_done("diff -r one three");
-  const auto json = json_of(shell.folder / "one/laws.json");
+  const auto json = json_of(shell.folder / "one/invariants.json");
   EXPECT_EQ(json["truth"]["pairs"], 600);
   for (const auto& lane : json["lanes"]) {
     const bool exact = lane["lane"] == "exact/f32/cpu";
-    for (const auto& [law, of] : lane["laws"].items()) {
-      EXPECT_EQ(of["case"].is_null(), of["changed"] == 0) << lane["lane"] << law;
+    for (const auto& [invariant, of] : lane["invariants"].items()) {
+      EXPECT_EQ(of["case"].is_null(), of["changed"] == 0) << lane["lane"] << invariant;
       std::uint64_t pairs = 0, changed = 0;
       for (const auto& [stratum, counts] : of["strata"].items()) {
         pairs += counts["pairs"].get<std::uint64_t>();
@@ -33,20 +34,21 @@ TEST_F(LawsCommand, LeavesTheSameBytesWhateverTheThreads) {
       EXPECT_EQ(of["pairs"], pairs);
       EXPECT_EQ(of["changed"], changed);
       if (exact) {
-        EXPECT_EQ(of["changed"], 0) << law;
+        EXPECT_EQ(of["changed"], 0) << invariant;
       }
     }
     EXPECT_NE(first.out.find(lane["lane"].get<std::string>()), std::string::npos) << first.out;
   }
-  EXPECT_GT(json["lanes"][0]["laws"]["order"]["changed"], 0);
+  EXPECT_GT(json["lanes"][0]["invariants"]["order"]["changed"], 0);
 }
 
 // What doubling changes alone stands beside what some scaling changes, in the file and in the table.
-TEST_F(LawsCommand, TellsWhatEachScalingChangesAlone) {
-  const std::string laws = "graze laws --lanes 'projected_sat/f32/cpu' --strata near_edge_edge --pairs 500 --out l";
-  const Ran ran = shell(laws);
+TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
+  const std::string invariants =
+      "graze invariants --lanes 'projected_sat/f32/cpu' --strata near_edge_edge --pairs 500 --out l";
+  const Ran ran = shell(invariants);
   ASSERT_EQ(ran.status, 0) << ran.err;
-  const auto of = json_of(shell.folder / "l/laws.json")["lanes"][0]["laws"];
+  const auto of = json_of(shell.folder / "l/invariants.json")["lanes"][0]["invariants"];
   EXPECT_FALSE(of["order"].contains("by_factor"));
   const auto& factors = of["scale"]["by_factor"];
   ASSERT_EQ(factors.size(), 8u);
@@ -60,17 +62,17 @@ TEST_F(LawsCommand, TellsWhatEachScalingChangesAlone) {
   }
   EXPECT_EQ(factors[0]["log2"], 1);
   EXPECT_LT(factors[0]["in_range"].get<int>() * 2, of["scale"]["in_range"].get<int>());
-  EXPECT_EQ(shell(laws + " | grep -cE '" + line + "$'").out, "1\n") << line << '\n' << ran.out;
+  EXPECT_EQ(shell(invariants + " | grep -cE '" + line + "$'").out, "1\n") << line << '\n' << ran.out;
 }
 
-// Each lane's case of each law: what stands first is wrong, as explain and minimize see it.
-TEST_F(LawsCommand, ItsCasesAreWrongVerdicts) {
-  expect_done("graze laws --lanes 'guigue*/f32/cpu' --strata 'near_*' --pairs 400 --out l");
-  for (const char* law : {"order", "mirror", "axes"}) {
-    const std::string file = std::string("l/cases/") + law + ".pairs";
+// Each lane's case of each invariant: what stands first is wrong, as explain and minimize see it.
+TEST_F(InvariantsCommand, ItsCasesAreWrongVerdicts) {
+  expect_done("graze invariants --lanes 'guigue*/f32/cpu' --strata 'near_*' --pairs 400 --out l");
+  for (const char* invariant : {"order", "mirror", "axes"}) {
+    const std::string file = std::string("l/cases/") + invariant + ".pairs";
     const Ran checked = shell("graze check " + file + " --json --lanes 'guigue*/f32/cpu' | head -n 1");
     const auto line = nlohmann::json::parse(checked.out);
-    EXPECT_NE(line["truth"]["verdict"], line["lanes"]["guigue_devillers_2003/f32/cpu"]) << law;
+    EXPECT_NE(line["truth"]["verdict"], line["lanes"]["guigue_devillers_2003/f32/cpu"]) << invariant;
     const Ran explained = shell("graze explain " + file + " --lanes 'guigue*/f32/cpu'");
     EXPECT_EQ(explained.status, 0) << explained.err;
     EXPECT_NE(explained.out.find("guigue_devillers_2003/f32 (cpu) says"), std::string::npos) << explained.out;
@@ -79,23 +81,23 @@ TEST_F(LawsCommand, ItsCasesAreWrongVerdicts) {
 }
 
 // A subject that looks at the order, one that does what its convention leaves open, and a scene.
-TEST_F(LawsCommand, OfOnesOwnCodeAndWithinAScene) {
+TEST_F(InvariantsCommand, OfOnesOwnCodeAndWithinAScene) {
   std::ofstream(shell.folder / "mine.c") << "int mine(const float a[9], const float b[9]) { return a[0] > b[0]; }\n";
   expect_done("cc -shared -fPIC mine.c -o mine.so");
-  expect_done("graze laws --subject mine=mine.so:mine --lanes 'mine/*' --strata uniform --pairs 200 --out l");
-  const auto of = json_of(shell.folder / "l/laws.json")["lanes"][0]["laws"];
+  expect_done("graze invariants --subject mine=mine.so:mine --lanes 'mine/*' --strata uniform --pairs 200 --out l");
+  const auto of = json_of(shell.folder / "l/invariants.json")["lanes"][0]["invariants"];
   EXPECT_EQ(of["swap"]["changed"], 200);  // of random numbers one is larger, and then the other one
   EXPECT_EQ(of["scale"]["changed"], 0);
   EXPECT_EQ(of["translate"]["changed"], 0);
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
-  expect_done("graze laws --lanes 'moller*/f32/cpu' --scene hall.toml --pairs 100 --out l");
-  EXPECT_EQ(json_of(shell.folder / "l/laws.json")["scene"], "hall.toml");
+  expect_done("graze invariants --lanes 'moller*/f32/cpu' --scene hall.toml --pairs 100 --out l");
+  EXPECT_EQ(json_of(shell.folder / "l/invariants.json")["scene"], "hall.toml");
 }
 
-TEST_F(LawsCommand, BadUseIsOneLine) {
-  expect_error("graze laws --lanes nothing --out l", 2, {"'nothing'", "graze lanes"});
-  expect_error("graze laws --strata nothing --out l", 2, {"'nothing'", "graze strata"});
-  expect_error("touch l && graze laws --pairs 10 --out l", 1, {"l", "Not a directory"});
+TEST_F(InvariantsCommand, BadUseIsOneLine) {
+  expect_error("graze invariants --lanes nothing --out l", 2, {"'nothing'", "graze lanes"});
+  expect_error("graze invariants --strata nothing --out l", 2, {"'nothing'", "graze strata"});
+  expect_error("touch l && graze invariants --pairs 10 --out l", 1, {"l", "Not a directory"});
 }
 
 }  // namespace

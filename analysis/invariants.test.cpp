@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "analysis/laws.h"
+#include "analysis/invariants.h"
 
 #include <gtest/gtest.h>
 
@@ -26,8 +26,9 @@ bool simpler(const Pair& l, const Pair& r) {
   return size(l) < size(r);
 }
 
-LawSpec spec_of(const std::vector<std::string>& ids, std::uint64_t pairs, const std::vector<std::string>& strata = {}) {
-  LawSpec spec;
+InvariantSpec spec_of(const std::vector<std::string>& ids, std::uint64_t pairs,
+                      const std::vector<std::string>& strata = {}) {
+  InvariantSpec spec;
   for (const std::string& id : ids) {
     spec.lanes.push_back(find_lane(id));
     if (!spec.lanes.back()) throw std::logic_error(id + ": expected a lane");
@@ -38,56 +39,57 @@ LawSpec spec_of(const std::vector<std::string>& ids, std::uint64_t pairs, const 
   return spec;
 }
 
-std::string refusal(const LawSpec& spec) {
+std::string refusal(const InvariantSpec& spec) {
   try {
-    laws(spec);
-  } catch (const LawBroken& error) {
+    invariants(spec);
+  } catch (const InvariantBroken& error) {
     return error.what();
   }
   return "nothing broken";
 }
 
-TEST(Laws, ImagesAskTheSameQuestion) {
-  std::set<Law> asked;
+TEST(Invariants, ImagesAskTheSameQuestion) {
+  std::set<Invariant> asked;
   for (const strata::StratumInfo& stratum : strata::kStrata) {
     for (std::uint64_t i = 0; i < 12; ++i) {
       const Pair pair = strata::generate(3, stratum.stratum, i);
       const Verdict truth = oracle::truth(pair).verdict;
-      for (const LawInfo& law : kLaws) {
+      for (const InvariantInfo& invariant : kInvariants) {
         std::set<std::string> different;
-        for (const Pair& image : images(law.law, pair)) {
+        for (const Pair& image : images(invariant.invariant, pair)) {
           const Verdict of_image = oracle::truth(image).verdict;
-          EXPECT_FALSE(breaks(law.law, truth, of_image)) << law.id << " of " << stratum.id << " " << i;
+          EXPECT_FALSE(breaks(invariant.invariant, truth, of_image))
+              << invariant.id << " of " << stratum.id << " " << i;
           std::string text;
           for (int c = 0; c < kCoordinates; ++c) text += corpus::hex_float(coordinates(image)[c]) + ' ';
           different.insert(text);
-          asked.insert(law.law);
+          asked.insert(invariant.invariant);
         }
         if (stratum.id != "uniform") continue;
         const std::size_t all[] = {1, 35, 7, 5, 8};
-        if (static_cast<std::size_t>(law.law) < std::size(all)) {
-          EXPECT_EQ(different.size(), all[static_cast<std::size_t>(law.law)]) << law.id;
+        if (static_cast<std::size_t>(invariant.invariant) < std::size(all)) {
+          EXPECT_EQ(different.size(), all[static_cast<std::size_t>(invariant.invariant)]) << invariant.id;
         }
       }
     }
   }
-  EXPECT_EQ(asked.size(), kLawCount);
+  EXPECT_EQ(asked.size(), kInvariantCount);
 }
 
-TEST(Laws, NoImageThatWouldLoseBits) {
+TEST(Invariants, NoImageThatWouldLoseBits) {
   Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 0x1p-149f}}};
   // Not down; up only as far as 2^-149 leads.
-  EXPECT_EQ(images(Law::scale, pair).size(), 4u);
+  EXPECT_EQ(images(Invariant::scale, pair).size(), 4u);
   // Only what leaves z as it is: 2^-149 less or more than 1 is no float32.
-  EXPECT_EQ(images(Law::translate, pair).size(), 3u);
-  EXPECT_EQ(images(Law::part, pair).size(), 4u);
-  EXPECT_EQ(images(Law::part, images(Law::swap, pair).front()).size(), 4u);
+  EXPECT_EQ(images(Invariant::translate, pair).size(), 3u);
+  EXPECT_EQ(images(Invariant::part, pair).size(), 4u);
+  EXPECT_EQ(images(Invariant::part, images(Invariant::swap, pair).front()).size(), 4u);
   pair.b[2].z = 0;
-  EXPECT_EQ(images(Law::scale, pair).size(), 8u);
-  EXPECT_EQ(images(Law::translate, pair).size(), 8u);
-  EXPECT_EQ(images(Law::part, pair).size(), 8u);
+  EXPECT_EQ(images(Invariant::scale, pair).size(), 8u);
+  EXPECT_EQ(images(Invariant::translate, pair).size(), 8u);
+  EXPECT_EQ(images(Invariant::part, pair).size(), 8u);
   pair.a[1].x = 0x1p127f;
-  EXPECT_EQ(images(Law::scale, pair).size(), 4u);
+  EXPECT_EQ(images(Invariant::scale, pair).size(), 4u);
 }
 
 // Pairs as text, in their order.
@@ -107,7 +109,7 @@ Pair changed(const Pair& pair, float scale, float step) {
 }
 
 // Each way once, the pair itself first.
-TEST(Laws, NoWayIsMissingAndNoneIsThereTwice) {
+TEST(Invariants, NoWayIsMissingAndNoneIsThereTwice) {
   const Pair pair{{{1, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
   const std::vector<std::pair<std::vector<Pair>, std::size_t>> ways = {{orders(pair), 72},    {mirrored(pair), 8},
                                                                        {axes(pair), 6},       {scalings(pair), 129},
@@ -120,12 +122,12 @@ TEST(Laws, NoWayIsMissingAndNoneIsThereTwice) {
   }
 }
 
-TEST(Laws, ScaleByThesePowersAndMoveByTheLargestCoordinates) {
+TEST(Invariants, ScaleByThesePowersAndMoveByTheLargestCoordinates) {
   Pair pair{{{9, 2, 3}, {2, 0, 1}, {5, 1, 1}}, {{-1, 4, 2}, {0, 1, 6}, {3, 3, -2}}};
   std::vector<Pair> scaled;
   for (const float k : {2.0f, 0.5f, 16.0f, 0x1p-4f, 0x1p16f, 0x1p-16f, 0x1p64f, 0x1p-64f})
     scaled.push_back(changed(pair, k, 0));
-  EXPECT_EQ(texts(images(Law::scale, pair)), texts(scaled));
+  EXPECT_EQ(texts(images(Invariant::scale, pair)), texts(scaled));
   for (int largest = 0; largest < kCoordinates; ++largest) {
     std::swap(coordinates(pair)[0], coordinates(pair)[largest]);
     const std::vector<std::string> moved = texts(translated(pair));
@@ -135,7 +137,7 @@ TEST(Laws, ScaleByThesePowersAndMoveByTheLargestCoordinates) {
   }
 }
 
-TEST(Laws, NudgesAreAnUlpAndAThousandthOfTheCoordinateOrOfTheLargest) {
+TEST(Invariants, NudgesAreAnUlpAndAThousandthOfTheCoordinateOrOfTheLargest) {
   Pair pair{};
   coordinates(pair)[3] = 0x1p-20f;
   coordinates(pair)[17] = -0x1p-10f;
@@ -152,88 +154,89 @@ TEST(Laws, NudgesAreAnUlpAndAThousandthOfTheCoordinateOrOfTheLargest) {
   EXPECT_EQ(steps(0), (std::vector<float>{0x1p-43f, -0x1p-43f, 0x1p-30f, -0x1p-30f}));
 }
 
-TEST(Laws, WhatBreaksThem) {
+TEST(Invariants, WhatBreaksThem) {
   constexpr Verdict yes = Verdict::intersects, no = Verdict::disjoint, none = Verdict::declined;
-  EXPECT_TRUE(breaks(Law::swap, yes, no));
-  EXPECT_TRUE(breaks(Law::swap, no, none));
-  EXPECT_FALSE(breaks(Law::swap, none, none));
-  EXPECT_TRUE(breaks(Law::part, no, yes));
-  EXPECT_FALSE(breaks(Law::part, yes, no));
-  EXPECT_FALSE(breaks(Law::part, none, yes));
+  EXPECT_TRUE(breaks(Invariant::swap, yes, no));
+  EXPECT_TRUE(breaks(Invariant::swap, no, none));
+  EXPECT_FALSE(breaks(Invariant::swap, none, none));
+  EXPECT_TRUE(breaks(Invariant::part, no, yes));
+  EXPECT_FALSE(breaks(Invariant::part, yes, no));
+  EXPECT_FALSE(breaks(Invariant::part, none, yes));
 }
 
 // A new algorithm says what it claims, be it nothing: a row of kClaims.
-TEST(Laws, EachAlgorithmSaysWhatItClaims) {
-  for (const Lane& lane : published_lanes()) EXPECT_FALSE(claimed_laws(lane.info->id).empty()) << lane.info->id;
-  EXPECT_TRUE(claims(*find_lane("separating_axes/f32/cuda-nofma"), Law::swap));
-  EXPECT_FALSE(claims(*find_lane("separating_axes/f32/cuda-fma"), Law::swap));
-  EXPECT_FALSE(claims(*find_lane("separating_axes/f32/cpu"), Law::order));
-  EXPECT_FALSE(claims(*find_lane("exact/f32/cpu"), Law::scale));
+TEST(Invariants, EachAlgorithmSaysWhatItClaims) {
+  for (const Lane& lane : published_lanes()) EXPECT_FALSE(claimed_invariants(lane.info->id).empty()) << lane.info->id;
+  EXPECT_TRUE(claims(*find_lane("separating_axes/f32/cuda-nofma"), Invariant::swap));
+  EXPECT_FALSE(claims(*find_lane("separating_axes/f32/cuda-fma"), Invariant::swap));
+  EXPECT_FALSE(claims(*find_lane("separating_axes/f32/cpu"), Invariant::order));
+  EXPECT_FALSE(claims(*find_lane("exact/f32/cpu"), Invariant::scale));
 }
 
 // Every claim on every stratum, and no claim too few: what is not claimed, some pair breaks.
-TEST(Laws, ClaimsHoldAndNothingElseDoes) {
+TEST(Invariants, ClaimsHoldAndNothingElseDoes) {
   std::vector<std::string> ids;
   for (const Lane& lane : published_lanes()) {
     if (lane.variant == Variant::cpu || lane.variant == Variant::cuda_nofma) ids.push_back(lane.id);
   }
-  const LawSpec spec = spec_of(ids, 19 * 150);
-  const Laws found = laws(spec);  // throws where a claim is broken
+  const InvariantSpec spec = spec_of(ids, 19 * 150);
+  const Invariants found = invariants(spec);  // throws where a claim is broken
   EXPECT_EQ(found.pairs, 19u * 150);
   for (std::size_t l = 0; l < ids.size(); ++l) {
-    for (const LawInfo& law : kLaws) {
-      const LawCount count = found.lanes[l].total(law.law);
-      EXPECT_GT(count.pairs, 100u) << law.id;
-      if (spec.lanes[l]->scalar == Scalar::f32 && !claims(*spec.lanes[l], law.law)) {
-        EXPECT_GT(count.changed, 0u) << ids[l] << " " << law.id;
+    for (const InvariantInfo& invariant : kInvariants) {
+      const InvariantCount count = found.lanes[l].total(invariant.invariant);
+      EXPECT_GT(count.pairs, 100u) << invariant.id;
+      if (spec.lanes[l]->scalar == Scalar::f32 && !claims(*spec.lanes[l], invariant.invariant)) {
+        EXPECT_GT(count.changed, 0u) << ids[l] << " " << invariant.id;
       }
     }
   }
 }
 
 // Counted a second time, one pair and one image after the other.
-TEST(Laws, CountsAreThoseOfAPlainLoop) {
-  const LawSpec spec =
+TEST(Invariants, CountsAreThoseOfAPlainLoop) {
+  const InvariantSpec spec =
       spec_of({"moller_1997/f32/cpu", "guigue_devillers_2003/f32/cuda-fma"}, 300, {"near_edge_edge", "lattice"});
-  const Laws found = laws(spec);
+  const Invariants found = invariants(spec);
   std::uint64_t changes = 0;
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-    for (const LawInfo& law : kLaws) {
+    for (const InvariantInfo& invariant : kInvariants) {
       for (std::size_t s = 0; s < spec.sources.size(); ++s) {
-        LawCount counted;
+        InvariantCount counted;
         for (std::uint64_t i = 0; i < spec.sources[s].pairs; ++i) {
           const Pair pair = spec.sources[s].pair(i);
-          const std::vector<Pair> all = images(law.law, pair);
+          const std::vector<Pair> all = images(invariant.invariant, pair);
           counted.pairs += !all.empty();
           counted.changed += std::any_of(all.begin(), all.end(), [&](const Pair& image) {
-            return breaks(law.law, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image));
+            return breaks(invariant.invariant, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image));
           });
           const Lane& host = *counterpart(*spec.lanes[l], Variant::cpu);
           counted.in_range +=
               !leaves_exponents(host, pair) && std::any_of(all.begin(), all.end(), [&](const Pair& image) {
-                return breaks(law.law, decide_one(spec.on_host[l], pair), decide_one(spec.on_host[l], image)) &&
+                return breaks(invariant.invariant, decide_one(spec.on_host[l], pair),
+                              decide_one(spec.on_host[l], image)) &&
                        !leaves_exponents(host, image);
               });
         }
-        const LawCount& count = found.lanes[l].counts[static_cast<std::size_t>(law.law)][s];
-        EXPECT_EQ(count.pairs, counted.pairs) << spec.lanes[l]->id << " " << law.id;
-        EXPECT_EQ(count.changed, counted.changed) << spec.lanes[l]->id << " " << law.id;
-        EXPECT_EQ(count.in_range, counted.in_range) << spec.lanes[l]->id << " " << law.id;
+        const InvariantCount& count = found.lanes[l].counts[static_cast<std::size_t>(invariant.invariant)][s];
+        EXPECT_EQ(count.pairs, counted.pairs) << spec.lanes[l]->id << " " << invariant.id;
+        EXPECT_EQ(count.changed, counted.changed) << spec.lanes[l]->id << " " << invariant.id;
+        EXPECT_EQ(count.in_range, counted.in_range) << spec.lanes[l]->id << " " << invariant.id;
         changes += count.changed;
       }
-      const std::optional<LawCase>& kept = found.lanes[l].simplest[static_cast<std::size_t>(law.law)];
-      ASSERT_EQ(kept.has_value(), found.lanes[l].total(law.law).changed > 0);
+      const std::optional<InvariantCase>& kept = found.lanes[l].simplest[static_cast<std::size_t>(invariant.invariant)];
+      ASSERT_EQ(kept.has_value(), found.lanes[l].total(invariant.invariant).changed > 0);
       if (!kept) continue;
       EXPECT_EQ(decide_one(spec.on_host[l], kept->pair), kept->of_pair);
       EXPECT_EQ(decide_one(spec.on_host[l], kept->image), kept->of_image);
-      EXPECT_TRUE(breaks(law.law, kept->of_pair, kept->of_image));
+      EXPECT_TRUE(breaks(invariant.invariant, kept->of_pair, kept->of_image));
     }
   }
   EXPECT_GT(changes, 100u);
   std::uint64_t all = 0;
   for (const strata::PairSource& source : spec.sources) {
     for (std::uint64_t i = 0; i < source.pairs; ++i) {
-      for (const LawInfo& law : kLaws) all += images(law.law, source.pair(i)).size();
+      for (const InvariantInfo& invariant : kInvariants) all += images(invariant.invariant, source.pair(i)).size();
     }
   }
   EXPECT_EQ(found.images, all);
@@ -242,15 +245,15 @@ TEST(Laws, CountsAreThoseOfAPlainLoop) {
 }
 
 // And so is what each power of two changes alone: all of them together change more than the most that one does.
-TEST(Laws, EachScaleIsCountedAlone) {
-  const LawSpec spec =
+TEST(Invariants, EachScaleIsCountedAlone) {
+  const InvariantSpec spec =
       spec_of({"projected_sat/f32/cpu", "moller_1997/f32/cpu"}, 1000, {"near_edge_edge", "extreme_scale"});
-  const Laws found = laws(spec);
+  const Invariants found = invariants(spec);
   std::uint64_t most = 0, least = ~std::uint64_t{0};
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-    const LawsOfLane& of = found.lanes[l];
+    const InvariantsOfLane& of = found.lanes[l];
     for (std::size_t s = 0; s < kScales.size(); ++s) {
-      LawCount counted;
+      InvariantCount counted;
       for (const strata::PairSource& source : spec.sources) {
         for (std::uint64_t i = 0; i < source.pairs; ++i) {
           const Pair pair = source.pair(i);
@@ -264,28 +267,28 @@ TEST(Laws, EachScaleIsCountedAlone) {
       EXPECT_EQ(of.by_scale[s].pairs, counted.pairs) << kScales[s];
       EXPECT_EQ(of.by_scale[s].changed, counted.changed) << kScales[s];
       EXPECT_EQ(of.by_scale[s].in_range, counted.in_range) << kScales[s];
-      EXPECT_LE(of.by_scale[s].changed, of.total(Law::scale).changed);
+      EXPECT_LE(of.by_scale[s].changed, of.total(Invariant::scale).changed);
       if (l == 0) most = std::max(most, counted.in_range), least = std::min(least, counted.in_range);
     }
   }
   EXPECT_GT(most, least);
-  EXPECT_GT(found.lanes[0].total(Law::scale).in_range, most);
+  EXPECT_GT(found.lanes[0].total(Invariant::scale).in_range, most);
 }
 
 // A lane whose convention leaves touching pairs open is not asked about them, nor about such parts of others.
-TEST(Laws, WhatAConventionLeavesOpenIsNotAsked) {
-  LawSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex", "near_edge_edge"});
-  const Laws all = laws(spec);
+TEST(Invariants, WhatAConventionLeavesOpenIsNotAsked) {
+  InvariantSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex", "near_edge_edge"});
+  const Invariants all = invariants(spec);
   Lane lane = *spec.lanes[0];
   lane.outside = kOutsideShared;
   spec.lanes[0] = &lane;
-  const Laws asked = laws(spec);
-  for (const LawInfo& law : kLaws) {
-    const auto &with = asked.lanes[0].counts[static_cast<std::size_t>(law.law)],
-               &without = all.lanes[0].counts[static_cast<std::size_t>(law.law)];
-    EXPECT_EQ(with[0].pairs, without[0].pairs) << law.id;  // near_edge_edge
-    EXPECT_EQ(with[0].changed, without[0].changed) << law.id;
-    EXPECT_EQ(with[1].pairs, 0u) << law.id;
+  const Invariants asked = invariants(spec);
+  for (const InvariantInfo& invariant : kInvariants) {
+    const auto &with = asked.lanes[0].counts[static_cast<std::size_t>(invariant.invariant)],
+               &without = all.lanes[0].counts[static_cast<std::size_t>(invariant.invariant)];
+    EXPECT_EQ(with[0].pairs, without[0].pairs) << invariant.id;  // near_edge_edge
+    EXPECT_EQ(with[0].changed, without[0].changed) << invariant.id;
+    EXPECT_EQ(with[1].pairs, 0u) << invariant.id;
   }
   // The second triangle pierces the first and touches one of its parts, on which alone this lane says that they meet.
   spec.sources = {{"one", 1, [](std::uint64_t) {
@@ -301,22 +304,22 @@ TEST(Laws, WhatAConventionLeavesOpenIsNotAsked) {
             intersects[i / 64] |= std::uint64_t{1} << i % 64;
         }
       });
-  EXPECT_EQ(laws(spec).lanes[0].total(Law::part).changed, 1u);
+  EXPECT_EQ(invariants(spec).lanes[0].total(Invariant::part).changed, 1u);
   lane.outside = kOutsideTouching;
-  EXPECT_EQ(laws(spec).lanes[0].total(Law::part).changed, 0u);
+  EXPECT_EQ(invariants(spec).lanes[0].total(Invariant::part).changed, 0u);
   // A common area is no touch, though an ulp can part the two: it is asked about, as such a touch is not; and so are
   // those apart.
   for (const auto& [x, asked_about] : {std::pair{1.0f, 1u}, {4.0f, 0u}, {9.0f, 1u}}) {
     spec.sources = {{"one", 1, [x](std::uint64_t) {
                        return Pair{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{x, 0, 0}, {x + 4, 0, 0}, {x, 4, 0}}};
                      }}};
-    for (const LawInfo& law : kLaws)
-      EXPECT_EQ(laws(spec).lanes[0].total(law.law).pairs, asked_about) << law.id << ' ' << x;
+    for (const InvariantInfo& invariant : kInvariants)
+      EXPECT_EQ(invariants(spec).lanes[0].total(invariant.invariant).pairs, asked_about) << invariant.id << ' ' << x;
   }
 }
 
 // The steps of foreign code are not known, and those under a tolerance are others.
-TEST(Laws, RangeIsKnownOfPublishedLanesAlone) {
+TEST(Invariants, RangeIsKnownOfPublishedLanesAlone) {
   Lane lane = *find_lane("moller_1997/f32/cpu");
   EXPECT_TRUE(knows_range(lane));
   lane.policy = "rel:16";
@@ -326,20 +329,20 @@ TEST(Laws, RangeIsKnownOfPublishedLanesAlone) {
   EXPECT_FALSE(knows_range(lane));
 }
 
-TEST(Laws, AreTheSameWhateverTheThreads) {
-  LawSpec spec = spec_of({"moller_1997/f32/cpu", "separating_axes/f64/cpu"}, 600, {"near_*"});
+TEST(Invariants, AreTheSameWhateverTheThreads) {
+  InvariantSpec spec = spec_of({"moller_1997/f32/cpu", "separating_axes/f64/cpu"}, 600, {"near_*"});
   spec.threads = 1;
-  const Laws one = laws(spec);
+  const Invariants one = invariants(spec);
   spec.threads = 3;
-  const Laws three = laws(spec);
+  const Invariants three = invariants(spec);
   EXPECT_EQ(one.images, three.images);
   EXPECT_EQ(one.its_images, three.its_images);
   EXPECT_EQ(one.by_oracle, 4u * 19);  // of each stratum's 150
   for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-    for (const LawInfo& law : kLaws) {
-      EXPECT_EQ(one.lanes[l].total(law.law).changed, three.lanes[l].total(law.law).changed);
-      const auto &kept = one.lanes[l].simplest[static_cast<std::size_t>(law.law)],
-                 &again = three.lanes[l].simplest[static_cast<std::size_t>(law.law)];
+    for (const InvariantInfo& invariant : kInvariants) {
+      EXPECT_EQ(one.lanes[l].total(invariant.invariant).changed, three.lanes[l].total(invariant.invariant).changed);
+      const auto &kept = one.lanes[l].simplest[static_cast<std::size_t>(invariant.invariant)],
+                 &again = three.lanes[l].simplest[static_cast<std::size_t>(invariant.invariant)];
       ASSERT_EQ(kept.has_value(), again.has_value());
       if (kept) {
         EXPECT_EQ(kept->place, again->place);
@@ -349,9 +352,9 @@ TEST(Laws, AreTheSameWhateverTheThreads) {
 }
 
 // One verdict of an exact decision that depends on the order stops the run, and so does one of the oracle.
-TEST(Laws, StopWhereTheTruthBreaksOne) {
-  LawSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex"});
-  const Pair swapped = images(Law::swap, spec.sources[0].pair(3)).front();
+TEST(Invariants, StopWhereTheTruthBreaksOne) {
+  InvariantSpec spec = spec_of({"moller_1997/f32/cpu"}, 40, {"shared_vertex"});
+  const Pair swapped = images(Invariant::swap, spec.sources[0].pair(3)).front();
   static Pair wrong_on;
   wrong_on = swapped;
   spec.exact =
@@ -362,8 +365,9 @@ TEST(Laws, StopWhereTheTruthBreaksOne) {
             intersects[i / 64] ^= std::uint64_t{1} << i % 64;
         }
       });
-  EXPECT_EQ(refusal(spec),
-            "exact breaks the law \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
+  EXPECT_EQ(
+      refusal(spec),
+      "exact breaks the invariant \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
   spec.exact = find_lane("exact/f32/cpu")->decide;
   EXPECT_EQ(refusal(spec), "nothing broken");
   spec.oracle_every = 1;
@@ -371,24 +375,25 @@ TEST(Laws, StopWhereTheTruthBreaksOne) {
     return oracle_intersects(pair) !=
            std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(swapped));
   };
-  EXPECT_EQ(
-      refusal(spec),
-      "the oracle breaks the law \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image disjoint");
+  EXPECT_EQ(refusal(spec),
+            "the oracle breaks the invariant \"swap\" on pair 3 of shared_vertex: it says intersects, and of an image "
+            "disjoint");
   // Wrong on the pair itself: seen before its images are.
   spec.intersects = [&](const Pair& pair) { return oracle_intersects(pair) && simpler(pair, pair); };
   EXPECT_EQ(refusal(spec), "exact and the oracle differ on pair 0 of shared_vertex: intersects and disjoint");
 }
 
-// A lane that claims a law and breaks it stops the run; so does one that is said to be exact.
-TEST(Laws, StopWhereAClaimIsBroken) {
-  LawSpec spec = spec_of({"separating_axes/f64/cpu"}, 2000, {"near_*"});
+// A lane that claims an invariant and breaks it stops the run; so does one that is said to be exact.
+TEST(Invariants, StopWhereAClaimIsBroken) {
+  InvariantSpec spec = spec_of({"separating_axes/f64/cpu"}, 2000, {"near_*"});
   EXPECT_EQ(refusal(spec), "nothing broken");
   spec.on_host[0] = find_lane("moller_1997/f64/cpu")->decide;  // does not keep what separating_axes claims
-  EXPECT_TRUE(refusal(spec).starts_with("separating_axes/f64/cpu, which claims it, breaks the law \"swap\" on pair "))
+  EXPECT_TRUE(
+      refusal(spec).starts_with("separating_axes/f64/cpu, which claims it, breaks the invariant \"swap\" on pair "))
       << refusal(spec);
-  LawSpec exact = spec_of({"exact/f32/cpu"}, 2000, {"near_*"});
+  InvariantSpec exact = spec_of({"exact/f32/cpu"}, 2000, {"near_*"});
   exact.on_host[0] = find_lane("moller_1997/f64/cpu")->decide;
-  EXPECT_TRUE(refusal(exact).starts_with("exact/f32/cpu breaks the law \"order\" on pair ")) << refusal(exact);
+  EXPECT_TRUE(refusal(exact).starts_with("exact/f32/cpu breaks the invariant \"order\" on pair ")) << refusal(exact);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "analysis/laws.h"
+#include "analysis/invariants.h"
 
 #include <fmt/format.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -34,14 +34,14 @@ constexpr std::uint64_t kBlock = 32;  // pairs; with their images some 2,300
 // No formula survives another order of its vertices or axes: sums of three round by their order.
 struct Claims {
   std::string_view algorithm;
-  std::vector<Law> laws;
+  std::vector<Invariant> invariants;
 };
 const Claims kClaims[] = {
-    {"projected_sat", {Law::mirror}},
-    {"interval_overlap", {Law::mirror}},
-    {"moller_1997", {Law::mirror, Law::scale}},
-    {"guigue_devillers_2003", {Law::scale, Law::translate}},
-    {"separating_axes", {Law::swap, Law::mirror, Law::scale}},
+    {"projected_sat", {Invariant::mirror}},
+    {"interval_overlap", {Invariant::mirror}},
+    {"moller_1997", {Invariant::mirror, Invariant::scale}},
+    {"guigue_devillers_2003", {Invariant::scale, Invariant::translate}},
+    {"separating_axes", {Invariant::swap, Invariant::mirror, Invariant::scale}},
 };
 
 std::vector<Pair> scaled_images(const Pair& pair) {
@@ -61,9 +61,9 @@ std::vector<std::size_t> used_scales(const Pair& pair) {
   return places;
 }
 
-// The images of one pair by one law, as a range of the block's pairs.
+// The images of one pair by one invariant, as a range of the block's pairs.
 struct Group {
-  Law law;
+  Invariant invariant;
   std::size_t pair, first, last;
 };
 
@@ -77,9 +77,9 @@ struct Asked {
     for (std::uint64_t i = 0; i < count; ++i) all.push_back(source.pair(first + i));
     for (std::size_t p = 0; p < pairs; ++p) {
       if (!is_finite(all[p])) continue;
-      for (const LawInfo& law : kLaws) {
-        const std::vector<Pair> of = images(law.law, all[p]);
-        groups.push_back({law.law, p, all.size(), all.size() + of.size()});
+      for (const InvariantInfo& invariant : kInvariants) {
+        const std::vector<Pair> of = images(invariant.invariant, all[p]);
+        groups.push_back({invariant.invariant, p, all.size(), all.size() + of.size()});
         all.insert(all.end(), of.begin(), of.end());
       }
     }
@@ -90,18 +90,19 @@ bool is_outside(const Lane& lane, const Pair& pair) {
   return lane.outside != 0 && analysis::is_outside(lane, pair, relation_of(pair));
 }
 
-LawBroken broken(std::string_view who, Law law, const strata::PairSource& source, std::uint64_t index, Verdict pair,
-                 Verdict image) {
-  return LawBroken(fmt::format("{} breaks the law \"{}\" on pair {} of {}: it says {}, and of {} {}", who,
-                               kLaws[static_cast<std::size_t>(law)].id, index, source.id, name(pair),
-                               law == Law::part ? "a part" : "an image", name(image)));
+InvariantBroken broken(std::string_view who, Invariant invariant, const strata::PairSource& source, std::uint64_t index,
+                       Verdict pair, Verdict image) {
+  return InvariantBroken(fmt::format("{} breaks the invariant \"{}\" on pair {} of {}: it says {}, and of {} {}", who,
+                                     kInvariants[static_cast<std::size_t>(invariant)].id, index, source.id, name(pair),
+                                     invariant == Invariant::part ? "a part" : "an image", name(image)));
 }
 
 struct Run {
-  const LawSpec& spec;
+  const InvariantSpec& spec;
 
   // The exact decision on every image; the oracle on those of some pairs.
-  void expect_truth(const Asked& asked, const strata::PairSource& source, std::uint64_t first, Laws& counts) const {
+  void expect_truth(const Asked& asked, const strata::PairSource& source, std::uint64_t first,
+                    Invariants& counts) const {
     const std::vector<Verdict> exactly = verdicts_of(spec.exact, asked.all);
     const auto by_oracle = [&](std::size_t i) {
       return spec.intersects(asked.all[i]) ? Verdict::intersects : Verdict::disjoint;
@@ -112,18 +113,18 @@ struct Run {
       of_pair[p] = by_oracle(p);
       ++counts.by_oracle;
       if (of_pair[p] != exactly[p])
-        throw LawBroken(fmt::format("exact and the oracle differ on pair {} of {}: {} and {}", first + p, source.id,
-                                    name(exactly[p]), name(of_pair[p])));
+        throw InvariantBroken(fmt::format("exact and the oracle differ on pair {} of {}: {} and {}", first + p,
+                                          source.id, name(exactly[p]), name(of_pair[p])));
     }
     for (const Group& group : asked.groups) {
       for (std::size_t i = group.first; i < group.last; ++i) {
-        if (breaks(group.law, exactly[group.pair], exactly[i]))
-          throw broken("exact", group.law, source, first + group.pair, exactly[group.pair], exactly[i]);
+        if (breaks(group.invariant, exactly[group.pair], exactly[i]))
+          throw broken("exact", group.invariant, source, first + group.pair, exactly[group.pair], exactly[i]);
         if (of_pair[group.pair] == Verdict::declined) continue;
         const Verdict of_image = by_oracle(i);
         ++counts.its_images;
-        if (breaks(group.law, of_pair[group.pair], of_image))
-          throw broken("the oracle", group.law, source, first + group.pair, of_pair[group.pair], of_image);
+        if (breaks(group.invariant, of_pair[group.pair], of_image))
+          throw broken("the oracle", group.invariant, source, first + group.pair, of_pair[group.pair], of_image);
       }
     }
     counts.pairs += asked.pairs;
@@ -136,13 +137,13 @@ struct Run {
     return leaves_exponents(host, pair) || leaves_exponents(host, image);
   }
 
-  void keep(std::optional<LawCase>& kept, const LawCase& found) const {
+  void keep(std::optional<InvariantCase>& kept, const InvariantCase& found) const {
     const bool better = !kept || spec.simpler(found.pair, kept->pair) ||
                         (!spec.simpler(kept->pair, found.pair) && found.place < kept->place);
     if (better) kept = found;
   }
 
-  void count(std::size_t l, const Asked& asked, const PairPlace& first, LawsOfLane& result) const {
+  void count(std::size_t l, const Asked& asked, const PairPlace& first, InvariantsOfLane& result) const {
     const Lane& lane = *spec.lanes[l];
     const strata::PairSource& source = spec.sources[static_cast<std::size_t>(first.source)];
     const std::vector<Verdict> said = verdicts_of(spec.on_host[l], asked.all);
@@ -150,25 +151,25 @@ struct Run {
     for (std::size_t p = 0; p < asked.pairs; ++p) outside[p] = is_outside(lane, asked.all[p]);
     for (const Group& group : asked.groups) {
       if (group.first == group.last || outside[group.pair]) continue;
-      const auto law = static_cast<std::size_t>(group.law);
-      LawCount& counts = result.counts[law][static_cast<std::size_t>(first.source)];
+      const auto invariant = static_cast<std::size_t>(group.invariant);
+      InvariantCount& counts = result.counts[invariant][static_cast<std::size_t>(first.source)];
       ++counts.pairs;
       bool changed = false, in_range = false;
       const PairPlace place{first.source, first.index + group.pair};
-      const bool scale = group.law == Law::scale;
+      const bool scale = group.invariant == Invariant::scale;
       const std::vector<std::size_t> scales = scale ? used_scales(asked.all[group.pair]) : std::vector<std::size_t>();
       for (const std::size_t s : scales) ++result.by_scale[s].pairs;
       for (std::size_t i = group.first; i < group.last; ++i) {
-        if (!breaks(group.law, said[group.pair], said[i])) continue;
-        if (group.law == Law::part && is_outside(lane, asked.all[i])) continue;
-        const LawCase found{place, asked.all[group.pair], asked.all[i], said[group.pair], said[i]};
+        if (!breaks(group.invariant, said[group.pair], said[i])) continue;
+        if (group.invariant == Invariant::part && is_outside(lane, asked.all[i])) continue;
+        const InvariantCase found{place, asked.all[group.pair], asked.all[i], said[group.pair], said[i]};
         const bool stays = (scale || !in_range) && knows_range(lane) && !leaves(lane, found.pair, found.image);
         in_range = in_range || stays;
         if (scale) result.by_scale[scales[i - group.first]] += {0, 1, stays};
-        if (lane.exact || (claims(lane, group.law) && in_range))
-          throw broken(lane.id + (lane.exact ? "" : ", which claims it,"), group.law, source, place.index,
+        if (lane.exact || (claims(lane, group.invariant) && in_range))
+          throw broken(lane.id + (lane.exact ? "" : ", which claims it,"), group.invariant, source, place.index,
                        found.of_pair, found.of_image);
-        if (!changed) keep(result.simplest[law], found);
+        if (!changed) keep(result.simplest[invariant], found);
         changed = true;
       }
       counts.changed += changed;
@@ -177,49 +178,49 @@ struct Run {
   }
 };
 
-Laws nothing_yet(const LawSpec& spec) {
-  Laws laws;
-  laws.lanes.resize(spec.lanes.size());
-  for (LawsOfLane& lane : laws.lanes) lane.counts.fill(std::vector<LawCount>(spec.sources.size()));
-  return laws;
+Invariants nothing_yet(const InvariantSpec& spec) {
+  Invariants invariants;
+  invariants.lanes.resize(spec.lanes.size());
+  for (InvariantsOfLane& lane : invariants.lanes) lane.counts.fill(std::vector<InvariantCount>(spec.sources.size()));
+  return invariants;
 }
 
 }  // namespace
 
-LawCount& LawCount::operator+=(const LawCount& other) {
+InvariantCount& InvariantCount::operator+=(const InvariantCount& other) {
   pairs += other.pairs;
   changed += other.changed;
   in_range += other.in_range;
   return *this;
 }
 
-LawCount LawsOfLane::total(Law law) const {
-  LawCount sum;
-  for (const LawCount& of_source : counts[static_cast<std::size_t>(law)]) sum += of_source;
+InvariantCount InvariantsOfLane::total(Invariant invariant) const {
+  InvariantCount sum;
+  for (const InvariantCount& of_source : counts[static_cast<std::size_t>(invariant)]) sum += of_source;
   return sum;
 }
 
-std::vector<Pair> images(Law law, const Pair& pair) {
+std::vector<Pair> images(Invariant invariant, const Pair& pair) {
   std::vector<Pair> result;
-  switch (law) {
-    case Law::swap:
+  switch (invariant) {
+    case Invariant::swap:
       return {Pair{{pair.b[0], pair.b[1], pair.b[2]}, {pair.a[0], pair.a[1], pair.a[2]}}};
-    case Law::order:
+    case Invariant::order:
       result = orders(pair);
       result.resize(36);
       break;
-    case Law::mirror:
+    case Invariant::mirror:
       result = mirrored(pair);
       break;
-    case Law::axes:
+    case Invariant::axes:
       result = axes(pair);
       break;
-    case Law::scale:
+    case Invariant::scale:
       return scaled_images(pair);
-    case Law::translate:
+    case Invariant::translate:
       result = translated(pair);
       break;
-    case Law::part:
+    case Invariant::part:
       result = parts(pair);
       break;
   }
@@ -227,40 +228,40 @@ std::vector<Pair> images(Law law, const Pair& pair) {
   return result;
 }
 
-bool breaks(Law law, Verdict of_pair, Verdict of_image) {
-  if (law != Law::part) return of_pair != of_image;
+bool breaks(Invariant invariant, Verdict of_pair, Verdict of_image) {
+  if (invariant != Invariant::part) return of_pair != of_image;
   return of_image == Verdict::intersects && of_pair == Verdict::disjoint;
 }
 
-std::vector<Law> claimed_laws(std::string_view algorithm) {
+std::vector<Invariant> claimed_invariants(std::string_view algorithm) {
   for (const Claims& row : kClaims) {
-    if (row.algorithm == algorithm) return row.laws;
+    if (row.algorithm == algorithm) return row.invariants;
   }
   return {};
 }
 
 bool knows_range(const Lane& lane) { return lane.algorithm >= 0 && lane.policy.empty(); }
 
-bool claims(const Lane& lane, Law law) {
+bool claims(const Lane& lane, Invariant invariant) {
   if (!knows_range(lane) || info_of(lane.variant).arithmetic != Arithmetic::rounded) return false;
-  const std::vector<Law> claimed = claimed_laws(lane.info->id);
-  return std::find(claimed.begin(), claimed.end(), law) != claimed.end();
+  const std::vector<Invariant> claimed = claimed_invariants(lane.info->id);
+  return std::find(claimed.begin(), claimed.end(), invariant) != claimed.end();
 }
 
 bool oracle_intersects(const Pair& pair) {
   const bool intersects = oracle::cgal_verdict(pair) == Verdict::intersects;
   if (intersects == (oracle::gmp_contact(pair) == Contact::none))
-    throw LawBroken(fmt::format("CGAL and GMP differ: {} and {}", intersects, !intersects));
+    throw InvariantBroken(fmt::format("CGAL and GMP differ: {} and {}", intersects, !intersects));
   return intersects;
 }
 
-Laws laws(const LawSpec& spec) {
+Invariants invariants(const InvariantSpec& spec) {
   const std::vector<SourceBlock> blocks = blocks_of(spec.sources, kBlock);
   const auto threads = static_cast<std::size_t>(spec.threads > 0 ? spec.threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  tbb::enumerable_thread_specific<Laws> results([&] { return nothing_yet(spec); });
+  tbb::enumerable_thread_specific<Invariants> results([&] { return nothing_yet(spec); });
   const Run run{spec};
-  // A broken law is told of the first block that has one, whichever is met first.
+  // A broken invariant is told of the first block that has one, whichever is met first.
   std::mutex mutex;
   std::size_t first_broken = blocks.size();
   std::string what;
@@ -271,29 +272,30 @@ Laws laws(const LawSpec& spec) {
     }
     const SourceBlock& block = blocks[b];
     const strata::PairSource& source = spec.sources[static_cast<std::size_t>(block.source)];
-    Laws& result = results.local();
+    Invariants& result = results.local();
     try {
       const Asked asked(source, block.first, block.count);
       run.expect_truth(asked, source, block.first, result);
       for (std::size_t l = 0; l < spec.lanes.size(); ++l)
         run.count(l, asked, {block.source, block.first}, result.lanes[l]);
-    } catch (const LawBroken& error) {
+    } catch (const InvariantBroken& error) {
       const std::lock_guard lock(mutex);
       if (b < first_broken) first_broken = b, what = error.what();
     }
   });
-  if (first_broken < blocks.size()) throw LawBroken(what);
-  Laws all = nothing_yet(spec);
-  for (const Laws& some : results) {
+  if (first_broken < blocks.size()) throw InvariantBroken(what);
+  Invariants all = nothing_yet(spec);
+  for (const Invariants& some : results) {
     all.pairs += some.pairs;
     all.images += some.images;
     all.by_oracle += some.by_oracle;
     all.its_images += some.its_images;
     for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
-      for (std::size_t law = 0; law < kLawCount; ++law) {
+      for (std::size_t invariant = 0; invariant < kInvariantCount; ++invariant) {
         for (std::size_t s = 0; s < spec.sources.size(); ++s)
-          all.lanes[l].counts[law][s] += some.lanes[l].counts[law][s];
-        if (some.lanes[l].simplest[law]) run.keep(all.lanes[l].simplest[law], *some.lanes[l].simplest[law]);
+          all.lanes[l].counts[invariant][s] += some.lanes[l].counts[invariant][s];
+        if (some.lanes[l].simplest[invariant])
+          run.keep(all.lanes[l].simplest[invariant], *some.lanes[l].simplest[invariant]);
       }
       for (std::size_t s = 0; s < kScales.size(); ++s) all.lanes[l].by_scale[s] += some.lanes[l].by_scale[s];
     }

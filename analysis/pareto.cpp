@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "analysis/trade.h"
+#include "analysis/pareto.h"
 
 #include <algorithm>
 #include <chrono>

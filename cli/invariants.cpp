@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze laws`: how often each lane's verdict changes although the question is the same.
+// `graze invariants`: how often each lane's verdict changes although the question is the same.
 #include <fmt/format.h>
 
 #include "cli/commands.h"
@@ -8,50 +8,51 @@
 #include "core/text.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/simplicity.h"
-#include "reports/laws.h"
+#include "reports/invariants.h"
 
 namespace graze::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct LawsOptions {
+struct InvariantsOptions {
   LaneOptions lanes;
   std::vector<std::string> strata;
   std::uint64_t pairs = 20'000, seed = 1;
   int threads = 0;
-  std::string scene, out = "laws";
+  std::string scene, out = "invariants";
 };
 
-int laws(const LawsOptions& options) {
+int invariants(const InvariantsOptions& options) {
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes);
-  analysis::LawSpec spec;
+  analysis::InvariantSpec spec;
   spec.lanes = under_test.lanes;
   spec.on_host = under_test.on_host;
   strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
   spec.sources = std::move(all.sources);
   spec.threads = options.threads;
   spec.simpler = [](const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuzz::simplicity(r); };
-  const ResultFolder folder(options.out, "laws.json");
-  const analysis::Laws found = analysis::laws(spec);
+  const ResultFolder folder(options.out, "invariants.json");
+  const analysis::Invariants found = analysis::invariants(spec);
 
   const fs::path& out = folder.path;
   fs::create_directories(out / "cases");
   const reports::Screen screen = output_screen();
-  fmt::print("{}", reports::laws_table(spec, found, screen));
-  for (const std::string& sentence : reports::laws_sentences(spec, found))
+  fmt::print("{}", reports::invariants_table(spec, found, screen));
+  for (const std::string& sentence : reports::invariants_sentences(spec, found))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(all.left_out));
   nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
   if (!options.scene.empty()) json["scene"] = options.scene;
   fuzz::add_left_out(json, under_test);
-  json.update(reports::laws_json(spec, found));
-  write_result(out / "laws.json", json.dump(1) + "\n");
-  const std::map<std::string, std::string> cases = reports::laws_cases(spec, found);
-  for (const analysis::LawInfo& law : analysis::kLaws)
-    remove_result(out / "cases" / (std::string(law.id) + ".pairs"), kPairs);
+  json.update(reports::invariants_json(spec, found));
+  write_result(out / "invariants.json", json.dump(1) + "\n");
+  const std::map<std::string, std::string> cases = reports::invariants_cases(spec, found);
+  for (const analysis::InvariantInfo& invariant : analysis::kInvariants)
+    remove_result(out / "cases" / (std::string(invariant.id) + ".pairs"), kPairs);
   for (const auto& [file, text] : cases) write_result(out / "cases" / file, text);
-  fmt::print("Wrote {0}/laws.json{1}\n", out.string(), cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
+  fmt::print("Wrote {0}/invariants.json{1}\n", out.string(),
+             cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
   if (cases.empty()) return 0;
   const std::string first = (out / "cases" / cases.begin()->first).string();
   fmt::print("Next: graze explain {}\n", shell_word(first));
@@ -60,11 +61,12 @@ int laws(const LawsOptions& options) {
 
 }  // namespace
 
-void add_laws(CLI::App& app, int& status) {
+void add_invariants(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "laws", "Count how often a verdict changes although the answer cannot: triangles swapped, mirrored, scaled, …");
-  command->footer("Example: graze laws --lanes '*/f32/cpu' --strata 'near_*' --pairs 2000");
-  const auto options = std::make_shared<LawsOptions>();
+      "invariants",
+      "Count how often a verdict changes although the answer cannot: triangles swapped, mirrored, scaled, …");
+  command->footer("Example: graze invariants --lanes '*/f32/cpu' --strata 'near_*' --pairs 2000");
+  const auto options = std::make_shared<InvariantsOptions>();
   add_lane_options(*command, options->lanes, Executors::twins);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
@@ -84,11 +86,11 @@ void add_laws(CLI::App& app, int& status) {
       ->transform(whole_number(0, 4096))
       ->capture_default_str()
       ->option_text("N");
-  command->add_option("--out", options->out, "Folder for laws.json and the simplest cases")
+  command->add_option("--out", options->out, "Folder for invariants.json and the simplest cases")
       ->check(not_empty())
       ->capture_default_str()
       ->option_text("DIR");
-  command->callback([options, &status] { status = laws(*options); });
+  command->callback([options, &status] { status = invariants(*options); });
 }
 
 }  // namespace graze::cli

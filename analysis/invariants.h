@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// Invariants: how often a lane's verdict changes although the question is the same, and which invariants an algorithm
+// claims.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/sweep.h"
+
+namespace graze::analysis {
+
+enum class Invariant : std::uint8_t { swap, order, mirror, axes, scale, translate, part };
+
+struct InvariantInfo {
+  Invariant invariant;
+  std::string_view id;
+  std::string_view what;  // the images of a pair, in words
+};
+
+// In the order of the enumeration. The images of `part` alone have another truth: what intersects a part of a triangle
+// intersects the triangle.
+inline constexpr InvariantInfo kInvariants[] = {
+    {Invariant::swap, "swap", "the two triangles swapped"},
+    {Invariant::order, "order", "the other 35 orders of the vertices within both triangles"},
+    {Invariant::mirror, "mirror", "the 7 mirror images in planes through the origin and across the axes"},
+    {Invariant::axes, "axes", "the 5 other orders of the axes"},
+    {Invariant::scale, "scale", "times 2^k for k of 1, 4, 16 and 64, up and down, where no bit is lost"},  // kScales
+    {Invariant::translate, "translate",
+     "each vertex moved to the origin, and all by a power of two, where no bit is lost"},
+    {Invariant::part, "part", "one triangle replaced by one of its four parts, the edges halved, where no bit is lost"},
+};
+inline constexpr std::size_t kInvariantCount = std::size(kInvariants);
+
+// The powers of two of the images of `scale`.
+inline constexpr std::array kScales = {1, -1, 4, -4, 16, -16, 64, -64};
+
+// The pair's images, without the pair itself; none where all of them would lose bits.
+std::vector<Pair> images(Invariant invariant, const Pair& pair);
+
+// Whether these verdicts on a pair and its image break the invariant.
+bool breaks(Invariant invariant, Verdict of_pair, Verdict of_image);
+
+// Whether the lane's algorithm claims the invariant: no rounding can break it, by how the code is written. A claim is
+// one of arithmetic that rounds each operation as written, without a policy, and of pairs on which neither the lane's
+// computation of the pair nor that of the image over- or underflows. invariants.test.cpp holds lanes to it.
+bool claims(const Lane& lane, Invariant invariant);
+
+// Whether InvariantCount::in_range is known of the lane.
+bool knows_range(const Lane& lane);
+
+// Of all published algorithms, by name: the reason stands beside each claim in invariants.cpp.
+std::vector<Invariant> claimed_invariants(std::string_view algorithm);
+
+// An invariant that the exact decision or the oracle breaks, or an algorithm that claims it.
+struct InvariantBroken : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct InvariantCount {
+  std::uint64_t pairs = 0;    // that have an image, and that the lane's convention does not leave open
+  std::uint64_t changed = 0;  // on which the verdict on some image breaks the invariant
+  // Of these, those on which one does although nothing over- or underflows, neither of the pair nor of that image,
+  // where the lane's source runs without contraction. Of published lanes without a policy; else 0, for it is not known.
+  std::uint64_t in_range = 0;
+  InvariantCount& operator+=(const InvariantCount& other);
+};
+
+struct InvariantCase {
+  PairPlace place;
+  Pair pair, image;
+  Verdict of_pair = Verdict::declined, of_image = Verdict::declined;
+};
+
+struct InvariantsOfLane {
+  std::array<std::vector<InvariantCount>, kInvariantCount> counts;  // by invariant, then by source
+  std::array<std::optional<InvariantCase>, kInvariantCount> simplest;
+  // Over all sources, by each of kScales alone: the pairs that have this image, and on which it breaks the invariant.
+  std::array<InvariantCount, kScales.size()> by_scale;
+
+  InvariantCount total(Invariant invariant) const;
+};
+
+// CGAL's verdict, which GMP's must be.   Throws: InvariantBroken.
+bool oracle_intersects(const Pair& pair);
+
+struct InvariantSpec {
+  std::vector<const Lane*> lanes;
+  std::vector<DecideBlock> on_host;  // of each: the host lane or its twin
+  std::vector<strata::PairSource> sources;
+  int threads = 0;  // 0: one on each core
+  // Whether l is simpler than r, for the case that is kept; equal ones are kept by their place.
+  std::function<bool(const Pair& l, const Pair& r)> simpler;
+  DecideBlock exact = find_lane("exact/f32/cpu")->decide;           // asked of every image
+  std::function<bool(const Pair&)> intersects = oracle_intersects;  // asked of every image of some pairs:
+  std::uint64_t oracle_every = 8;                                   // of the first of so many
+};
+
+struct Invariants {
+  std::vector<InvariantsOfLane> lanes;
+  std::uint64_t pairs = 0, images = 0;          // all of them decided by the exact decision
+  std::uint64_t by_oracle = 0, its_images = 0;  // and these by CGAL and GMP
+};
+
+// Asks every lane of every pair and of all its images. The same whatever the threads.
+// Throws: InvariantBroken, of the first pair that shows it.
+Invariants invariants(const InvariantSpec& spec);
+
+}  // namespace graze::analysis

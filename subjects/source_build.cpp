@@ -231,6 +231,8 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   if (status != 0) {
     std::string error = first_error(said);
     if (error.find(expected) != error.npos) error = name + ": " + expected;
+    // A linker, or a disk that is full, names no source.
+    if (error.find(source.filename().string()) == error.npos) error = cannot("compile", name, error);
     throw std::runtime_error(error);
   }
   const std::string files = lists && fs::exists(list) ? listed_files(list, scratch.path()) : "";

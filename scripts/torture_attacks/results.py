@@ -196,7 +196,7 @@ def full_results(turn):
         begun = snapshot(out)
         largest = max(len(data) if isinstance(data, bytes) else len(json.dumps(data)) for data in expected.values())
         ran = turn.run(*command(turn.bench, verb, out), file_bytes=turn.random.randrange(largest))
-        refused = turn.is_refused(ran, verb, "campaign.sqlite", "room", "memory with a subject")
+        refused = turn.is_refused(ran, verb, "campaign.sqlite", "room", "memory with a subject", "cannot compile")
         must_be_whole(out, expected, begun)
         if verb == "merge" and out.exists():
             shutil.rmtree(out)

@@ -9,10 +9,6 @@
 namespace graze::analysis {
 namespace {
 
-double share(const PolicyErrors& errors) {
-  return errors.pairs == 0 ? 0 : static_cast<double>(errors.not_right()) / static_cast<double>(errors.pairs);
-}
-
 Pair moved(const Pair& pair, Extreme extreme, int k) {
   Pair result = pair;
   float size = 0;
@@ -86,7 +82,8 @@ std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::
 void mark_dominated(std::vector<Offer>& offers) {
   for (Offer& offer : offers) {
     offer.dominated = std::any_of(offers.begin(), offers.end(), [&](const Offer& other) {
-      const double less = share(other.errors) - share(offer.errors), faster = other.near.middle - offer.near.middle;
+      const double less = other.errors.share_not_right() - offer.errors.share_not_right(),
+                   faster = other.near.middle - offer.near.middle;
       return less <= 0 && faster <= 0 && (less < 0 || faster < 0);
     });
   }
@@ -113,13 +110,13 @@ std::vector<strata::PairSource> made_extreme(std::span<const strata::PairSource>
 std::optional<int> ExtremeCurve::right_to(int direction) const {
   const auto ordinary = std::find_if(points.begin(), points.end(), [](const auto& point) { return point.first == 0; });
   if (ordinary == points.end()) return std::nullopt;
-  const double most = std::max(2 * share(ordinary->second), 1e-3);
+  const double most = std::max(2 * ordinary->second.share_not_right(), 1e-3);
   int last = 0;
   const auto at = [&](std::ptrdiff_t i) -> const std::pair<int, PolicyErrors>& {
     return points[static_cast<std::size_t>(i)];
   };
   for (std::ptrdiff_t i = ordinary - points.begin(); i >= 0 && i < std::ssize(points); i += direction) {
-    if (share(at(i).second) > most) return last;
+    if (at(i).second.share_not_right() > most) return last;
     last = at(i).first;
   }
   return std::nullopt;

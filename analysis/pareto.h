@@ -29,7 +29,7 @@ std::vector<Cost> costs_of(std::span<const DecideBlock> lanes, const std::vector
 // The sources' first pairs, so many in all, in turn.
 std::vector<Pair> first_pairs(std::span<const strata::PairSource> sources, std::size_t count);
 
-// A lane of the pareto: what it gets wrong, and what it takes.
+// A lane among others: what it gets wrong, and what it takes.
 struct Offer {
   std::string lane;
   PolicyErrors errors;

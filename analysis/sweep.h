@@ -28,6 +28,9 @@ struct PolicyErrors : Counts {
   std::uint64_t fixed = 0, broken = 0;  // right, and the lane under no policy wrong or without an answer; or otherwise
   std::optional<PairPlace> first_fixed, first_broken;
 
+  double share_not_right() const {
+    return pairs == 0 ? 0 : static_cast<double>(not_right()) / static_cast<double>(pairs);
+  }
   bool changes_nothing() const { return fixed == 0 && broken == 0; }
   PolicyErrors& operator+=(const PolicyErrors& other);
   bool operator==(const PolicyErrors&) const = default;

@@ -38,7 +38,7 @@ class Panels {
     const std::size_t first = truth.size();
     for (const Pair& pair : pairs) truth.push_back(truth_of(pair));
     for (std::size_t p = 1; p < blocks_.size(); ++p) {
-      if (!(lanes_[p]->foreign ? ask_foreign(p, pairs) : ask(p, pairs))) continue;
+      if (!ask(p, pairs)) continue;
       for (std::size_t i = 0; i < pairs.size(); ++i) cells[p].push_back(cell_of(said_[i], truth[first + i]));
     }
   }
@@ -65,18 +65,15 @@ class Panels {
     return Cell::unstable;
   }
 
+  // What the panel's lane says of the pairs; foreign code is asked eight at a time.
+  // Returns: false where the panel is given up.
   bool ask(std::size_t p, std::span<const Pair> pairs) {
-    said_ = verdicts_of(blocks_[p], pairs);
-    return true;
-  }
-
-  // Eight pairs at a time.   Returns: false where the panel is given up.
-  bool ask_foreign(std::size_t p, std::span<const Pair> pairs) {
+    const std::size_t at_once = lanes_[p]->foreign ? 8 : pairs.size();
     said_.clear();
-    for (std::size_t begin = 0; begin < pairs.size(); begin += 8) {
+    for (std::size_t begin = 0; begin < pairs.size(); begin += at_once) {
       if (given_up(p)) return false;
-      for (const Verdict said :
-           verdicts_of(blocks_[p], pairs.subspan(begin, std::min<std::size_t>(8, pairs.size() - begin)))) {
+      const auto some = pairs.subspan(begin, std::min(at_once, pairs.size() - begin));
+      for (const Verdict said : verdicts_of(blocks_[p], some)) {
         said_.push_back(said);
         failed_[p] += said == Verdict::timed_out ? kOfALate : is_failure(said) ? 1 : 0;
       }

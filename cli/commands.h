@@ -90,6 +90,21 @@ inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
 // Accepts whole numbers in [least, most], also as 1e6, 10M or 1_000_000, and nothing else. To be used by transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
+
+// An option of a whole number in [least, most], whose default its help says.
+template <class Whole>
+CLI::Option* add_count(CLI::App& command, const char* name, Whole& count, std::uint64_t least, std::uint64_t most,
+                       const char* description) {
+  return command.add_option(name, count, description)
+      ->transform(whole_number(least, most))
+      ->capture_default_str()
+      ->option_text("N");
+}
+
+// --threads, of every verb that runs several.
+inline constexpr std::uint64_t kMostThreads = 4096;
+CLI::Option* add_threads_option(CLI::App& command, int& threads);
+
 // A number within these bounds, which no NaN is.
 CLI::Validator number(double least, double most);
 

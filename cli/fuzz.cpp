@@ -278,22 +278,10 @@ void add_fuzz(CLI::App& app, int& status) {
       "fuzz", "Run or resume a campaign: draw pairs, run every lane on them, and compare with the exact truth");
   command->footer("Example: graze fuzz --pairs 1M --strata 'near_*,coplanar_*' --out campaign");
   auto options = std::make_shared<FuzzOptions>();
-  command
-      ->add_option("--pairs", options->pairs,
-                   "Number of pairs in total, shared evenly by the strata; a mesh adds all of its own")
-      ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command->add_option("--seed", options->seed, "Seed of all strata")
-      ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command
-      ->add_option("--threads", options->threads,
-                   "Number of threads; 0 means one per core. Results do not depend on it")
-      ->transform(whole_number(0, 4096))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
+            "Number of pairs in total, shared evenly by the strata; a mesh adds all of its own");
+  add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of all strata");
+  add_threads_option(*command, options->threads);
   command
       ->add_option("--out", options->out,
                    "Campaign directory; an unfinished campaign in it is resumed; the last --out counts")

@@ -141,26 +141,16 @@ void add_hunt(CLI::App& app, int& status) {
                                          "lanes compute");
   command->footer("Example: graze hunt --runs 1000000 --seed 1 --lanes 'moller*' --out hunt");
   auto options = std::make_shared<HuntOptions>();
-  command->add_option("--runs", options->runs, "Number of pairs in total")
-      ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--runs", options->runs, 1, kMostWhole, "Number of pairs in total");
   command
       ->add_option("--minutes", options->minutes,
                    "Time limit in minutes, after which the same command resumes the search; 0 means none")
       ->transform(whole_number(0, 1'000'000))
       ->capture_default_str()
       ->option_text("MINUTES");
-  command->add_option("--seed", options->seed, "Seed of the search")
-      ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command
-      ->add_option("--threads", options->threads,
-                   "Number of rounds at once, at most four; 0 means one per core. Results do not depend on it")
-      ->transform(whole_number(0, 4096))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the search");
+  add_count(*command, "--threads", options->threads, 0, kMostThreads,
+            "Number of rounds at once, at most four; 0 means one per core. Results do not depend on it");
   command->add_option("--out", options->out, "Directory of the search; an unfinished search in it is resumed")
       ->check(not_empty())
       ->capture_default_str()

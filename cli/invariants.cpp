@@ -70,22 +70,10 @@ void add_invariants(CLI::App& app, int& status) {
   add_lane_options(*command, options->lanes, Executors::twins);
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
-  command
-      ->add_option("--pairs", options->pairs,
-                   "Number of pairs in total, shared evenly by the strata; each is decided in about 70 forms")
-      ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command->add_option("--seed", options->seed, "Seed of the pairs")
-      ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command
-      ->add_option("--threads", options->threads,
-                   "Number of threads; 0 means one per core. Results do not depend on it")
-      ->transform(whole_number(0, 4096))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
+            "Number of pairs in total, shared evenly by the strata; each is decided in about 70 forms");
+  add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
+  add_threads_option(*command, options->threads);
   command->add_option("--out", options->out, "Folder for invariants.json and the simplest cases")
       ->check(not_empty())
       ->capture_default_str()

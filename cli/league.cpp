@@ -162,14 +162,9 @@ void add_league(CLI::App& app, int& status) {
       ->required()
       ->check(not_empty())
       ->option_text("FILE");
-  command->add_option("--pairs", options->pairs, "Number of pairs in total, shared evenly by the strata")
-      ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command->add_option("--seed", options->seed, "Seed of all strata")
-      ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
+            "Number of pairs in total, shared evenly by the strata");
+  add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of all strata");
   command
       ->add_option("--subject-timeout", options->timeout,
                    "Time limit of a library for one pair, in seconds; a pair that exceeds it is tried once more")

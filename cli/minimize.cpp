@@ -301,12 +301,7 @@ void add_minimize(CLI::App& app, int& status) {
       ->option_text("FILE");
   add_exact_input(*command, options->exact_input);
   command->add_flag("--again", options->again, "Minimise every case again, even those that have a result");
-  command
-      ->add_option("--threads", options->threads,
-                   "Number of threads; 0 means one per core. Results do not depend on it")
-      ->transform(whole_number(0, 4096))
-      ->capture_default_str()
-      ->option_text("N");
+  add_threads_option(*command, options->threads);
   add_shard_option(
       *command, options->shard,
       "Part of a campaign's signatures to minimise: the K-th of N. When all parts are done, run without it");

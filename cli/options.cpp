@@ -98,6 +98,11 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
   return CLI::Validator(check, "");
 }
 
+CLI::Option* add_threads_option(CLI::App& command, int& threads) {
+  return add_count(command, "--threads", threads, 0, kMostThreads,
+                   "Number of threads; 0 means one per core. Results do not depend on it");
+}
+
 CLI::Validator number(double least, double most) {
   const auto check = [least, most](std::string& text) -> std::string {
     double value = 0;

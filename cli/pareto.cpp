@@ -167,14 +167,8 @@ void add_pareto(CLI::App& app, int& status) {
   command->get_option("--lanes")->default_str("common CPU lanes, or CUDA lanes with --device");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
-  command->add_option("--pairs", options->pairs, "Number of pairs on which errors are counted")
-      ->transform(whole_number(1000, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command->add_option("--seed", options->seed, "Seed of the pairs")
-      ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--pairs", options->pairs, 1000, kMostWhole, "Number of pairs on which errors are counted");
+  add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
   command->add_flag("--device", options->device,
                     "Measure the CUDA lanes on the first device, with pairs in its memory and with copies");
   command->add_option("--out", options->out, "Folder for pareto.json and the pictures")

@@ -93,17 +93,11 @@ void add_plan(CLI::App& app, int& status) {
       app.add_subcommand("plan", "Estimate the time and disk space of a campaign from a measurement on this machine");
   command->footer("Example: graze plan --pairs 1e10 --lanes '*/f32/cpu' --cores 64");
   auto options = std::make_shared<PlanOptions>();
-  command->add_option("--pairs", options->pairs, "Number of pairs in total")
-      ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--pairs", options->pairs, 1, kMostWhole, "Number of pairs in total");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
   add_lane_options(*command, options->lanes);
-  CLI::Option* cores = command->add_option("--cores", options->cores, "Number of cores that run it")
-                           ->transform(whole_number(1, 10'000'000))
-                           ->capture_default_str()
-                           ->option_text("N");
+  CLI::Option* cores = add_count(*command, "--cores", options->cores, 1, 10'000'000, "Number of cores that run it");
   command
       ->add_option("--gpus", options->gpus,
                    "Number of GPUs that run it; the rate is measured on one, or given by --rate")

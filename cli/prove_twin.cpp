@@ -55,18 +55,10 @@ void add_prove_twin(CLI::App& app, int& status) {
   auto options = std::make_shared<cuda::ProofOptions>();
   auto out = std::make_shared<std::string>();
   auto lanes = std::make_shared<LaneOptions>();
-  command->add_option("--pairs", options->pairs, "Number of pairs per lane, shared by all strata")
-      ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command->add_option("--twin-pairs", options->twin_pairs, "Number of these pairs that the twin replays as well")
-      ->transform(whole_number(1, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command->add_option("--seed", options->seed, "Seed of all strata")
-      ->transform(whole_number(0, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--pairs", options->pairs, 1, kMostWhole, "Number of pairs per lane, shared by all strata");
+  add_count(*command, "--twin-pairs", options->twin_pairs, 1, kMostWhole,
+            "Number of these pairs that the twin replays as well");
+  add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of all strata");
   add_lane_options(*command, *lanes, Executors::twins);
   command->add_flag("--wrong-rule", options->wrong_rule,
                     "Use a wrong rule of contraction on purpose; the comparison must then fail");

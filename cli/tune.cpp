@@ -139,18 +139,10 @@ void add_tune(CLI::App& app, int& status) {
   command->add_option("LANE", options->lane, "Lane, without a policy")->required();
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
-  command
-      ->add_option("--pairs", options->pairs,
-                   "Number of pairs that judge the choice; it is made on a tenth as many others")
-      ->transform(whole_number(10, kMostWhole))
-      ->capture_default_str()
-      ->option_text("N");
-  command
-      ->add_option("--seed", options->seed,
-                   "Seed of the pairs that the choice is made on; those that judge it have the next seed")
-      ->transform(whole_number(0, kMostWhole - 1))
-      ->capture_default_str()
-      ->option_text("N");
+  add_count(*command, "--pairs", options->pairs, 10, kMostWhole,
+            "Number of pairs that judge the choice; it is made on a tenth as many others");
+  add_count(*command, "--seed", options->seed, 0, kMostWhole - 1,
+            "Seed of the pairs that the choice is made on; those that judge it have the next seed");
   command
       ->add_option("--forbid", options->forbid,
                    "Errors to avoid: false negatives, false positives, or any wrong verdict")
@@ -161,12 +153,7 @@ void add_tune(CLI::App& app, int& status) {
       ->check(number(1e-15, 1.0))
       ->capture_default_str()
       ->option_text("RATE");
-  command
-      ->add_option("--threads", options->threads,
-                   "Number of threads; 0 means one per core. Results do not depend on it")
-      ->transform(whole_number(0, 4096))
-      ->capture_default_str()
-      ->option_text("N");
+  add_threads_option(*command, options->threads);
   command->add_option("--out", options->out, "Folder for tune.json, curves.svg, policy.h and the smallest cases")
       ->check(not_empty())
       ->capture_default_str()

@@ -9,6 +9,7 @@
 
 #include "analysis/signature.h"
 #include "core/cannot.h"
+#include "core/lanes/verdicts.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
@@ -61,13 +62,7 @@ double number_in(const std::filesystem::path& file, const corpus::Entry& entry, 
       fmt::format("{}:{}: expected a number as {}, found '{}'", file.string(), entry.line, key, text));
 }
 
-Verdict verdict_of(std::string_view word) {
-  for (const Verdict verdict :
-       {Verdict::disjoint, Verdict::intersects, Verdict::crashed, Verdict::timed_out, Verdict::unstable}) {
-    if (word == name(verdict)) return verdict;
-  }
-  return Verdict::declined;
-}
+Verdict verdict_of(std::string_view word) { return verdict_named(word).value_or(Verdict::declined); }
 
 // Of the lanes that the minimiser ran on the pair.
 Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored) {

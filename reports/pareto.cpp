@@ -27,10 +27,6 @@ using analysis::PolicyErrors;
 using Json = nlohmann::ordered_json;
 
 constexpr double kLeft = 76, kRight = 880, kTop = 52, kBottom = 350, kLeast = -7, kLegend = 240;
-double share(const PolicyErrors& e) {
-  return e.pairs == 0 ? 0 : static_cast<double>(e.not_right()) / static_cast<double>(e.pairs);
-}
-
 double y_of(double rate) {
   return kBottom + (kTop - kBottom) * (std::log10(std::max(rate, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
 }
@@ -89,8 +85,9 @@ std::string pareto_table(const Pareto& pareto, const Screen& screen) {
   for (const Offer& offer : cheapest_first(pareto.offers)) {
     const PolicyErrors& e = offer.errors;
     const std::string words = offer.dominated ? "dominated"
-                              : share(e) == 0 ? "none: under " + rounded_up(analysis::upper_bound(0, e.pairs), 1)
-                                              : "front";
+                              : e.share_not_right() == 0
+                                  ? "none: under " + rounded_up(analysis::upper_bound(0, e.pairs), 1)
+                                  : "front";
     std::vector<Cell> cells = {{offer.lane},
                                {nanoseconds(offer.near.middle)},
                                {nanoseconds(offer.far.middle)},
@@ -188,7 +185,7 @@ std::string pareto_figure(const Pareto& pareto) {
                   fmt::format("nanoseconds a pair, pairs {}", pareto.on_device ? "on the device" : "in cache"));
   std::string front;
   for (const Offer& offer : cheapest_first(pareto.offers)) {
-    const double x = x_of(offer.near.middle), y = y_of(share(offer.errors));
+    const double x = x_of(offer.near.middle), y = y_of(offer.errors.share_not_right());
     const char* colour = offer.dominated ? "#999" : "#d55e00";
     svg += fmt::format(
         "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {} ns, {} of {} "
@@ -216,7 +213,8 @@ std::string extreme_figure(const std::vector<ExtremeCurve>& curves, Extreme extr
   for (const ExtremeCurve& curve : curves) {
     if (curve.extreme != extreme) continue;
     std::string points;
-    for (const auto& [k, errors] : curve.points) points += fmt::format("{:.1f},{:.1f} ", x_of(k), y_of(share(errors)));
+    for (const auto& [k, errors] : curve.points)
+      points += fmt::format("{:.1f},{:.1f} ", x_of(k), y_of(errors.share_not_right()));
     const char* colour = kSvgColours[row % kSvgColours.size()];
     const char* dashes = row < kSvgColours.size()       ? ""
                          : row < 2 * kSvgColours.size() ? " stroke-dasharray=\"6 3\""

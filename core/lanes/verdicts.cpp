@@ -13,4 +13,12 @@ std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair>
   return verdicts;
 }
 
+std::optional<Verdict> verdict_named(std::string_view word) {
+  for (const Verdict verdict : {Verdict::disjoint, Verdict::intersects, Verdict::declined, Verdict::crashed,
+                                Verdict::timed_out, Verdict::unstable}) {
+    if (word == name(verdict)) return verdict;
+  }
+  return std::nullopt;
+}
+
 }  // namespace graze

@@ -10,7 +10,7 @@
 
 namespace graze::cuda {
 
-// PairList of pairs in a block.
+// Pairs of a block by place.
 struct PairList {
   std::uint32_t* at;
   std::uint32_t* count;

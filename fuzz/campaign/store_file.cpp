@@ -308,69 +308,62 @@ Salvage salvage(const StoreSpec& spec) {
 
 }  // namespace
 
+// As in_one_line; the database knows the system's reason.
+template <class Body>
+auto StoreFile::checked(const Body& body) {
+  return in_one_line(file_, body, database_);
+}
+
 StoreFile::StoreFile(const StoreSpec& spec) : spec_(spec), file_(database_file(spec)), campaign_(fnv1a(text_of(spec))) {
-  in_one_line(
-      file_,
-      [&] {
-        SQLite::Database& database = database_.emplace(opened(file_));
-        const bool fresh = is_fresh(database, file_);
-        if (fresh && fs::exists(spec.directory / "summary.json"))
-          throw UsageError(
-              cannot("resume", spec.directory, "it holds results but not their database; choose another --out"));
-        // A write-ahead log: a killed process loses only the transaction under way.
-        database.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
-        if (fresh) return begin(database, text_of(spec));
-        const std::string found = one_line(database.execAndGet("PRAGMA quick_check(1)").getString());
-        if (found != "ok") throw Damaged(found);
-        compare(spec, recorded_text(database));
-      },
-      database_);
+  checked([&] {
+    SQLite::Database& database = database_.emplace(opened(file_));
+    const bool fresh = is_fresh(database, file_);
+    if (fresh && fs::exists(spec.directory / "summary.json"))
+      throw UsageError(
+          cannot("resume", spec.directory, "it holds results but not their database; choose another --out"));
+    // A write-ahead log: a killed process loses only the transaction under way.
+    database.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
+    if (fresh) return begin(database, text_of(spec));
+    const std::string found = one_line(database.execAndGet("PRAGMA quick_check(1)").getString());
+    if (found != "ok") throw Damaged(found);
+    compare(spec, recorded_text(database));
+  });
 }
 
 void StoreFile::for_each(const std::function<void(std::int64_t, const PairRange&, const StoredCounts&)>& visit) {
-  in_one_line(
-      file_,
-      [&] {
-        Coverage coverage(spec_);
-        SQLite::Statement query(*database_, kColumns);
-        while (query.executeStep()) {
-          const CheckedRow row = checked_row(query, spec_, campaign_);
-          coverage.take(row.range);
-          visit(query.getColumn(0).getInt64(), row.range, row.counts);
-        }
-      },
-      database_);
+  checked([&] {
+    Coverage coverage(spec_);
+    SQLite::Statement query(*database_, kColumns);
+    while (query.executeStep()) {
+      const CheckedRow row = checked_row(query, spec_, campaign_);
+      coverage.take(row.range);
+      visit(query.getColumn(0).getInt64(), row.range, row.counts);
+    }
+  });
 }
 
 void StoreFile::shrink() {
-  in_one_line(
-      file_, [&] { database_->exec("VACUUM"); }, database_);
+  checked([&] { database_->exec("VACUUM"); });
 }
 
 StoredCounts StoreFile::counts(std::int64_t id) {
-  return in_one_line(
-      file_,
-      [&] {
-        SQLite::Statement query(*database_, std::string(kColumns) + "WHERE id = ?");
-        query.bind(1, id);
-        if (!query.executeStep()) throw Damaged(fmt::format("batch {} is gone", id));
-        return checked_row(query, spec_, campaign_).counts;
-      },
-      database_);
+  return checked([&] {
+    SQLite::Statement query(*database_, std::string(kColumns) + "WHERE id = ?");
+    query.bind(1, id);
+    if (!query.executeStep()) throw Damaged(fmt::format("batch {} is gone", id));
+    return checked_row(query, spec_, campaign_).counts;
+  });
 }
 
 std::int64_t StoreFile::put(const PairRange& range, const StoredCounts& counts,
                             const std::vector<std::int64_t>& replaced) {
-  return in_one_line(
-      file_,
-      [&] {
-        SQLite::Transaction transaction(*database_);
-        for (const std::int64_t id : replaced) database_->exec(fmt::format("DELETE FROM batch WHERE id = {}", id));
-        const std::int64_t id = insert(*database_, campaign_, range, to_bytes(counts));
-        transaction.commit();
-        return id;
-      },
-      database_);
+  return checked([&] {
+    SQLite::Transaction transaction(*database_);
+    for (const std::int64_t id : replaced) database_->exec(fmt::format("DELETE FROM batch WHERE id = {}", id));
+    const std::int64_t id = insert(*database_, campaign_, range, to_bytes(counts));
+    transaction.commit();
+    return id;
+  });
 }
 
 StoreSpec recorded_store(const fs::path& directory) {

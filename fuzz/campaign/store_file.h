@@ -56,6 +56,9 @@ class StoreFile {
   std::int64_t put(const PairRange& range, const StoredCounts& counts, const std::vector<std::int64_t>& replaced);
 
  private:
+  template <class Body>
+  auto checked(const Body& body);
+
   const StoreSpec& spec_;
   std::filesystem::path file_;
   std::optional<SQLite::Database> database_;

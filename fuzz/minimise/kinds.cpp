@@ -34,10 +34,6 @@ struct Case {
   const corpus::Entry& shown() const { return entries.front(); }
 };
 
-Verdict truth_of(const corpus::Entry& entry) {
-  return corpus::text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
-}
-
 Case read_case(const SelectedLanes& under_test, const Json& spec, const std::filesystem::path& directory,
                const Json& row) {
   const auto signature = analysis::parse_signature(row.at("key").get<std::string>());
@@ -197,6 +193,10 @@ Json row_of(const SelectedLanes& under_test, const Kind& kind, const std::vector
 }
 
 }  // namespace
+
+Verdict truth_of(const corpus::Entry& entry) {
+  return corpus::text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
+}
 
 std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_view subject, const Pair& pair,
                                    Verdict truth) {

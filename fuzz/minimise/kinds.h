@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "corpus/pair_format.h"
 #include "fuzz/campaign/store.h"
 #include "fuzz/selected_lanes.h"
 #include "oracle/truth.h"
@@ -31,6 +32,9 @@ std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_
 
 // So many kinds are shown to a person: listed, on cards, with maps. There are hundreds, most of them of a few pairs.
 inline constexpr std::size_t kMostShown = 40;
+
+// As a campaign's case says it.
+Verdict truth_of(const corpus::Entry& entry);
 
 // The 18 hex floats, as a file of pairs has them.
 std::string pair_text(const Pair& pair);

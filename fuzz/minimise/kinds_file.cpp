@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "analysis/signature.h"
 #include "core/cannot.h"
 #include "core/fnv1a.h"
+#include "core/lanes/verdicts.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
@@ -144,22 +146,14 @@ void expect_lanes(const Known& known, const Json& kind) {
          "no lanes, or one twice, or the simplest pair with others");
 }
 
-constexpr Verdict kVerdicts[] = {Verdict::disjoint, Verdict::intersects, Verdict::declined,
-                                 Verdict::crashed,  Verdict::timed_out,  Verdict::unstable};
-
-Verdict truth_of(const corpus::Entry& entry) {
-  return corpus::text_of(entry, "truth") == name(Verdict::intersects) ? Verdict::intersects : Verdict::disjoint;
-}
-
 // Of the subject's own lanes those that the case's first signature tells; of exact lanes the truth.
 void expect_verdicts(const Known& known, const Json& verdicts, const Case& c) {
   expect(verdicts.size() == known.lanes.size(), "verdicts of other lanes than those that were looked at");
   const corpus::Entry& first = c.entries.front();
   for (const auto& [id, said] : verdicts.items()) {
     expect(known.lanes.contains(id), "a verdict of the lane " + shown(id) + ", which was not looked at");
-    const auto verdict = std::find_if(std::begin(kVerdicts), std::end(kVerdicts),
-                                      [&](Verdict v) { return said.get<std::string>() == name(v); });
-    expect(verdict != std::end(kVerdicts), "no verdict of " + id);
+    const std::optional<Verdict> verdict = verdict_named(said.get<std::string>());
+    expect(verdict.has_value(), "no verdict of " + id);
     const LaneName lane = parse_lane_name(id).value();
     const char mark = c.of_first.mark_of(lane.within_subject());
     const bool told = known.own.contains(id) && lane.subject == c.of_first.subject &&

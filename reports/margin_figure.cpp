@@ -20,7 +20,7 @@ constexpr std::uint64_t kFewestPairs = 30;  // a share of fewer pairs than this 
 constexpr std::array<const char*, 6> kColours = {"#d55e00", "#0072b2", "#009e73",
                                                  "#cc79a7", "#e69f00", "#56b4e9"};  // Okabe and Ito 2008
 
-struct Counts {
+struct Bar {
   std::uint64_t pairs = 0;
   std::map<std::string, std::uint64_t> wrong;
 };
@@ -65,12 +65,12 @@ std::string axes() {
 std::string margin_figure(const Json& summary) {
   std::map<std::string, int> place_of;
   for (int b = -kBucketMost; b <= kBucketMost; ++b) place_of[name_of_bucket(static_cast<Bucket>(b))] = place(b);
-  std::map<int, Counts> by_place;
+  std::map<int, Bar> by_place;
   for (const auto& [stratum, row] : summary["strata"].items()) {
     for (const auto& [bucket, counts] : row["margins"].items()) {
-      Counts& sum = by_place[place_of.at(bucket)];
-      sum.pairs += counts["pairs"].get<std::uint64_t>();
-      for (const auto& [lane, wrong] : counts["wrong"].items()) sum.wrong[lane] += wrong.get<std::uint64_t>();
+      Bar& bar = by_place[place_of.at(bucket)];
+      bar.pairs += counts["pairs"].get<std::uint64_t>();
+      for (const auto& [lane, wrong] : counts["wrong"].items()) bar.wrong[lane] += wrong.get<std::uint64_t>();
     }
   }
 

@@ -37,7 +37,7 @@ std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signa
 }
 
 // Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
-void expect_possible(const Json& status) {
+void expect_possible_status(const Json& status) {
   const std::string state = status.at("state"), shard = status.at("shard");
   if (state != "running" && state != "done" && state != "stopped" && state != "failed")
     throw std::runtime_error("its state is not running, done, stopped or failed, but " + shown(state));
@@ -133,7 +133,7 @@ Json read_status(const fs::path& directory) {
   if (!fs::exists(file)) return nullptr;
   const Json status = Json::parse(read_whole(file), nullptr, false);
   try {
-    expect_possible(status);
+    expect_possible_status(status);
   } catch (const Json::exception&) {
     throw std::runtime_error(cannot("use", file, "it is damaged; the next status of the run replaces it"));
   } catch (const std::runtime_error& error) {

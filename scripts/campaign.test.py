@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What scripts/campaign builds compiles. It compiles more sources at once than other builds, so that two private names
+of different files clash there alone. Checks the syntax of each such group in a build of its own; compiles no code."""
+import concurrent.futures
+import json
+import os
+import pathlib
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).parent.parent
+COMPILER, BUILT = sys.argv.pop(), sys.argv.pop()
+
+
+def run(*command, **options):
+    return subprocess.run([str(part) for part in command], capture_output=True, text=True, **options)
+
+
+def syntax_only(command, build):
+    """The compiler's command without what it writes, optimises or takes precompiled; generated files are another build's."""
+    kept, words = [], iter(shlex.split(command.replace(f"{build}/generated", f"{BUILT}/generated")))
+    for word in words:
+        if word in ("-o", "-MF", "-MT", "-include"):
+            next(words)
+        elif word != "-MD" and not word.startswith("-O"):
+            kept.append(word)
+    return [*kept, "-fsyntax-only"]
+
+
+class CampaignBuild(unittest.TestCase):
+    def test_sources_compiled_together_have_no_clashing_names(self):
+        with tempfile.TemporaryDirectory() as build:
+            configured = run(
+                "cmake",
+                "--preset=release",
+                "-B",
+                build,
+                "-DGRAZE_CAMPAIGN=ON",
+                f"-DCMAKE_CXX_COMPILER={COMPILER}",
+                "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+                cwd=ROOT,
+            )
+            self.assertEqual(configured.returncode, 0, configured.stderr)
+            needed = set(run("ninja", "-C", build, "-t", "inputs", "bin/graze").stdout.split())
+            entries = json.loads(pathlib.Path(build, "compile_commands.json").read_text(encoding="utf-8"))
+            groups = [entry for entry in entries if "/Unity/" in entry["file"] and entry["file"] in needed]
+            self.assertGreaterEqual(len(groups), 5)
+            with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as workers:
+                ran = workers.map(
+                    lambda entry: run(*syntax_only(entry["command"], build), cwd=entry["directory"]), groups
+                )
+                for entry, result in zip(groups, ran):
+                    with self.subTest(entry["file"]):
+                        self.assertEqual(result.returncode, 0, result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -11,6 +11,7 @@
 #include <bit>
 
 #include "core/exact/exact.h"
+#include "core/judged_bits.h"
 #include "core/lanes/ladder.h"
 #include "cuda/engine/sweep.h"
 #include "cuda/twin/twin.h"
@@ -45,16 +46,15 @@ void add(std::uint64_t bits, const PairPlace& word, std::uint64_t& count, std::o
 void add(const SourceBlock& block, const Verdicts& truth, const Verdicts& without, const std::uint64_t* intersects,
          const std::uint64_t* declined, PolicyErrors& errors) {
   for (std::size_t w = 0; w * 64 < block.count; ++w) {
-    const std::uint64_t judged = ~truth.declined[w];  // not finite: nothing is counted
-    const std::uint64_t none = declined[w] & judged, was_none = without.declined[w] & judged;
-    const std::uint64_t off = (intersects[w] ^ truth.intersects[w]) & judged & ~none;
-    const std::uint64_t was_off = (without.intersects[w] ^ truth.intersects[w]) & judged & ~was_none;
-    errors.false_negative += static_cast<std::uint64_t>(std::popcount(off & truth.intersects[w]));
-    errors.false_positive += static_cast<std::uint64_t>(std::popcount(off & ~truth.intersects[w]));
-    errors.declined += static_cast<std::uint64_t>(std::popcount(none));
+    const std::uint64_t judged = ~truth.declined[w];  // a pair that is not finite is not counted
+    const JudgedBits now = judge(intersects[w], declined[w], truth.intersects[w], judged);
+    const JudgedBits before = judge(without.intersects[w], without.declined[w], truth.intersects[w], judged);
+    errors.false_positive += static_cast<std::uint64_t>(std::popcount(now.false_positive));
+    errors.false_negative += static_cast<std::uint64_t>(std::popcount(now.false_negative));
+    errors.declined += static_cast<std::uint64_t>(std::popcount(now.declined));
     const PairPlace word{block.source, block.first + w * 64};
-    add((was_off | was_none) & ~(off | none), word, errors.fixed, errors.first_fixed);
-    add(~(was_off | was_none) & (off | none), word, errors.broken, errors.first_broken);
+    add(before.not_right() & ~now.not_right(), word, errors.fixed, errors.first_fixed);
+    add(now.not_right() & ~before.not_right(), word, errors.broken, errors.first_broken);
   }
   errors.pairs += block.count;
 }

@@ -2,8 +2,9 @@
 #include "analysis/tally.h"
 
 #include <algorithm>
-
 #include <bit>
+
+#include "core/judged_bits.h"
 
 namespace graze::analysis {
 namespace {
@@ -32,12 +33,12 @@ void Tally::add(const JudgedBlock& block) {
     LaneCounts* counts = &lanes_[l * kBucketCount];
     for (std::size_t w = 0; w * 64 < block.count; ++w) {
       const std::uint64_t yes = lane.intersects[w], none = lane.declined[w], truth = block.truth[w];
-      const std::uint64_t failed = lane.foreign ? yes & none : 0;
+      const JudgedBits bits = judge(yes, none, truth, ~std::uint64_t{0}, lane.foreign != nullptr);
       const auto at = [&](std::size_t i) -> LaneCounts& { return counts[row(block.buckets[w * 64 + i])]; };
-      for_each_bit(yes & ~truth & ~none, [&](std::size_t i) { ++at(i).false_positive; });
-      for_each_bit(~yes & truth & ~none, [&](std::size_t i) { ++at(i).false_negative; });
-      for_each_bit(none & ~failed, [&](std::size_t i) { ++at(i).declined; });
-      for_each_bit(failed, [&](std::size_t i) { ++at(i).of(lane.at(w * 64 + i)); });
+      for_each_bit(bits.false_positive, [&](std::size_t i) { ++at(i).false_positive; });
+      for_each_bit(bits.false_negative, [&](std::size_t i) { ++at(i).false_negative; });
+      for_each_bit(bits.declined, [&](std::size_t i) { ++at(i).declined; });
+      for_each_bit(bits.failed, [&](std::size_t i) { ++at(i).of(lane.at(w * 64 + i)); });
       if (cpu_twin_[l] >= 0) {
         const LaneVerdicts& cpu = block.verdicts[static_cast<std::size_t>(cpu_twin_[l])];
         for_each_bit((yes ^ cpu.intersects[w]) | (none ^ cpu.declined[w]),
@@ -73,7 +74,10 @@ void Tally::excuse(Bucket b, int lane, Verdict verdict) {
 Bits not_right(const JudgedBlock& block) {
   Bits any((block.count + 63) / 64);
   for (const LaneVerdicts& lane : block.verdicts) {
-    for (std::size_t w = 0; w < any.size(); ++w) any[w] |= (lane.intersects[w] ^ block.truth[w]) | lane.declined[w];
+    for (std::size_t w = 0; w < any.size(); ++w) {
+      const bool foreign = lane.foreign != nullptr;
+      any[w] |= judge(lane.intersects[w], lane.declined[w], block.truth[w], ~std::uint64_t{0}, foreign).not_right();
+    }
   }
   return any;
 }

@@ -13,6 +13,8 @@
 #include <set>
 
 #include "core/algorithms/algorithms.h"
+#include "core/counts.h"
+#include "core/judged_bits.h"
 #include "core/lanes/lanes.h"
 #include "core/margin/axis.h"
 #include "core/margin/bucket.h"
@@ -246,6 +248,31 @@ void expect_policy_decides(std::initializer_list<Site> sites) {
   EXPECT_EQ(Algorithm::decide(a, b, CountingEpsilon{1e-6, counts}), kYes) << Algorithm::kInfo.id;
   for (const Site site : sites)
     EXPECT_GT(counts[static_cast<int>(site)], 0) << Algorithm::kInfo.id << ", site " << static_cast<int>(site);
+}
+
+// All pairs of a word at once, whatever its bits: the counts of bits are those that the verdicts, one by one, have.
+TEST(JudgedBits, AreTheCountsOfVerdicts) {
+  for (const bool foreign : {false, true}) {
+    std::uint32_t bits[4] = {};  // pair i has bit b of i in word b: intersects, declined, truth, judged
+    for (std::uint32_t i = 0; i < 32; ++i) {
+      for (std::uint32_t b = 0; b < 4; ++b) bits[b] |= (i >> b & 1) << i;
+    }
+    const auto judged = judge(bits[0], bits[1], bits[2], bits[3], foreign);
+    for (std::uint32_t i = 0; i < 32; ++i) {
+      const bool intersects = i & 1, declined = i & 2, counted = i & 8;
+      const Verdict truth = i & 4 ? Verdict::intersects : Verdict::disjoint;
+      const Verdict verdict = foreign && intersects && declined ? Verdict::crashed : verdict_of_bits(intersects, declined);
+      Counts expected, found;
+      if (counted && verdict != truth) ++expected.of(verdict);
+      found.false_positive = judged.false_positive >> i & 1;
+      found.false_negative = judged.false_negative >> i & 1;
+      found.declined = judged.declined >> i & 1;
+      found.crashed = judged.failed >> i & 1;
+      EXPECT_EQ(found, expected) << i;
+      EXPECT_EQ(judged.wrong() >> i & 1, counted && is_wrong(verdict, truth)) << i;
+      EXPECT_EQ(judged.not_right() >> i & 1, counted && verdict != truth) << i;
+    }
+  }
 }
 
 TEST(Policy, AnEpsilonAtASiteChangesTheVerdict) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "core/exact/exact.h"
+#include "core/judged_bits.h"
 #include "core/margin/axis.h"
 #include "core/margin/margin.h"
 #include "core/margin/single_precision.h"
@@ -22,7 +23,7 @@ struct MarkWrong {
     std::uint32_t wrong = 0;
     for (std::uint32_t l = 0; l < block.lanes.count; ++l) {
       const LaneWords& lane = block.lanes.lanes[l];
-      wrong |= (lane.intersects[word] ^ block.truth[word]) & ~lane.declined[word];
+      wrong |= judge(lane.intersects[word], lane.declined[word], block.truth[word], ~0u).wrong();
     }
     block.wrong[word] = wrong;
   }
@@ -173,11 +174,12 @@ GRAZE_HD void count_word(const EngineBlock& block, std::uint32_t word, std::uint
   add(0, same);
   add(1, same & truth);
   for (std::uint32_t l = from; l < to; ++l) {
-    const std::uint32_t yes = block.lanes.lanes[l].intersects[word], none = block.lanes.lanes[l].declined[word];
+    const LaneWords& lane = block.lanes.lanes[l];
+    const JudgedBits<std::uint32_t> bits = judge(lane.intersects[word], lane.declined[word], truth, same);
     const std::uint32_t counter = kCountersOfPairs + kCountersOfLane * (l - from);
-    add(counter, same & yes & ~truth & ~none);
-    add(counter + 1, same & ~yes & truth & ~none);
-    add(counter + 2, same & none);
+    add(counter, bits.false_positive);
+    add(counter + 1, bits.false_negative);
+    add(counter + 2, bits.declined);
   }
 }
 

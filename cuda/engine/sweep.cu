@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/judged_bits.h"
 #include "cuda/lanes/device_memory.cuh"
 #include "cuda/lanes/exact_kernels.cuh"
 #include "cuda/lanes/kernels.cuh"
@@ -37,22 +38,19 @@ __device__ void add(std::uint64_t* to, std::uint64_t* least, std::uint32_t bits,
 __global__ void __launch_bounds__(kThreads)
     add_errors(Bits truth, Bits zero, Bits lane, std::uint32_t pairs, std::uint64_t first, ErrorCounts* counts) {
   const std::uint32_t w = blockIdx.x * kThreads + threadIdx.x;
-  std::uint32_t judged = 0, is = 0, none = 0, off = 0, was_wrong = 0;
+  JudgedBits<std::uint32_t> now{}, before{};
   if (w * 32 < pairs) {
-    judged = pairs - w * 32 >= 32 ? ~0u : (1u << (pairs - w * 32)) - 1;
-    judged &= ~truth.declined[w];
-    is = truth.intersects[w];
-    none = lane.declined[w] & judged;
-    off = (lane.intersects[w] ^ is) & judged & ~none;
-    was_wrong = (zero.declined[w] | (zero.intersects[w] ^ is)) & judged;
+    const std::uint32_t in_range = pairs - w * 32 >= 32 ? ~0u : (1u << (pairs - w * 32)) - 1;
+    const std::uint32_t judged = in_range & ~truth.declined[w];  // a pair that is not finite is not counted
+    now = judge(lane.intersects[w], lane.declined[w], truth.intersects[w], judged);
+    before = judge(zero.intersects[w], zero.declined[w], truth.intersects[w], judged);
   }
-  const std::uint32_t wrong = off | none;
-  add(&counts->false_negative, static_cast<std::uint32_t>(__popc(off & is)));
-  add(&counts->false_positive, static_cast<std::uint32_t>(__popc(off & ~is)));
-  add(&counts->declined, static_cast<std::uint32_t>(__popc(none)));
+  add(&counts->false_positive, static_cast<std::uint32_t>(__popc(now.false_positive)));
+  add(&counts->false_negative, static_cast<std::uint32_t>(__popc(now.false_negative)));
+  add(&counts->declined, static_cast<std::uint32_t>(__popc(now.declined)));
   const std::uint64_t index = first + std::uint64_t{w} * 32;
-  add(&counts->fixed, &counts->first_fixed, was_wrong & ~wrong, index);
-  add(&counts->broken, &counts->first_broken, judged & ~was_wrong & wrong, index);
+  add(&counts->fixed, &counts->first_fixed, before.not_right() & ~now.not_right(), index);
+  add(&counts->broken, &counts->first_broken, now.not_right() & ~before.not_right(), index);
 }
 
 }  // namespace

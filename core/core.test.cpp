@@ -261,7 +261,8 @@ TEST(JudgedBits, AreTheCountsOfVerdicts) {
     for (std::uint32_t i = 0; i < 32; ++i) {
       const bool intersects = i & 1, declined = i & 2, counted = i & 8;
       const Verdict truth = i & 4 ? Verdict::intersects : Verdict::disjoint;
-      const Verdict verdict = foreign && intersects && declined ? Verdict::crashed : verdict_of_bits(intersects, declined);
+      const Verdict verdict =
+          foreign && intersects && declined ? Verdict::crashed : verdict_of_bits(intersects, declined);
       Counts expected, found;
       if (counted && verdict != truth) ++expected.of(verdict);
       found.false_positive = judged.false_positive >> i & 1;

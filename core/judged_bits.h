@@ -18,8 +18,8 @@ struct JudgedBits {
   GRAZE_HD constexpr Word not_right() const { return wrong() | declined; }
 };
 
-// intersects, declined: the lane's words, as DecideBlock writes them. truth: the pairs that intersect. judged: the pairs
-// to count. foreign: both bits of a pair say that the lane's code failed on it.
+// intersects, declined: the lane's words, as DecideBlock writes them. truth: the pairs that intersect. judged: the
+// pairs to count. foreign: both bits of a pair say that the lane's code failed on it.
 template <class Word>
 GRAZE_HD constexpr JudgedBits<Word> judge(Word intersects, Word declined, Word truth, Word judged,
                                           bool foreign = false) {

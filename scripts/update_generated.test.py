@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""scripts/update_generated puts the hashes that the test of strata says into strata/golden.h, and nothing else."""
+import importlib.machinery
+import importlib.util
+import pathlib
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+ROOT = pathlib.Path(__file__).parent.parent
+loader = importlib.machinery.SourceFileLoader("update_generated", str(ROOT / "scripts/update_generated"))
+update = importlib.util.module_from_spec(importlib.util.spec_from_loader("update_generated", loader))
+loader.exec_module(update)
+
+
+class Goldens(unittest.TestCase):
+    header = (ROOT / "strata/golden.h").read_text()
+
+    def test_without_changes_nothing_is_written(self):
+        self.assertGreaterEqual(len(update.TEXT_OF_ROW.findall(self.header)), 19)
+        self.assertEqual(update.with_goldens(self.header, "[  PASSED  ] 1 test."), self.header)
+
+    def test_a_changed_hash_replaces_its_row(self):
+        renewed = update.with_goldens(self.header, "thesis is now 0xab12\n").splitlines()
+        changed = [(old, new) for old, new in zip(self.header.splitlines(), renewed) if old != new]
+        self.assertEqual(len(renewed), len(self.header.splitlines()))
+        self.assertEqual([new for _, new in changed], ["    0x000000000000ab12u,  // thesis"])
+        self.assertTrue(changed[0][0].endswith("// thesis"))
+
+    def test_a_new_stratum_gets_a_row_at_the_end(self):
+        renewed = update.with_goldens(self.header, "brand_new is now 0x1\n")
+        self.assertIn("    0x0000000000000001u,  // brand_new\n};\n\n}", renewed)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -18,7 +18,7 @@ inline constexpr int kFromEdgeA = 11, kFromEdgeB = 20, kFromVertex = 29, kDirect
 // lo <= |margin| <= hi.
 struct MarginBounds {
   double lo, hi;
-  int direction;  // disjoint: the separation along this direction is lo
+  int direction;       // disjoint: the separation along this direction is lo
   std::uint32_t axes;  // intersecting: bit i is set if axis i may have the least overlap
 };
 

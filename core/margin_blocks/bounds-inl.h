@@ -42,7 +42,7 @@ HWY_INLINE Vector accurate_cross(const Vector& u, const Vector& v) {
 struct Frame {
   Vector edge_a[3], edge_b[3];  // from vertex i to i + 1
   Vector between[3][3];         // from a[i] to b[j]
-  V largest;  // the largest coordinate in magnitude
+  V largest;                    // the largest coordinate in magnitude
   M exact;                      // no difference is rounded: differences_are_exact in core/margin/frame.h
 
   HWY_INLINE explicit Frame(const Coordinates& pairs) {

@@ -25,8 +25,8 @@ class Scratch {
 
 struct Program {
   std::vector<std::string> words;  // run without a shell
-  double seconds = 1800;  // time limit
-  bool namespaces = true;  // whether to try a process namespace
+  double seconds = 1800;           // time limit
+  bool namespaces = true;          // whether to try a process namespace
 };
 
 // Runs the program with `scratch` for its temporary files. If graze is killed, the supervisor removes `scratch`.

@@ -19,7 +19,7 @@ std::optional<std::uint64_t> parse_whole(std::string_view text);
 
 // rounded_up returns the least decimal of `digits` significant digits that is not below the value; rounded_down the
 // greatest that is not above it. They write as %g does: 0.02032 is "0.021" and "0.02". For upper and lower bounds,
-// which rounding to the nearest would make false. Requires: a finite value, 1 to 15 digits.
+// which rounding to the nearest would make false.   Requires: a finite value, 1 to 15 digits.
 std::string rounded_up(double value, int digits);
 std::string rounded_down(double value, int digits);
 

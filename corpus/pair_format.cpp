@@ -46,7 +46,7 @@ struct Line {
     throw FormatError(where + ": expected " + expected + ", found " + found);
   }
 
-  // Skips white space. Returns: whether only a comment or nothing is left.
+  // Skips white space.   Returns: whether only a comment or nothing is left.
   bool at_end() {
     while (!rest.empty() && is_space(rest[0])) rest.remove_prefix(1);
     return rest.empty() || rest[0] == '#';
@@ -70,7 +70,7 @@ struct Line {
   }
 };
 
-// Skips text such as "float t[2][3][3] =", or "Vec3 a" before a bracket. Returns: whether there was any.
+// Skips text such as "float t[2][3][3] =", or "Vec3 a" before a bracket.   Returns: whether there was any.
 bool skip_name(Line& line) {
   const char first = line.rest[0];
   if (std::isalpha(static_cast<unsigned char>(first)) == 0 && first != '_') return false;
@@ -90,7 +90,7 @@ bool skip_name(Line& line) {
   return true;
 }
 
-// Accepts "1.5", or "1.5f" as in C. Returns: the number without the suffix; empty if it is none.
+// Accepts "1.5", or "1.5f" as in C.   Returns: the number without the suffix; empty if it is none.
 std::string_view number_in(std::string_view word) {
   if (parse_float32(word)) return word;
   const bool suffix = word.size() > 1 && (word.back() == 'f' || word.back() == 'F');

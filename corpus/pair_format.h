@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The text format of pairs and cases: one pair per line, 18 numbers and optional fields. One reader, one writer.
-// corpus/README.md describes the format.
+// docs/formats.md describes the format.
 #pragma once
 
 #include <cstddef>
@@ -55,10 +55,10 @@ class PairReader {
   bool versioned_ = false;
 };
 
-// Opens a file of pairs. Throws: FormatError if it is missing, is a folder, or cannot be read.
+// Opens a file of pairs.   Throws: FormatError if it is missing, is a folder, or cannot be read.
 std::ifstream open_pairs(const std::filesystem::path& file);
 
-// All entries of a file. Throws: FormatError, also if the file is missing or cannot be read.
+// All entries of a file.   Throws: FormatError, also if the file is missing or cannot be read.
 std::vector<Entry> read_pairs(const std::filesystem::path& file);
 
 // Writes the version line, the first line of every file.

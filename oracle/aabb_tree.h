@@ -11,10 +11,10 @@ namespace graze::oracle {
 
 class AabbTree {
  public:
-  // Builds the tree without triangles that have no area, which CGAL's trees reject. Requires: finite coordinates.
+  // Builds the tree without triangles that have no area, which CGAL's trees reject.   Requires: finite coordinates.
   explicit AabbTree(std::span<const std::array<float, 9>> triangles);
   ~AabbTree();
-  // The exact number of its triangles that intersect the reference. Requires: the reference has an area.
+  // The exact number of its triangles that intersect the reference.   Requires: the reference has an area.
   std::uint64_t count(const std::array<float, 9>& reference) const;
 
  private:

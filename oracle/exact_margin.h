@@ -24,11 +24,11 @@ struct SquaredMargin {
 SquaredMargin exact_distance(const LargePair& pair, int exponent);
 
 // The least overlap of two intersecting hulls along those of these axes that are nonzero; zero if none is.
-// axes: bit i selects separating axis i of core/margin/directions.h. Exact: always.
+// axes: bit i selects separating axis i of core/margin/directions.h.   Exact: always.
 SquaredMargin exact_depth(const LargePair& pair, int exponent, std::uint32_t axes);
 
 // The separation of the hulls along direction d of core/margin/directions.h, a lower bound of their distance; zero if
-// they are not separated. Exact: always.
+// they are not separated.   Exact: always.
 SquaredMargin exact_separation(const LargePair& pair, int exponent, int d);
 
 // floor(log2(|margin|)).   Requires: margin is not zero.   Exact: always.
@@ -55,7 +55,7 @@ Vec3<Int> integer_direction(const Vec3<Int> (&a)[3], const Vec3<Int> (&b)[3], in
   return cross(cross(e, between), e);
 }
 
-// min(max n.a - min n.b, max n.b - min n.a), where n is separating axis `axis`. Exact: if Int holds all products.
+// min(max n.a - min n.b, max n.b - min n.a), where n is separating axis `axis`.   Exact: if Int holds all products.
 template <class Int>
 Int integer_overlap(const Vec3<Int> (&a)[3], const Vec3<Int> (&b)[3], int axis, const Vec3<Int>& n) {
   Vec3<Int> seen[3];

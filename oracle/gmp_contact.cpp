@@ -40,9 +40,9 @@ Simplex<Number> simplex_of(Workspace<Number>& work, const Point<Number> (&p)[3],
 Contact contact_of(int extreme_points) { return static_cast<Contact>(extreme_points < 3 ? extreme_points : 3); }
 
 // Two triangles whose planes differ, by the signs of the 15 determinants of four of their six vertices. Each
-// determinant is a sum of dot products with three moments. Requires: neither is flat; ra[i] = a[i] - b[0], u = b[1] -
-// b[0], v = b[2] - b[0], nb = u x v, na is A's normal, heights[i] = ra[i] . nb, sa[i] is the sign of heights[i], and
-// the signs are not all zero.
+// determinant is a sum of dot products with three moments.
+// Requires: neither is flat; ra[i] = a[i] - b[0], u = b[1] - b[0], v = b[2] - b[0], nb = u x v, na is A's normal,
+// heights[i] = ra[i] . nb, sa[i] is the sign of heights[i], and the signs are not all zero.
 template <class Number>
 Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   // The moments add up to A's normal.

@@ -23,7 +23,7 @@ Parts split(float value) {
   return {fraction | hidden, static_cast<int>(std::max(biased, 1u)) - 150, (bits >> 31) != 0};
 }
 
-// mantissa * 2^shift, without losing a bit. Requires: it fits.
+// mantissa * 2^shift, without losing a bit.   Requires: it fits.
 std::int64_t shifted(const Parts& parts, int shift) {
   const std::int64_t size = shift >= 0 ? std::int64_t{parts.mantissa} << shift : std::int64_t{parts.mantissa} >> -shift;
   return parts.negative ? -size : size;

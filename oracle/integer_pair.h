@@ -39,7 +39,7 @@ struct SmallPair {
 SmallPair small_integers(const Pair& pair, const Grid& grid);
 
 // Like small_integers for one coordinate, of any size, stored in an initialised GMP integer.
-// Requires: grid is that of the coordinate's pair. Exact: always.
+// Requires: grid is that of the coordinate's pair.   Exact: always.
 void set_integer(mpz_t out, float coordinate, const Grid& grid);
 
 struct LargePair {
@@ -50,7 +50,7 @@ struct LargePair {
 // The pair's coordinates divided by 2^grid.exponent.
 LargePair large_integers(const Pair& pair, const Grid& grid);
 
-// The two decisions of truth.h, and the hulls, for a pair of integers of any size. Exact: always.
+// The two decisions of truth.h, and the hulls, for a pair of integers of any size.   Exact: always.
 Verdict cgal_verdict(const LargePair& pair);
 Contact gmp_contact(const LargePair& pair);
 Hulls hulls(const LargePair& pair);

@@ -23,7 +23,7 @@ struct OracleMismatch : std::runtime_error {
 
 // Relation and margin. The verdict is CGAL's, confirmed by the decision on GMP integers.
 // Exact: always; the margin is a rational's square root, rounded once by MPFR.
-// Throws: OracleMismatch. Returns: declined, unknown and NaN if a coordinate is not finite.
+// Throws: OracleMismatch.   Returns: declined, unknown and NaN if a coordinate is not finite.
 Truth truth(const Pair& pair);
 
 // CGAL's decision: its triangle test for proper triangles, and its tests of segments and points for degenerate ones.
@@ -31,10 +31,10 @@ Truth truth(const Pair& pair);
 Verdict cgal_verdict(const Pair& pair);
 
 // The independent decision: the dimension of the common set, from signs of determinants of GMP integers.
-// Requires: finite coordinates. Exact: always. The pair intersects if this is not Contact::none.
+// Requires: finite coordinates.   Exact: always. The pair intersects if this is not Contact::none.
 Contact gmp_contact(const Pair& pair);
 
-// The hulls, by exact ranks of integer vectors. Requires: finite coordinates. Exact: always.
+// The hulls, by exact ranks of integer vectors.   Requires: finite coordinates.   Exact: always.
 Hulls hulls(const Pair& pair);
 
 // The bucket of the exact margin. A certified double-precision estimate nearly always decides it, otherwise GMP.

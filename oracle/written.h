@@ -17,8 +17,8 @@ namespace graze::oracle {
 std::optional<std::size_t> first_rounded(std::span<const std::string> numbers, const Pair& stored);
 
 // Verdict, contact and margin of the numbers as rationals, decided like truth(). Ulps are those of the stored pair.
-// Nothing if every number is stored as written, or if one is not finite. Exact: always. Throws: OracleMismatch; what
-// first_rounded throws.
+// Nothing if every number is stored as written, or if one is not finite.
+// Exact: always.   Throws: OracleMismatch; what first_rounded throws.
 std::optional<Truth> truth_as_written(std::span<const std::string> numbers, const Pair& stored);
 
 }  // namespace graze::oracle

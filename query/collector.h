@@ -20,7 +20,7 @@ struct Outputs {
   std::uint64_t room = 0;
 };
 
-// Called with the number of triangles that are done. Returns: whether to continue.
+// Called with the number of triangles that are done.   Returns: whether to continue.
 using Progress = std::function<bool(std::uint64_t done)>;
 
 class Collector final : public cuda::QueryWork {

@@ -122,7 +122,7 @@ Vec3<float> moved(const Pose& m, const Vec3<float>& v) {
   return {to[0], to[1], to[2]};
 }
 
-// Replaces the mesh by one body for each pose. Returns: where each body ends in the triangles.
+// Replaces the mesh by one body for each pose.   Returns: where each body ends in the triangles.
 std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path& file,
                                    const std::vector<Pose>& poses) {
   const std::vector<Triangle> mesh = std::move(pairs.triangles);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The decision by axes: separating axes of the Minkowski difference of a and b. It handles proper, coplanar and
-// degenerate pairs alike, and also finds the contact, the margin's sign and the hulls. Reference: the theorem is that
-// of Gottschalk, Lin and Manocha 1996 (OBBTree).
+// degenerate pairs alike, and also finds the contact, the margin's sign and the hulls.
+// Reference: the theorem is that of Gottschalk, Lin and Manocha 1996 (OBBTree).
 #pragma once
 
 #include "core/exact/axes.h"

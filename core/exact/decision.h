@@ -163,16 +163,16 @@ GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage)
   return found == Finding::unsure ? MultiwordNumbers::visit(grid, decide_in) : found != Finding::disjoint;
 }
 
-// The relation of a pair in general position, given the finding of a decision by planes. Returns: false if the finding
-// does not determine it.
+// The relation of a pair in general position, given the finding of a decision by planes.
+// Returns: false if the finding does not determine it.
 GRAZE_HD inline bool relation_of(Finding found, const float* a, const float* b, Relation& r) {
   r = found == Finding::crosses ? Relation{Verdict::intersects, Contact::segment, -1, {}} : Relation{};
   // A nonzero determinant separates the triangles, so they are not coplanar.
   return found == Finding::crosses || (found == Finding::disjoint && both_proper(a, b));
 }
 
-// The relation of pairs in general position: they cross, a plane or an edge of each separates them, or they share a
-// vertex. Returns: false if rounding leaves that in doubt.
+// The relation of pairs in general position: they cross, a plane or an edge of each separates them, or they share
+// a vertex.   Returns: false if rounding leaves that in doubt.
 GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r) {
   const Finding found = screen(a, b);
   if (found == Finding::unsure) {

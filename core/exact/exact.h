@@ -25,8 +25,8 @@
 
 namespace graze::exact {
 
-// Whether the closed triangles a and b share a point; each has three vertices x y z. `stage` receives the kind of
-// numbers that decided. Requires: finite coordinates. Exact: always.
+// Whether the closed triangles a and b, three vertices x y z each, share a point. `stage`: which numbers decided.
+// Requires: finite coordinates.   Exact: always.
 GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = nullptr) {
   using namespace detail;
   Stage decided = Stage::bounded;
@@ -36,8 +36,8 @@ GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = n
   return result;
 }
 
-// The verdict with contact, margin sign and hulls. Requires: finite coordinates. Exact:
-// always.
+// The verdict with contact, margin sign and hulls.
+// Requires: finite coordinates.   Exact: always.
 GRAZE_HD inline Relation relation(const float* a, const float* b) {
   using namespace detail;
   Relation r;

@@ -3,9 +3,9 @@
 // kind that holds a pair. If coordinates on the pair's grid have B bits, differences have B + 1, and a determinant is
 // less than 6 times the product of three differences. Bits below are those of coordinates:
 //   bounded    doubles with an error bound; see core/exact/error_bound.h
-//   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; in floats so up to 6 bits:
+//   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; floats likewise up to 6 bits:
 //              6 * 2^(3 * 7) < 2^24
-//  residue up to 34 bits, on devices: a double, and an integer modulo 2^64 for use when the double is small
+//   residue    up to 34 bits, on devices: a double, and an integer modulo 2^64 for use when the double is small
 //   int128     up to 30 bits: minors fit in 64 bits; up to 40 bits: less than 6 * 2^(3 * 41) < 2^127
 //   wide       up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant than 6 * 2^(3 * 91) < 2^319;
 //              else multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840

@@ -127,8 +127,8 @@ GRAZE_HD inline float size_of(const float* t) {
   return sum;
 }
 
-// Returns: true if the triangle is certainly beyond one of the slabs, so disjoint; false if it is not finite. Exact: in
-// any rounding mode, with contraction and without.
+// Returns: true if the triangle is certainly beyond one of the slabs, so disjoint; false if it is not finite.
+// Exact: in any rounding mode, with contraction and without.
 GRAZE_HD inline bool is_beyond(const PreparedTriangle& r, const float* t) {
   using detail::bits_of, detail::lesser, detail::magnitude;
   const float size = size_of(t);

@@ -39,7 +39,7 @@ struct Relation {
   friend bool operator==(const Relation&, const Relation&) = default;
 };
 
-// Packs contact and hulls into seven bits. Requires: a known contact.
+// Packs contact and hulls into seven bits.   Requires: a known contact.
 GRAZE_HD constexpr std::uint8_t packed(const Relation& r) {
   return static_cast<std::uint8_t>(r.hulls.dimension_a | r.hulls.dimension_b << 2 | int{r.hulls.coplanar} << 4 |
                                    static_cast<int>(r.contact) << 5);

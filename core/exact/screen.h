@@ -12,7 +12,7 @@
 
 namespace graze::exact::detail {
 
-// Requires: finite coordinates. Returns: disjoint, crosses, or unsure if a determinant is within its error bound.
+// Requires: finite coordinates.   Returns: disjoint, crosses, or unsure if a determinant is within its error bound.
 GRAZE_HD inline Finding screen(const float* a, const float* b) {
 #if defined(__SSE2__) && !defined(__CUDACC__)
   return sse2::screen(a, b);

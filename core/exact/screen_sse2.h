@@ -53,7 +53,7 @@ inline Two both(const Widened& l, const Widened& r, int i) {
 // Two vertices, as one vector of two.
 inline Vec<Two> both(const double* l, const double* r) { return {Two{l[0], r[0]}, Two{l[1], r[1]}, Two{l[2], r[2]}}; }
 
-// determinant_error(extent_of(a, b)), in both parts. Requires: the vertices of both triangles.
+// determinant_error(extent_of(a, b)), in both parts.   Requires: the vertices of both triangles.
 inline Two determinant_error(const Vec<Two> (&v)[3]) {
   const Vec<Two> low{least(least(v[0].x, v[1].x), v[2].x), least(least(v[0].y, v[1].y), v[2].y),
                      least(least(v[0].z, v[1].z), v[2].z)};

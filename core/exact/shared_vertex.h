@@ -20,11 +20,11 @@ GRAZE_HD inline int shared_vertex(const float* a, const float* b) {
   return found;
 }
 
-// The relation of two triangles with a common vertex. Let p be the signs of the heights of b's other vertices over
-// a's plane, and q those of a's over b's. The triangles meet only in the vertex if some plane through it separates
-// them; otherwise they meet in a segment that ends there. Candidates: a's plane (p1 == p2), b's plane (q1 == q2), or
-// a plane through an edge of each. The last determinants are the same four numbers. Returns: false if a sign is in
-// doubt.
+// The relation of two triangles with a common vertex. Let p be the signs of the heights of b's other vertices over a's
+// plane, and q those of a's over b's. If some plane through the vertex separates the triangles, they meet only in the
+// vertex; otherwise they meet in a segment that ends there. Candidates are a's plane (p1 == p2), b's plane (q1 == q2),
+// and planes through an edge of each, whose determinants are the same four numbers.
+// Returns: false if a sign is in doubt.
 GRAZE_HD inline bool relate_at_vertex(const float* a, const float* b, int shared, Relation& r) {
   const double error = determinant_error(extent_of(a, b));
   const unsigned i = static_cast<unsigned>(shared) / 3, j = static_cast<unsigned>(shared) % 3;

@@ -29,7 +29,7 @@ class ExactBlocks : public testing::Test {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   }
 
-  // Calls check with the name of each instruction set that this processor supports. Returns: the names.
+  // Calls check with the name of each instruction set that this processor supports.   Returns: the names.
   template <class Check>
   static std::set<std::string> on_every_target(const Check& check) {
     hwy::SetSupportedTargetsForTest(0);

@@ -142,7 +142,7 @@ HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M oth
           chosen(other_is_below, next, last)};
 }
 
-// Whether the lone vertex of three is below. The other two are equal and cancel. Requires: not all three are equal.
+// Whether the lone vertex of three is below. The other two are equal and cancel.   Requires: not all three are equal.
 HWY_INLINE M alone_is_below(const M (&below)[3]) { return hn::Xor(hn::Xor(below[0], below[1]), below[2]); }
 
 HWY_INLINE Screened screen_all(const Coordinates& pairs) {

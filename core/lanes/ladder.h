@@ -10,9 +10,9 @@
 
 namespace graze {
 
-// Decides the pairs under each of the tolerances (rungs). Each rung has a row of (count + 63) / 64 words, in the order
-// of the rungs; pair i is bit i % 64 of word i / 64. Verdicts are those of the lane under that rung alone. Requires: no
-// tolerance is less than in the rung before; all rungs have relative ones, or none has.
+// Decides the pairs under each tolerance (rung) as the lane under that rung would. Each rung has a row of
+// (count + 63) / 64 words, in the order of the rungs; pair i is bit i % 64 of word i / 64 of a row.
+// Requires: no tolerance is less than in the rung before; all rungs have relative ones, or none has.
 using DecideLadder = void (*)(std::span<const Epsilons> rungs, const Pair* pairs, std::size_t count,
                               std::uint64_t* intersects, std::uint64_t* declined);
 

@@ -40,7 +40,7 @@ class ForeignCode {
  public:
   virtual ~ForeignCode() = default;
   virtual void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) = 0;
-  // How it failed on a pair: crashed, timed_out or unstable. Requires: it failed on the pair.
+  // How it failed on a pair: crashed, timed_out or unstable.   Requires: it failed on the pair.
   virtual Verdict failure(const Pair& pair) = 0;
 };
 
@@ -113,7 +113,7 @@ struct Lane {
 // last; lanes of foreign code follow them.
 std::span<const Lane> lanes();
 
-// Adds the lanes of a foreign subject permanently. Requires: no other thread uses lanes meanwhile.
+// Adds the lanes of a foreign subject permanently.   Requires: no other thread uses lanes meanwhile.
 // Throws: std::runtime_error if there are too many.
 void add_lanes(std::vector<Lane> foreign);
 
@@ -121,9 +121,9 @@ void add_lanes(std::vector<Lane> foreign);
 // Throws: UsageError if the lane cannot have the policy.
 Lane lane_under(const Lane& lane, std::string_view policy);
 
-// Adds a lane under the pattern's policy for each published lane that the rest of the pattern matches:
-// "*/f32/cpu/rel:8" adds one for each f32/cpu lane. A lane that exists stays. Without a policy in the pattern it adds
-// nothing. Requires: as add_lanes. Throws: UsageError if no matching lane can have the policy.
+// Adds a lane under the pattern's policy for each published lane that the rest of the pattern matches. Example:
+// "*/f32/cpu/rel:8" for all f32/cpu lanes. Existing lanes stay. It does nothing if the pattern has no policy.
+// Requires: as add_lanes.   Throws: UsageError if no matching lane can have the policy.
 void add_policy_lanes(std::string_view pattern);
 
 // The lanes of published algorithms, without a policy.

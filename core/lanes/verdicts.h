@@ -14,7 +14,7 @@ namespace graze {
 // The verdict on each pair. The block is not called if there are no pairs.
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs);
 
-// The verdict of that name; nothing for another word.
+// The verdict of that name; nothing if there is none.
 std::optional<Verdict> verdict_named(std::string_view word);
 
 }  // namespace graze

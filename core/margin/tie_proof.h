@@ -52,8 +52,8 @@ GRAZE_HD inline Vector direction(const Vector (&a)[3], const Vector (&b)[3], int
 }  // namespace tie_proof
 
 // Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin/directions.h). Bits on
-// their grid: coordinates at most kIntBits = 40, a direction at most 3 * 41 + 4, the gap along it 170, its square 340
-// of 512. Returns: false also if the numbers are too large to tell.
+// their grid: coordinates at most kIntBits = 40, a direction 3 * 41 + 4, the gap along it 170, its square 340 of 512.
+// Returns: false also if the numbers are too large to tell.
 GRAZE_HD inline bool are_apart_by(const float* a, const float* b, int d, int exponent) {
   using namespace tie_proof;
   const exact::detail::Grid grid = exact::detail::grid_of(a, b);

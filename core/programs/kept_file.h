@@ -9,7 +9,7 @@
 
 namespace graze {
 
-// Appends the checksum to `made` and renames it to `kept`: nobody sees a part of it. Throws: std::runtime_error.
+// Appends the checksum to `made` and renames it to `kept`: nobody sees a part of it.   Throws: std::runtime_error.
 void keep_file(const std::filesystem::path& made, const std::filesystem::path& kept);
 
 // Returns: the content as it was kept; nothing if the file is missing or was changed.

@@ -31,7 +31,7 @@ struct Program {
 
 // Runs the program with `scratch` for its temporary files. If graze is killed, the supervisor removes `scratch`.
 // Returns: the exit status, or 128 plus the signal, as a shell does; 127 if there is no such program.
-// output: what it wrote to both streams. Throws: Stopped; std::runtime_error if it takes too long.
+// output: what it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long.
 int run_program(const Program& program, const std::filesystem::path& scratch, std::string& output);
 
 }  // namespace graze

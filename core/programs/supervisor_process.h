@@ -16,7 +16,7 @@ inline constexpr char kAlive = 1;
 class SupervisorProcess {
  public:
   // program: a file name in the folder of the running program. It gets its end of a socket as descriptor 3, and
-  // `shared`, if given, as descriptor 4. It writes to `output`, or to /dev/null if -1. Throws: std::system_error.
+  // `shared`, if given, as descriptor 4. It writes to `output`, or to /dev/null if -1.   Throws: std::system_error.
   SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments, int shared, int output);
   // Closes the socket, so that the supervisor ends all that it started. A supervisor that does not end within 6 s is
   // killed. After a request to stop, graze leaves it to end by itself after 1 s.
@@ -27,7 +27,7 @@ class SupervisorProcess {
   bool send(const void* message, std::size_t size) const;
 
   // Waits for a message of more than one byte.
-  // Returns: the message's size; at most 0 if the supervisor ended, is stopped or is silent. Throws: Stopped.
+  // Returns: the message's size; at most 0 if the supervisor ended, is stopped or is silent.   Throws: Stopped.
   ssize_t receive(void* to, std::size_t size);
 
   // Whether `receive` failed because the supervisor was silent for 10 s, as a frozen one is.

@@ -21,7 +21,7 @@ class Lines {
 
   // Goes to the next line that has a word.   Returns: whether there is one.
   bool next();
-  // Like next. Throws: an error that names what was expected, if the file ends.
+  // Like next.   Throws: an error that names what was expected, if the file ends.
   void expect_next(const std::string& expected);
 
   const std::vector<std::string_view>& words() const { return words_; }
@@ -29,7 +29,7 @@ class Lines {
   std::size_t next_byte() const { return byte_; }  // the first byte after the line
   std::size_t bytes_left() const { return file_.bytes.size() - byte_; }
 
-  // Parses word i. Requires: i < words().size(). Throws: an error if it is not of that kind.
+  // Parses word i.   Requires: i < words().size().   Throws: an error if it is not of that kind.
   float coordinate(std::size_t i) const;
   std::uint64_t whole(std::size_t i, const std::string& expected) const;
   std::uint32_t vertex(std::size_t i, std::size_t vertices) const;

@@ -28,7 +28,7 @@ GRAZE_HD inline double draw_from(Draws& draws, const Quantiles& quantiles, const
 
 inline constexpr double kSliver = 1024;  // the least aspect of a sliver
 
-// The fraction of aspects below kSliver. Requires: the greatest aspect is not below it.
+// The fraction of aspects below kSliver.   Requires: the greatest aspect is not below it.
 GRAZE_HD inline double sliver_from(const Scene& scene) {
   const Quantiles& aspect = scene.aspect;
   int i = 0;

@@ -58,7 +58,7 @@ struct Answer : graze_answer {
   std::string_view what() const { return message; }
 };
 
-// A query for all triangles of a part, which may then be changed. Requires: reference and part outlive the query.
+// A query for all triangles of a part, which may then be changed.   Requires: reference and part outlive the query.
 inline graze_query query_of(const Triangle& reference, const graze_triangles& part) {
   graze_query query = {};
   query.size = sizeof query;
@@ -95,7 +95,7 @@ class Context {
     return run(query_of(reference, part));
   }
 
-  // For each triangle: 1 if it meets the reference, 0 if not, 2 if declined. Throws: std::bad_alloc for the vector.
+  // For each triangle: 1 if it meets the reference, 0 if not, 2 if declined.   Throws: std::bad_alloc for the vector.
   Answer all(const Triangle& reference, const graze_triangles& part, std::vector<std::uint8_t>& bytes) const {
     graze_query query = query_of(reference, part);
     if (part.count > GRAZE_MOST_TRIANGLES) return run(query);  // which rejects it

@@ -103,10 +103,10 @@ struct Recorder {
   }
 };
 
-// none: every operation rounds. Else a product that is added is not rounded. Of two, `left` fuses the left one, like
-// g++ where it contracts. `nvcc` fuses the one with fewer uses, else the left one
-// (cuda/twin/generator/contraction.cpp). It fuses neither if both scale by a quotient, as only interval_overlap's
-// common_line does; nvcc moves that addition into another block. Guesses: compare with the lane.
+// none: every operation rounds. Otherwise a product that is added or subtracted is not rounded. Of two products, left
+// fuses the left one, like g++ if it contracts them at all. nvcc fuses the one with fewer uses, else the left one, like
+// cuda/twin/generator/contraction.cpp. It fuses neither of two that scale by a quotient: in interval_overlap's
+// common_line, the only such place, nvcc moves the addition into another block. Rules guess: compare with the lane.
 enum class Contraction { none, left, nvcc };
 
 inline namespace GRAZE_FP {

@@ -17,7 +17,7 @@ inline std::string_view name(Axis axis) {
   return axis == Axis::scale ? "scale" : axis == Axis::offset ? "offset" : "none";
 }
 
-// log2 of the lower end of `extreme`, a place on the axis. A scale place spans 2^4: -152 is 2^-152 to 2^-148.
+// log2 of the lower end of place `extreme`. A place on the scale axis spans 2^4: -152 is 2^-152 to 2^-148.
 GRAZE_HD constexpr int exponent_of(Axis axis, std::int8_t extreme) {
   return axis == Axis::scale ? 4 * extreme : extreme;
 }

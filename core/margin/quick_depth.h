@@ -21,7 +21,7 @@ struct Overlap {
   Real along, n2;
 };
 
-// The axis is perpendicular to the first edges of a and b, or else to a. The edge of a then projects to zero.
+// If `edges`, the axis is perpendicular to the first edges of a and b, else to the face a. The edge of a projects to 0.
 template <class Real>
 GRAZE_HD Overlap<Real> overlap_along(const Corners<Real>& a, const Corners<Real>& b, bool edges) {
   const Vec3<Real> u = a[1] - a[0], v = a[2] - a[0], w = b[1] - b[0];

@@ -16,8 +16,8 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace first_attempt {
 
-// Whether a coordinate axis joins the first vertices, each triangle lies beyond its own vertex, and no rounding
-// occurred. The vertices are then the nearest points, and `distance` is exact, so a tie with a power of two is decided.
+// Whether a coordinate axis joins the first vertices, no triangle reaches past its first vertex towards the other, and
+// nothing was rounded. Then these vertices are nearest and `distance` is exact, which decides ties with powers of two.
 GRAZE_HD inline bool joined_by_axis(const MarginFrame<double>& f, const Vec& between, double& distance) {
   const bool x = between.x != 0, y = between.y != 0, z = between.z != 0;
   if (x + y + z != 1) return false;

@@ -134,7 +134,7 @@ GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int expone
   if (of_a.in == 7 || of_b.in == 7) return Finding::unsure;
 
   const Turn turn = lone_vertices(of_a, of_b);
-  for (unsigned k = 1; k < 3; ++k) {  // whether an edge of each separates them
+  for (unsigned k = 1; k < 3; ++k) {  // whether an edge of each parts them
     const unsigned o = k == 1 ? turn.a[1] : turn.a[0], r = k == 1 ? turn.a[0] : turn.a[2],
                    s = k == 1 ? turn.b[1] : turn.b[2];
     const auto nearly = determinant<Near>(pick(near.a, o), pick(near.b, turn.b[0]), pick(near.a, r), pick(near.b, s));

@@ -20,7 +20,7 @@ Verdict decide(const Lane& lane, const Pair& pair) {
   return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
 }
 
-// Bounds add: neither may get lost where the other is exact.
+// Error bounds add up. Neither may be lost if the other is exact.
 TEST(Ball, ARadiusHoldsBothErrors) {
   constexpr long kExact = Ball::kExact, kUnknown = Ball::kUnknown;
   EXPECT_EQ(Ball::either(kExact, kExact), kExact);
@@ -48,7 +48,8 @@ TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
   EXPECT_FALSE(assigned.exact());
 }
 
-// An underflow is what is rounded below the least normal number, 2^-126; there and above nothing is lost.
+// A result underflows if it is rounded below the least normal number, 2^-126. At that number and above, nothing is
+// lost.
 TEST(Multi, UnderflowsBelowTheLeastNormalNumber) {
   const mpfr_exp_t emin = mpfr_get_emin();
   Multi::precision = 24;
@@ -71,7 +72,7 @@ TEST(Multi, UnderflowsBelowTheLeastNormalNumber) {
   Multi::precision = 53;
 }
 
-// MPFR with a format's mantissa and exponents, subnormals included, is that format.
+// MPFR with a format's mantissa and exponents, subnormals included, computes like that format.
 TEST(Precise, WithBothLimitsIsTheCpuLane) {
   int overflows = 0, underflows = 0;
   for (const Kind kind : kKinds) {
@@ -91,7 +92,7 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
   EXPECT_GT(underflows, 100);
 }
 
-// The three algorithms without quotients and roots, on GMP's rationals: another library, and no error bounds.
+// The three algorithms without quotients and roots, on GMP's rationals: another library, without error bounds.
 TEST(Precise, ExactlyIsWhatRationalsSay) {
   using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
   using Decide = Verdict (*)(const Pair&);
@@ -111,8 +112,8 @@ TEST(Precise, ExactlyIsWhatRationalsSay) {
   }
 }
 
-// interval_overlap is right in exact arithmetic unless a triangle is degenerate; its roots and quotients never make an
-// exact contact exact in any number of bits, so that this shows how open comparisons are settled.
+// interval_overlap is right in exact arithmetic unless a triangle is degenerate. Its roots and quotients never make an
+// exact contact exact, with any number of bits. So this test shows how open comparisons are settled.
 TEST(Precise, ExactlySettlesRootsAndQuotients) {
   int untold = 0;
   for (const Kind kind : {Kind::uniform, Kind::near, Kind::touching, Kind::coplanar}) {
@@ -146,7 +147,7 @@ TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
   EXPECT_GT(more, 0);
 }
 
-// A distance of 2^-180, which float32 has as 0: all 2^23 ulps of it are lost.
+// A distance of 2^-180, which float32 rounds to 0: all 2^23 ulps of it are lost.
 TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
   const Pair pair{{{0, 0, 0}, {0x1p-60f, 0, 0}, {0, 0x1p-60f, 0}}, {{0, 0, 0x1p-60f}, {1, 0, 1}, {0, 1, 2}}};
   const Trace<double> run = run_traced<float>(2, pair);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen exists with SSE2 and without: both must find the same in every pair, and only what is true.
+// The screen exists with SSE2 and without. Both must find the same for every pair, and only what is true.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,13 +43,13 @@ Coordinates wide_pair(Random& random) {
   return draw(random, [&] { return std::ldexp(uniform(random), static_cast<int>(random() % 277) - 149); });
 }
 
-// Coordinates so small, or so large, that products of three leave the range of a float.
+// Coordinates so small or so large that products of three leave the range of float.
 Coordinates extreme_pair(Random& random) {
   const int exponent = random() % 2 == 0 ? -140 : 120;
   return draw(random, [&] { return std::ldexp(uniform(random), exponent); });
 }
 
-// b[0] lies on a's face up to rounding, or b's first edge crosses a's: determinants near their error bound.
+// b[0] lies on a's face up to rounding, or b's first edge crosses a's. Determinants are near their error bound.
 Coordinates near_pair(Random& random) {
   Coordinates c = uniform_pair(random);
   const float s = std::abs(uniform(random)) / 2, t = random() % 2 == 0 ? 0 : std::abs(uniform(random)) / 2;

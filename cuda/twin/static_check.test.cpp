@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contraction rule against ptxas, without a GPU: kernel by kernel, machine code of the default build beside that of
-// the PTX in which this project wrote out every contraction. Equal counts of fused and unfused operations are
-// required everywhere; most kernels are the same code, instruction for instruction. Skipped where there is no nvcc.
+// Tests the contraction rule against ptxas without a GPU. For each kernel it compares the default build's machine code
+// with that of the explicit PTX, in which this project has written out every contraction. All kernels must have equal
+// counts of fused and unfused operations. Most have the same code, instruction for instruction. Skipped without nvcc.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -20,9 +20,10 @@
 namespace graze::cuda {
 namespace {
 
-using Code = std::map<std::string, std::string>;  // machine code by kernels
+using Code = std::map<std::string, std::string>;  // machine code by kernel name
 
-// Floating-point operations in machine code of sm_70 to sm_120: 16 bytes per instruction, told by its low nine bits.
+// Floating-point operations in machine code of sm_70 to sm_120. An instruction has 16 bytes; its low nine bits identify
+// it.
 std::map<std::string, int> operations(const std::string& code) {
   static const std::map<int, std::string> kNames = {{0x20, "FMUL"}, {0x21, "FADD"}, {0x23, "FFMA"},
                                                     {0x28, "DMUL"}, {0x29, "DADD"}, {0x2b, "DFMA"}};
@@ -59,7 +60,8 @@ TEST_P(StaticCheck, ExplicitPtxHasTheOperationsOfTheDefaultBuild) {
     EXPECT_EQ(operations(code), operations(written.at(kernel))) << kernel;
   }
   RecordProperty("same_code", same_code(built, written));
-  // The others differ in the order of instructions and in registers. nvcc 13.0.88: 16 of the 20 contracted ones.
+  // The others differ in instruction order and registers. With nvcc 13.0.88, 16 of the 20 contracted kernels are the
+  // same.
   EXPECT_GE(same_code(built, written), std::string(GetParam()) == "cuda_nofma" ? 20 : 14);
 }
 
@@ -70,13 +72,13 @@ TEST(StaticCheck, CatchesTheRightProductFirst) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
   const Code built = read_cubin(generated("cuda_fma.cubin")),
              wrong = read_cubin(generated("cuda_fma.right_first.cubin"));
-  // Every kernel has an a*b - c*d: none is the same code. (Its counts are the same: one fused, one not.)
+  // Every kernel has an a*b - c*d, so none has the same code. (The counts are equal: one fused, one not.)
   EXPECT_EQ(same_code(built, wrong), 0);
 }
 
 TEST(StaticCheck, SeesContraction) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
-  // Only division and square root may contain fused operations in the build without contraction.
+  // Without contraction, only division and square root may contain fused operations.
   const Code contracted = read_cubin(generated("cuda_fma.cubin")),
              not_contracted = read_cubin(generated("cuda_nofma.cubin"));
   for (const auto& [kernel, code] : not_contracted) {
@@ -86,8 +88,8 @@ TEST(StaticCheck, SeesContraction) {
   EXPECT_EQ(same_code(contracted, not_contracted), 0);
 }
 
-// A program without branches, dead code and equal products: sums and products of inputs, of sums, and of products that
-// other sums share. Every sum and every product that nothing reads is stored.
+// A program without branches, dead code or equal products. It has sums and products of inputs, of sums, and of products
+// that other sums share. Every sum or product that nothing reads is stored.
 std::string random_program(std::mt19937& random, const std::string& name, const std::string& type) {
   const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   const std::string bytes = type == "f32" ? "4" : "8";
@@ -137,7 +139,7 @@ Code assembled(const std::string& ptx) {
 
 constexpr int kPrograms = 500;
 
-// Share of random programs whose machine code the explicit PTX reproduces, instruction for instruction.
+// The share of random programs for which the explicit PTX gives the same machine code, instruction for instruction.
 class RandomPrograms : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
@@ -167,7 +169,7 @@ class RandomPrograms : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(RandomPrograms, AreContractedAsPtxasDoes) {
-  // nvcc 13.0.88: all of them.
+  // With nvcc 13.0.88: all of them.
   EXPECT_GT(share_of_same_code(twin::Rule::ptxas), 0.97);
 }
 

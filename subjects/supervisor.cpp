@@ -271,8 +271,7 @@ class Supervisor {
       const ssize_t received = receive(&said, sizeof said, sender);
       if (received == 0) return false;  // nobody holds the socket any more
       if (received != sizeof said || said != Says::ready || sender <= 1) continue;
-      const int fd = open_process(sender);  // opened first, so that the id still belongs to this process during the
-                                            // checks
+      const int fd = open_process(sender);  // first, so that the id stays this process's during the checks
       if (fd >= 0 && is_descendant(sender) && !has_ended(fd)) {
         worker_ = sender;
         worker_fd_ = fd;

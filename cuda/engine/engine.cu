@@ -45,8 +45,7 @@ class CudaEngine final : public DeviceEngine {
   CudaEngine(int ordinal, std::span<const Lane* const> lanes)
       : ordinal_(ordinal), lanes_(lanes.begin(), lanes.end()), groups_(lane_groups(lanes)) {
     check(cudaSetDevice(ordinal_));
-    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // otherwise a kernel with another stack size waits for the
-                                                           // others
+    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // otherwise kernels with other stack sizes wait
     for (std::unique_ptr<Buffers>& buffers : buffers_) buffers = std::make_unique<Buffers>();
     LaneGroup* groups = groups_on_device_.at_least(groups_.size());
     check(cudaMemcpy(groups, groups_.data(), groups_.size() * sizeof *groups, cudaMemcpyHostToDevice));

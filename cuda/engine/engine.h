@@ -42,8 +42,7 @@ struct EngineResult {
   // Indexed by bucket + kBucketMost. In order: pairs; intersecting pairs; then for each lane its false positives, false
   // negatives and declined pairs.
   std::vector<std::uint64_t> counts;
-  std::vector<std::uint64_t> extreme_counts;  // same layout, indexed by place_on_axis + kBucketMost; empty without an
-                                              // axis
+  std::vector<std::uint64_t> extreme_counts;  // same, by place_on_axis + kBucketMost; empty without an axis
   std::vector<EngineSignature> signatures;
   std::vector<std::uint64_t> undecided;  // indices, sorted
   std::uint64_t disagreements = 0;

@@ -14,8 +14,7 @@ namespace graze::cuda {
 
 struct EngineLimits {
   std::uint32_t block_pairs = 1u << 22;  // pairs decided together
-  std::uint32_t signatures = 1u << 18;   // rows; a power of two. A million pairs of all strata have about 6,000
-                                         // signatures.
+  std::uint32_t signatures = 1u << 18;   // rows; a power of two. A million pairs of all strata need about 6,000
   std::uint32_t undecided = 1u << 26;    // pairs left to the host
 };
 

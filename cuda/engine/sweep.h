@@ -15,10 +15,8 @@ namespace graze::cuda {
 
 // The counts of one lane. Pairs that are not finite are not counted.
 struct ErrorCounts : Counts {
-  std::uint64_t fixed = 0, broken = 0;  // fixed: right where the reference lane is wrong or declines; broken: the
-                                        // converse
-  std::uint64_t first_fixed = ~std::uint64_t{0}, first_broken = ~std::uint64_t{0};  // the first such index; ~0 when
-                                                                                    // there is none
+  std::uint64_t fixed = 0, broken = 0;  // fixed: right where `zero` is wrong or declines; broken: the converse
+  std::uint64_t first_fixed = ~std::uint64_t{0}, first_broken = ~std::uint64_t{0};  // first index, or ~0
 };
 
 // Counts for each lane over all pairs of the source. `zero` is the lane to compare with.

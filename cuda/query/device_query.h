@@ -51,8 +51,7 @@ struct DeviceQuestion {
   std::span<const int> places;  // for each part: the device whose memory holds it, -1: host
   const Lane* lane = nullptr;   // a CUDA lane
   bool any = false;
-  unsigned char *bytes = nullptr, *bits = nullptr;  // device memory or null; a row for each reference, over all
-                                                    // triangles
+  unsigned char *bytes = nullptr, *bits = nullptr;  // device memory or null; a row for each reference
   std::uint64_t triangles = 0;
   void* stream = nullptr;  // a cudaStream_t on the device of the only part; null: our own stream
   double launch_seconds = 0.5;

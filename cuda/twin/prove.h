@@ -17,8 +17,7 @@ struct ProofOptions {
   std::uint64_t twin_pairs = 100'000'000;  // how many of them also run on the twin
   std::uint64_t seed = 1;
   std::vector<std::string> lanes = {};  // shell patterns; all CUDA lanes when empty
-  bool wrong_rule = false;              // the explicit PTX contracts the right one of two products, so there must be
-                                        // differences
+  bool wrong_rule = false;  // the explicit PTX contracts the right product first, which must give differences
   std::function<void(const std::string& line)> progress = nullptr;  // called after each stratum
 };
 

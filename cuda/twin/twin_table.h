@@ -20,8 +20,7 @@ struct TwinRow {
   const char* symbol = "";  // name of the kernel that it replays
   const char* trace_symbol = "";
   std::span<const ContractionSite> sites = {};
-  DecideBlock::Within absolute = nullptr, relative = nullptr;  // with tolerances: only absolute ones, or also relative
-                                                               // ones
+  DecideBlock::Within absolute = nullptr, relative = nullptr;  // with tolerances: absolute; also relative
 };
 
 struct TwinTable {

@@ -11,8 +11,7 @@
 
 namespace graze_mutant {
 
-constexpr int kNotSwitched = 98;  // exit status: the selected mutant does not compile with a switch and must be tried
-                                  // by itself
+constexpr int kNotSwitched = 98;  // exit status: the selected mutant does not compile with a switch; try it by itself
 
 struct Asked {
   bool of[8192] = {};

@@ -102,8 +102,7 @@ std::string convert(const Operands& o) {
   } else if (from[0] == 'f') {
     if (rounding.size() != 3) o.fail("the rounding is left open");
     if (bytes(to) == 1) o.fail("unknown instruction");
-    x = fmt::format("to_integer<{}>({}({}))", cpp_type(to), rounding, x);  // .sat changes nothing, because to_integer
-                                                                           // saturates
+    x = fmt::format("to_integer<{}>({}({}))", cpp_type(to), rounding, x);  // .sat changes nothing: to_integer saturates
   } else if (to[0] == 'f') {
     if (i.has("sat")) o.fail("unknown modifier .sat");
     if (rounding != "rn" && !directed) o.fail("the rounding is left open");

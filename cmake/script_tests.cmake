@@ -28,8 +28,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_test(NAME scripts.test.odr COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/odr.test.py ${CMAKE_CXX_COMPILER})
 endif()
 add_test(NAME scripts.test.campaign COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/campaign.test.py ${CMAKE_BINARY_DIR} ${CMAKE_CXX_COMPILER})
-# Three seconds for each fuzz target, from another start each time, plus build time. By hand for an hour: scripts/fuzz
-# --seconds 400.
+# Three seconds for each fuzz target, from another start each time, plus build time. By hand for an hour:
+# scripts/fuzz --seconds 400.
 add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 3 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
 set_tests_properties(scripts.Fuzz PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)
 # Tests of a minute or more start first.

@@ -33,7 +33,8 @@ PAIRS = [
     "degenerate:1:4",
     "shared_edge:1:16",
     "shared_edge:21:21",
-    # numbers of 2^72, of which exact arithmetic needs more bits on the lane's path than on its own; a cause found by its numbers
+    # Numbers of 2^72, for which exact arithmetic needs more bits on the lane's path than on its own path; also a pair
+    # whose cause follows from its numbers.
     "extreme_scale:1:105",
     "mixed_scale:1:57",
     "extreme_scale:1:46",

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the direction of every #include: a file includes from its own folder and from those before it in the order of
-add_subdirectory in the root CMakeLists.txt, tests and device code too. The files that a
-folder's CMakeLists.txt lists are of the same folders. The folders inside have no cycle, tests, benchmarks and fuzz
-targets aside. Some libraries are seen by one folder only, and no algorithm's header includes
-another algorithm's.
+"""Checks the direction of every #include, in tests and device code too. A file may include from its own folder and
+from folders before it in the order of add_subdirectory in the root CMakeLists.txt. The same rule holds for the files
+that a folder's CMakeLists.txt lists. The folders inside these folders must have no cycle, apart from tests, benchmarks
+and fuzz targets. Some libraries may be included by one folder only. No algorithm's header may include another
+algorithm's header.
   check_includes.py ROOT
 """
 import fnmatch

@@ -53,8 +53,8 @@ __device__ bool floats_hold(const float* c) {
 // The list of launch_exact_steps for a pair: 0 or 1.
 __device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
 
-// Calls decide(coordinates, yes) for each pair of a list. It returns the stage that decided, and sets `yes` if the pair
-// intersects. If it returns kLeft, the pair goes to the list `left`.
+// Calls decide(coordinates, yes) for each pair of a list. It returns the stage that decided, and sets `yes` to
+// whether the pair intersects. If it returns kLeft, the pair goes to the list `left`.
 constexpr int kLeft = exact::kStages;
 
 template <class Pairs, class Decide>

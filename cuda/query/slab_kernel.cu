@@ -53,7 +53,7 @@ __device__ std::uint32_t lanes_before(std::uint32_t lanes) {
 // Queues the triangles of a tile that the slabs leave open.   Returns: the queue's new end.
 __device__ std::uint32_t queue_open(const exact::PreparedTriangle& reference, WarpMemory& warp, std::uint32_t stage,
                                     std::uint32_t end) {
-  // Vectors of 4 kEach bytes: a thread's 9 kEach floats are a whole number of them, and threads have no bank conflicts.
+  // Each thread reads nine vectors of 4 kEach bytes. Nine is odd, so no two threads read from one bank at once.
   struct alignas(4 * kEach) Vector {
     float v[kEach];
   };

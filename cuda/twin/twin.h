@@ -65,7 +65,7 @@ std::span<const ContractionSite> contraction_sites(const Lane& lane);
 // seconds.
 // Throws: as TwinLibrary.
 void add_foreign_twin(const Lane& lane, const std::string& twin, double most_seconds);
-double most_seconds(const Lane& lane);  // most for a verdict.   Requires: a foreign lane with sites
+double most_seconds(const Lane& lane);  // for one verdict.   Requires: a foreign lane with sites
 
 // The verdict of a lane with contraction sites when sites whose bit is not set round twice. No bit set gives
 // cuda-nofma; all bits set give the lane itself. Bit i % 64 of word i / 64 belongs to site i. Foreign code runs in this

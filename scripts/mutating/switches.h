@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // For scripts/mutate: one program with many mutants of a source. The environment variable GRAZE_MUTANT selects one by
-// its number. A switch is placed beside a token such that precedence stays the same: `a < b` becomes `a <
-// graze_mutant::Switch<7>{} < b`. In constant expressions every mutant is off.
+// its number. A switch is placed beside a token such that precedence stays the same: `a < b` becomes
+// `a < graze_mutant::Switch<7>{} < b`. In constant expressions every mutant is off.
 #pragma once
 
 #include <algorithm>

@@ -29,7 +29,6 @@
 //   their contractions out. So do most of the project's kernels. All kernels have the same counts of fused and unfused
 //   operations (static_check.test.cpp).
 // - Verdicts and intermediate bits of an H100 (cuda/proofs).
-// (static_check.test.cpp). Verdicts and intermediate bits of an H100 (cuda/proofs).
 #include "cuda/twin/generator/contraction.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen, one thread for each pair, which needs few registers; then the steps of exact_steps.cuh for the pairs that
-// it left.
+// The screen, with one thread for each pair, which needs few registers. Then the steps of exact_steps.cuh for the pairs
+// that the screen leaves open.
 #include "cuda/lanes/exact_kernels.cuh"
 
 #include "cuda/lanes/exact_steps.cuh"
@@ -38,7 +38,7 @@ __global__ void __launch_bounds__(kThreads, 3)
   add_of_block(in_floats, left, list, i);
 }
 
-// Lists the finite pairs that a filter declined, and takes their bits back.
+// Lists the finite pairs that a filter declined, and clears their bits in `declined`.
 __global__ void __launch_bounds__(kThreads) list_declined(DevicePairs pairs, PairList in_floats, PairList left,
                                                           std::uint32_t* intersects, std::uint32_t* declined) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;

@@ -227,5 +227,5 @@ export interface Compare {
   rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[]; // changed: beyond chance
   gained: { key: string; signatures: number; count: number }[]; // kinds, with their signatures and pairs
   lost: { key: string; signatures: number; count: number }[];
-  kinds_compared: boolean; // false where `graze minimize` went not through both
+  kinds_compared: boolean; // false unless `graze minimize` ran on both
 }

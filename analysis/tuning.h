@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses an epsilon: compares a lane's errors under many policies on the same pairs, finds the best policy, and
+// Chooses an epsilon. Compares a lane's errors under many policies on the same pairs and finds the best policy. Also
 // reports problems with epsilons that an error count alone does not show.
 #pragma once
 

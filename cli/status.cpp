@@ -33,8 +33,8 @@ struct StatusOptions {
   bool json = false;
 };
 
-// The state of a run. If the run did not record how it ended, it was killed if its process is gone from this machine,
-// and has stalled if it has been silent for long.
+// The state of a run. A run that did not record its end was killed if its process is gone from this machine. It has
+// stalled if it has been silent for long.
 std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stalled) {
   const std::string state = status.at("state");
   if (state != "running") return state;

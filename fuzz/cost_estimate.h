@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Estimates how long the rest of a run takes from the cost of each kind of work so far; a pair of one stratum can cost
+// Estimates how long the rest of a run takes from the cost of each kind of work so far. A pair of one stratum can cost
 // ten times a pair of another. A pure function of its inputs; it reads no clock.
 #pragma once
 

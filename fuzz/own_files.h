@@ -8,9 +8,10 @@
 
 namespace graze::fuzz {
 
-// Whether a result with this text may replace the file, seen through symbolic links: it is missing or empty, a device
-// or a pipe, or Graze wrote it. Graze recognises its files by what all of their kind share: the first line or tag, the
-// first two keys of a JSON object, the title of a page, the palette of an ulp map.
+// Whether a result with this text may replace the file, seen through symbolic links. The file must be missing, empty, a
+// device, a pipe, or written by Graze. Graze recognises its files by what all of their kind share: the first line or
+// tag, or the first two keys of a JSON object. Pages share the start of their title, and pictures of ulp maps the start
+// of their palette.
 // Throws: std::runtime_error for a file that cannot be read.
 bool may_replace(const std::filesystem::path& file, const std::string& text);
 

@@ -25,7 +25,7 @@ std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spe
 nlohmann::ordered_json invariants_json(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants);
 
 // For each invariant that a lane breaks, a file name and its text. For each lane, the file has the simplest pair on
-// which the lane breaks the invariant, and the pair's image; the one on which the lane is wrong comes first.
+// which the lane breaks the invariant, and the pair's image. The one on which the lane is wrong comes first.
 std::map<std::string, std::string> invariants_cases(const analysis::InvariantSpec& spec,
                                                     const analysis::Invariants& invariants);
 

@@ -28,8 +28,8 @@ std::vector<std::string> tuning_sentences(const TuneQuestion& question, const an
 
 nlohmann::ordered_json tuning_json(const TuneQuestion& question, const analysis::Tuned& tuned);
 
-// Returns an SVG of 900 x 420: false negatives and false positives against the tolerance at all sites, relative
-// tolerances on the left, absolute ones on the right; readable on light and dark backgrounds.
+// Returns an SVG of 900 x 420: false negatives and false positives against the tolerance at all sites. Relative
+// tolerances are on the left, absolute ones on the right. Readable on light and dark backgrounds.
 std::string tuning_figure(const TuneQuestion& question, const analysis::Tuned& tuned);
 
 }  // namespace graze::reports

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GPU engine without a GPU: its steps run on this processor, and the campaign must leave the same bytes as the CPU
+// The GPU engine without a GPU. Its steps run on this processor, and the campaign must leave the same bytes as the CPU
 // engine. device.test.cpp tests the same on devices.
 #include "fuzz/campaign/gpu_engine.h"
 

@@ -52,8 +52,9 @@ Pair fresh_pair(const Drawn& drawn, strata::Draws& draws);
 // Returns: false if a triangle is larger, or a proper triangle is thinner, than the scene allows.
 bool fit(const strata::Scene& scene, Pair& pair);
 
-// Applies one mutation, and stores which one in `mutation`. Draws a fresh pair if the result is not finite, does not
-// fit the scene, or equals the original four times. `other`: null if no pair is available for crossing.
+// Applies one mutation, and stores which one in `mutation`. An attempt fails if the result is not finite, does not fit
+// the scene, or equals the pair. After four failed attempts it draws a fresh pair. `other`: null if no pair is
+// available for crossing.
 Pair next_pair(const Drawn& drawn, const Pair& pair, const Pair* other, strata::Draws& draws, Mutation& mutation);
 
 }  // namespace graze::fuzz

@@ -187,8 +187,8 @@ void expect_pairs(const Known& known, const Json& kind) {
          "another worst pair than one of the case");
 }
 
-// Checks that each own lane that is wrong on a signature's first pair has a kind there, and that a pair on which a lane
-// is wrong counts in only one kind.
+// Checks that each own lane that is wrong on a signature's first pair has a kind there. Also checks that a pair on
+// which a lane is wrong counts in only one kind.
 void expect_all_covered(const Known& known, const Json& kinds) {
   std::vector<std::set<std::string>> covered(known.cases.size());
   std::map<std::string, std::uint64_t> told, least;  // audited reasons, by subject

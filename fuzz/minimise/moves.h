@@ -9,7 +9,7 @@
 
 namespace graze::fuzz {
 
-// The moves come in kinds, so many of each, in this order:
+// The moves come in kinds. The number of kinds and their moves, in order:
 //   7   a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits or not at
 //       all; then scaled to whole numbers, or to a size of about one, or not
 //   6   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of

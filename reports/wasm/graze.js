@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // graze.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and the verdicts of published
-// algorithms on the same pair in float32 and float64, on the CPU and, through their twins, on the GPU. Has no
-// dependencies; runs on Node 18 or newer, and in browsers since 2021.
+// algorithms on the same pair. The algorithms run in float32 and float64, on the CPU and, through their twins, on the
+// GPU. Has no dependencies; runs on Node 18 or newer, and in browsers since 2021.
 
 /** 18 coordinates, a[0] to a[2], then b[0] to b[2]; each is rounded to float32. @typedef {ArrayLike<number>} Pair */
 /** @typedef {'disjoint' | 'intersects' | 'declined'} Verdict declined: a coordinate is not finite, or a lane cannot decide. */

@@ -183,7 +183,7 @@ export interface Report {
     // For the drawing: points in double (from exact values), the common set, and the line of both planes, clipped to
     // it.
     drawing: { contact: number[][]; planes_line: number[][] }; // 0, 1, 2 or more points; 0 or 2 points
-    verdicts: { lane: number; verdict: 'disjoint' | 'intersects' | 'declined'; wrong: boolean }[]; // of all lanes that ran
+    verdicts: { lane: number; verdict: 'disjoint' | 'intersects' | 'declined'; wrong: boolean }[]; // all that ran
     sentences: string[]; // explain's sentences; those on lanes of the kind come first
     // The result of `graze minimize DIR`; null if it is missing, belongs to another pair, or does not fit the page.
     maps: {

@@ -55,7 +55,7 @@ class Tuner {
       for (const bool relative : {true, false}) result_.curves.push_back({site, relative, {}});
     }
     add_points([&](const Curve&) { return steps(low_, high_, 1); });
-    // Quarter octaves around what is best so far.
+    // Adds points a quarter of an octave apart around the best one so far.
     add_points([&](const Curve& curve) {
       const auto best =
           std::min_element(curve.points.begin(), curve.points.end(),
@@ -110,7 +110,7 @@ class Tuner {
   PolicyRank rank(const PolicyErrors& errors) const { return analysis::rank(errors, spec_.forbid, spec_.max_rate); }
 
   void choose() {
-    const PolicyErrors* best = &result_.zero;  // curves stand in the order in which equals are preferred
+    const PolicyErrors* best = &result_.zero;  // curves are in the order of preference among equals
     for (const Curve& curve : result_.curves) {
       for (const PolicyErrors& point : curve.points) {
         if (rank(point) < rank(*best)) best = &point;
@@ -173,8 +173,8 @@ class Tuner {
   }
 
   const TuneSpec& spec_;
-  double low_, high_;  // of the range, as powers of two
-  double cube_;        // of a typical length cubed
+  double low_, high_;  // range of tolerances, as powers of two
+  double cube_;        // log2 of a typical length cubed
   Tuned result_;
 };
 

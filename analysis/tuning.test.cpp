@@ -53,20 +53,19 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   EXPECT_EQ(no_negative.result, TuneResult::satisfied) << no_negative.chosen << " " << no_negative.bound;
   EXPECT_GT(no_negative.zero_confirmed.false_negative, 100u);
   EXPECT_LE(no_negative.bound, 1e-3);
-  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // not simply all of them
+  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // but not all of them
   spec.forbid = Forbid::false_positive;
   const Tuned no_positive = tune(spec);
-  EXPECT_EQ(no_positive.result, TuneResult::not_satisfiable);  // a tolerance takes none away
+  EXPECT_EQ(no_positive.result, TuneResult::not_satisfiable);  // a tolerance removes no false positives
   spec.forbid = Forbid::any;
   spec.max_rate = 1e-6;
-  const Tuned neither = tune(spec);  // no epsilon can
+  const Tuned neither = tune(spec);  // no epsilon can satisfy it
   EXPECT_EQ(neither.result, TuneResult::not_satisfiable);
   EXPECT_LE(neither.confirmed.wrong(), neither.zero_confirmed.wrong());
   EXPECT_EQ(tune(spec).chosen, neither.chosen);
 }
 
-// What is said of the policy chosen holds on the curves: where none is good enough, none has fewer of what is
-// forbidden.
+// The claims about the chosen policy hold on the curves: if none is good enough, none has fewer forbidden errors.
 TEST(Tune, NoPolicyIsGoodEnoughOnlyWhereNoneOfTheCurvesIs) {
   std::set<TuneResult> results;
   for (const std::uint64_t pairs : {300u, 3000u}) {
@@ -116,7 +115,7 @@ TEST(Tune, SaysWhenPairsAreTooFew) {
   EXPECT_NEAR(tuned.bound, 1.5e-3, 1e-4);
 }
 
-// A knob that nothing is connected to is called dead, and one that decides is not.
+// A site whose tolerance has no effect is called dead; one that decides is not.
 TEST(Tune, FindsDeadKnobs) {
   TuneSpec spec;
   const auto real = [](const std::string& policy) {
@@ -133,7 +132,7 @@ TEST(Tune, FindsDeadKnobs) {
   EXPECT_EQ(tune(spec).dead, std::vector<std::string>{"orientation"});
 }
 
-// Exact, but for pairs whose coordinates are all smaller than 1/1000: these it says to intersect.
+// Exact, except for pairs whose coordinates are all smaller than 1/1000: it says that those intersect.
 class WrongWhenSmall : public ForeignCode {
  public:
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze check`: the truth and every lane's verdict of pairs from a file or a pipe.
+// `graze check`: prints the truth and every lane's verdict for pairs from a file or a pipe.
 #include <fmt/format.h>
 
 #include <cmath>

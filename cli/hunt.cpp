@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze hunt`: guided search for pairs on which lanes are wrong, or goes on with one.
+// `graze hunt`: starts or resumes a guided search for pairs on which lanes are wrong.
 #include <fmt/format.h>
 #include <unistd.h>
 

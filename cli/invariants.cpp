@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze invariants`: how often each lane's verdict changes although the question is the same.
+// `graze invariants`: counts how often each lane's verdict changes although the correct answer stays the same.
 #include <fmt/format.h>
 
 #include "cli/commands.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze lanes` and `graze strata`: the two tables, as the code has them.
+// `graze lanes` and `graze strata`: print the tables of lanes and strata from the code.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -49,7 +49,7 @@ void print_lanes(bool json, const std::vector<std::string>& globs) {
       line("order", lane.info->order, 2);
       last = lane.info;
     }
-    // What a twin is trusted for is long, and the same for most: it stands once, below.
+    // The evidence for twins is long and mostly the same, so it is printed once at the end.
     const bool twin = here.starts_with(kTwin);
     if (twin) twins.insert(here.substr(kTwin.size(), here.size() - kTwin.size() - 1));
     if (here == "available (twin)") twins.insert("not verified");
@@ -86,7 +86,7 @@ void add_strata(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("strata", "List the strata: the named generators of pairs");
   command->footer("Example: graze strata");
   command->callback([] {
-    // One line each for programs that read the list.
+    // One line each, for programs that read the list.
     const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
     for (const strata::StratumInfo& row : strata::kStrata)
       fmt::print("{}", reports::wrapped(fmt::format("{:<20} {}", row.id, row.what), columns, 0, 21));

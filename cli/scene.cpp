@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze scene`: a scene's file from meshes or pairs; and --scene of the verbs that draw from one.
+// `graze scene`: writes a scene file from meshes or pairs. Also adds --scene to the verbs that draw from a scene.
 #include <fmt/format.h>
 
 #include <iostream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shards as processes: killed, resumed, run twice at once, by ranks; and what is said of them. The same bytes as one
-// run.
+// Shards as processes: killed, resumed, started twice at once, and run by ranks; and their status messages. The results
+// have the same bytes as one run.
 #include <nlohmann/json.hpp>
 
 #include "cli/run_graze.h"
@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 class Shards : public CommandTest {
  protected:
-  // Summary, cases and the report's data.
+  // Compares summary, cases and the report's data.
   void expect_same(const std::string& one, const std::string& other) const {
     const Ran ran = shell("for d in " + one + ' ' + other + "; do graze report $d > /dev/null || exit 9; done; " +
                           "diff " + one + "/summary.json " + other + "/summary.json && diff -r " + one + "/cases " +
@@ -20,7 +20,7 @@ class Shards : public CommandTest {
     EXPECT_EQ(ran.status, 0) << ran.out.substr(0, 1000) << ran.err;
   }
 
-  // The command between two words of what was said.
+  // The command that the message gives after `before`.
   static std::string command_in(const std::string& said, const std::string& before) {
     const std::size_t at = said.find(before);
     EXPECT_NE(at, std::string::npos) << said;
@@ -56,7 +56,7 @@ TEST_F(Shards, WhatIsMissingIsRunByTheCommandThatIsPrinted) {
   expect_same("whole", "all");
   expect_error("graze merge p-1 p-3 shard-2 --out all", 2, {"empty", "--out"});
 
-  // Of what is damaged, too; what checks is kept.
+  // A damaged shard too: rows with the right checksum are kept.
   expect_done(
       "sqlite3 p-3/campaign.sqlite 'UPDATE batch SET pairs = pairs + 1 WHERE id = 2' 2> /dev/null || python3 -c "
       "\"import sqlite3; c = sqlite3.connect('p-3/campaign.sqlite'); c.execute('UPDATE batch SET pairs = pairs + 1 "
@@ -94,7 +94,7 @@ TEST_F(Shards, MinimizingTakesShardsOfTheSignatures) {
   const Ran ran =
       shell("graze minimize parts --shard 2/3 && graze minimize parts --shard 1/3 && cat parts/failures.json");
   EXPECT_NE(ran.out.find("shard 2/3: "), std::string::npos) << ran.out << ran.err;
-  EXPECT_EQ(ran.status, 1);  // kinds are of all signatures
+  EXPECT_EQ(ran.status, 1);  // kinds need all signatures
   EXPECT_EQ(
       shell(
           "graze minimize parts --shard 3/3 && graze minimize parts && diff whole/failures.json parts/failures.json && "
@@ -162,7 +162,7 @@ TEST_F(Shards, OfAHuntMergeByKind) {
   const Json shards = Json::parse(status.out)["shards"];
   EXPECT_EQ(shards[0]["done"], 1500);
   EXPECT_GT(shards[0]["new"], 3);
-  EXPECT_LT(shards[1]["new"], shards[0]["new"]);  // most of them the first has as well
+  EXPECT_LT(shards[1]["new"], shards[0]["new"]);  // most of them are in the first shard too
   const Ran merged =
       shell("graze merge shard-2 p-1 --out all && graze failures all && graze report all && graze minimize all");
   EXPECT_EQ(merged.status, 0) << merged.err;
@@ -188,7 +188,7 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   const std::string prometheus = contents(shell.folder / "p.prom");
   EXPECT_NE(prometheus.find("graze_done{directory=\"done\",shard=\"1/3\",state=\"done\"} 300\n"), std::string::npos)
       << prometheus;
-  // A run elsewhere that has not said anything for long.
+  // A run on another machine that has been silent for long.
   Json old = Json::parse(contents(shell.folder / "killed/status.json"));
   old["host"] = "elsewhere";
   old["updated"] = old["updated"].get<std::int64_t>() - 1000;
@@ -199,7 +199,7 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   expect_done("graze status killed --stalled 3000");
 }
 
-// A status that is damaged, or counts what cannot be, is no shard that has not begun.
+// A status that is damaged or has impossible counts does not pass for a shard that has not begun.
 TEST_F(Shards, StatusRefusesADamagedStatus) {
   expect_done("graze fuzz --seed 5 --pairs 400 --strata near_edge_edge --lanes '*/f32/cpu' --out c > /dev/null");
   const Json whole = Json::parse(contents(shell.folder / "c/status.json"));
@@ -238,7 +238,7 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
   expect_done("graze status c | grep ' done '");
 }
 
-// A shard's folder is no larger than planned, nor is the merged campaign's without its cases.
+// A shard's folder is no larger than planned; nor is the merged campaign's, without its cases.
 TEST_F(Shards, ThePlannedDiskIsEnough) {
   const std::string of = " --pairs 20000 --strata 'near_*' --lanes '*/f32/cpu' ";
   const Json plan = Json::parse(shell("graze plan --json --cores 2" + of).out);
@@ -251,7 +251,7 @@ TEST_F(Shards, ThePlannedDiskIsEnough) {
   EXPECT_LE(std::stod(shell("cat all/campaign.sqlite | wc -c").out), plan["merged_bytes"].get<double>());
 }
 
-// mpirun refuses to run as root unless it is told to.
+// mpirun refuses to run as root without an extra option.
 TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   const Ran found = shell("command -v mpirun && test -e '" + std::string(GRAZE_BINARY_DIR) + "/libgraze_mpi.so'");
   if (found.status != 0) GTEST_SKIP() << "no mpirun, or a build without MPI";
@@ -261,7 +261,7 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
       "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1; mpirun -n "
       "4 ";
   ASSERT_EQ(shell(fuzz + "--out whole").status, 0);
-  // Rank 2 is stopped within a block, until the others have done all the rest; then it is killed.
+  // Rank 2 is stopped within a block until the others have done all the rest; then it is killed.
   const Ran killed =
       shell(mpirun + fuzz +
             "--out ranks & for i in $(seq 6000); do [ -s ranks/rank-2/status.json ] && break; sleep 0.02; done; "
@@ -278,7 +278,7 @@ TEST_F(Shards, RanksLeaveTheBytesOfOneProcessAlsoWhenOneIsKilled) {
   EXPECT_EQ(shell("ls ranks | grep rank-").out, "");
   const Json run = Json::parse(contents(shell.folder / "ranks/timings.json"))["runs"].back();
   EXPECT_EQ(run["ranks"], 4);
-  // All that was committed stays; of the killed rank only the block is missing in which it was, one of 256 at least.
+  // All committed pairs stay. The killed rank loses only its current block, at most one of 256.
   EXPECT_LE(run["pairs"], 200'000 / 128);
   expect_same("whole", "ranks");
   const Ran wrong = shell(mpirun + fuzz + "--shard 1/2 --out x");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // For tests, loaded by LD_PRELOAD: sends GRAZE_SIGNAL to its own process before the GRAZE_AT_WRITE-th call that writes,
-// syncs or renames a file. A test so stops a program at a place in its work, on machines of any speed.
+// syncs or renames a file. So a test can stop a program at an exact point, on machines of any speed.
 #include <fcntl.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>

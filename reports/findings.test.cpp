@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answer's sentences, of made-up summaries.
+// The answer's sentences for artificial summaries.
 #include "reports/findings.h"
 
 #include "reports/test_campaign.h"

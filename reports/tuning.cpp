@@ -69,7 +69,7 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
 
 std::string power(int k) { return k > 0 ? fmt::format("grow by 2^{}", k) : fmt::format("shrink by 2^{}", -k); }
 
-// Points of a line: x by log2 of the tolerance from low to high, y by log10 of the rate.
+// Maps points to the picture: x by log2 of the tolerance between low and high, y by log10 of the rate.
 struct Frame {
   double left, right, low, high;
   static constexpr double kTop = 64, kBottom = 350, kLeast = -7;

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# graze.wasm: the lanes, their twins and the exact decision for browsers and Node, by clang and wasi-libc. Sets
-# GRAZE_WASM to the module's path; empty without the toolchain, and then nothing needs it.
+# graze.wasm: the lanes, their twins and the exact decision for browsers and Node, built with clang and wasi-libc. Sets
+# GRAZE_WASM to the module's path; empty without the toolchain, in which case nothing needs the module.
 set(GRAZE_WASM "")
 if(GRAZE_CAMPAIGN)
   return()
@@ -26,7 +26,7 @@ message(STATUS "graze.wasm and graze view: by ${GRAZE_WASM_CLANG}")
 set(wasm ${CMAKE_BINARY_DIR}/wasm)
 file(MAKE_DIRECTORY ${wasm}/include)
 file(CREATE_LINK ${RANDOM123_INCLUDE_DIR}/Random123 ${wasm}/include/Random123 SYMBOLIC)
-# No contraction, as graze_strict has it. A throw is a trap: see wasm/library.cpp.
+# No contraction, as in graze_strict. A throw is a trap: see wasm/library.cpp.
 set(wasm_flags --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -fignore-exceptions -fno-rtti -fno-math-errno -ffp-contract=off
   -Wno-inline-namespace-reopened-noninline -ffile-prefix-map=${PROJECT_SOURCE_DIR}/= -isystem ${CMAKE_CURRENT_SOURCE_DIR}/wasm/standard
   -include from_chars.h -I${PROJECT_SOURCE_DIR} -I${CMAKE_BINARY_DIR}/generated -isystem ${wasm}/include)
@@ -48,7 +48,7 @@ foreach(source core/exact_blocks/decide core/lanes/lanes core/lanes/policies cor
   graze_wasm_object(${name} ${source}.cpp)
 endforeach()
 graze_wasm_object(twin cuda/twin/twin.cpp DEPENDS graze_cuda)  # which has the generated records
-# Random123 knows no WebAssembly; what it does for RISC-V is right, and its test vectors are those of the strata.
+# Random123 does not know WebAssembly. Its settings for RISC-V are right, and its test vectors are those of the strata.
 graze_wasm_object(module reports/wasm/module.cpp FLAGS -D__riscv)
 foreach(variant IN LISTS variants)
   if(variant_${variant}_runs_on STREQUAL host AND variant_${variant}_arithmetic STREQUAL rounded)
@@ -72,7 +72,7 @@ add_custom_command(OUTPUT ${GRAZE_WASM} DEPENDS ${wasm_objects} COMMENT "WebAsse
   COMMAND ${GRAZE_WASM_CLANG} --target=wasm32-wasi -mexec-model=reactor -O2 -Wl,--strip-all -Wl,--wrap=fma ${wasm_objects} -o ${GRAZE_WASM})
 add_custom_target(graze_wasm ALL DEPENDS ${GRAZE_WASM})
 
-# The module against the native build, in Node.
+# Compares the module with the native build, in Node.
 add_executable(graze_wasm_reference wasm/reference.cpp)
 target_link_libraries(graze_wasm_reference PRIVATE graze_analysis_more)
 set(GRAZE_WASM_PAIRS 10000 CACHE STRING "Pairs on which the tests compare graze.wasm with the native build")

@@ -14,11 +14,11 @@ namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kSample = 2048, kSampleOfDevice = std::uint64_t{1} << 22;
-constexpr double kShardSeconds = 3600;    // a shard that dies loses nothing; an hour is what schedulers like
+constexpr double kShardSeconds = 3600;    // an hour suits job schedulers; a shard that dies loses nothing
 constexpr double kRowPairs = 16777216;    // of the CPU engine; see store.cpp
-constexpr double kDatabaseBytes = 65536;  // without rows, and with the small files beside it
+constexpr double kDatabaseBytes = 65536;  // without rows; includes the small files beside it
 
-// Bytes of a row of so many pairs. A new signature is met more and more seldom, so this is rather too much.
+// Estimates the bytes of a row of `pairs` pairs. New signatures become rarer and rarer, so this is rather too high.
 double row_bytes(const Sample& sample, std::size_t source, double pairs) {
   const double more = pairs / static_cast<double>(sample.pairs_of_row);
   return sample.row_bytes[source] * std::pow(std::max(more, 1.0), sample.row_growth[source]);

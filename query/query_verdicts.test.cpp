@@ -24,7 +24,7 @@ std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
 // not lose a hit, whichever side of whichever triangle it is on.
 TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   constexpr std::size_t kTogether = 8;
-  std::size_t looked_past = 0, screened = 0, hits = 0;
+  std::size_t looked_past = 0, filtered = 0, hits = 0;
   for (const strata::StratumInfo& row : strata::kStrata) {
     for (std::size_t begin = 0; begin < kPairs; begin += kTogether) {
       std::vector<Triangle> references, triangles;
@@ -50,10 +50,10 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
           ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
           const bool beyond = exact::is_beyond(prepared, triangles[t].data());
           ASSERT_FALSE(meets && beyond) << row.id << " 7 " << begin + r << ' ' << begin + t;
-          const exact::detail::Finding found = exact::detail::screen_in_floats(prepared, triangles[t].data());
+          const exact::detail::Finding found = exact::detail::filter_in_floats(prepared, triangles[t].data());
           ASSERT_FALSE(found == exact::detail::Finding::disjoint && meets) << row.id << " 7 " << begin + r;
           ASSERT_FALSE(found == exact::detail::Finding::crosses && !meets) << row.id << " 7 " << begin + r;
-          screened += found != exact::detail::Finding::unsure;
+          filtered += found != exact::detail::Finding::unsure;
           looked_past += beyond;
           hits += meets;
         }
@@ -62,7 +62,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   }
   EXPECT_GT(hits, 100'000u);
   EXPECT_GT(looked_past, 300'000u);
-  EXPECT_GT(screened, 300'000u);
+  EXPECT_GT(filtered, 300'000u);
 }
 
 TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
@@ -81,10 +81,10 @@ TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
     const bool parted = exact::is_beyond(prepared, triangles[i].data());
     beyond += parted;
     unsure +=
-        !parted && exact::detail::screen_in_floats(prepared, triangles[i].data()) == exact::detail::Finding::unsure;
+        !parted && exact::detail::filter_in_floats(prepared, triangles[i].data()) == exact::detail::Finding::unsure;
   }
   EXPECT_GT(beyond, triangles.size() * 4 / 5);  // otherwise the slabs are not worth their time
-  EXPECT_LT(unsure, triangles.size() / 50);     // nor is the screen
+  EXPECT_LT(unsure, triangles.size() / 50);     // nor is the filter
 }
 
 TEST(QueryVerdicts, AreThoseOfTheLane) {
@@ -123,7 +123,7 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
         for (const auto& [r, t] : {std::pair(reference, broken), std::pair(broken, touching)}) {
           const exact::PreparedTriangle either = exact::prepare(r.data());
           EXPECT_FALSE(exact::is_beyond(either, t.data()));
-          EXPECT_EQ(exact::detail::screen_in_floats(either, t.data()), exact::detail::Finding::unsure);
+          EXPECT_EQ(exact::detail::filter_in_floats(either, t.data()), exact::detail::Finding::unsure);
         }
       }
     }
@@ -188,7 +188,7 @@ TEST(PreparedTriangle, LooksAtNineNumbersAndDecidesWithinItsExtents) {
     Triangle a = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, b = {0.25f, 0.25f, 0, 0.25f, 0.25f, 1, 0.5f, 0.25f, 1};
     for (float& x : a) x *= extent;
     for (float& x : b) x *= extent;
-    EXPECT_EQ(exact::detail::screen_in_floats(exact::prepare(a.data()), b.data()),
+    EXPECT_EQ(exact::detail::filter_in_floats(exact::prepare(a.data()), b.data()),
               decided ? Finding::crosses : Finding::unsure)
         << extent;
   }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps of the exact decision: the screen, a shared vertex, and the smallest kind of numbers that holds the pair.
+// Steps of the exact decision: the filter, a shared vertex, and the smallest kind of numbers that holds the pair.
 #pragma once
 
 #include "core/exact/by_planes.h"
+#include "core/exact/filter.h"
 #include "core/exact/numbers.h"
 #include "core/exact/relation.h"
-#include "core/exact/screen.h"
 #include "core/exact/shared_vertex.h"
 #include "core/exact/triangles.h"
 
@@ -146,7 +146,7 @@ GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int expone
   return Finding::intersects;
 }
 
-// Decides the pairs of which the screen is unsure.
+// Decides the pairs of which the filter is unsure.
 GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage) {
   stage = Stage::bounded;
   if (shared_vertex(a, b) >= 0) return true;
@@ -174,7 +174,7 @@ GRAZE_HD inline bool relation_of(Finding found, const float* a, const float* b, 
 // The relation of pairs in general position: they cross, a plane or an edge of each separates them, or they share
 // a vertex.   Returns: false if rounding leaves that in doubt.
 GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r) {
-  const Finding found = screen(a, b);
+  const Finding found = filter(a, b);
   if (found == Finding::unsure) {
     const int shared = shared_vertex(a, b);
     return shared >= 0 && relate_at_vertex(a, b, shared, r);

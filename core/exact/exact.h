@@ -6,21 +6,21 @@
 // Method: two decisions, written as templates over a kind of numbers. The numbers are exact, or they report when they
 // are not.
 //   by_planes.h  Guigue and Devillers 2003: the sides of the vertices, then two orientations, for pairs in general
-//                position. screen.h is the same in doubles with one error bound, written for speed.
+//                position. filter.h is the same in doubles with one error bound, written for speed.
 //   by_axes.h    separating axes of the Minkowski difference (the theorem: Gottschalk, Lin and Manocha 1996): proper,
 //                coplanar and degenerate pairs alike.
 //   numbers.h    doubles with an error bound (Shewchuk 1997), doubles where nothing rounds, and integers of 128 and of
 //                more bits, with the widths that each kind holds.
-// The screen comes first. If it is unsure, a pair with a shared vertex intersects; any other pair goes to the smallest
+// The filter comes first. If it is unsure, a pair with a shared vertex intersects; any other pair goes to the smallest
 // kind of exact numbers that holds its grid (decision.h).
 #pragma once
 
 #include "core/exact/by_axes.h"
 #include "core/exact/decision.h"
+#include "core/exact/filter.h"
 #include "core/exact/grid.h"
 #include "core/exact/numbers.h"
 #include "core/exact/relation.h"
-#include "core/exact/screen.h"
 #include "core/exact/triangles.h"
 
 namespace graze::exact {
@@ -30,7 +30,7 @@ namespace graze::exact {
 GRAZE_HD inline bool intersects(const float* a, const float* b, Stage* stage = nullptr) {
   using namespace detail;
   Stage decided = Stage::bounded;
-  const Finding found = screen(a, b);
+  const Finding found = filter(a, b);
   const bool result = found == Finding::unsure ? decide_unsure(a, b, decided) : found != Finding::disjoint;
   if (stage) *stage = decided;
   return result;

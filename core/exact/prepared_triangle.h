@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One triangle (the reference) prepared for tests against many: its box, and two slabs that contain it, each between
 // two parallel planes. A triangle beyond a slab is disjoint; this certifies most disjoint triangles in floats. The
-// others go to a screen, also in floats, and then to the screen of core/exact/screen.h.
+// others go to a filter, also in floats, and then to the filter of core/exact/filter.h.
 //
 // The slabs are the thinnest ones: perpendicular to the triangle's normal and, within its plane, to its longest edge.
 // Their directions may be rounded in any way, because the reference's extent is computed along the direction as stored.
@@ -88,7 +88,7 @@ inline Slab slab_along(const Vec<double>& direction, const float* v) {
 
 }  // namespace detail
 
-// If the reference is not finite, no slab shows anything and the screen in floats is unsure.
+// If the reference is not finite, no slab shows anything and the filter in floats is unsure.
 inline PreparedTriangle prepare(const float* v) {
   using Direction = detail::Vec<double>;
   PreparedTriangle r;
@@ -159,11 +159,11 @@ struct FloatNumbers {
   GRAZE_HD bool is_proper(const Vec<float>&) const { return false; }
 };
 
-// The screen in floats. As in core/exact/error_bound.h, with e = 2^-24, a determinant is off by less than 8 e times the
+// The filter in floats. As in core/exact/error_bound.h, with e = 2^-24, a determinant is off by less than 8 e times the
 // sum of its six products, none larger than the product of the extents. Extents must lie within 2^-24 and 2^40. Then
 // nothing overflows, and underflow adds less than 6 * 2^40 * 2^-150, a small part of the least bound, 48 * 2^-96.
 // Returns: disjoint, crosses or unsure; unsure also for other extents and for coordinates that are not finite.
-GRAZE_HD inline Finding screen_in_floats(const PreparedTriangle& r, const float* t) {
+GRAZE_HD inline Finding filter_in_floats(const PreparedTriangle& r, const float* t) {
   float extent[3];
   for (int i = 0; i < 3; ++i) {
     extent[i] = greater(greater(r.high[i], t[i]), greater(t[i + 3], t[i + 6])) -

@@ -85,7 +85,7 @@ HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
   Waiting last, open, small, middle, rest;
   const std::size_t side_by_side = count / kAtOnce * kAtOnce;
   for (std::size_t i = 0; i < side_by_side; i += kAtOnce) {
-    const Screened found = screen_all(chunk.from(i));
+    const Filtered found = filter_all(chunk.from(i));
     chunk.intersects[i / 64] |= std::uint64_t{found.intersects} << i % 64;
     chunk.declined[i / 64] |= std::uint64_t{found.declined} << i % 64;
     for (unsigned left = kAll & ~(found.intersects | found.disjoint | found.declined); left != 0; left &= left - 1)
@@ -93,7 +93,7 @@ HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
   }
   for (std::size_t i = side_by_side; i < count; ++i) last.pair[last.count++] = static_cast<std::uint16_t>(i);
   last.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
-    const Screened found = screen_all(chunk.at(numbers));
+    const Filtered found = filter_all(chunk.at(numbers));
     chunk.set(chunk.intersects, which & found.intersects, numbers);
     chunk.set(chunk.declined, which & found.declined, numbers);
     open.add(which & ~(found.intersects | found.disjoint | found.declined), numbers);

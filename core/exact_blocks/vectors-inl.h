@@ -2,7 +2,7 @@
 // What decide.cpp computes with: vectors of doubles with one pair in each vector lane. Included once for each
 // instruction set, within its namespace, so there is no include guard.
 //
-//   screen_all    the decision by planes with one error bound for each pair, like core/exact/screen.h
+//   filter_all    the decision by planes with one error bound for each pair, like core/exact/filter.h
 //   share_vertex  like core/exact/shared_vertex.h
 //   separated     the decision by axes, like core/exact/by_axes.h, on numbers whose signs are exact. These are Double
 //                 where nothing rounds, and else DoubleAndInteger. The latter stores each number as a double, which is
@@ -123,7 +123,7 @@ struct Coordinates {
 };
 
 // Bit i is set if the result of pair i is certain.
-struct Screened {
+struct Filtered {
   unsigned intersects, disjoint, declined;
 };
 
@@ -145,7 +145,7 @@ HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M oth
 // Whether the lone vertex of three is below. The other two are equal and cancel.   Requires: not all three are equal.
 HWY_INLINE M alone_is_below(const M (&below)[3]) { return hn::Xor(hn::Xor(below[0], below[1]), below[2]); }
 
-HWY_INLINE Screened screen_all(const Coordinates& pairs) {
+HWY_INLINE Filtered filter_all(const Coordinates& pairs) {
   VF zeros = hn::Zero(df);  // NaN instead if a coordinate is not finite
   for (const VF& x : pairs.x) zeros = hn::MulAdd(x, hn::Zero(df), zeros);
   const unsigned declined = bits(hn::IsNaN(hn::PromoteTo(d, zeros)));

@@ -16,7 +16,7 @@ struct Lane;
 
 namespace graze::cuda {
 
-// Lists of pairs: two that the screen leaves open, and those that a step of the exact decision leaves to a later one.
+// Lists of pairs: two that the filter leaves open, and those that a step of the exact decision leaves to a later one.
 inline constexpr int kExactLists = 6;
 
 // The exact decision of blocks of pairs, with the memory for the lists between its stages.

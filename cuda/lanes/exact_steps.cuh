@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of the exact decision after the screen. The first steps take the pairs whose determinants fit in floats or
+// The steps of the exact decision after the filter. The first steps take the pairs whose determinants fit in floats or
 // in doubles. The next ones use residues, then 128-bit integers or closer bounds, then wide integers. Each step lists
 // the pairs that it cannot decide, so that a warp does not wait for one hard pair in 32. Pairs is any type with
 // load(pairs, i, coordinates). Device code only.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps after the slabs: pairs on small grids, the screen in doubles, the exact decision and counts. Also writes
+// The steps after the slabs: pairs on small grids, the filter in doubles, the exact decision and counts. Also writes
 // pairs for other lanes.
 #include "cuda/query/query_kernels.cuh"
 
@@ -44,14 +44,14 @@ __global__ void __launch_bounds__(kThreads, 2)
   }
 }
 
-// The screen in doubles, for the triangles that decide_on_grid leaves open.
+// The filter in doubles, for the triangles that decide_on_grid leaves open.
 __global__ void __launch_bounds__(kThreads, 3)
-    screen_listed(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
+    filter_listed(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
     const std::uint32_t i = from.at[n];
     float c[kCoordinates];
     load(pairs, i, c);
-    const Finding found = exact::detail::screen(c, c + 9);
+    const Finding found = exact::detail::filter(c, c + 9);
     if (found == Finding::crosses) set_bit(hits, i);
     if (found == Finding::unsure) left.add(i);
   }
@@ -135,7 +135,7 @@ void launch_exact_query(const exact::PreparedTriangle& reference, const QueryChu
   for (std::uint32_t k = 0; k < kQueryLists; ++k) left[k] = {lists + (k % 2) * chunk.count, counts + k};
   launch_slabs(reference, chunk, left[0], hits, stream);
   decide_on_grid<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits, declined);
-  screen_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], hits);
+  filter_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], hits);
   launch_large_steps(pairs, left + 2, hits, nullptr, stream);
 }
 

@@ -25,7 +25,7 @@ constexpr std::uint32_t row_words(std::uint32_t count) { return (count + 255) / 
 
 inline constexpr int kQueryLists = 6;
 
-// Decides triangles of a chunk by the reference's slabs and the screen in floats. It writes all words of `hits`, and
+// Decides triangles of a chunk by the reference's slabs and the filter in floats. It writes all words of `hits`, and
 // lists in `left` the triangles that remain open.
 void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& chunk, PairList left, std::uint32_t* hits,
                   cudaStream_t stream);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each warp takes tiles of triangles and prefetches them into shared memory by asynchronous copies. Memory bandwidth
 // bounds the kernel. The reference's slabs decide most triangles. The others are queued until there are 32 or their
-// tile is about to be overwritten; then the screen in floats decides them together. It leaves about one in a hundred,
+// tile is about to be overwritten; then the filter in floats decides them together. It leaves about one in a hundred,
 // which are listed.
 #include <cuda_pipeline_primitives.h>
 
@@ -117,7 +117,7 @@ __global__ void __launch_bounds__(kWarps * 32, kBlocks)
     while (end - begin >= 32 || begin < due[kKept] || (last && begin < end)) {
       const bool some = begin + lane < end;
       const std::uint32_t entry = warp.queue[(some ? begin + lane : begin) % kQueue];
-      const Finding found = exact::detail::screen_in_floats(reference, warp.tile[0] + 9 * entry);
+      const Finding found = exact::detail::filter_in_floats(reference, warp.tile[0] + 9 * entry);
       if (some && found == Finding::crosses) atomicOr(&warp.hits[0][entry / 32], 1u << entry % 32);
       const std::uint32_t age = (stage + kStages - entry / kTile) % kStages;
       const std::uint32_t i = (tile - age * step) * kTile + entry % kTile;

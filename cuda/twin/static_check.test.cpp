@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the contraction rule against ptxas without a GPU. For each kernel it compares the default build's machine code
-// with that of the explicit PTX, in which this project has written out every contraction. All kernels must have equal
-// counts of fused and unfused operations. Most have the same code, instruction for instruction. Skipped without nvcc.
+// The contraction rule against ptxas, without a GPU: kernel by kernel, machine code of the default build beside that of
+// the PTX in which this project wrote out every contraction. Equal counts of fused and unfused operations are
+// required everywhere; most kernels are the same code, instruction for instruction. Skipped where there is no nvcc.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <random>
 #include <set>
@@ -16,6 +20,7 @@
 #include "core/programs/run_program.h"
 #include "cuda/subject/machine_code.h"
 #include "cuda/twin/generator/ptx_writer.h"
+#include "cuda/twin/twin.h"
 
 namespace graze::cuda {
 namespace {
@@ -45,6 +50,11 @@ int same_code(const Code& a, const Code& b) {
   int same = 0;
   for (const auto& [kernel, code] : a) same += b.count(kernel) && b.at(kernel) == code;
   return same;
+}
+
+Code assembled(const std::string& ptx) {
+  const Scratch scratch(testing::TempDir());
+  return assemble(GRAZE_PTXAS, ptx, scratch.path());
 }
 
 class StaticCheck : public testing::TestWithParam<const char*> {};
@@ -88,8 +98,49 @@ TEST(StaticCheck, SeesContraction) {
   EXPECT_EQ(same_code(contracted, not_contracted), 0);
 }
 
-// A program without branches, dead code or equal products. It has sums and products of inputs, of sums, and of products
-// that other sums share. Every sum or product that nothing reads is stored.
+// Fused operations and products, which alone tell contraction: ptxas may repeat or reorder additions.
+std::map<std::string, int> fused_and_products(const std::string& code) {
+  std::map<std::string, int> counts = operations(code);
+  counts.erase("FADD");
+  counts.erase("DADD");
+  return counts;
+}
+
+class KernelsUnderTolerances : public testing::TestWithParam<const char*> {};
+
+// Where ptxas contracts a kernel otherwise than the rule, its twin would be wrong: the lane must have none.
+TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions) {
+  if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
+  const std::string variant = GetParam();
+  std::ifstream in(generated("policy_" + variant + ".ptx"));
+  twin::Module module = twin::read_ptx(in, variant);
+  std::ostringstream written;
+  twin::write_explicit(written, module, twin::Rule::ptxas);
+  in.clear();
+  in.seekg(0);
+  const Code built = assembled(std::string(std::istreambuf_iterator<char>(in), {})), closed = assembled(written.str());
+  std::size_t kernels = 0;
+  for (const Lane& lane : published_lanes()) {
+    if (name(lane.variant) != (variant == "cuda_fma" ? "cuda-fma" : "cuda-nofma")) continue;
+    for (const auto& [policy, function] : {std::pair{"abs:1e-6", "absolute"}, std::pair{"rel:16", "relative"}}) {
+      const std::string kernel =
+          fmt::format("{}_pairsILi{}E{}E", function, lane.algorithm, lane.scalar == Scalar::f32 ? 'f' : 'd');
+      const auto its = std::find_if(built.begin(), built.end(),
+                                    [&](const auto& row) { return row.first.find(kernel) != std::string::npos; });
+      ASSERT_NE(its, built.end()) << kernel;
+      const bool as_the_rule = fused_and_products(its->second) == fused_and_products(closed.at(its->first));
+      EXPECT_EQ(bool(block_on_host(lane_under(lane, policy))), as_the_rule) << lane.id << "/" << policy;
+      ++kernels;
+    }
+  }
+  EXPECT_EQ(kernels, built.size());
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, KernelsUnderTolerances, testing::Values("cuda_fma", "cuda_nofma"),
+                         [](const auto& row) { return std::string(row.param); });
+
+// A program without branches, dead code and equal products: sums and products of inputs, of sums, and of products that
+// other sums share. Every sum and every product that nothing reads is stored.
 std::string random_program(std::mt19937& random, const std::string& name, const std::string& type) {
   const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   const std::string bytes = type == "f32" ? "4" : "8";
@@ -130,11 +181,6 @@ std::string random_program(std::mt19937& random, const std::string& name, const 
     body += "st.global." + type + " [%rd1+" + std::to_string(256 + 8 * slot++) + "], " + result + ";\n";
   return ".visible .entry " + name + "(\n.param .u64 " + name + "_p\n)\n{\n.reg .b64 %rd<2>;\n.reg ." + type +
          " %a<9>;\n.reg ." + type + " %f<40>;\nld.param.u64 %rd1, [" + name + "_p];\n" + body + "ret;\n}\n";
-}
-
-Code assembled(const std::string& ptx) {
-  const Scratch scratch(testing::TempDir());
-  return assemble(GRAZE_PTXAS, ptx, scratch.path());
 }
 
 constexpr int kPrograms = 500;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen for every compiler and for devices; see core/exact/screen.h. Exchanging a and b gives the same
+// The filter for every compiler and for devices; see core/exact/filter.h. Exchanging a and b gives the same
 // computation, so it does both at once.
 #pragma once
 
@@ -27,7 +27,7 @@ GRAZE_HD inline Vec<Two> both(const Vec<float>& l, const Vec<float>& r) {
   return {Two{double(l.x), double(r.x)}, Two{double(l.y), double(r.y)}, Two{double(l.z), double(r.z)}};
 }
 
-GRAZE_HD inline Finding screen(const float* a, const float* b) {
+GRAZE_HD inline Finding filter(const float* a, const float* b) {
   const double error = determinant_error(extent_of(a, b));
   const Two bound = {error, error};
   const Vec<Two> v[3] = {both(vertex(a, 0), vertex(b, 0)), both(vertex(a, 1), vertex(b, 1)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen with SSE2; see core/exact/screen.h. Exchanging a and b gives the same computation, so it does both at
+// The filter with SSE2; see core/exact/filter.h. Exchanging a and b gives the same computation, so it does both at
 // once.
 #pragma once
 
@@ -86,7 +86,7 @@ inline constexpr Turns kTurns;
 
 // It branches only where most pairs of one kind take the same branch: a mispredicted branch costs as much as everything
 // after it.
-inline Finding screen(const float* a, const float* b) {
+inline Finding filter(const float* a, const float* b) {
   const Widened wide_a(a), wide_b(b);
   alignas(16) double at_a[10], at_b[10];
   wide_a.store(at_a);

@@ -8,7 +8,7 @@ foreach(part index.html view.html package.json package-lock.json tsconfig.json v
   file(COPY ${SOURCE}/${part} DESTINATION ${BUILD})
 endforeach()
 
-file(COPY ${SOURCE}/../wasm/graze.js DESTINATION ${BUILD}/src/viewer)
+file(COPY ${SOURCE}/../../wasm/graze.js DESTINATION ${BUILD}/src/viewer)
 file(WRITE ${VIEWER} "\"\"\n")
 
 file(SHA256 ${BUILD}/package-lock.json lock)

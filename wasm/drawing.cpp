@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same construction as oracle/common_set.cpp: one polygon is clipped by the half-spaces of the other's hull.
 // Numbers are rounded, so a point near a plane counts as on it. The exact decision tells the kind of the common set.
-#include "reports/wasm/drawing.h"
+#include "wasm/drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "core/relation_of.h"
 
-namespace graze::reports::wasm {
+namespace graze::wasm {
 namespace {
 
 using Real = long double;
@@ -247,4 +247,4 @@ Drawing drawing_of(const Pair& pair) {
   return result;
 }
 
-}  // namespace graze::reports::wasm
+}  // namespace graze::wasm

@@ -11,13 +11,13 @@
 #include "core/relation_of.h"
 #include "core/text.h"
 #include "cuda/twin/twin.h"
-#include "reports/wasm/drawing.h"
-#include "reports/wasm/quad.h"
 #include "strata/strata.h"
+#include "wasm/drawing.h"
+#include "wasm/quad.h"
 
 #define GRAZE_EXPORT(name) extern "C" [[clang::export_name(#name)]]
 
-namespace graze::reports::wasm {
+namespace graze::wasm {
 namespace {
 
 constexpr std::size_t kRoom = 1024;   // pairs in one call
@@ -230,4 +230,4 @@ GRAZE_EXPORT(draw) const Drawing* draw() {
   return &drawing_out;
 }
 
-}  // namespace graze::reports::wasm
+}  // namespace graze::wasm

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <compare>
 
-namespace graze::reports::wasm {
+namespace graze::wasm {
 
 struct Quad {
   static constexpr long double kUnit = 0x1p-112L;  // twice the unit roundoff, to cover the rounding of the bounds
@@ -43,4 +43,4 @@ struct Quad {
   }
 };
 
-}  // namespace graze::reports::wasm
+}  // namespace graze::wasm

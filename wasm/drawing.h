@@ -6,7 +6,7 @@
 
 #include "core/pair.h"
 
-namespace graze::reports::wasm {
+namespace graze::wasm {
 
 struct Drawing {
   static constexpr int kMost = 9;  // extreme points of a common set
@@ -29,4 +29,4 @@ struct Drawing {
 // Requires: finite coordinates.
 Drawing drawing_of(const Pair& pair);
 
-}  // namespace graze::reports::wasm
+}  // namespace graze::wasm

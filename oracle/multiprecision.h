@@ -125,9 +125,10 @@ struct Ball {
   static long scaled(long r, long by) {
     return r == kExact || by == kExact ? kExact : r >= kUnknown ? kUnknown : r + by;
   }
-  // Adds the rounding of mid to the radius.
+  // Adds the rounding of mid to the radius. Under limits of the exponent, zero and infinity are the model's own values.
   static Ball rounded(Multi mid, long radius) {
-    const long rounding = mid.exact() ? kExact : exponent(mid) - static_cast<long>(mpfr_get_prec(mid.get()));
+    const bool no_rounding = mid.exact() || !mpfr_regular_p(mid.get());
+    const long rounding = no_rounding ? kExact : exponent(mid) - static_cast<long>(mpfr_get_prec(mid.get()));
     return {std::move(mid), either(radius, rounding)};
   }
 

@@ -35,6 +35,21 @@ TEST(Ball, ARadiusHoldsBothErrors) {
   EXPECT_EQ(Ball::scaled(-7, 3), -4);
 }
 
+// Under a limit of the exponent, what underflows is zero, and what overflows is infinite: no later sum of radii
+// overflows, as signed integers would.
+TEST(Ball, ZeroAndInfinityOfALimitedRangeAreExact) {
+  const mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
+  mpfr_set_emin(-148);
+  mpfr_set_emax(128);
+  const Ball tiny = Ball(0x1p-100) * Ball(0x1p-100), huge = Ball(0x1p100) * Ball(0x1p100);
+  const Ball of_tiny = tiny * tiny, of_huge = huge * huge;
+  mpfr_set_emin(emin);
+  mpfr_set_emax(emax);
+  for (const Ball* ball : {&tiny, &huge, &of_tiny, &of_huge}) EXPECT_EQ(ball->radius, Ball::kExact);
+  EXPECT_TRUE(tiny.can_be_zero());
+  EXPECT_FALSE(huge.can_be_zero());
+}
+
 TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
   EXPECT_TRUE(Multi(0.1).exact());  // no operation made it
   EXPECT_TRUE((Multi(1) / Multi(4)).exact());

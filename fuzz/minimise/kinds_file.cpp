@@ -133,7 +133,7 @@ void expect_lanes(const Known& known, const Json& kind) {
   const Json& lanes = kind.at("lanes");
   for (const std::string id : lanes) {
     const auto name = parse_lane_name(id);
-    expect(name && name->subject == kind.at("subject") && known.lanes.contains(id),
+    expect(name && name->subject == kind.at("subject").get_ref<const std::string&>() && known.lanes.contains(id),
            "the lane " + shown(id) + ", which is none of its subject that was looked at");
   }
   const auto settled = kind.at("settled").get<std::array<std::uint64_t, 2>>();
@@ -168,7 +168,7 @@ void expect_verdicts(const Known& known, const Json& verdicts, const Case& c) {
 void expect_pairs(const Known& known, const Json& kind) {
   const auto case_of = [&](const Json& shown) -> const Case& {
     for (const std::uint64_t place : kind.at("places")) {
-      if (known.cases[place].file == shown.at("case")) return known.cases[place];
+      if (known.cases[place].file == shown.at("case").get_ref<const std::string&>()) return known.cases[place];
     }
     throw Impossible("the case " + graze::shown(shown.at("case").get<std::string>()) +
                      ", which is none of its signatures");
@@ -251,7 +251,7 @@ Json read_kinds(const fs::path& directory) {
   if (!fs::exists(file)) return nullptr;
   const auto refused = [&](const std::string& why) {
     return corpus::FormatError(
-        cannot("use", file, why + "; remove it, then run: graze minimize " + shell_word(directory.string())));
+        cannot("use", file, why + "; remove it, then run: graze minimize " + path_word(directory.string())));
   };
   const Json stored = Json::parse(read_whole(file), nullptr, false);
   try {

@@ -14,6 +14,7 @@
 namespace graze::analysis {
 namespace {
 
+constexpr double kOutward = 0x1p-40;  // more than the relative error of the library's quantiles
 constexpr std::uint64_t kPairsForScale = 100'000;
 
 std::string tolerance(const std::string& site, bool relative, double value) {
@@ -196,8 +197,9 @@ std::vector<strata::PairSource> scaled(Sources sources, int k) {
 
 double upper_bound(std::uint64_t count, std::uint64_t of) {
   if (of == 0 || count >= of) return 1;
-  return boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(of),
-                                                                     static_cast<double>(count), 0.05);
+  const double nearest = boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(of),
+                                                                                     static_cast<double>(count), 0.05);
+  return std::min(1.0, nearest * (1 + kOutward));
 }
 
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid) {

@@ -19,7 +19,7 @@ double tolerance_of(const std::string& policy);
 std::vector<strata::PairSource> scaled(Sources sources, int k);
 
 // Upper 95 % confidence bound of the rate, given `count` of `of` cases: at this rate, so few cases have a 5 % chance.
-// Reference: Clopper and Pearson 1934, one-sided.
+// Rounded outward. Reference: Clopper and Pearson 1934, one-sided.
 double upper_bound(std::uint64_t count, std::uint64_t of);
 
 // The kind of error whose rate is limited.

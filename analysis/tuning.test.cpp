@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "core/exact/exact.h"
@@ -24,6 +27,21 @@ TEST(UpperBound, IsClopperAndPearsons) {
   // R: binom.test(3, 100, alternative = "less")
   EXPECT_NEAR(upper_bound(3, 100), 0.07571, 1e-5);
   EXPECT_EQ(upper_bound(5, 5), 1);
+}
+
+// At the bound, so few cases have a chance of 5 % or less, however the double is rounded: counted with 50 digits.
+TEST(UpperBound, IsRoundedOutward) {
+  using Precise = boost::multiprecision::cpp_bin_float_50;
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 2000; ++i) {
+    const std::uint64_t of = 1 + random() % (i % 2 ? 4000 : 1'000'000),
+                        count = i % 3 ? 0 : random() % std::min<std::uint64_t>(of, 40);
+    const Precise p = upper_bound(count, of), q = 1 - p;
+    Precise term = pow(q, Precise(of)), chance = term;
+    for (std::uint64_t k = 1; k <= count; ++k) chance += term *= Precise(of - k + 1) / k * p / q;
+    EXPECT_LE(chance, Precise("0.05")) << count << " of " << of;
+    EXPECT_GE(chance, Precise("0.0499999")) << count << " of " << of;
+  }
 }
 
 TEST(Scaled, IsExactOrLeftAlone) {

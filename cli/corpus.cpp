@@ -64,7 +64,7 @@ std::vector<corpus::Entry> cases_to_add(const std::string& name, bool exact_inpu
 
 void print_next(const CorpusOptions& options, const char* verb) {
   const bool usual = options.folder == CorpusOptions().folder;
-  fmt::print("Next: graze corpus {}{}\n", verb, usual ? "" : " --corpus " + shell_word(options.folder));
+  fmt::print("Next: graze corpus {}{}\n", verb, usual ? "" : " --corpus " + path_word(options.folder));
 }
 
 void add(const CorpusOptions& options) {

@@ -150,6 +150,7 @@ void add_dump(CLI::App& app, int&) {
       ->option_text("N");
   add_lane_options(*command, options->lanes);
   command->get_option("--lanes")->description("Patterns of the lanes whose verdicts are added")->default_str("none");
+  for (const char* of_lanes : {"--executor", "--subject"}) command->get_option(of_lanes)->needs("--lanes");
   command->callback([options] { dump(*options); });
 }
 

@@ -185,7 +185,7 @@ void explain_cases(const ExplainOptions& options) {
     }
     wrong = wrong || !explanation.lanes.empty();
   }
-  if (wrong) fmt::print("Next: graze map {}\n", shell_word(options.name));
+  if (wrong) fmt::print("Next: graze map {}\n", path_word(options.name));
 }
 
 }  // namespace

@@ -121,7 +121,7 @@ int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test
                "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; the smallest is {}; again: graze "
                "repro {}\n",
                subject, reports::grouped(count), reports::grouped(*options.fail_above), fuzz::pair_text(pair),
-               shell_word(file.string()));
+               path_word(file.string()));
     return 1;
   }
   return 0;
@@ -270,7 +270,7 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
   if (summary["signatures"].empty()) return;
   const std::string first = out + '/' + summary["signatures"][0]["case"].get<std::string>();
   std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",
-                           shell_word(first), shell_word(out));
+                           path_word(first), path_word(out));
 }
 
 void add_fuzz(CLI::App& app, int& status) {

@@ -55,7 +55,7 @@ int invariants(const InvariantsOptions& options) {
              cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
   if (cases.empty()) return 0;
   const std::string first = (out / "cases" / cases.begin()->first).string();
-  fmt::print("Next: graze explain {}\n", shell_word(first));
+  fmt::print("Next: graze explain {}\n", path_word(first));
   return 0;
 }
 

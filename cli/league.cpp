@@ -135,9 +135,9 @@ int league(const LeagueOptions& options) {
   }
   const fuzz::Json json = reports::league_json(found, subjects, fuzz::league_costs(found), fuzz::machine_name(),
                                                fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
-  std::string command = fmt::format("graze league --subjects {} --pairs {} --seed {}", shell_word(options.subjects),
+  std::string command = fmt::format("graze league --subjects {} --pairs {} --seed {}", path_word(options.subjects),
                                     options.pairs, options.seed);
-  if (!options.scene.empty()) command += " --scene " + shell_word(options.scene);
+  if (!options.scene.empty()) command += " --scene " + path_word(options.scene);
   for (const std::string& glob : options.strata) command += " --strata " + shell_word(glob);
   const fs::path& out = folder.path;
   fs::create_directories(out / "league");

@@ -141,7 +141,7 @@ int minimize_case(const MinimizeOptions& options) {
   if (!options.out.empty()) write_result(options.out, with_header(fuzz::with_results(text, entries, results)));
   // A pipe or a device cannot be read again, and a link may lead to standard output.
   if (options.out.empty() || fs::is_regular_file(fs::symlink_status(options.out)))
-    fmt::print("Next: graze explain {}\n", shell_word(options.out.empty() ? options.name : options.out));
+    fmt::print("Next: graze explain {}\n", path_word(options.out.empty() ? options.name : options.out));
   return 0;
 }
 
@@ -198,6 +198,7 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
 int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("--out is for cases alone; the results of a campaign go into its cases/");
+  if (options.exact_input) throw UsageError("--exact-input is for cases alone; a campaign's pairs are stored exactly");
   const bool whole = options.shard.whole();
   // Reads the summary before the lock is taken, because reading the database of a killed run takes the lock itself.
   const std::string text = fuzz::read_whole(directory / "summary.json");
@@ -255,14 +256,14 @@ int minimize_directory(MinimizeOptions options) {
   if (!whole) {
     fmt::print("shard {}: {} of {} signatures looked at\nNext, when all shards are done: graze minimize {}\n",
                options.shard.name(), reports::grouped(rows.size()), reports::grouped(summary["signatures"].size()),
-               shell_word(options.name));
+               path_word(options.name));
     return 0;
   }
   const double map_seconds = seconds_since(mapping);
   fuzz::write_kinds(directory, under_test, kinds);
   print_directory(options.name, all);
   fmt::print("{} kinds of failure, listed by: graze failures {}\nNext: graze report {}\n",
-             reports::grouped(kinds.size()), shell_word(options.name), shell_word(options.name));
+             reports::grouped(kinds.size()), path_word(options.name), path_word(options.name));
 
   std::vector<double> times;
   double processor = 0, worst = 0;
@@ -311,6 +312,8 @@ void add_minimize(CLI::App& app, int& status) {
     if (!fs::is_directory(options->name)) {
       if (!options->shard.whole())
         throw UsageError("--shard is for campaign directories alone, and " + options->name + " is none");
+      if (options->again)
+        throw UsageError("--again is for campaign directories alone; " + options->name + " is minimised each time");
       status = minimize_case(*options);
       return;
     }

@@ -139,19 +139,22 @@ CLI::Validator not_empty() {
 
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
   add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run");
-  command
-      .add_option(
-          "--subject", options.subjects,
-          "Your own code, as lanes NAME/…. WHAT is a shared object or a C, C++ or CUDA source with :FUNCTION, or "
-          "cmd:COMMAND; see docs/your_own_code.md. May be repeated")
-      ->allow_extra_args(false)
-      ->option_text("NAME=WHAT");
+  CLI::Option* subject =
+      command
+          .add_option(
+              "--subject", options.subjects,
+              "Your own code, as lanes NAME/…. WHAT is a shared object or a C, C++ or CUDA source with :FUNCTION, or "
+              "cmd:COMMAND; see docs/your_own_code.md. May be repeated")
+          ->allow_extra_args(false)
+          ->option_text("NAME=WHAT");
   command
       .add_option("--flags", options.flags,
                   "Compiler flags for subjects that are sources, such as --flags='-O3 -Iinclude'")
+      ->needs(subject)
       ->allow_extra_args(false)
       ->option_text("TEXT");
   command.add_option("--subject-timeout", options.timeout, "Time limit of a subject for one pair, in seconds")
+      ->needs(subject)
       ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");

@@ -151,7 +151,7 @@ int pareto(ParetoOptions options) {
   for (const analysis::Extreme extreme : analysis::kExtremes)
     write_result(out / (std::string(name(extreme)) + ".svg"), reports::extreme_figure(pareto.curves, extreme));
   fmt::print("Wrote {}/{{pareto.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n", out.string());
-  if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", shell_word(out.string()));
+  if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", path_word(out.string()));
   return 0;
 }
 

@@ -158,6 +158,8 @@ std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::T
   for (const std::string& lane : lanes_of(options.lanes)) {
     for (const std::string& executor : options.executors) runs.push_back({lane, executor, {}, {}});
   }
+  if (runs.size() == 1 && !options.mismatches.empty())
+    throw UsageError("--mismatches is for lanes or executors that are compared; name several by --lanes or --executor");
   if (options.any && runs.size() > 1) throw UsageError("--any works with one lane and one executor alone");
   const query::Context context;
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -221,7 +223,7 @@ void query_mesh(const QueryOptions& options, int& status) {
   }
   fmt::print("{} mismatch{}, {} of them kept in {}\n", reports::grouped(count), count == 1 ? "" : "es",
              mismatches.size(), printable(kept));
-  fmt::print("Next: graze explain {}\n", shell_word(kept));
+  fmt::print("Next: graze explain {}\n", path_word(kept));
 }
 
 }  // namespace
@@ -261,8 +263,9 @@ void add_query(CLI::App& app, int& status) {
       ->option_text("FILE");
   command->callback([options, &status] {
     if (options->self.empty()) return query_mesh(*options, status);
-    if (options->any || !options->lanes.empty() || options->executors != std::vector<std::string>{"auto"})
-      throw UsageError("--self is exact and runs on all cores; leave out --any, --lanes and --executor");
+    if (options->any || !options->lanes.empty() || !options->mismatches.empty() ||
+        options->executors != std::vector<std::string>{"auto"})
+      throw UsageError("--self is exact and runs on all cores; leave out --any, --lanes, --executor and --mismatches");
     query_self({options->self, options->json, options->obj, options->pairs});
   });
 }

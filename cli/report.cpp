@@ -90,7 +90,7 @@ void report(const ReportOptions& options) {
     open_subjects_of(options.directory);
     const Json made = reports::make_report(options.directory);
     write_report(options.directory, made, "report");
-    if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", shell_word(options.directory));
+    if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", path_word(options.directory));
   }
 }
 

@@ -86,7 +86,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     wrong = wrong || some_is_wrong(counted, t.verdict);
     std::cout.flush();
   }
-  if (wrong) fmt::print("Next: graze minimize {}\n", shell_word(name));
+  if (wrong) fmt::print("Next: graze minimize {}\n", path_word(name));
   return changed ? 1 : 0;
 }
 

@@ -82,7 +82,7 @@ void scene(const SceneVerb& options) {
   write_result(options.out, text);
   fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", options.out,
              reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
-  fmt::print("Next: graze fuzz --scene {}\n", shell_word(options.out));
+  fmt::print("Next: graze fuzz --scene {}\n", path_word(options.out));
 }
 
 }  // namespace

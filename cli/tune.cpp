@@ -122,7 +122,7 @@ int tune(const TuneOptions& options) {
   }
   fmt::print("Wrote {}/{{{}}}\n", out.string(), fmt::join(written, ","));
   if (written.back().ends_with(".pairs")) {
-    fmt::print("Next: graze check {} --lanes {}\n", shell_word((out / written.back()).string()),
+    fmt::print("Next: graze check {} --lanes {}\n", path_word((out / written.back()).string()),
                shell_word(lane->id + "," + chosen.id));
   } else {
     fmt::print("Next: graze pareto\n");

@@ -126,6 +126,10 @@ std::string shell_word(std::string_view word) {
   return text + "'";
 }
 
+std::string path_word(std::string_view path) {
+  return shell_word(path.starts_with('-') ? "./" + std::string(path) : std::string(path));
+}
+
 std::string did_you_mean(std::string_view found, const std::vector<std::string>& candidates) {
   const auto letters = found.size() - static_cast<std::size_t>(std::count(found.begin(), found.end(), '*'));
   std::size_t least = letters / 3 + 1;

@@ -36,6 +36,9 @@ std::string shown_path(std::string_view path);
 // Returns: the word as a shell reads it, quoted if necessary.
 std::string shell_word(std::string_view word);
 
+// Returns: the path as a shell word that no program takes for an option: "./-x" for "-x".
+std::string path_word(std::string_view path);
+
 // Returns: "; did you mean 'moller_1997/f32/cpu'?" with the candidate that is the fewest edits away from `found`; empty
 // if none is near. A * in `found` stands for any text.
 std::string did_you_mean(std::string_view found, const std::vector<std::string>& candidates);

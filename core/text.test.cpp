@@ -116,6 +116,10 @@ TEST(ShellWord, QuotesWhereAShellWouldSplit) {
   EXPECT_EQ(shell_word("a/b-1.pairs"), "a/b-1.pairs");
   EXPECT_EQ(shell_word("my case's"), "'my case'\\''s'");
   EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_word("-O3"), "-O3");
+  EXPECT_EQ(path_word("a/-b"), "a/-b");
+  EXPECT_EQ(path_word("--x"), "./--x");
+  EXPECT_EQ(path_word("-my case"), "'./-my case'");
   EXPECT_EQ(shell_word("$(x)"), "'$(x)'");
   EXPECT_EQ(shell_word("a\x1b[1m'\\"), "$'a\\x1b[1m\\'\\\\'");
 }

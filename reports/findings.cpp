@@ -134,9 +134,10 @@ std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
     all.push_back({&stratum, wrong / static_cast<double>(stratum.pairs) / static_cast<double>(lanes.size()), best});
   }
   std::stable_sort(all.begin(), all.end(), [](const Danger& l, const Danger& r) { return l.share > r.share; });
+  const char* whose = lanes.size() < counts.lanes.size() ? "the published lanes' verdicts" : "all verdicts";
   const auto described = [&](const Danger& d) {
     const double best = share_of(d.stratum->wrong(d.best), d.stratum->pairs).share;
-    return fmt::format("{} ({} of all verdicts wrong{})", d.stratum->id, rate_words(d.share),
+    return fmt::format("{} ({} of {} wrong{})", d.stratum->id, rate_words(d.share), whose,
                        lanes.size() == 1 ? ""
                                          : fmt::format(", {} of those of its best lane, {}",
                                                        best == 0 ? "none" : rate_words(best), counts.lanes[d.best].id));

@@ -24,6 +24,16 @@ TEST(Answer, OfOneLaneComparesNothing) {
   EXPECT_TRUE(contains(said[5], "were not drawn"));
 }
 
+// An exact lane is never wrong: it is not among the verdicts whose share is named.
+TEST(Answer, NamesTheLanesOfAStratumsShare) {
+  Json summary = summary_of({"moller_1997/f32/cpu", "exact/f32/cpu"}, {"uniform"}, {});
+  summary["strata"]["uniform"]["lanes"]["moller_1997/f32/cpu"]["false_positive"] = 5;
+  bool named = false;
+  for (const std::string& sentence : answer_of(summary))
+    named = named || contains(sentence, "uniform (0.5 % of the published lanes' verdicts wrong");
+  EXPECT_TRUE(named);
+}
+
 TEST(Answer, CallsAPersonsOwnCodeNotPublished) {
   const auto said = answer_of(summary_of({"moller_1997/f32/cpu", "mine/f32/cpu"}, {"uniform"}, {}));
   EXPECT_TRUE(said[1].starts_with("All 2 inexact lanes are wrong on none of 1,000 pairs")) << said[1];

@@ -8,11 +8,15 @@
 
 namespace graze::fuzz {
 
+// The bytes for the sample's pairs, and the exponent by which they grow with the number of pairs.
+struct Growing {
+  double bytes = 0, exponent = 0;
+};
+
 // Measurements of each source, by one core or one device.
 struct Sample {
   std::vector<double> seconds_a_pair;  // by source
-  std::vector<double> row_bytes;       // bytes of a store row with the sample's pairs, by source
-  std::vector<double> row_growth;      // exponent by which the row grows with the number of pairs, by source
+  std::vector<Growing> row, summary;   // a row of the store, and what summary.json says of its pairs, by source
   std::uint64_t pairs = 0;             // in all samples
   std::uint64_t pairs_of_row = 1;      // pairs in each source's row
 };

@@ -64,12 +64,12 @@ std::string command_of(const Json& spec, const Shard& shard, const std::filesyst
   std::uint64_t pairs = scene ? spec["scene"].at("pairs") : spec.at("pairs");
   std::string command = hunt ? "graze hunt" : "graze fuzz";
   const auto add = [&](const char* name, const std::string& value) {
-    command += fmt::format(" {} {}", name, shell_word(value));
+    command += fmt::format(" {} {}", name, path_word(value));
   };
   if (scene) add("--scene", spec["scene"].at("file"));
   if (mesh) {
     command += " --mesh";
-    for (const std::string file : spec["mesh"].at("files")) command += ' ' + shell_word(file);
+    for (const std::string file : spec["mesh"].at("files")) command += ' ' + path_word(file);
     std::erase(strata, "mesh");
     for (const strata::PairSource& source : recorded_sources(spec)) pairs -= source.stratum < 0 ? source.pairs : 0;
   }

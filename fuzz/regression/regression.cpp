@@ -93,7 +93,7 @@ std::string verdict_of_mark(char mark, std::string_view truth) {
     case '-':
       return "disjoint (wrong)";
     case '?':
-      return "declined (wrong)";
+      return "declined";
     case '!':
       return "crashed (wrong)";
     case '@':

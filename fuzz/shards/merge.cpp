@@ -132,7 +132,7 @@ fs::path place_of(const fs::path& out) {
   if (statx(AT_FDCWD, place.c_str(), 0, STATX_TYPE, &found) == 0 && (found.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
     throw UsageError(
         cannot("replace", out,
-               "it is a mount point; use a new directory in it: --out " + shell_word((out / "campaign").string())));
+               "it is a mount point; use a new directory in it: --out " + path_word((out / "campaign").string())));
   return place;
 }
 

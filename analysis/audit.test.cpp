@@ -144,7 +144,8 @@ TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   EXPECT_GT(earlier, 10);
 }
 
-// For an overflow, the reported value comes from the overflow. A value that rounding alone gives is not reported.
+// If the cause is overflow or underflow, the reported value is one that it produced. A value that rounding alone gives
+// is not reported.
 TEST(Deciding, WhatIsToldOfARangeComesFromIt) {
   int told = 0;
   for (const Wrong& wrong : all_wrong()) {

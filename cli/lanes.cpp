@@ -76,6 +76,7 @@ void add_lanes(CLI::App& app, int&) {
   command->add_flag("--json", *json, "Print one JSON array");
   auto lanes = std::make_shared<LaneOptions>();
   add_lane_options(*command, *lanes);
+  command->get_option("--lanes")->description("Patterns of the lanes to list");
   command->callback([json, lanes] {
     open_subjects(*lanes);
     print_lanes(*json, lanes->globs);

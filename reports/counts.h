@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counts of summary.json, by stratum and in total. All numbers of a report come from them.
+// The counts of summary.json, by stratum and in total. A report's rates, margins and findings come from them.
 #pragma once
 
 #include <map>

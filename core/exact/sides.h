@@ -17,8 +17,8 @@ struct Sides {
   GRAZE_HD bool one_side() const { return above == 7 || below == 7; }
   GRAZE_HD bool known() const { return (above | below | in) == 7; }
 
-  // The vertex that is alone on its side; the others are on the other side or in the plane. There are no branches,
-  // because they would be mispredicted.
+  // The vertex that is alone on its side; the others are on the other side or in the plane. Tables of bits replace
+  // branches, which would be mispredicted.
   // Requires: known; not one_side; not all in the plane.   Returns: its index; `over` is 1 if its side is below.
   GRAZE_HD constexpr unsigned alone(unsigned& over) const {
     if (in == 0) {  // two bits, or one, for each of the eight values of `above`

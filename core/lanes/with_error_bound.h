@@ -11,7 +11,7 @@
 //   |X / Y - fl(x / y)|  <= (ex + (|q| + u |q| + t) ey) / (|y| - ey) + u |q| + t   for q = fl(x / y), |y| > ey
 //   |sqrt X - fl(sqrt x)|  <= ex / sqrt x + u |fl(sqrt x)|   for x > ex
 // The bounds themselves are rounded: at most eight roundings in a row, each of at most u. A factor of 1 + 32 u covers
-// them while they are normal numbers; adding the smallest normal number covers the loss of subnormal steps. Contraction
+// these roundings of normal numbers; adding the smallest normal number covers the loss of subnormal steps. Contraction
 // rounds once where these formulas count two roundings, in values and in bounds, so both still hold. Overflow makes a
 // bound infinite or NaN; then every comparison is in doubt.
 #pragma once

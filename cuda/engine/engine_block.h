@@ -124,7 +124,7 @@ constexpr SignatureHead unpacked(std::uint64_t word) {
   return {static_cast<std::uint32_t>(word >> 32), unpacked_relation(word >> 8 & 127, sign_of(bucket)), bucket};
 }
 
-// The marks on pair i of 32 lanes of the group, starting at lane 32 * word.
+// The marks that up to 32 lanes of the group get for pair i, from lane 32 * word on.
 GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& group, std::uint32_t word,
                                     std::uint32_t i, bool truth) {
   const std::uint32_t from = word * kMarksOfWord;

@@ -39,7 +39,7 @@ std::uint64_t round_pairs(std::uint64_t pairs);
 
 // Runs or resumes the hunt, or a shard of it, until it is done, its time is over, or `stop` is set. Updates status.json
 // as it runs. At the end it writes hunt.json and timings.json and, for a whole hunt, summary.json and cases/. A shard
-// is a search of its own, through its share of the pairs' numbers.
+// is an independent search, over its share of the pairs' numbers.
 // Requires: has_libfuzzer(); no lane runs on a device.
 // Throws: OracleMismatch, UsageError, std::runtime_error. Committed rounds are kept in any case.
 Outcome run_hunt(Hunt& hunt, const std::atomic<bool>& stop, const std::function<void(const HuntProgress&)>& report);

@@ -96,7 +96,7 @@ GRAZE_HD inline Space axis_plane(int normal) {
   return {true, unit_axis((normal + 1) % 3), unit_axis((normal + 2) % 3)};
 }
 
-// A triangle with vertex [0] at the origin, which may be any vertex of the form. The others lie on the given side.
+// A triangle of the form: a randomly chosen corner, as vertex [0], is at the origin. The others lie on the given side.
 GRAZE_HD inline void put_vertex(Draws& draws, const Space& space, const Form& form, const Vec& side,
                                 Vec (&triangle)[3]) {
   const std::uint32_t corner = draws.below(3);

@@ -244,7 +244,7 @@ TEST(Experiments, FindWhatDependsOnOrder) {
 }
 
 TEST(Experiments, FindOverflowAndUnderflow) {
-  // Right, except if the product of four large differences leaves the exponents.
+  // Right, unless the product of four large differences overflows or underflows.
   const auto product = [](const Pair& pair) {
     float most = 0;
     for (int i = 0; i < 18; ++i) most = std::max(most, std::fabs((&pair.a[0].x)[i] - (&pair.a[0].x)[i % 3]));

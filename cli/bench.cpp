@@ -175,7 +175,9 @@ void add_bench(CLI::App& app, int& status) {
       ->transform(whole_number(1, std::uint64_t{1} << 34))
       ->default_str("1e4,1e5,1e6,1e7")
       ->option_text("N,…");
-  command->add_option("--mesh", options->mesh, "Mesh whose triangles are tested too, against its middle triangle")
+  command
+      ->add_option("--mesh", options->mesh,
+                   "Mesh whose triangles are tested too, against the one halfway through the file")
       ->check(not_empty())
       ->option_text("FILE");
   command

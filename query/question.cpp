@@ -175,7 +175,7 @@ void choose_executor(const graze_query& query, bool any_lane, Question& question
   }
   expect(executor == GRAZE_ALL_GPUS || question.devices.size() == 1,
          "executor: expected parts on one device, found more");
-  expect(!query.stream || question.devices.size() == 1, "stream: expected parts on one device, found more");
+  expect(!query.stream || question.devices.size() == 1, "stream: expected one device, found several");
 }
 
 }  // namespace

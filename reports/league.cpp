@@ -267,11 +267,15 @@ std::string page_failures(const Json& league) {
     const std::string contact =
         failure.at("contact") == "none" ? "" : fmt::format(" (contact: {})", failure.at("contact").get<std::string>());
     const double ulps = failure.at("margin_ulps");
-    text += fmt::format("\n**{}, {}**: `{}` says {}; the truth is {}{}, margin {:.4g}{}.{}\n",
+    const std::string says = failure.at("says");
+    const std::string did = says == "crashed"     ? says
+                            : says == "timed_out" ? "timed out"
+                            : says == "unstable"  ? "is unstable"
+                                                  : "says " + says;
+    text += fmt::format("\n**{}, {}**: `{}` {}; the truth is {}{}, margin {:.4g}{}.{}\n",
                         failure.at("shape").get<std::string>(), wrong_in_words(failure.at("says")),
-                        failure.at("lane").get<std::string>(), failure.at("says").get<std::string>(),
-                        failure.at("truth").get<std::string>(), contact, failure.at("margin").get<double>(),
-                        ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
+                        failure.at("lane").get<std::string>(), did, failure.at("truth").get<std::string>(), contact,
+                        failure.at("margin").get<double>(), ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
                         failure.at("minimised") ? "" : " Not minimised.");
     text += fmt::format("\n```sh\n{}\n```\n", failure.at("again").get<std::string>());
     if (!failure.at("file").is_null())
@@ -378,7 +382,7 @@ CGAL's exact decision and that of `core/exact` are the truth of every pair, and 
 - **declined**: pairs on which the lane gave no answer. They are not wrong.
 - **crashed**, **timed out**, **unstable**: pairs on which the lane failed, or did not always give the same verdict. They are wrong.
 - **not repeated**: verdicts other than the truth that a fresh process did not repeat. They count as no error.
-- **by convention**: wrong verdicts on pairs that the library's documentation leaves out of its contract. They are no errors.
+- **by convention**: verdicts that differ from the truth on pairs that the library's documentation leaves out of its contract. They are no errors.
 - **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders, the same truth).
 - **invariants**: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that rounds nothing, or on which a part of a triangle intersects and the whole does not.
 - **flips**: pairs on which the build with contraction gives another verdict, where there is source.

@@ -89,7 +89,7 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
       throw UsageError(
           fmt::format("{}; found {}", expected, std::regex_replace(match[1].str(), std::regex("__nv_bool"), "bool")));
     if (said.find("overloaded") != said.npos)
-      throw UsageError(fmt::format("{}; found several functions of that name, none of them so", expected));
+      throw UsageError(fmt::format("{}; found several functions of that name, none of that type", expected));
   }
   throw UsageError(fmt::format("{}; {}", expected, first_error(log)));
 }

@@ -191,7 +191,7 @@ class HuntFiles : public CampaignFiles {
       for (const corpus::Entry& entry : corpus::read_pairs(case_file(root_ / name, row))) {
         const auto failures = judge.judge(entry.pair, cases++, counts).failures;
         EXPECT_TRUE(std::any_of(failures.begin(), failures.end(),
-                                [&](const auto& f) { return analysis::key(f) == row["key"]; }));
+                                [&](const auto& f) { return analysis::key(f) == row["key"].get<std::string>(); }));
         EXPECT_EQ(corpus::origin_of(entry).substr(0, 7), "hunt:3:");
       }
     }

@@ -16,7 +16,7 @@ struct HuntRounds {
   KeptRound all;  // all rounds as one round of all their pairs; kinds in the order in which they were found
   std::set<std::string> coarse, kinds;
 
-  // Adds the results of the next round, and those of its kinds that are new.
+  // Adds the next round's results, and its kinds that no earlier round had.
   void add(const KeptRound& round);
 
   // hunt.json: {"pairs", "units", "mutations": [{"mutation", "pairs", "disagreements", "units", "kinds"}],

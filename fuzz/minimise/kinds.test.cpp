@@ -85,7 +85,8 @@ TEST_F(Kinds, TheirPairsAreOfTheKind) {
       EXPECT_EQ(shape_name(hulls), kind["shape"]) << kind["key"];
       std::set<std::string> lanes;
       for (const LaneReason& reason : reasons_of(under_test_, kind["subject"].get<std::string>(), pair, truth)) {
-        if (kind_key(kind["subject"].get<std::string>(), reason, hulls) == kind["key"]) lanes.insert(reason.lane->id);
+        if (kind_key(kind["subject"].get<std::string>(), reason, hulls) == kind["key"].get<std::string>())
+          lanes.insert(reason.lane->id);
       }
       EXPECT_FALSE(lanes.empty()) << kind["key"] << ' ' << which;
       for (const std::string& lane : lanes)

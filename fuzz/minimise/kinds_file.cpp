@@ -174,7 +174,8 @@ void expect_pairs(const Known& known, const Json& kind) {
                      ", which is none of its signatures");
   };
   const auto is_shown = [](const Json& shown, const corpus::Entry& entry) {
-    return pair_text(entry.pair) == shown.at("pair") && corpus::origin_of(entry) == shown.at("from");
+    return pair_text(entry.pair) == shown.at("pair").get<std::string>() &&
+           corpus::origin_of(entry) == shown.at("from").get<std::string>();
   };
   const Case &simplest = case_of(kind.at("simplest")), &worst = case_of(kind.at("worst"));
   expect(is_shown(kind["simplest"], simplest.entries.front()), "another simplest pair than the case's first");

@@ -106,7 +106,7 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
 void expect_sealed(const StoreSpec& store) {
   const Json status = read_status(store.directory);
   if (status.is_null() || status["state"] != "done" || !status.contains("hash")) return;
-  if (const std::string found = file_hash(store.directory / kDatabase); found != status["hash"])
+  if (const std::string found = file_hash(store.directory / kDatabase); found != status["hash"].get<std::string>())
     throw DamagedStore(
         cannot("merge", store.directory / kDatabase,
                fmt::format("it has changed since the run ended: its hash is {}, not {}; copy it again, or", found,

@@ -243,7 +243,7 @@ void expect_relocations(const Json& tuned) {
     const analysis::PolicyErrors errors = errors_of(row.at("errors"));
     const int log2 = row.at("log2");
     expect((side == "up" ? log2 > 0 : log2 < 0) && std::abs(log2) <= analysis::kMostScale &&
-               errors.policy == tuned.at("chosen") && errors.pairs <= zero.at("pairs") &&
+               errors.policy == tuned.at("chosen").get<std::string>() && errors.pairs <= zero.at("pairs") &&
                errors.fixed <= errors.pairs - errors.not_right() && errors.broken <= errors.not_right(),
            fmt::format("errors of the choice at another scale, of at most {} pairs", zero["pairs"].dump()), row);
   }
@@ -377,9 +377,10 @@ void expect_possible_pareto(const Json& pareto) {
   std::set<std::pair<std::string, std::string>> curves;
   for (const Json& row : pareto.at("extremes")) {
     expect(ids.contains(row.at("lane")), "an extreme of a lane that was judged", row["lane"]);
-    expect(std::any_of(std::begin(analysis::kExtremes), std::end(analysis::kExtremes),
-                       [&](analysis::Extreme extreme) { return name(extreme) == row.at("extreme"); }),
-           "an extreme", row["extreme"]);
+    expect(
+        std::any_of(std::begin(analysis::kExtremes), std::end(analysis::kExtremes),
+                    [&](analysis::Extreme extreme) { return name(extreme) == row.at("extreme").get<std::string>(); }),
+        "an extreme", row["extreme"]);
     expect(curves.emplace(row["lane"], row["extreme"]).second, "each extreme of a lane once", row["extreme"]);
     std::set<int> exponents;
     for (const Json& point : row.at("points"))

@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// A new folder for files on their way, removed with its owner. Removes those of a day ago: their owner was killed just
-// when no program ran.
+// A new folder for files on their way, removed with its owner. Removes those whose owner was killed: nobody holds their
+// lock. Where the file system has no locks, those of a day ago.
 class Scratch {
  public:
   explicit Scratch(const std::filesystem::path& within);
@@ -21,6 +21,7 @@ class Scratch {
 
  private:
   std::filesystem::path path_;
+  int lock_ = -1;
 };
 
 struct Program {

@@ -16,8 +16,9 @@ inline constexpr char kAlive = 1;
 class SupervisorProcess {
  public:
   // program: its file's name, in the folder of the running program. It has its end of a socket as descriptor 3, and
-  // `shared`, where there is one, as 4. It writes to `output`, or to /dev/null for -1.   Throws: std::system_error.
-  SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments, int shared, int output);
+  // those of `shared` from 4 on. It writes to `output`, or to /dev/null for -1.   Throws: std::system_error.
+  SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
+                    const std::vector<int>& shared, int output);
   // The supervisor ends all that it started when the socket closes. One that does not end within 6 s is killed; after a
   // request to stop, it is left to end by itself after 1 s.
   ~SupervisorProcess();

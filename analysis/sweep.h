@@ -45,7 +45,7 @@ struct SourceBlock {
   std::uint64_t first, count;
 };
 
-// All pairs of the sources, in blocks of at most so many.
+// All pairs of the sources, in blocks of at most `most` pairs.
 std::vector<SourceBlock> blocks_of(Sources sources, std::uint64_t most);
 
 // The errors under each policy, on all pairs of the sources.

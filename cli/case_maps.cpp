@@ -12,7 +12,7 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-// Whether the stored maps are these lanes' of this pair.
+// Whether the stored maps belong to this pair and these lanes.
 bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
   if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || !maps["panels"].is_array() ||
       maps["panels"].size() != lanes.size() + 1)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands where a file is written: links, devices, pipes and folders stay what they are.
+// Writing over existing links, devices, pipes and folders leaves them what they are.
 #include "fuzz/files.h"
 #include "core/error.h"
 #include "core/message_testing.h"
@@ -35,7 +35,7 @@ class Files : public testing::Test {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
 
-  // What write_whole throws.
+  // The error of write_whole.
   static std::string refusal(const fs::path& file) {
     try {
       write_whole(file, "text");
@@ -82,7 +82,7 @@ TEST_F(Files, PipesStayPipes) {
   EXPECT_EQ(count(), 1u);
 }
 
-// Nobody may ever come to the other end: the request to stop ends the wait.
+// The other end may never open: the request to stop ends the wait.
 TEST_F(Files, WaitingForAPipeStops) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -95,7 +95,7 @@ TEST_F(Files, WaitingForAPipeStops) {
   stop_requested = false;
 }
 
-// A node of our own for the null device, made in our folder; only root may make one.
+// A null device made in the test's folder; only root may make one.
 TEST_F(Files, DevicesStayDevices) {
   const fs::path device = folder_ / "null";
   if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "no right to make a device node";
@@ -121,7 +121,7 @@ TEST_F(Files, FoldersAreRefusedInBothDirections) {
   EXPECT_EQ(count(), 1u);
 }
 
-// A full disk, played by a limit on the size of files.
+// A limit on file sizes simulates a full disk.
 TEST_F(Files, AFailureLeavesNothingBesideAndTheOldFile) {
   write_whole(folder_ / "a", "old");
   std::signal(SIGXFSZ, SIG_IGN);
@@ -194,7 +194,7 @@ TEST_F(Files, GrazeKnowsItsOwn) {
   EXPECT_FALSE(may_replace(folder_ / "link", "graze-pairs 1\n"));
 }
 
-// What has a campaign's file name, or lies behind a link, is replaced only where it begins as the new text does.
+// A file with a campaign's file name, or behind a link, is replaced only if it begins like the new text.
 TEST_F(Files, ACampaignsFilesDoNotReplaceThoseOfAnother) {
   const std::string summary = "{\n \"spec\": {}\n}\n", status = "{\n \"state\": \"done\"\n}\n";
   write_whole(folder_ / "victim", "precious");

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first keys of the object, at most two; nothing where the text is no object.
+// The first keys of the object, at most two; empty if the text is not an object.
 std::vector<std::string> first_keys(const std::string& text) {
   std::vector<std::string> keys;
   const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
@@ -26,10 +26,10 @@ std::vector<std::string> first_keys(const std::string& text) {
   return keys;
 }
 
-// What files of this kind have in common; the line ends before `>`, behind which a picture has its own.
+// The mark that all files of this kind share. The line ends before `>`, because what follows differs between pictures.
 std::string mark_of(const std::string& text) {
   constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
-  constexpr std::size_t kColours = 24;  // bytes: the first eight, which all ulp maps have
+  constexpr std::size_t kColours = 24;  // bytes: the first eight colours, which all ulp maps share
   if (text.starts_with("\x89PNG"))
     return text.substr(std::min(text.find(kPalette), text.size()), kPalette.size() + kColours);
   if (text.find(kTitle) != text.npos) return std::string(kTitle);
@@ -47,7 +47,7 @@ bool is_nothing(const fs::path& entry) {
 
 bool may_replace(const fs::path& file, const std::string& text) {
   std::error_code none;
-  if (!fs::is_regular_file(file, none)) return true;  // a folder is refused by write_whole
+  if (!fs::is_regular_file(file, none)) return true;  // write_whole rejects folders
   const std::string there = read_whole(file);
   if (there.empty()) return true;
   if (text.starts_with('{')) return there.starts_with('{') && first_keys(there) == first_keys(text);
@@ -64,7 +64,7 @@ void expect_own(const fs::path& file, const std::string& text) {
       fs::is_symlink(fs::symlink_status(file, none)) ||
       std::find(std::begin(kResults), std::end(kResults), file.filename().string()) != std::end(kResults);
   if (may_replace_foreign || !in_question || !fs::is_regular_file(file, none) || fs::file_size(file, none) == 0) return;
-  const std::size_t key = text.find('"');  // of a JSON object, up to its first key's end
+  const std::size_t key = text.find('"');  // the mark ends after the object's first key
   const std::string mark =
       text.starts_with('{') && key != text.npos ? text.substr(0, text.find('"', key + 1) + 1) : mark_of(text);
   if (read_whole(file).find(mark) != 0 && !may_replace(file, text))
@@ -73,7 +73,7 @@ void expect_own(const fs::path& file, const std::string& text) {
 
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   std::error_code none;
-  if (!fs::is_directory(folder, none)) return true;  // who makes it finds out what is wrong
+  if (!fs::is_directory(folder, none)) return true;  // creating the folder will report what is wrong
   return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); }) ||
          std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
                      [](const auto& e) { return is_nothing(e.path()); });

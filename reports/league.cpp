@@ -81,7 +81,7 @@ Json subject_json(const AlgorithmInfo& info, const Lane& lane, const std::vector
   return row;
 }
 
-// A number that reads as these bits: short decimals where they are exact.
+// Writes a number that reads back to the same bits, as a short decimal if that is exact.
 std::string written(float value) {
   const double scaled = std::fabs(static_cast<double>(value)) * 64;
   if (scaled < 1e7 && scaled == std::floor(scaled)) return fmt::format("{}", value);
@@ -116,7 +116,7 @@ Json failure_json(const fuzz::LeagueFailure& failure, const std::vector<LeagueSu
           {"drawing", drawing_of(failure.pair)}};
 }
 
-// Leaves the files of as many drawings as there may be.
+// Keeps only the allowed number of drawings.
 void choose_drawings(Json& failures, const Json& rows) {
   std::set<std::string> foreign, files;
   for (const Json& row : rows) {
@@ -155,7 +155,7 @@ std::string count_of_sample(const Json& share) {
   return share.at("of") == 0 ? "-" : count_text(share.at("count")) + " of " + count_text(share.at("of"));
 }
 
-// The columns behind the groups, and what each row has there.
+// The columns after the groups, and their cell for each row.
 struct Extra {
   const char* title;
   std::string (*text)(const Json& league, const Json& row);
@@ -267,11 +267,15 @@ std::string page_failures(const Json& league) {
     const std::string contact =
         failure.at("contact") == "none" ? "" : fmt::format(" (contact: {})", failure.at("contact").get<std::string>());
     const double ulps = failure.at("margin_ulps");
-    text += fmt::format("\n**{}, {}**: `{}` says {}; the truth is {}{}, margin {:.4g}{}.{}\n",
+    const std::string says = failure.at("says");
+    const std::string did = says == "crashed"     ? says
+                            : says == "timed_out" ? "timed out"
+                            : says == "unstable"  ? "is unstable"
+                                                  : "says " + says;
+    text += fmt::format("\n**{}, {}**: `{}` {}; the truth is {}{}, margin {:.4g}{}.{}\n",
                         failure.at("shape").get<std::string>(), wrong_in_words(failure.at("says")),
-                        failure.at("lane").get<std::string>(), failure.at("says").get<std::string>(),
-                        failure.at("truth").get<std::string>(), contact, failure.at("margin").get<double>(),
-                        ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
+                        failure.at("lane").get<std::string>(), did, failure.at("truth").get<std::string>(), contact,
+                        failure.at("margin").get<double>(), ulps == 0 ? "" : fmt::format(" ({:.4g} ulps)", ulps),
                         failure.at("minimised") ? "" : " Not minimised.");
     text += fmt::format("\n```sh\n{}\n```\n", failure.at("again").get<std::string>());
     if (!failure.at("file").is_null())
@@ -287,7 +291,7 @@ Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& s
                  const std::string& date) {
   Json groups = Json::object(), rows = Json::array(), failures = Json::array(), own = Json::array();
   for (std::size_t g = 0; g < fuzz::kLeagueGroupCount; ++g) {
-    std::uint64_t pairs = 0;  // of a row that took all
+    std::uint64_t pairs = 0;  // pairs of a row that ran them all
     for (const fuzz::LeagueRow& row : league.rows) pairs = std::max(pairs, row.groups[g].pairs + row.groups[g].outside);
     if (pairs > 0) groups[std::string(fuzz::kLeagueGroups[g])] = pairs;
   }
@@ -324,7 +328,7 @@ std::map<std::string, std::string> league_drawings(const Json& league) {
   for (const Json& failure : league.at("failures")) {
     if (failure.at("file").is_null()) continue;
     std::string svg = pair_drawing(failure);
-    // A file of its own, on any background.
+    // As a separate file, the drawing needs a background.
     svg.insert(svg.find('>') + 1, "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>");
     svg.insert(4, " xmlns=\"http://www.w3.org/2000/svg\"");
     drawings[failure.at("file")] = svg + "\n";
@@ -335,7 +339,7 @@ std::map<std::string, std::string> league_drawings(const Json& league) {
 std::string league_table(const Json& league, const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};
   for (const auto& [group, pairs] : league.at("groups").items()) columns.push_back({group});
-  std::vector<const Extra*> extras;  // without those that are nothing everywhere
+  std::vector<const Extra*> extras;  // only columns with some value
   for (const Extra& extra : kExtras) {
     const bool any = std::any_of(league.at("rows").begin(), league.at("rows").end(), [&](const Json& row) {
       const std::string text = extra.text(league, row);
@@ -378,7 +382,7 @@ CGAL's exact decision and that of `core/exact` are the truth of every pair, and 
 - **declined**: pairs on which the lane gave no answer. They are not wrong.
 - **crashed**, **timed out**, **unstable**: pairs on which the lane failed, or did not always give the same verdict. They are wrong.
 - **not repeated**: verdicts other than the truth that a fresh process did not repeat. They count as no error.
-- **by convention**: wrong verdicts on pairs that the library's documentation leaves out of its contract. They are no errors.
+- **by convention**: verdicts that differ from the truth on pairs that the library's documentation leaves out of its contract. They are no errors.
 - **order**: pairs of a sample on which the verdict changes with the order of triangles and vertices (72 orders, the same truth).
 - **invariants**: pairs of the same sample on which it changes with a mirror image, the order of the axes, a power of two or a translation that rounds nothing, or on which a part of a triangle intersects and the whole does not.
 - **flips**: pairs on which the build with contraction gives another verdict, where there is source.

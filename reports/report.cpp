@@ -26,7 +26,7 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// The machines that the campaign ran on, as far as their names are known.
+// The machines that the campaign ran on, if their names are known.
 Json machines(const std::filesystem::path& directory) {
   const Json timings = Json::parse(fuzz::read_whole(directory / "timings.json"), nullptr, false);
   if (!timings.is_object() || !timings.value("runs", Json()).is_array()) return nullptr;
@@ -134,14 +134,14 @@ Json make_report(const std::filesystem::path& directory) {
     return report;
   } catch (const Json::exception&) {
     throw corpus::FormatError(cannot("use", directory / "summary.json", "it is not the summary of a campaign"));
-  } catch (const std::logic_error&) {  // a text that is no number, or no signature
+  } catch (const std::logic_error&) {  // invalid numbers or signatures
     throw corpus::FormatError(cannot("use", directory / "summary.json", "it is not the summary of a campaign"));
   }
 }
 
 namespace {
 
-// Checks a file that graze wrote.   Throws: FormatError that names it.
+// Checks a file that Graze wrote.   Throws: FormatError that names it.
 template <class Check>
 void checked(const std::filesystem::path& file, const char* what, Check check) {
   try {

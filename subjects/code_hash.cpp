@@ -58,7 +58,7 @@ bool is_file(const fs::path& file) {
   return fs::is_regular_file(file, none);
 }
 
-// Where a shell finds the program; empty where it does not.
+// The program's file on the PATH; empty when there is none.
 fs::path on_path(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path ? path : "");
@@ -68,7 +68,7 @@ fs::path on_path(const std::string& program) {
   return {};
 }
 
-// What stands between these characters.
+// The parts of the text between these characters.
 std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
   std::set<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -101,7 +101,7 @@ std::string code_in(const fs::path& file) {
   std::error_code why;
   const bool regular = fs::is_regular_file(file, why);
   std::ifstream in;
-  if (regular) in.open(file, std::ios::binary);  // a pipe without a writer would wait
+  if (regular) in.open(file, std::ios::binary);  // opening a pipe without a writer would block
   std::ostringstream text;
   if (!regular || !(text << in.rdbuf())) {
     throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a subject's code is, as a number: what is compiled or run, and not the name of a file.
+// A hash of a subject's code: of what is compiled or run, not of a file's name.
 #pragma once
 
 #include <array>
@@ -43,7 +43,7 @@ CodeHash hash_of_command(const std::string& command);
 // may bring in anything.
 CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash);
 
-// What was built of a C or C++ source in a variant.
+// The build of a C or C++ source in a variant.
 struct Built {
   std::filesystem::path file;                 // named by the hash of what it was made of
   std::string not_covered;                    // what else it was made of, in words
@@ -52,7 +52,7 @@ struct Built {
 
 CodeHash hash_of_builds(const std::vector<Built>& built);
 
-// Of the PTX of each variant, without the places of its lines in files.
+// Hash of the PTX of each variant, without its line information.
 CodeHash hash_of_ptx(const std::vector<std::string_view>& variants);
 
 }  // namespace graze::subjects

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds the processes of foreign code together, so that none outlives its supervisor: a process namespace of their
-// own where the system allows one, else the supervisor as the subreaper of its descendants.
+// Contains the processes of foreign code, so that none outlives its supervisor. They run in a process namespace of
+// their own where the system allows one; otherwise the supervisor is the subreaper of its descendants.
 #pragma once
 
 #include <sys/types.h>
@@ -19,23 +19,23 @@ namespace graze::subjects {
 // none. Requires: one thread.
 void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only = "");
 
-// The descriptor that becomes readable when the process ends; -1 where there is no such process.
+// A descriptor that becomes readable when the process ends; -1 when there is no such process.
 int open_process(pid_t process);
 
-// Whether the process descends from the calling one. Not certain of a process that may end; see open_process.
+// Whether the process descends from the calling one. Unreliable for a process that may end; see open_process.
 bool is_descendant(pid_t process);
 
 struct Usage {
-  std::uint64_t processes, bytes;  // bytes of memory, shared pages counted in parts
+  std::uint64_t processes, bytes;  // bytes of memory; each process counts its share of shared pages
 };
-// What all descendants take at this moment; counts up to `most_bytes` and `most_processes`, and a little beyond.
+// Current usage of all descendants. Stops counting a little beyond `most_bytes` or `most_processes`.
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
 
-// Kills all children but one, and what they leave behind.   Returns: whether none is left.
+// Kills all children except one, and their descendants.   Returns: whether none is left.
 bool end_children(pid_t except);
 
-// From here on neither this process nor what it starts can change the limits of other processes, as those of its
-// supervisor, which has the same user, or take memory that no limit counts (memfd_create).
+// From now on this process and its descendants cannot change the limits of other processes. (The supervisor runs as
+// the same user.) They also cannot allocate memory that no limit counts (memfd_create).
 void forbid_calls();
 
 // Gives up the rights of root that would reach beyond the limits: tracing, mounting, lifting limits, rebooting,

@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// What the lane table points to, for good.
+// The lane table points to entries, so they are never freed.
 struct Entry {
   Opened opened;
   std::string source, coplanar, degenerate, order;
@@ -48,7 +48,7 @@ std::deque<Entry>& entries() {
 
 constexpr std::string_view kCommand = "cmd:";
 
-// "library", "cuda" or "source" by the file's ending; empty for any other.
+// "library", "cuda" or "source", by the file's extension; empty for others.
 std::string kind_of(std::string_view file) {
   const std::size_t version = file.find_last_not_of("0123456789.") + 1;  // libx.so.1.2
   if (file.substr(0, version).ends_with(".so") || file.ends_with(".dylib")) return "library";
@@ -68,7 +68,7 @@ Opened parsed(const Wanted& wanted) {
     return result;
   }
   const std::string_view what = wanted.what;
-  std::size_t end = what.size();  // of the file; a colon and a function may follow
+  std::size_t end = what.size();  // end of the file name; a colon and a function may follow
   while (end != what.npos && kind_of(what.substr(0, end)).empty())
     end = end == 0 ? what.npos : what.rfind(':', end - 1);
   if (end == what.npos || end + 1 == what.size()) {
@@ -85,7 +85,7 @@ Opened parsed(const Wanted& wanted) {
   return result;
 }
 
-// What its convention says of pairs of a sort.
+// What the subject's convention says of a kind of pairs.
 std::string says(const Description& description, unsigned outside, std::string_view otherwise) {
   if (!(description.outside & outside)) return std::string(otherwise);
   return "not in its contract" + (description.convention.empty() ? "" : ": " + description.convention);
@@ -101,9 +101,9 @@ void describe_info(Entry& entry, const Description& description) {
   entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
 }
 
-// What a program says of itself when its first line is `describe`: a JSON object, {"version": "1.2", "source": "…",
-// "convention": "…", "outside": ["touching", …]}, all of it optional. Of anything else, and of nothing, nothing is
-// taken: a program need not know the question.
+// Reads a program's answer to the line `describe`: a JSON object {"version": "1.2", "source": "…", "convention": "…",
+// "outside": ["touching", …]}, in which every field is optional. Ignores any other answer, because a program need not
+// support `describe`.
 void add_description(Description& description, const std::string& subject) {
   const std::string& said = description.said;
   const Json json = Json::parse(said, nullptr, false);
@@ -144,7 +144,8 @@ LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
   return {subject, std::string(name(build.scalar)), std::string(name(build.variant)), ""};
 }
 
-// What a record of `graze prove-twin` beside the source says of this very build, else what is known without it.
+// The evidence for this build in the proof record beside the source. Without such a record, what the build itself
+// shows.
 std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
   std::ifstream in(proof_file(source));
   const Json record = Json::parse(in, nullptr, false);
@@ -158,12 +159,12 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
           record.at("device").get_ref<const std::string&>(), record.at("toolkit").get_ref<const std::string&>(),
           static_cast<double>(count("pairs")), static_cast<double>(count("twin_pairs"))});
     }
-  } catch (const Json::exception&) {  // no record, or a damaged one, verifies nothing
+  } catch (const Json::exception&) {  // a missing or damaged record verifies nothing
   }
   return cuda::evidence(build);
 }
 
-// recorded: the hash of the code that a campaign ran; empty where any will do.
+// recorded: the hash of the code that a campaign ran; empty accepts any code.
 void expect_code(const Opened& subject, const std::string& recorded) {
   if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
     throw std::runtime_error(fmt::format(
@@ -273,7 +274,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
                                      printable(wish.function)));
     }
     if (wish.kind == "cuda") return add_cuda_lanes(entry, on_device, recorded);
-    const StopSignals stops;  // not while NVRTC compiles, which cannot be stopped
+    const StopSignals stops;  // not active while NVRTC compiles, which cannot be stopped
     std::vector<std::pair<Variant, Code>> builds;
     std::vector<Built> built_files;
     if (wish.kind == "source") {

@@ -27,7 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One of each misbehaviour, on the pairs that `bad` picks; on the others they say whether a is left of b.
+// One subject for each misbehaviour, on the pairs that `bad` selects. On other pairs they answer whether a is left of
+// b.
 constexpr const char* kMisbehaving = R"(
 #include <stdlib.h>
 #include <unistd.h>
@@ -97,7 +98,7 @@ struct Subjects : testing::Test {
   }
 
   static std::vector<Verdict> verdicts(const DecideBlock& block) { return verdicts_of(block, pairs); }
-  // Of the bad pairs this, of the others what `good` says.
+  // Expects `of_bad` on the bad pairs, and the answer of `good` on the others.
   static void expect(ForeignProcesses& subject, Verdict of_bad) {
     const std::vector<Verdict> found = verdicts(subject);
     std::size_t bad = 0;
@@ -135,9 +136,9 @@ TEST_F(Subjects, WhatTheCodeItselfTakesIsKnown) {
   const auto quick = nanoseconds("libbad.so", "good"), slow = nanoseconds("libslow.so", "slow");
   ASSERT_TRUE(quick && slow);
   EXPECT_GT(*quick, 0u);
-  EXPECT_GT(*slow, 3000u * 2000);  // at least 2 us a pair: 20,000 steps
+  EXPECT_GT(*slow, 3000u * 2000);  // at least 2 µs per pair: 20,000 steps
   EXPECT_GT(*slow, 20 * *quick);
-  EXPECT_FALSE(nanoseconds("libbad.so", "aborts"));  // it failed on some
+  EXPECT_FALSE(nanoseconds("libbad.so", "aborts"));  // it failed on some pairs
 }
 
 TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
@@ -173,7 +174,7 @@ TEST_F(Subjects, EndlessLoopsAndMemoryEnd) {
   pairs = all;
 }
 
-// A process that is ended just when it comes to answer leaves no answer of another pair behind.
+// A process that is ended just as it is about to answer leaves no answer for another pair.
 TEST_F(Subjects, TimesAtTheLimitAreVerdictsOrTooLate) {
   const std::vector<Pair> all = pairs;
   pairs.assign(all.begin(), all.begin() + 300);
@@ -235,7 +236,7 @@ for line in sys.stdin:
   pairs = all;
 }
 
-// What a program says of itself, when it is asked; one that does not know the question is taken as it is.
+// A program may describe itself when asked. A program that does not know the question is used as it is.
 TEST_F(Subjects, AProgramMayDescribeItself) {
   const std::string answers = "; while read line; do echo 1; done";
   const auto open_program = [&](const std::string& name, const std::string& describes) {
@@ -267,7 +268,7 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
             std::string::npos);
 }
 
-// The published algorithms, pushed through a source as a stranger's code: exactly their lanes' verdicts.
+// The published algorithms, opened as foreign sources, give exactly the verdicts of their lanes.
 class OurOwn : public Subjects, public testing::WithParamInterface<int> {};
 
 TEST_P(OurOwn, AsForeignCodeAreTheirLanes) {
@@ -297,7 +298,7 @@ int decide(const Real a[9], const Real b[9]) {
   open(wanted);
   std::size_t compared = 0;
   for (const char* scalar : {"f32", "f64"}) {
-    {  // what cpu-fma fuses is the compiler's choice, and another in another function
+    {  // the compiler decides what cpu-fma fuses, and may decide otherwise in another function
       const std::string lane = std::string("/") + scalar + "/cpu";
       const Lane *foreign = find_lane(name + lane), *ours = find_lane(id + lane);
       ASSERT_TRUE(ours);
@@ -336,14 +337,14 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
   }
   EXPECT_FALSE(find_lane("in_double/f32/cpu"));
   EXPECT_FALSE(find_lane("by_name/f32/cpu"));
-  // What is included counts: another header is another build.
+  // Included files count: another header makes another build.
   write("part.h", "#define LESS(a, b) (a)[0] >= (b)[0]");
   open_one("changed=" + (folder / "both.cpp").string() + ":geo::meets");
   EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0],
             left_of(pairs[0]) == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint);
 }
 
-// Without a device a CUDA source is replayed by its twin; where a product is fused into a sum that shows.
+// Without a device, the twin replays a CUDA source. Fusing a product into a sum has a visible effect.
 TEST_F(Subjects, ACudaSourceIsReplayedByItsTwin) {
   const fs::path source = write("mine.cu", R"(
 #include <math.h>
@@ -366,7 +367,7 @@ __device__ bool intersects(const float a[9], const float b[9]) { return area(a) 
     ASSERT_EQ(found[i] == Verdict::intersects, area(pairs[i].a) > area(pairs[i].b)) << i;
   EXPECT_TRUE(cuda::contraction_sites(*rounded).empty());
   EXPECT_FALSE(cuda::contraction_sites(*fused).empty());
-  // Triangles whose area's two products are nearly equal.
+  // Triangles for which the two products of the area are nearly equal.
   const std::vector<Pair> before = pairs;
   pairs.clear();
   for (std::uint64_t i = 0; i < 1000; ++i) {
@@ -387,7 +388,7 @@ __device__ bool intersects(const float a[9], const float b[9]) { return area(a) 
   EXPECT_GT(differ, 0u);
   pairs = before;
 
-  // A record counts for the very build that it names.
+  // A record counts only for the exact build that it names.
   const std::vector<cuda::NamedBuild> builds = cuda_builds();
   const auto build =
       std::find_if(builds.begin(), builds.end(), [](const auto& b) { return b.lane == "gpu/f32/cuda-fma"; });
@@ -456,7 +457,7 @@ TEST_F(Subjects, ACampaignsRecordOpensThemAgainUnlessTheyChanged) {
   EXPECT_TRUE(record({"moller_1997/f32/cpu", "recorded2/f32/cpu"}).is_null());
   nlohmann::ordered_json spec{{"subjects", record({"moller_1997/f32/cpu", "recorded/f32/cpu"})}};
   ASSERT_EQ(spec["subjects"].size(), 1u);
-  open_recorded(spec);                      // open already
+  open_recorded(spec);                      // already open
   open_one("recorded=" + source.string());  // the same again
   spec["subjects"][0]["name"] = "again";
   open_recorded(spec);
@@ -492,12 +493,12 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
     EXPECT_TRUE(
         names(error, {"changed", spec["subjects"][0]["hash"].get<std::string>(), "--subject " + name + "_changed"}));
     EXPECT_FALSE(opened(name + "_changed"));
-    open_one(name + "_changed=" + what);  // as a person asks for it
+    open_one(name + "_changed=" + what);  // as a person requests it
     EXPECT_EQ(open_recorded(spec).size(), 1u);
   }
 }
 
-// Whether the cached build may be run: never one of other files.
+// Whether the cached build may be used. It must never be one of other files.
 TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
   const fs::path object = folder / "helper.o", data = folder / "some $data.bin";
   const auto build = [&](bool less) {

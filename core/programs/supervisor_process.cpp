@@ -22,8 +22,8 @@ extern char** environ;
 namespace graze {
 namespace {
 
-constexpr int kLookEvery = 50;  // ms, whether a stop is requested
-// Looks of this process, not time: on a machine that is so busy that the supervisor waits, this process waits as well.
+constexpr int kLookEvery = 50;  // ms between two checks for a request to stop
+// Counts checks, not time: if the machine is so busy that the supervisor waits, this process waits as well.
 constexpr int kMostSilentLooks = 10'000 / kLookEvery;
 
 }  // namespace
@@ -91,7 +91,7 @@ SupervisorProcess::~SupervisorProcess() {
   const bool hangs = silent_ || is_stopped(process_);
   if (has_ended(hangs ? 0 : stop_requested ? 1 : 6) || (stop_requested && !hangs)) return;
   kill(process_, SIGKILL);
-  has_ended(1);  // a frozen one does not: it is left
+  has_ended(1);  // a frozen one does not end: it is left
 }
 
 bool SupervisorProcess::send(const void* message, std::size_t size) const {
@@ -109,7 +109,7 @@ ssize_t SupervisorProcess::receive(void* to, std::size_t size) {
       ++looks;
     }
     if (stop_requested) throw Stopped();
-    if (is_stopped(process_)) return -1;  // as a subject without a namespace of its own can do
+    if (is_stopped(process_)) return -1;  // a subject without a namespace of its own can stop it
   }
   silent_ = true;
   return -1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze-subject-host, beside the running program: the supervisor of programs that graze did not write. This is graze's
-// end of it; subjects/README.md has the other.
+// Graze's end of graze-subject-host, the supervisor of programs that graze did not write. graze-subject-host lies
+// beside the running program; subjects/README.md describes its end.
 #pragma once
 
 #include <sys/types.h>
@@ -10,7 +10,7 @@
 
 namespace graze {
 
-// While graze waits for it, the supervisor sends this message at least once a second, of one byte.
+// While graze waits, the supervisor sends this one-byte message at least once a second.
 inline constexpr char kAlive = 1;
 
 class SupervisorProcess {
@@ -28,10 +28,10 @@ class SupervisorProcess {
   bool send(const void* message, std::size_t size) const;
 
   // Waits for a message of more than one byte.
-  // Returns: its bytes; at most 0 where the supervisor ended, is stopped or is silent.   Throws: Stopped.
+  // Returns: the message's size; at most 0 if the supervisor ended, is stopped or is silent.   Throws: Stopped.
   ssize_t receive(void* to, std::size_t size);
 
-  // Whether that was so because it was silent for 10 s, as one that is frozen is.
+  // Whether `receive` failed because the supervisor was silent for 10 s, as a frozen one is.
   bool silent() const { return silent_; }
 
  private:

@@ -33,7 +33,7 @@ extern "C" __global__ void graze_subject_kernel(const {0}* coordinates, unsigned
 }}
 )";
 
-// The first error that a log tells, as "FILE:LINE: what".
+// The first error in a log, as "FILE:LINE: what".
 std::string first_error(const std::string& log) {
   static const std::regex kError(R"(([^\n]*?)\((\d+)\): (?:catastrophic )?error: ([^\n]*))"),
       kOther("[^\n]*error[^\n]*");
@@ -75,7 +75,7 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
   } catch (const CompileError& error) {
     throw UsageError(first_error(error.what()));
   }
-  try {  // its type, from the message about a template that is only declared
+  try {  // finds its type in the error message about an undefined template
     compile(with_lines(text, source) + fmt::format("\ntemplate <class T> struct graze_found;\n"
                                                    "graze_found<decltype(&{})> graze_type;\n",
                                                    function));
@@ -89,7 +89,7 @@ Scalar scalar_of(const std::string& text, const fs::path& source, const std::str
       throw UsageError(
           fmt::format("{}; found {}", expected, std::regex_replace(match[1].str(), std::regex("__nv_bool"), "bool")));
     if (said.find("overloaded") != said.npos)
-      throw UsageError(fmt::format("{}; found several functions of that name, none of them so", expected));
+      throw UsageError(fmt::format("{}; found several functions of that name, none of that type", expected));
   }
   throw UsageError(fmt::format("{}; {}", expected, first_error(log)));
 }

@@ -19,7 +19,7 @@ struct Failure {
   // By the exact decision of core/exact/exact.h; the oracle confirms the results (see confirm). It stays when the pair
   // shrinks. The margin's size need not: shrinking runs to the threshold, and would keep the coordinates long.
   Relation truth;
-  std::vector<const Lane*> lanes;    // of one algorithm, those of the under_test
+  std::vector<const Lane*> lanes;    // of one algorithm, those among the lanes under test
   std::vector<DecideBlock> on_host;  // of each: the host lane or the twin
   std::vector<Verdict> verdicts;     // of each
   bool operator==(const Failure&) const = default;
@@ -28,8 +28,8 @@ struct Failure {
   const Lane& first_wrong(const Pair& pair) const;
 };
 
-// The failures of a pair, one for each algorithm of the under_test that is wrong on it; none for coordinates that are
-// not finite.   Throws: OracleMismatch; std::runtime_error where the under_test's device and the twin differ.
+// The failures of a pair, one for each algorithm among those under test that is wrong on it; none for coordinates that
+// are not finite.   Throws: OracleMismatch; std::runtime_error where a lane's device and the twin differ.
 std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pair);
 
 bool fails_alike(const Failure& failure, const Pair& pair);
@@ -86,7 +86,7 @@ Minimised minimise(const Failure& failure, const Pair& pair, std::span<const Min
                    std::optional<std::size_t> most = {});
 
 // Throws: OracleMismatch unless CGAL and GMP say of the pair what the failure does; std::runtime_error unless all lanes
-// of the under_test do, on the device where it has one.
+// under test do, on the device where it has one.
 void confirm(const SelectedLanes& under_test, const Failure& failure, const Pair& pair);
 
 }  // namespace graze::fuzz

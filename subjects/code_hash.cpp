@@ -21,8 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The command's words as a shell splits them; what it would put in for variables and patterns is not known here.
-// Files that it writes to (> FILE) are in `written` instead.
+// Splits the command into words as a shell does, without expanding variables and patterns. Files that it writes to (>
+// FILE) are in `written` instead.
 std::vector<std::string> words_of(const std::string& command, std::set<std::string>& written) {
   std::vector<std::string> words;
   std::string word;
@@ -158,7 +158,7 @@ CodeHash hash_of_command(const std::string& command) {
     code.hash = add_number(code.files.back().hash, code.hash);
   };
   if (!program.empty() && words[0].find('/') == words[0].npos) add(program);
-  // Also within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
+  // Also files named within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
   std::set<std::string> files = parts_of(command, " \t\n;|&<>()'\"`=:,{}[]$\\");
   for (const std::string& file : written) files.erase(file);
   files.insert(all.begin(), all.end());

@@ -23,8 +23,8 @@ struct Code {
   std::string what, name;       // a file and its export, a command, or a file of PTX
   std::string scalar = "any";   // for a function without a description
   double timeout = 1;           // seconds for a pair, or for a block of a subject that takes blocks
-  std::uint64_t memory = 1024;  // MiB, of all its processes together
-  bool namespaces = true;       // in a process namespace of its own, where the system allows one
+  std::uint64_t memory = 1024;  // MiB, for all its processes together
+  bool namespaces = true;       // run in a process namespace if the system allows one
   std::shared_ptr<const SealedCopy> content = nullptr;  // of the file: what is loaded; taken from it where empty
   std::vector<HashedFile> files = {};                   // of a command: it ends where one of them changes
 };
@@ -49,8 +49,8 @@ class ForeignProcesses : public ForeignCode {
  public:
   ForeignProcesses(Code code, Scalar scalar);
   ~ForeignProcesses() override;
-  // Throws: Stopped, within a tenth of a second of the request, whatever the code does; std::runtime_error where a
-  // command's files have changed.
+  // Throws: Stopped, within 0.1 s of the request, whatever the code does; std::runtime_error if a command's files have
+  // changed.
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override;
   Verdict failure(const Pair& pair) override;
 

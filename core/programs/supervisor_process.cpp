@@ -36,7 +36,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   socket_ = sockets[0];
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  // Above the descriptors of the supervisor, so that none is closed by the next.
+  // Moves them above the descriptors that the supervisor gets, so that no dup2 overwrites another.
   std::vector<int> from{output, sockets[1]};
   from.insert(from.end(), shared.begin(), shared.end());
   for (int& fd : from) fd = fd < 0 ? -1 : fcntl(fd, F_DUPFD_CLOEXEC, 16);
@@ -50,7 +50,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   }
   for (std::size_t i = 1; i < from.size(); ++i)
     posix_spawn_file_actions_adddup2(&actions, from[i], static_cast<int>(i) + 2);
-  // A session of its own: Ctrl-C and the terminal are the asking process's business.
+  // A session of its own: Ctrl-C and the terminal concern only the calling process.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);

@@ -75,6 +75,25 @@ TEST_F(ForeignCode, ACompilerEndsWithGraze) {
   }
 }
 
+// The program replaces its own file at the first pair. No record has verdicts of both.
+TEST_F(ForeignCode, ACampaignWhoseProgramChangesFailsAndGoesOnWithTheOldOne) {
+  ASSERT_EQ(shell("printf 'while read l; do [ \"$l\" = describe ] && { echo; continue; }; echo 1; [ -e swap ] || "
+                  "continue; rm swap; cp other.sh next.sh; mv next.sh m.sh; done\n' > m.sh && cp m.sh old.sh && "
+                  "sed 's/echo 1/echo 0/' m.sh > other.sh && touch swap")
+                .status,
+            0);
+  const std::string run = "graze fuzz --subject 'm=cmd:sh m.sh' --lanes 'm/*' --strata uniform --pairs 200 --out ";
+  const std::vector<std::string> changed{"m.sh changed", "restore the file"};
+  expect_error(run + "whole", 1, changed);
+  EXPECT_NE(shell("graze status whole --json").out.find("m.sh changed"), std::string::npos);
+  EXPECT_EQ(shell("touch swap; cp old.sh m.sh; " + run + "shard --shard 1/2").status, 1);
+  expect_error("graze merge shard --out merged", 1, {"shard"});
+  expect_error("graze report whole", 1, {"whole"});
+  EXPECT_EQ(shell(run + "whole").status, 2);  // the new code is not the campaign's
+  EXPECT_EQ(shell("cp old.sh m.sh; " + run + "whole && " + run + "straight").status, 0);
+  EXPECT_EQ(shell("cmp whole/summary.json straight/summary.json").status, 0);
+}
+
 TEST_F(ForeignCode, OptionsOfSubjectsAreWithinBounds) {
   for (const std::string seconds : {"nan", "inf", "-1", "0", "1e9", "1s"})
     expect_error("graze check pair.txt --subject s=cmd:true --subject-timeout=" + seconds, 2, {"0.001", "86400"});

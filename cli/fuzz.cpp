@@ -262,8 +262,8 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
   std::cout << left_out_text(left_out);
   for (const Json& subject : summary["spec"].value("subjects", Json::array())) {
     if (subject.contains("not_covered"))
-      std::cout << fmt::format("{}: Graze notices a change of this code, but not of {}.\n",
-                               subject["name"].get<std::string>(), subject["not_covered"].get<std::string>());
+      std::cout << fmt::format("{}: Graze does not notice a change of {}.\n", subject["name"].get<std::string>(),
+                               subject["not_covered"].get<std::string>());
   }
   std::cout << fmt::format(
       "\nWrote {0}/summary.json, {0}/margins.svg, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite\n", out);

@@ -87,8 +87,8 @@ inline void put_answer(std::uint64_t* words, const Question& question, bool seco
 
 inline constexpr std::size_t kPairsBytes = kMostAsked * 18 * sizeof(double);
 
-// File descriptors, of the supervisor and of the worker.
-inline constexpr int kControlFd = 3, kSupervisorPairsFd = 4;
-inline constexpr int kPairsFd = 3, kWordsFd = 4, kTalkFd = 5;
+// Descriptors: of the supervisor, and of the worker.
+inline constexpr int kControlFd = 3, kSupervisorPairsFd = 4, kSupervisorCodeFd = 5;
+inline constexpr int kPairsFd = 3, kWordsFd = 4, kTalkFd = 5, kCodeFd = 6;  // the code is not there for a command
 
 }  // namespace graze::subjects

@@ -2,6 +2,7 @@
 #include "subjects/code_hash.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -20,13 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Splits the command into words as a shell does, without expanding variables and patterns.
-std::vector<std::string> words_of(const std::string& command) {
+// Splits the command into words as a shell does, without expanding variables and patterns. Files that it writes to (>
+// FILE) are in `written` instead.
+std::vector<std::string> words_of(const std::string& command, std::set<std::string>& written) {
   std::vector<std::string> words;
   std::string word;
   char quote = 0;
+  bool writes = false;
   const auto end_word = [&] {
-    if (!word.empty()) words.push_back(std::move(word));
+    if (word.empty()) return;
+    writes ? void(written.insert(word)) : words.push_back(word);
+    writes = false;
     word.clear();
   };
   for (std::size_t i = 0; i < command.size(); ++i) {
@@ -39,6 +44,7 @@ std::vector<std::string> words_of(const std::string& command) {
       word.push_back(command[++i]);
     } else if (std::string_view(" \t\n;|&<>()").find(c) != std::string_view::npos) {
       end_word();
+      writes = c == '>' ? i == 0 || command[i - 1] != '<' : writes && c != '&' && c != ';' && c != '\n';
     } else {
       word.push_back(c);
     }
@@ -73,13 +79,25 @@ std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
   return parts;
 }
 
+std::array<std::int64_t, 7> state_of(const fs::path& file) {
+  struct stat now {};
+  if (stat(file.c_str(), &now) != 0) return {};
+  return {static_cast<std::int64_t>(now.st_dev),
+          static_cast<std::int64_t>(now.st_ino),
+          now.st_size,
+          now.st_mtim.tv_sec,
+          now.st_mtim.tv_nsec,
+          now.st_ctim.tv_sec,
+          now.st_ctim.tv_nsec};
+}
+
 std::uint64_t add_number(std::uint64_t number, std::uint64_t hash) {
   return fnv1a({reinterpret_cast<const char*>(&number), sizeof number}, hash);
 }
 
 }  // namespace
 
-std::uint64_t hash_of_file(const fs::path& file) {
+std::string code_in(const fs::path& file) {
   std::error_code why;
   const bool regular = fs::is_regular_file(file, why);
   std::ifstream in;
@@ -91,42 +109,127 @@ std::uint64_t hash_of_file(const fs::path& file) {
                                          : regular ? std::strerror(errno)
                                                    : "not a file"));
   }
-  return fnv1a(text.str());
+  return text.str();
 }
 
-CodeHash hash_of_library(const fs::path& file) { return {hash_of_file(file), "the libraries that it loads"}; }
+std::uint64_t hash_of_file(const fs::path& file) { return fnv1a(code_in(file)); }
+
+void expect_unchanged(const std::vector<HashedFile>& files) {
+  for (const HashedFile& file : files) {
+    if (state_of(file.file) == file.state || (is_file(file.file) && hash_of_file(file.file) == file.hash)) continue;
+    throw std::runtime_error(fmt::format(
+        "--subject: {} changed while the command that names it ran, so its verdicts may be of either code and are not "
+        "recorded; restore the file to go on, or start anew with another --out; a file that the program itself writes "
+        "belongs after '>' or in a variable",
+        shown_path(file.file.string())));
+  }
+}
+
+namespace {
+
+// What a command's hash does not cover. The code that it runs is known where it is a program alone, or one with a file
+// as its first argument, and no shell changes folders, names or programs.
+std::string not_covered_of(const std::string& command, std::vector<std::string> words, const fs::path& program) {
+  if (program.empty() || command.find_first_of(";|&<>()$`*?[~{}!#\n") != command.npos ||
+      command.find("PATH=") != command.npos)
+    return "the code that it runs, because only the shell knows its files, or of what they load";
+  if (words.size() == 1 || is_file(words[1])) return "what its files load";
+  return fmt::format("the code that it runs, unless that is '{}' itself, or of what its files load",
+                     printable(words[0]));
+}
+
+}  // namespace
 
 CodeHash hash_of_command(const std::string& command) {
-  const bool is_expanded = command.find_first_of("$`*?[~{") != command.npos;
-  CodeHash code{fnv1a(command), is_expanded ? "the files that the shell puts in for $, `, *, ?, [, ~ or {, or of what "
-                                              "its files load"
-                                            : "what its files load"};
-  const std::vector<std::string> words = words_of(command);
+  std::set<std::string> written;
+  const std::vector<std::string> all = words_of(command, written);
+  std::vector<std::string> words = all;
   const auto is_setting = [](const std::string& word) { return word.find('=') != word.npos; };  // NAME=VALUE
-  const auto program = std::find_if_not(words.begin(), words.end(), is_setting);
-  if (program != words.end() && program->find('/') == program->npos) {
-    if (const fs::path file = on_path(*program); !file.empty()) code.hash = add_number(hash_of_file(file), code.hash);
-  }
+  words.erase(words.begin(), std::find_if_not(words.begin(), words.end(), is_setting));
+  if (words.size() > 1 && words[0] == "exec") words.erase(words.begin());
+  const fs::path program = words.empty()                         ? fs::path()
+                           : words[0].find('/') == words[0].npos ? on_path(words[0])
+                           : is_file(words[0])                   ? fs::path(words[0])
+                                                                 : fs::path();
+  CodeHash code{fnv1a(command), not_covered_of(command, words, program)};
+  const auto add = [&](const fs::path& file) {
+    const auto state = state_of(file);
+    code.files.push_back({fs::absolute(file), hash_of_file(file), state});
+    code.hash = add_number(code.files.back().hash, code.hash);
+  };
+  if (!program.empty() && words[0].find('/') == words[0].npos) add(program);
   // Also files named within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
   std::set<std::string> files = parts_of(command, " \t\n;|&<>()'\"`=:,{}[]$\\");
-  files.insert(words.begin(), words.end());
+  for (const std::string& file : written) files.erase(file);
+  files.insert(all.begin(), all.end());
   for (const std::string& file : files) {
-    if (is_file(file)) code.hash = add_number(hash_of_file(file), fnv1a(file, code.hash));
+    if (!is_file(file)) continue;
+    code.hash = fnv1a(file, code.hash);
+    add(file);
   }
   return code;
 }
 
-std::uint64_t hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash) {
+namespace {
+
+bool starts_with_any(std::string_view text, std::initializer_list<std::string_view> beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(),
+                     [&](std::string_view beginning) { return text.starts_with(beginning); });
+}
+
+// A relocatable object or an archive, which name no other file; not a linker's script, nor a list of files.
+bool is_object(const fs::path& file) {
+  if (!is_file(file)) return false;
+  std::ifstream in(file, std::ios::binary);
+  char head[18] = {};
+  in.read(head, sizeof head);
+  const std::string_view bytes(head, sizeof head);
+  return bytes.starts_with("!<arch>\n") || (bytes.starts_with("\x7f"
+                                                              "ELF") &&
+                                            bytes[16] + bytes[17] == 1);  // ET_REL
+}
+
+// Whether the flag changes how the source is compiled, and brings in no file that the preprocessor does not show.
+bool is_covered(const std::string& flag) {
+  const std::size_t equals = flag.find('=');
+  const std::string value = equals == flag.npos ? "" : flag.substr(equals + 1);
+  const bool names_a_file = value.find('/') != value.npos || is_file(value);
+  if (flag == "-include" || starts_with_any(flag, {"-D", "-U", "-I", "-isystem", "-iquote", "-idirafter", "-O", "-w",
+                                                   "-pedantic", "-pipe", "-pthread", "-ansi", "-nostdinc"}))
+    return true;
+  if (starts_with_any(flag, {"-Wl,", "-Wa,", "-Wp,", "-fprofile", "-fauto-profile", "-fbranch-prob", "-fplugin",
+                             "-fpass", "-fuse-ld", "-fmodule", "-mllvm"}))
+    return false;
+  if (starts_with_any(flag, {"-W", "-f", "-m", "-std=", "-g0", "-g1", "-g2", "-g3", "-ggdb", "-gdwarf"}) ||
+      flag == "-g")
+    return !names_a_file;
+  return !flag.starts_with('-') && is_object(flag);
+}
+
+}  // namespace
+
+CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash) {
+  CodeHash code{hash, ""};
+  std::set<std::string> uncovered;
+  bool takes_next = false;  // as a folder or a file for the preprocessor
   for (const std::string& flag : flags) {
-    hash = fnv1a(flag + '\n', hash);
-    // Also files named within words: -Wl,FILE and -Wl,--script=FILE, @FILE.
+    code.hash = fnv1a(flag + '\n', code.hash);
+    // Also within words: -Wl,FILE and -Wl,--script=FILE, @FILE.
     std::set<std::string> files = parts_of(flag, ",=@");
     files.insert(flag);
     for (const std::string& file : files) {
-      if (is_file(file)) hash = add_number(hash_of_file(file), hash);
+      if (is_file(file)) code.hash = add_number(hash_of_file(file), code.hash);
     }
+    if (starts_with_any(flag, {"-l", "-Wl,", "-Xlinker", "@"})) {
+      uncovered.insert("the libraries that its flags link");
+    } else if (!takes_next && !is_covered(flag)) {
+      uncovered.insert("what " + printable(flag) + " brings in");
+    }
+    takes_next = !takes_next && (flag == "-D" || flag == "-U" || flag == "-I" || flag == "-isystem" ||
+                                 flag == "-iquote" || flag == "-idirafter" || flag == "-include");
   }
-  return hash;
+  for (const std::string& what : uncovered) code.not_covered += (code.not_covered.empty() ? "" : ", ") + what;
+  return code;
 }
 
 CodeHash hash_of_builds(const std::vector<Built>& built) {

@@ -2,35 +2,52 @@
 // A hash of a subject's code: of what is compiled or run, not of a file's name.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "subjects/sealed_copy.h"
+
 namespace graze::subjects {
+
+// A file that was read for a hash.
+struct HashedFile {
+  std::filesystem::path file;
+  std::uint64_t hash;
+  std::array<std::int64_t, 7> state;  // where and when it was last written, as the system says, before it was read
+};
 
 struct CodeHash {
   std::uint64_t hash = 0;
-  std::string not_covered;  // what else the code depends on, in words; empty when nothing
+  std::string not_covered;             // what the code depends on beside it, in words; empty where that is nothing
+  std::vector<HashedFile> files = {};  // of a command
 };
 
-// Hash of the file's bytes.   Throws: std::runtime_error when the file does not exist.
+// Throws: std::runtime_error, naming the file, where one has other content than when it was read. A file that was
+// changed and changed back meanwhile is as it was.
+void expect_unchanged(const std::vector<HashedFile>& files);
+
+// Returns: the file's bytes.   Throws: std::runtime_error where there is no such file.
+std::string code_in(const std::filesystem::path& file);
 std::uint64_t hash_of_file(const std::filesystem::path& file);
 
-CodeHash hash_of_library(const std::filesystem::path& file);
-
-// Hash of the command's text, the program that it starts, and the files that it names literally. Files that the shell
-// would find by expanding variables and patterns are not included.
+// Of the command's text, the program that it starts, and the files that it names as they stand there, but those that
+// the shell writes to (> FILE): what a shell would put in for variables and patterns is not known.
 CodeHash hash_of_command(const std::string& command);
 
-// Hash of a compiler's flags and of the files that they name.
-std::uint64_t hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash);
+// Of a compiler's flags, and of the files that they name. `not_covered` says what else the flags bring in, where they
+// may bring in anything.
+CodeHash hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash);
 
 // The build of a C or C++ source in a variant.
 struct Built {
-  std::filesystem::path file;  // named by the hash of its inputs
-  std::string not_covered;     // inputs that the hash leaves out, in words
+  std::filesystem::path file;                 // named by the hash of what it was made of
+  std::string not_covered;                    // what else it was made of, in words
+  std::shared_ptr<const SealedCopy> content;  // of the file, as it was built or verified
 };
 
 CodeHash hash_of_builds(const std::vector<Built>& built);

@@ -121,8 +121,10 @@ bool hide_control_groups() {
   return true;
 }
 
-// In the new namespace, where possible. In a chroot it is not: mounts made there would be visible outside.
-void make_read_only(const std::string& folder) {
+// In the new namespace, where that can be. In a chroot it cannot: what is mounted there would be seen outside.
+void make_read_only(const std::string& given) {
+  std::error_code none;
+  const std::string folder = fs::canonical(given, none), here = fs::current_path(none);
   const char* at = folder.c_str();
   struct statvfs now {};
   if (folder.empty() || statvfs(at, &now) != 0 || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0)
@@ -131,7 +133,13 @@ void make_read_only(const std::string& folder) {
   if (now.f_flag & ST_NOSUID) flags |= MS_NOSUID;
   if (now.f_flag & ST_NODEV) flags |= MS_NODEV;
   if (now.f_flag & ST_NOEXEC) flags |= MS_NOEXEC;
+  // Folders on which something is mounted can be neither renamed nor removed.
+  for (std::size_t end = folder.find('/', 1); end != folder.npos; end = folder.find('/', end + 1)) {
+    const std::string above = folder.substr(0, end);
+    mount(above.c_str(), above.c_str(), nullptr, MS_BIND | MS_REC, nullptr);
+  }
   if (mount(at, at, nullptr, MS_BIND, nullptr) == 0) mount("none", at, nullptr, flags, nullptr);
+  fs::current_path(here, none);  // otherwise it lies below these mounts
 }
 
 // In the new namespace: mounts its own /proc, without which its processes could not be found.
@@ -162,8 +170,18 @@ void limit_tasks() {
   if (geteuid() != 0) setrlimit(RLIMIT_NPROC, &most);
 }
 
-[[noreturn]] void guard(pid_t supervisor) {
-  close_range(0, ~0u, 0);  // closes the socket, so that graze sees when the supervisor ends, and the converse
+// Foreign code cannot reach this process, only the supervisor, whose waits it may delay.
+[[noreturn]] void guard(pid_t supervisor, int control) {
+  constexpr int kMostMilliseconds = 6000;  // for its end in order
+  const int process = open_process(supervisor);
+  for (int fd = 0; fd < 1024; ++fd) {
+    if (fd != control && fd != process) close(fd);
+  }
+  pollfd news[] = {{control, POLLRDHUP, 0}, {process, POLLIN, 0}};
+  while (process >= 0 && poll(news, 2, -1) < 0 && errno == EINTR) {
+  }
+  if (process >= 0 && !news[1].revents) poll(news + 1, 1, kMostMilliseconds);
+  if (process >= 0) kill(supervisor, SIGKILL);  // it stays this process until it is waited for
   while (waitpid(supervisor, nullptr, 0) < 0 && errno == EINTR) {
   }
   _exit(0);
@@ -206,7 +224,7 @@ std::uint64_t bytes_of(pid_t process, std::uint64_t most) {
 
 }  // namespace
 
-void enter_containment(bool namespaces, std::uint64_t shared_bytes, const std::string& read_only) {
+void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only) {
   const uid_t user = geteuid();
   const gid_t group = getegid();
   const std::vector<std::string> terminals = terminals_of_parent();
@@ -229,7 +247,7 @@ void enter_containment(bool namespaces, std::uint64_t shared_bytes, const std::s
     char ready = 0;
     const bool contained = supervisor > 0 && read(answer[0], &ready, 1) == 1;
     close(answer[0]);
-    if (contained) guard(supervisor);
+    if (contained) guard(supervisor, control);
     if (supervisor > 0) waitpid(supervisor, nullptr, 0);
   }
   prctl(PR_SET_CHILD_SUBREAPER, 1);
@@ -311,8 +329,8 @@ void forbid_calls() {
 }
 
 void drop_rights() {
-  for (const int right :
-       {CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_RESOURCE, CAP_SYS_BOOT, CAP_SYS_MODULE, CAP_SYS_RAWIO, CAP_NET_ADMIN})
+  for (const int right : {CAP_SYS_PTRACE, CAP_SYS_ADMIN, CAP_SYS_RESOURCE, CAP_SYS_BOOT, CAP_SYS_MODULE, CAP_SYS_RAWIO,
+                          CAP_NET_ADMIN, CAP_SYS_NICE, CAP_DAC_READ_SEARCH, CAP_MKNOD})
     prctl(PR_CAPBSET_DROP, right, 0, 0, 0);
 }
 

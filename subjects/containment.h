@@ -10,14 +10,14 @@
 
 namespace graze::subjects {
 
-// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, then ends too. The
-// function returns in the supervisor, which is process 1 of a new namespace. In it, foreign code sees and signals only
-// its own processes, has separate shared memory and no control groups. The namespace ends with the supervisor. If no
-// namespace is available, the function returns in the calling process, now a subreaper.
-// namespaces: whether to try. shared_bytes: limit of named shared memory. read_only: a folder that becomes read-only in
-// the namespace, or empty.
-// Requires: a single thread.
-void enter_containment(bool namespaces, std::uint64_t shared_bytes, const std::string& read_only = "");
+// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Where
+// the supervisor does not end within 6 s after graze closed its end of `control`, the guardian kills it. Returns
+// in the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own
+// processes, has only shared memory of its own and no control groups, and which the system ends with it. Where no
+// namespace can be had, returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of
+// memory that is shared by name. read_only: a folder that cannot be written to or moved in the namespace; empty for
+// none. Requires: one thread.
+void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only = "");
 
 // A descriptor that becomes readable when the process ends; -1 when there is no such process.
 int open_process(pid_t process);
@@ -38,7 +38,8 @@ bool end_children(pid_t except);
 // the same user.) They also cannot allocate memory that no limit counts (memfd_create).
 void forbid_calls();
 
-// Drops the root capabilities that bypass the limits: tracing, mounting, raising limits, rebooting.
+// Gives up the rights of root that would reach beyond the limits: tracing, mounting, lifting limits, rebooting,
+// delaying the supervisor, and reaching files by handles and disks.
 void drop_rights();
 
 }  // namespace graze::subjects

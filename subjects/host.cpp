@@ -23,6 +23,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -96,10 +97,44 @@ std::string exported(void* library) {
   return names.empty() ? "none that it exports" : "only " + names + (count > 8 ? ", …" : "");
 }
 
+// What is loaded: the sealed copy of the code that graze verified.
+const std::string kCode = "/proc/self/fd/" + std::to_string(kCodeFd);
+
+// A copy stands in no folder, so the folders that its $ORIGIN means are named to the system, which reads them when a
+// program starts: this one starts again.
+void name_origin(const std::string& file, char** argv) {
+  struct stat code {};
+  if (fstat(kCodeFd, &code) != 0 || code.st_size == 0) return;
+  const auto size = static_cast<std::size_t>(code.st_size);
+  void* at_all = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, kCodeFd, 0);
+  if (at_all == MAP_FAILED) return;
+  const std::string_view bytes(static_cast<const char*>(at_all), size);
+  const std::string folder = file.substr(0, file.rfind('/') + 1) + '.';
+  std::string folders;
+  for (const std::string word : {"$ORIGIN", "${ORIGIN}"}) {
+    for (std::size_t at = bytes.find(word); at != bytes.npos; at = bytes.find(word, at + 1)) {
+      const std::size_t begin = bytes.find_last_of(std::string(":\0", 2), at) + 1;  // of a list of folders
+      std::string found(bytes.substr(begin, bytes.find_first_of(std::string(":\0", 2), at) - begin));
+      found.replace(at - begin, word.size(), folder);
+      folders += found + ':';
+    }
+  }
+  munmap(at_all, size);
+  const char* now = std::getenv("LD_LIBRARY_PATH");
+  if (folders.empty() || std::string_view(now ? now : "").starts_with(folders)) return;
+  if (now) folders += now;
+  setenv("LD_LIBRARY_PATH", folders.c_str(), 1);
+  execv("/proc/self/exe", argv);
+}
+
 graze_subject subject_of_library(const std::string& file, const std::string& name, const std::string& scalar,
                                  Loaded& loaded) {
-  void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (!library) refuse(dlerror());
+  void* library = dlopen(kCode.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library) {
+    std::string why = dlerror();
+    if (why.starts_with(kCode)) why.replace(0, kCode.size(), file);
+    refuse(why);
+  }
   void* found = nullptr;
   for (const std::string& candidate :
        name.empty() ? std::vector<std::string>{"graze_subject", "intersects"} : std::vector<std::string>{name}) {
@@ -233,11 +268,11 @@ template <class Ask>
 // The worker's own device, opened after the fork: a forked process cannot use its parent's.
 class OnDevice {
  public:
-  OnDevice(const std::string& file, const std::string& scalar) {
+  explicit OnDevice(const std::string& scalar) {
     cuda::CudaBuild build{};
     build.scalar = scalar == "f64" ? Scalar::f64 : Scalar::f32;
     std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
+    text << std::ifstream(kCode).rdbuf();
     build.ptx = text.str();
     device_ = cuda::open_on_device(build);
   }
@@ -287,7 +322,7 @@ constexpr int kNotReady = 99;  // exit status of a worker that cannot start its 
   }
 #ifdef GRAZE_SUBJECT_DEVICE
   if (kind == "device") {
-    const OnDevice device(what, scalar);
+    const OnDevice device(scalar);
     const Asking<float> asking(nullptr, [&](auto... asked) { device(asked...); });
     serve([&](const Question& question) { return asking.ask(question); });
   }
@@ -300,16 +335,17 @@ constexpr int kNotReady = 99;  // exit status of a worker that cannot start its 
   serve([&](const Question& question) { return asking.ask(question); });
 }
 
-// Loads the code and forks a worker. Forks another whenever a worker ends.
-int load_and_fork(const std::string& kind, const std::string& what, const std::string& name, const std::string& scalar,
-                  const char* memory, bool describe) {
+// Loads the code, then forks a worker, and another whenever one ends.
+int load_and_fork(char** argv, const std::string& kind, const std::string& what, const std::string& name,
+                  const std::string& scalar, const char* memory, bool describe) {
+  if (kind == "library") name_origin(what, argv);
   words = static_cast<std::uint64_t*>(
       mmap(nullptr, kWords * sizeof *words, PROT_READ | PROT_WRITE, MAP_SHARED, kWordsFd, 0));
   pairs = mmap(nullptr, kPairsBytes, PROT_READ, MAP_SHARED, kPairsFd, 0);
   if (words == MAP_FAILED || pairs == MAP_FAILED) return 2;
   close(kPairsFd);
   close(kWordsFd);
-  fcntl(kTalkFd, F_SETFD, FD_CLOEXEC);
+  for (const int fd : {kTalkFd, kCodeFd}) fcntl(fd, F_SETFD, FD_CLOEXEC);
   if (kind != "device") set_limits(memory);
   Loaded loaded{};
   graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
@@ -352,12 +388,12 @@ int load_and_fork(const std::string& kind, const std::string& what, const std::s
 
 int host(int argc, char** argv) {
   if (argc == 8 && std::strcmp(argv[1], "--worker") == 0)
-    return load_and_fork(argv[2], argv[3], argv[4], argv[5], argv[6], *argv[7] == '1');
+    return load_and_fork(argv, argv[2], argv[3], argv[4], argv[5], argv[6], *argv[7] == '1');
   if (argc > 5 && std::strcmp(argv[1], "--run") == 0) {
     fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
     close_range(kControlFd + 1, ~0u, 0);
     setenv("TMPDIR", argv[3], 1);
-    enter_containment(*argv[4] == '1', std::uint64_t{1} << 30);
+    enter_containment(*argv[4] == '1', std::uint64_t{1} << 30, kControlFd);
     return supervise_program(std::strtod(argv[2], nullptr), argv[3], argv + 5);
   }
   if (argc != 10) {
@@ -366,13 +402,13 @@ int host(int argc, char** argv) {
   }
   fix_addresses(argv);
   const bool on_device = std::strcmp(argv[1], "device") == 0;
-  fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
-  close_range(kSupervisorPairsFd + 1, ~0u, 0);
   Limits limits;
-  limits.seconds = std::strtod(argv[6], nullptr);
   limits.program = std::strcmp(argv[1], "command") == 0;
+  fcntl(kControlFd, F_SETFD, FD_CLOEXEC);
+  close_range(limits.program ? kSupervisorCodeFd : kSupervisorCodeFd + 1, ~0u, 0);
+  limits.seconds = std::strtod(argv[6], nullptr);
   limits.bytes = on_device ? 0 : std::strtoull(argv[5], nullptr, 10) << 20;
-  enter_containment(!on_device && *argv[8] == '1', limits.bytes, argv[9]);
+  enter_containment(!on_device && *argv[8] == '1', limits.bytes, kControlFd, argv[9]);
   char worker[] = "--worker";
   char* const arguments[] = {argv[0], worker, argv[1], argv[2], argv[3], argv[4], argv[5], argv[7], nullptr};
   return supervise(limits, arguments);

@@ -39,7 +39,7 @@ std::size_t count_in(const fs::path& folder) {
 }
 
 struct Hostile : testing::Test {
-  static inline fs::path folder;
+  static inline fs::path folder, before;
   static inline std::string mark;  // in the environment of all processes that this one starts
   static inline pid_t bystander = -1;
   static inline int terminal = -1;
@@ -50,8 +50,10 @@ struct Hostile : testing::Test {
     fs::create_directories(folder);
     mark = "GRAZE_HOSTILE_TEST=" + std::to_string(getpid());
     setenv("GRAZE_HOSTILE_TEST", std::to_string(getpid()).c_str(), 1);
-    fs::create_directories(folder / "cache/graze");
-    setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
+    fs::create_directories(folder / "home/cache/graze");
+    before = fs::current_path();
+    fs::current_path(folder / "home");
+    setenv("XDG_CACHE_HOME", (folder / "home/cache").c_str(), 1);
     for (std::uint64_t i = 0; i < 40; ++i) pairs.push_back(strata::generate(1, strata::Stratum::uniform, i));
     build("libhostile.so", GRAZE_SOURCE_DIR "/subjects/hostile.c -lpthread");
     terminal = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
@@ -64,6 +66,7 @@ struct Hostile : testing::Test {
     kill(bystander, SIGKILL);
     waitpid(bystander, nullptr, 0);
     if (terminal >= 0) close(terminal);
+    fs::current_path(before);
     fs::remove_all(folder);
   }
 
@@ -117,7 +120,7 @@ bool has_namespaces() {
   const pid_t child = fork();
   if (child == 0) {
     close_range(3, static_cast<unsigned>(answer[1]) - 1, 0);
-    enter_containment(true, 1 << 20);
+    enter_containment(true, 1 << 20, -1);
     const char inside = getpid() == 1;
     _exit(write(answer[1], &inside, 1) == 1 ? 0 : 1);
   }
@@ -204,6 +207,7 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"opens_terminals", false},
                                {"freezes_supervisor", false},
                                {"writes_to_cache", false},
+                               {"stretches_waits"},
                                {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {
@@ -263,7 +267,7 @@ TEST_F(Hostile, ConstructorsThatAttackAreOneLine) {
   }
 }
 
-TEST_F(Hostile, CodeThatIsGoneAfterItWasLoadedIsAVerdict) {
+TEST_F(Hostile, CodeThatIsGoneAfterItWasReadIsLoadedAgain) {
   const fs::path file = built_from("removes",
                                    "#include <signal.h>\n#include <unistd.h>\n"
                                    "int intersects(const float a[9], const float b[9]) {\n"
@@ -271,13 +275,84 @@ TEST_F(Hostile, CodeThatIsGoneAfterItWasLoadedIsAVerdict) {
                                        (folder / "removes.so").string() +
                                        "\"); kill(getppid(), SIGKILL); _exit(1); }\n  return a[0] < b[0]; }");
   ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
-  const std::vector<Verdict> found = verdicts(subject);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {  // in the second pass the other pairs have no code left
-    if (is_bad(pairs[i]) || found[i] != left_of(pairs[i])) {
-      EXPECT_EQ(found[i], Verdict::crashed) << i;
+  for (int times = 0; times < 2; ++times) {
+    const std::vector<Verdict> found = verdicts(subject);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i])) << i;
+  }
+  EXPECT_FALSE(fs::exists(file));
+}
+
+// A process that starts later runs the code that was read, and not what lies there then.
+TEST_F(Hostile, CodeThatIsReplacedOrWrittenIntoIsTheCodeThatWasRead) {
+  const auto text = [](const char* compare) {
+    return std::string(
+               "#include <stdlib.h>\nint intersects(const float a[9], const float b[9]) {\n"
+               "  if (a[0] > 0.9f) abort();\n  return a[0] ") +
+           compare + " b[0];\n}";
+  };
+  const fs::path other = built_from("replacing", text(">="));
+  for (const bool in_place : {true, false}) {
+    const fs::path file = built_from("replaced", text("<"));
+    ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
+    for (int times = 0; times < 2; ++times) {
+      const std::unique_ptr<ForeignProcesses> later = subject.anew();
+      const std::vector<Verdict> found = verdicts(times == 0 ? subject : *later);
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        EXPECT_EQ(found[i], is_bad(pairs[i]) ? Verdict::crashed : left_of(pairs[i])) << i;
+      if (in_place) {
+        std::ofstream(file, std::ios::binary) << text_of(other);
+      } else {
+        fs::copy_file(other, folder / "replaced.new", fs::copy_options::overwrite_existing);
+        fs::rename(folder / "replaced.new", file);
+      }
     }
   }
-  EXPECT_EQ(verdicts(subject), std::vector<Verdict>(pairs.size(), Verdict::crashed));
+}
+
+// Where the code's own folder is $ORIGIN.
+TEST_F(Hostile, LibrariesBesideTheCodeAreFound) {
+  fs::create_directories(folder / "beside");
+  std::ofstream(folder / "less.c") << "int less(float a, float b) { return a < b; }";
+  std::ofstream(folder / "uses.c") << "int less(float, float);\n"
+                                      "int intersects(const float a[9], const float b[9]) { return less(a[0], b[0]); }";
+  build("beside/libless.so", (folder / "less.c").string());
+  for (const std::string origin : {"$ORIGIN", "${ORIGIN}"}) {
+    const fs::path file = build("uses.so", (folder / "uses.c").string() + " -L" + (folder / "beside").string() +
+                                               " -lless -Wl,-rpath,'/none:" + origin + "/beside:/other'");
+    ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
+    const std::vector<Verdict> found = verdicts(subject);
+    for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
+  }
+}
+
+TEST_F(Hostile, AProgramWhoseFileChangesEndsTheRunWithItsName) {
+  const fs::path script = folder / "changes.sh";
+  const auto write = [&](const char* text) { std::ofstream(script) << text; };
+  write("while read l; do echo 1; done\n");
+  const std::string command = "exec sh " + script.string();
+  const CodeHash hash = hash_of_command(command);
+  Code code{"command", command, "", "f32", 5, 256};
+  code.files = hash.files;
+  ForeignProcesses subject(code, Scalar::f32);
+  const std::vector<Verdict> all(pairs.size(), Verdict::intersects);
+  EXPECT_EQ(verdicts(subject), all);
+  write("while read l; do echo 1; done\n");  // the same again
+  EXPECT_EQ(verdicts(subject), all);
+  write("while read l; do echo 0; done\n");
+  const std::unique_ptr<ForeignProcesses> later = subject.anew();
+  for (ForeignProcesses* of : {&subject, later.get()}) {
+    try {
+      verdicts(*of);
+      ADD_FAILURE() << "expected an error";
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find(script.string()), std::string::npos) << error.what();
+    }
+  }
+  fs::remove(script);
+  EXPECT_THROW(verdicts(subject), std::runtime_error);
+  write("while read l; do echo 1; done\n");
+  EXPECT_EQ(verdicts(subject), all);
 }
 
 TEST_F(Hostile, ProgramsThatFloodOrHangOrLeaveChildrenAreVerdicts) {
@@ -386,7 +461,41 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   expect_nothing_left();
 }
 
-// The compiler waits forever for a header or for data that is a pipe.
+// Foreign code may delay its supervisor, but not the guardian, which is outside of its namespace.
+TEST_F(Hostile, ASupervisorThatCannotEndIsEndedWithGraze) {
+  if (!has_namespaces()) GTEST_SKIP() << "by a process namespace alone";
+  for (const bool program : {false, true}) {
+    SCOPED_TRACE(program);
+    const pid_t asking = fork();
+    if (asking == 0) {
+      if (program) {
+        const Scratch scratch(folder / "never");
+        std::string said;
+        run_program({{"sleep", "1000"}}, scratch.path(), said);
+      }
+      ForeignProcesses subject({"library", (folder / "libhostile.so").string(), "stops_itself", "f32", 3600},
+                               Scalar::f32);
+      verdicts(subject);
+      _exit(0);
+    }
+    std::vector<pid_t> supervisors;  // process 1 of its namespace
+    while (supervisors.empty()) {
+      usleep(300'000);  // until it waits
+      for (const pid_t process : left_over()) {
+        const std::string status = text_of("/proc/" + std::to_string(process) + "/status");
+        const std::size_t numbers = status.find("NSpid:");
+        const std::string line = status.substr(numbers, status.find('\n', numbers) - numbers);
+        if (numbers != std::string::npos && line.ends_with("\t1")) supervisors.push_back(process);
+      }
+    }
+    for (const pid_t supervisor : supervisors) EXPECT_EQ(kill(supervisor, SIGSTOP), 0);
+    EXPECT_EQ(kill(asking, SIGKILL), 0);
+    EXPECT_EQ(waitpid(asking, nullptr, 0), asking);
+    expect_nothing_left();
+  }
+}
+
+// A compiler waits for ever for a header that is a pipe, and as for data that is one.
 TEST_F(Hostile, WhatBuildsASubjectEndsWithARequestToStopAndWithGraze) {
   for (const char* name : {"pipe.h", "pipe.bin"}) ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
   std::ofstream(folder / "header.c") << "#include \"pipe.h\"\nint intersects(const float*, const float*);";
@@ -427,16 +536,35 @@ TEST_F(Hostile, WhatBuildsASubjectEndsWithARequestToStopAndWithGraze) {
   }
 }
 
-TEST_F(Hostile, FilesThatAKilledBuildLeftAreRemovedADayLater) {
+TEST_F(Hostile, FilesThatAKilledBuildLeftAreRemovedByTheNext) {
   const fs::path cache = folder / "old";
-  for (const char* name : {"unfinished-old", "unfinished-new", "kept"}) {
-    fs::create_directories(cache / name / "part");
-    const bool is_new = name == std::string_view("unfinished-new");
-    fs::last_write_time(cache / name, fs::file_time_type::clock::now() - std::chrono::hours(is_new ? 23 : 25));
+  fs::create_directories(cache / "kept/part");
+  const auto unfinished = [&] {
+    std::set<fs::path> found;
+    for (const auto& entry : fs::directory_iterator(cache)) {
+      if (entry.path().filename() != "kept") found.insert(entry.path());
+    }
+    return found;
+  };
+  const pid_t owner = fork();
+  if (owner == 0) {
+    const Scratch scratch(cache);
+    fs::create_directories(scratch.path() / "part");
+    for (;;) pause();
   }
+  while (unfinished().empty() || !fs::exists(*unfinished().begin() / "part")) usleep(1000);
+  const fs::path of_owner = *unfinished().begin();
+  fs::last_write_time(of_owner, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  {
+    const Scratch scratch(cache);
+    EXPECT_EQ(unfinished(), (std::set{of_owner, scratch.path()}));
+  }
+  EXPECT_EQ(kill(owner, SIGKILL), 0);
+  EXPECT_EQ(waitpid(owner, nullptr, 0), owner);
+  EXPECT_EQ(unfinished(), std::set{of_owner});
   const Scratch scratch(cache);
-  EXPECT_FALSE(fs::exists(cache / "unfinished-old"));
-  EXPECT_TRUE(fs::exists(cache / "unfinished-new") && fs::exists(cache / "kept") && fs::exists(scratch.path()));
+  EXPECT_EQ(unfinished(), std::set{scratch.path()});
+  EXPECT_TRUE(fs::exists(cache / "kept/part"));
 }
 
 TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
@@ -451,6 +579,8 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run("kill -9 $$", 600), 128 + SIGKILL);
     EXPECT_EQ(run("echo $TMPDIR", 600), 0);
     EXPECT_EQ(said, scratch.path().string() + '\n');
+    EXPECT_EQ(run("echo 4000000000000 2>&1 > /proc/$PPID/timerslack_ns || echo refused", 600), 0);
+    EXPECT_TRUE(said.ends_with("refused\n")) << said;
     EXPECT_EQ(run_program({{"no-such-program"}, 600, namespaces}, scratch.path(), said), 127);
     EXPECT_EQ(said, "No such file or directory\n");
     EXPECT_THROW(run("setsid sleep 1000 & sleep 1001", 0.2), std::runtime_error);

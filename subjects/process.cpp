@@ -77,6 +77,8 @@ class SharedPairs {
 };
 
 std::vector<std::string> arguments_of(const Code& code, bool describe) {
+  std::error_code none;  // only a folder that is there can be protected
+  std::filesystem::create_directories(cache_folder(), none);
   return {code.kind,
           code.what,
           code.name,
@@ -88,13 +90,25 @@ std::vector<std::string> arguments_of(const Code& code, bool describe) {
           cache_folder()};
 }
 
+// The code with the content of its file.   Throws: std::runtime_error where it cannot be read.
+Code loadable(Code code) {
+  if (code.kind != "command" && !code.content)
+    code.content =
+        std::make_shared<SealedCopy>(std::filesystem::path(code.what).filename().string(), code_in(code.what));
+  return code;
+}
+
+std::vector<int> shared_with(const Code& code, int pairs) {
+  return code.content ? std::vector{pairs, code.content->fd()} : std::vector{pairs};
+}
+
 }  // namespace
 
 class HostProcess {
  public:
   HostProcess(const Code& code, bool describe)
       : supervisor_(code.kind == "device" ? "graze-subject-device" : "graze-subject-host", arguments_of(code, describe),
-                    pairs_.fd(), -1) {
+                    shared_with(code, pairs_.fd()), -1) {
     char bytes[sizeof(Loaded)] = {};
     std::string why;
     if (supervisor_.receive(bytes, sizeof bytes) != sizeof bytes || !read_loaded(bytes, loaded_)) {
@@ -139,13 +153,13 @@ class HostProcess {
 
 Description describe(const Code& code) {
   const StopSignals stops;
-  const HostProcess process(code, true);
+  const HostProcess process(loadable(code), true);
   const Loaded& c = process.loaded();
   return {c.has_f32 != 0,    c.has_f64 != 0,          c.outside,     fit(c.version), fit(c.source),
           fit(c.convention), c.describes_itself != 0, fit(c.symbol), c.text};
 }
 
-ForeignProcesses::ForeignProcesses(Code code, Scalar scalar) : code_(std::move(code)), scalar_(scalar) {
+ForeignProcesses::ForeignProcesses(Code code, Scalar scalar) : code_(loadable(std::move(code))), scalar_(scalar) {
   code_.scalar = name(scalar);
 }
 
@@ -212,6 +226,8 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
       failures_[std::string(reinterpret_cast<const char*>(&pairs[at]), sizeof(Pair))] = verdict;
     }
   }
+  // Its processes started after the files were read, and answered before now: they ran what was read.
+  expect_unchanged(code_.files);
   const std::lock_guard lock(mutex_);
   nanoseconds_ = nanoseconds;
   if (process) idle_.push_back(std::move(process));

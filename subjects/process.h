@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "core/lanes/lanes.h"
+#include "subjects/code_hash.h"
+#include "subjects/sealed_copy.h"
 
 namespace graze::subjects {
 
@@ -23,6 +25,8 @@ struct Code {
   double timeout = 1;           // seconds for a pair, or for a block of a subject that takes blocks
   std::uint64_t memory = 1024;  // MiB, for all its processes together
   bool namespaces = true;       // run in a process namespace if the system allows one
+  std::shared_ptr<const SealedCopy> content = nullptr;  // of the file: what is loaded; taken from it where empty
+  std::vector<HashedFile> files = {};                   // of a command: it ends where one of them changes
 };
 
 // A subject's description of itself.
@@ -45,7 +49,8 @@ class ForeignProcesses : public ForeignCode {
  public:
   ForeignProcesses(Code code, Scalar scalar);
   ~ForeignProcesses() override;
-  // Throws: Stopped, within 0.1 s of the request, whatever the code does.
+  // Throws: Stopped, within 0.1 s of the request, whatever the code does; std::runtime_error if a command's files have
+  // changed.
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override;
   Verdict failure(const Pair& pair) override;
 

@@ -90,10 +90,17 @@ std::string first_error(const std::string& text) {
   return first.empty() ? "the compiler failed and said nothing" : first;
 }
 
-bool links_libraries(const std::vector<std::string>& flags) {
-  return std::any_of(flags.begin(), flags.end(), [](const std::string& flag) {
-    return flag.starts_with("-l") || flag.starts_with("-Wl,") || flag.starts_with("-Xlinker") || flag.starts_with("@");
-  });
+// Flags that stand in the compiler's name, as in CXX='c++ -Og', and variables that name its parts.
+std::vector<std::string> further_flags(const std::string& compiler) {
+  std::vector<std::string> flags;
+  std::istringstream words(compiler);
+  for (std::string word; words >> word;) {
+    if (word.starts_with('-')) flags.push_back(word);
+  }
+  for (const char* name : {"COMPILER_PATH", "GCC_EXEC_PREFIX"}) {
+    if (const char* value = std::getenv(name); value && *value) flags.push_back(fmt::format("{}={}", name, value));
+  }
+  return flags;
 }
 
 // Whether the preprocessed source may contain assembler code that includes files, judging by its text.
@@ -208,21 +215,26 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   write(whole, defines + wrapped);
   command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(whole.string()));
   const std::string preprocessed = output_of(command + " -E -P 2>/dev/null", scratch, status);
-  const std::uint64_t of_flags = hash_of_flags(flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
-  const std::uint64_t hash = fnv1a(preprocessed, of_flags);
-  // The files that assembler code includes are known only after a build, so their list is kept.
+  std::vector<std::string> all_flags = further_flags(compiler);
+  all_flags.insert(all_flags.end(), flags.begin(), flags.end());
+  const CodeHash of_flags = hash_of_flags(all_flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
+  const std::uint64_t hash = fnv1a(preprocessed, of_flags.hash);
+  // Which files its assembler code includes is known once it was built: their list is kept.
   const fs::path kept_list = folder / fmt::format("{:016x}.files", hash);
   const auto named = [&](std::uint64_t of_all) { return folder / fmt::format("{:016x}.so", of_all); };
   Built built;
-  if (links_libraries(flags)) {
-    built.not_covered = "the libraries that its flags link";
+  if (!of_flags.not_covered.empty()) {
+    built.not_covered = of_flags.not_covered;
   } else if (may_include_by_assembler(preprocessed) && !assembler_lists_files(compiler, flags, scratch)) {
     built.not_covered = "the files that its assembler code includes";
   } else if (status == 0) {
     try {
       built.file = named(hash_of_listed(kept_content(kept_list).value_or(""), hash));
-      if (kept_content(built.file)) return built;
-    } catch (const std::runtime_error&) {  // a file of the list no longer exists
+      if (const auto kept = kept_content(built.file)) {
+        built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);
+        return built;
+      }
+    } catch (const std::runtime_error&) {  // a file of the list is not there any more
     }
   }
   const bool lists = assembler_lists_files(compiler, flags, scratch);
@@ -245,6 +257,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
     write(list, files);
     keep_file(list, kept_list);
   }
+  built.content = std::make_shared<SealedCopy>(built.file.filename().string(), code_in(object));
   keep_file(object, built.file);
   return built;
 }

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <deque>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "core/lanes/lanes.h"
+#include "core/programs/kept_file.h"
 #include "core/stop.h"
 #include "core/text.h"
 #include "cuda/subject/cuda_subject.h"
@@ -35,7 +37,8 @@ struct Entry {
     std::unique_ptr<ForeignProcesses> processes;
   };
   std::vector<Running> running;
-  std::vector<cuda::CudaBuild> builds;  // for CUDA code: the build of each lane
+  std::vector<cuda::CudaBuild> builds;                   // of CUDA code: of each lane
+  std::vector<std::shared_ptr<const SealedCopy>> twins;  // of each of these builds; empty where it has none
 };
 
 std::deque<Entry>& entries() {
@@ -75,8 +78,10 @@ Opened parsed(const Wanted& wanted) {
   result.file = what.substr(0, end);
   if (end < what.size()) result.function = what.substr(end + 1);
   result.kind = kind_of(what.substr(0, end));
-  result.code = hash_of_library(result.file);  // for a source: until it is built
+  const std::string bytes = code_in(result.file);
+  result.code = {fnv1a(bytes), "the libraries that it loads"};  // of a source, until it is built
   result.hash = result.code.hash;
+  if (result.kind == "library") result.content = std::make_shared<SealedCopy>(result.file.filename().string(), bytes);
   return result;
 }
 
@@ -167,7 +172,15 @@ void expect_code(const Opened& subject, const std::string& recorded) {
         subject.wanted.what, found, recorded, subject.wanted.name));
 }
 
-// Runs the build on the device if there is one, else on its twin. Without both, the lane only reports the reason.
+// Throws: std::runtime_error where the file is not as it was kept.
+std::shared_ptr<const SealedCopy> kept_copy(const fs::path& file) {
+  const std::optional<std::string> bytes = kept_content(file);
+  if (!bytes)
+    throw std::runtime_error(fmt::format("{} changed after it was built; run the command again", file.string()));
+  return std::make_shared<SealedCopy>(file.filename().string(), *bytes);
+}
+
+// The device's build where there is a device, else its twin. A build with neither is a lane that says why.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   const fs::path cache = cache_folder();
@@ -175,10 +188,14 @@ void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   for (cuda::CudaBuild& build :
        cuda::build_cuda_subject(o.file, o.function.empty() ? "intersects" : o.function, o.wanted.flags, cache)) {
     Code code{"library", build.twin.string(), "", std::string(name(build.scalar)), o.wanted.timeout, o.wanted.memory};
+    const auto& twin = entry.twins.emplace_back(build.twin.empty() ? nullptr : kept_copy(build.twin));
     if (on_device) {
       code.kind = "device";
       code.what = (cache / fmt::format("{:016x}.ptx", fnv1a(build.ptx))).string();
       write_atomically(code.what, build.ptx);
+      code.content = std::make_shared<SealedCopy>(fs::path(code.what).filename().string(), build.ptx);
+    } else {
+      code.content = twin;
     }
     if (code.what.empty()) {
       made.push_back({"", &entry.info, build.scalar, build.variant, "", {}, -1, nullptr, false, false, true, 0, ""});
@@ -194,9 +211,10 @@ void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   expect_code(entry.opened, recorded);
   describe_info(entry, {});
   add_lanes(std::move(made));
-  for (const cuda::CudaBuild& build : entry.builds) {
-    if (build.twin.empty()) continue;
-    cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, build))), build.twin, o.wanted.timeout);
+  for (std::size_t i = 0; i < entry.builds.size(); ++i) {
+    if (!entry.twins[i]) continue;
+    cuda::add_foreign_twin(*find_lane(id_of(lane_name(o.wanted.name, entry.builds[i]))), entry.twins[i]->file(),
+                           o.wanted.timeout);
   }
 }
 
@@ -236,7 +254,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
       throw UsageError(
           fmt::format("--subject {0}: a published algorithm has the name {0}; choose another", wanted.name));
   }
-  entries().push_back({wish, "", "", "", "", {}, {}, {}});
+  entries().push_back({wish, "", "", "", "", {}, {}, {}, {}});
   Entry& entry = entries().back();
   try {
     Code code{wish.kind == "command" ? "command" : "library",
@@ -245,6 +263,8 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
               "any",
               wanted.timeout,
               wanted.memory};
+    code.content = wish.content;
+    code.files = wish.code.files;
     const std::size_t slash = wish.function.find('/');
     if (wish.kind == "library" && slash != std::string::npos) {
       code.name = wish.function.substr(0, slash);
@@ -265,6 +285,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
         built_files.push_back(
             build_source(wish.file, wish.function.empty() ? "intersects" : wish.function, row, wanted.flags));
         built.what = built_files.back().file;
+        built.content = built_files.back().content;
         builds.emplace_back(row.variant, std::move(built));
       }
     } else {

@@ -50,10 +50,11 @@ struct Opened {
   Wanted wanted;
   std::string kind;  // "library", "source", "cuda", "command"
   std::filesystem::path file;
-  std::string function;     // empty when none is named
-  std::uint64_t hash = 0;   // of the file or the command
-  CodeHash code;            // of everything that is compiled or run
-  Description description;  // of the first build
+  std::string function;                       // empty: none named
+  std::uint64_t hash = 0;                     // of the file, or of the command
+  CodeHash code;                              // of all that is compiled or run
+  std::shared_ptr<const SealedCopy> content;  // of a library: what the hash is of
+  Description description;                    // of its first build
 };
 const Opened* opened(std::string_view subject);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "subjects/subjects.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -507,7 +508,18 @@ TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
                               .c_str()),
               0);
     std::ofstream(data) << (less ? 'l' : 'g');
+    fs::remove(folder / "as");
+    write("as", std::string("#!/bin/sh\nexec /usr/bin/as --defsym LESS=") + (less ? '1' : '0') + " \"$@\"\n");
+    fs::permissions(folder / "as", fs::perms::owner_all);
   };
+  const fs::path specs = write("specs", "*lib:\n+ " + (folder / "libhelper.a").string() + "\n"),
+                 script = write("script.o", "INPUT(" + object.string() + ")");
+  const fs::path assembles = write("assembles.c", R"(int intersects(const float a[9], const float b[9]) {
+  int less;
+  __asm__("movl $LESS, %0" : "=r"(less));
+  return less ? a[0] < b[0] : a[0] >= b[0];
+}
+)");
   const fs::path calls = write("calls.c", R"(int helper(float, float);
 int intersects(const float a[9], const float b[9]) { return helper(a[0], b[0]); }
 )");
@@ -533,8 +545,12 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
   std::vector<Case> cases{Case{"object", calls, {object.string()}, true},
                           Case{"for_linker", calls, {"-Wl," + object.string()}, false},
                           Case{"by_name", calls, {"-L" + folder.string(), "-Wl,-u,helper", "-lhelper"}, false},
-                          Case{"incbin", reads(0), {}, lists}, Case{"incbin_when_linked", reads(0), {"-flto"}, false}};
-  if (lists) {  // if the assembler does not list the files it reads, only the plain spelling is found
+                          Case{"specs", calls, {"-specs=" + specs.string()}, false},
+                          Case{"script", calls, {script.string()}, false},
+                          Case{"tools", assembles, {"-B" + folder.string()}, false},
+                          Case{"incbin", reads(0), {}, lists},
+                          Case{"incbin_when_linked", reads(0), {"-flto"}, false}};
+  if (lists) {  // by an assembler that does not list what it reads, only the plain spelling is found
     cases.push_back({"incbin_in_parts", reads(1), {}, true});
     cases.push_back({"incbin_in_numbers", reads(2), {}, true});
   }
@@ -556,6 +572,39 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
       EXPECT_NE(rows[0]["hash"], rows[1]["hash"]);
     }
   }
+}
+
+TEST_F(Subjects, FlagsThatMayBringInAnythingAreNotCovered) {
+  const auto not_covered = [](const std::vector<std::string>& flags) { return hash_of_flags(flags, 0).not_covered; };
+  EXPECT_EQ(not_covered({"-O3", "-Iinclude", "-I", "include", "-DX=/a/b", "-isystem", "include", "-include", "a.h",
+                         "-march=native", "-Wall", "-Wno-error=unused", "-std=c++23", "-g", "-fopenmp", "-pthread"}),
+            "");
+  for (const char* flag : {"-specs=x", "-Bdir", "-B", "dir", "no-such.o", "-L.", "-T", "-fplugin=x.so", "-Xassembler",
+                           "-Wa,-Iinclude", "--sysroot=/x", "-include-pch", "-fprofile-use"})
+    EXPECT_NE(not_covered({"-O2", flag}), "") << flag;
+  EXPECT_EQ(not_covered({"-lm", "-B/x", "-Wl,-s"}), "the libraries that its flags link, what -B/x brings in");
+  for (const auto& [how, covered] : {std::pair("rc", true), std::pair("rcT", false)}) {  // thin: of files' names
+    const fs::path archive = folder / (std::string("lib") + how + ".a");
+    ASSERT_EQ(std::system(fmt::format("cd {} && echo 'int x;' > x.c && cc -c x.c && ar {} {} x.o", folder.string(), how,
+                                      archive.string())
+                              .c_str()),
+              0);
+    EXPECT_EQ(not_covered({archive}).empty(), covered) << how;
+  }
+  // Flags in the compiler's name, and the variables that say where its parts are.
+  const fs::path source =
+      write("by_flags.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  const auto build = [&] { return build_source(source, "intersects", kVariants[0], {}); };
+  const Built plain = build();
+  EXPECT_EQ(plain.not_covered, "");
+  setenv("CC", "cc -DX=1 -O0", 1);
+  EXPECT_NE(build().file, plain.file);
+  setenv("CC", "cc", 1);
+  EXPECT_EQ(build().file, plain.file);
+  unsetenv("CC");
+  setenv("COMPILER_PATH", folder.c_str(), 1);
+  EXPECT_EQ(build().not_covered, "what COMPILER_PATH=" + folder.string() + " brings in");
+  unsetenv("COMPILER_PATH");
 }
 
 TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
@@ -585,12 +634,29 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
   }
 }
 
-// Files from shell expansions are unknown, and `not_covered` says so.
-TEST_F(Subjects, ACommandThatAShellExpandsIsNotCovered) {
-  for (const std::string command : {"python3 $PWD/s.py", "python3 s.p?", "python3 *.py", "python3 ~+/s.py",
-                                    "python3 $(cat list)", "python3 `cat list`", "python3 [s].py", "python3 {s,}.py"})
-    EXPECT_TRUE(hash_of_command(command).not_covered.starts_with("the files that the shell puts in")) << command;
-  EXPECT_EQ(hash_of_command("python3 s.py").not_covered, "what its files load");
+// Only of a program and the file that is its first argument is it known that they are what runs.
+TEST_F(Subjects, ACommandWhoseCodeIsNotPlainIsNotCovered) {
+  const fs::path plain = write("plain.py", "pass"), program = write("plain", "pass");
+  const std::string own = program.string();
+  for (const std::string command :
+       {"python3 $PWD/s.py", "python3 s.p?", "python3 *.py", "python3 ~+/s.py", "python3 $(cat list)",
+        "python3 `cat list`", "python3 [s].py", "python3 {s,}.py", "cd sub && python3 m.py", "cd sub; exec ./m.py",
+        "cat | python3 m.py", "PATH=sub mtool", "eval python3 m.py", "no-such-program m.py", "(python3 m.py)", ""})
+    EXPECT_TRUE(hash_of_command(command).not_covered.starts_with("the code that it runs, because only the shell"))
+        << command;
+  for (const std::string& command :
+       std::vector<std::string>{"env -C sub python3 m.py", "python3 -m m", "python3 -um.py", "python3 m.py",
+                                "python3 " + folder.string(), "X=1 python3 -m m", own + " --fast"}) {
+    const std::string expected = "the code that it runs, unless that is '" +
+                                 std::string(command.starts_with("env") ? "env"
+                                             : command.starts_with(own) ? own
+                                                                        : "python3") +
+                                 "' itself";
+    EXPECT_TRUE(hash_of_command(command).not_covered.starts_with(expected)) << command;
+  }
+  for (const std::string& command : std::vector<std::string>{
+           "python3 " + plain.string(), "exec python3 '" + plain.string() + "' more", own, "X=1 " + own, "python3"})
+    EXPECT_EQ(hash_of_command(command).not_covered, "what its files load") << command;
   const fs::path script = write("named.py", "one");
   const std::string command = "python3 " + script.string() + " $ARGUMENT";
   const std::uint64_t one = hash_of_command(command).hash;
@@ -617,6 +683,19 @@ TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
     EXPECT_NE(hash(within), of_one) << within;
     write("s.py", "one");
     EXPECT_EQ(hash(within), of_one) << within;
+  }
+  const std::string log = write("log.txt", "one").string();
+  for (const std::string& to : {"2> " + log, "2>" + log, ">>'" + log + "'", "2>&1 >" + log}) {
+    const std::uint64_t of_one = hash("sh " + script + ' ' + to);
+    write("log.txt", "two");
+    EXPECT_EQ(hash("sh " + script + ' ' + to), of_one) << to;
+    write("log.txt", "one");
+  }
+  for (const std::string& reads : {"sh " + script + " 2>&1 | cat " + log, "sh " + script + " 3<>" + log}) {
+    const std::uint64_t of_one = hash(reads);
+    write("log.txt", "two");
+    EXPECT_NE(hash(reads), of_one) << reads;
+    write("log.txt", "one");
   }
   write("program", "one");
   const std::string path = std::getenv("PATH");

@@ -224,12 +224,14 @@ class Supervisor {
 
   [[noreturn]] void become_loader(int talk) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    const int from[] = {fcntl(kSupervisorPairsFd, F_DUPFD, 16), fcntl(words_fd_, F_DUPFD, 16),
-                        fcntl(talk, F_DUPFD, 16)};
-    const int to[] = {kPairsFd, kWordsFd, kTalkFd};
-    for (int i = 0; i < 3; ++i) dup2(from[i], to[i]);
-    close_range(kTalkFd + 1, ~0u, 0);
-    if (limits_.bytes > 0) {  // limits apply to foreign code, but not to a device's driver
+    const int given[] = {kSupervisorPairsFd, words_fd_, talk, kSupervisorCodeFd};
+    const int to[] = {kPairsFd, kWordsFd, kTalkFd, kCodeFd};
+    const int count = limits_.program ? 3 : 4;
+    int from[4];
+    for (int i = 0; i < count; ++i) from[i] = fcntl(given[i], F_DUPFD, 16);
+    for (int i = 0; i < count; ++i) dup2(from[i], to[i]);
+    close_range(static_cast<unsigned>(to[count - 1]) + 1, ~0u, 0);
+    if (limits_.bytes > 0) {  // foreign code, and not a device's driver
       drop_rights();
       forbid_calls();
     }
@@ -361,6 +363,7 @@ int supervise_program(double seconds, const std::string& scratch, char* const* w
   if (program == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != self) _exit(0);
+    drop_rights();
     execvp(words[0], words);
     fmt::print(stderr, "{}\n", std::strerror(errno));
     _exit(127);

@@ -2,6 +2,7 @@
 #include "core/programs/run_program.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -20,23 +21,46 @@ namespace graze {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+int open_folder(const fs::path& folder) {
+  return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+}
+
+void remove_if_left(const fs::directory_entry& folder) {
+  std::error_code none;
+  const int lock = open_folder(folder.path());
+  const bool is_locked = lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0;
+  const bool has_locks = is_locked || errno == EWOULDBLOCK;
+  const auto written = folder.last_write_time(none);
+  const bool is_old = !none && fs::file_time_type::clock::now() - written > std::chrono::hours(24);
+  if (lock >= 0 && (is_locked || (!has_locks && is_old))) fs::remove_all(folder.path(), none);
+  if (lock >= 0) close(lock);
+}
+
+}  // namespace
+
 Scratch::Scratch(const fs::path& within) {
   fs::create_directories(within);
   std::error_code none;
   for (const fs::directory_entry& entry : fs::directory_iterator(within, none)) {
-    const bool is_ours = entry.path().filename().string().starts_with("unfinished-");
-    const auto written = entry.last_write_time(none);
-    if (is_ours && !none && fs::file_time_type::clock::now() - written > std::chrono::hours(24))
-      fs::remove_all(entry.path(), none);
+    if (entry.path().filename().string().starts_with("unfinished-")) remove_if_left(entry);
   }
-  std::string name = (within / "unfinished-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error(cannot("make the folder", name, errno));
-  path_ = name;
+  // Another process may take a folder for one that was left, until it is locked.
+  do {
+    if (lock_ >= 0) close(lock_);
+    std::string name = (within / "unfinished-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw std::runtime_error(cannot("make the folder", name, errno));
+    path_ = name;
+    lock_ = open_folder(path_);
+    if (lock_ >= 0) flock(lock_, LOCK_EX);
+  } while (!fs::exists(path_, none));
 }
 
 Scratch::~Scratch() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+  if (lock_ >= 0) close(lock_);
 }
 
 int run_program(const Program& program, const fs::path& scratch, std::string& output) {
@@ -46,7 +70,7 @@ int run_program(const Program& program, const fs::path& scratch, std::string& ou
   if (to < 0) throw std::runtime_error(cannot("write", log, errno));
   std::vector<std::string> arguments{"--run", std::to_string(program.seconds), scratch, program.namespaces ? "1" : "0"};
   arguments.insert(arguments.end(), program.words.begin(), program.words.end());
-  SupervisorProcess supervisor("graze-subject-host", arguments, -1, to);
+  SupervisorProcess supervisor("graze-subject-host", arguments, {}, to);
   close(to);
   std::string text;  // for a message
   for (const std::string& word : program.words) text += (text.empty() ? "" : " ") + word;

@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// A new folder for temporary files, removed with its owner. The constructor also removes folders that are a day old:
-// their owners were killed while they ran no program.
+// A new folder for files on their way, removed with its owner. Removes those whose owner was killed: nobody holds their
+// lock. Where the file system has no locks, those of a day ago.
 class Scratch {
  public:
   explicit Scratch(const std::filesystem::path& within);
@@ -21,6 +21,7 @@ class Scratch {
 
  private:
   std::filesystem::path path_;
+  int lock_ = -1;
 };
 
 struct Program {

@@ -28,8 +28,8 @@ constexpr int kMostSilentLooks = 10'000 / kLookEvery;
 
 }  // namespace
 
-SupervisorProcess::SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments, int shared,
-                                     int output) {
+SupervisorProcess::SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
+                                     const std::vector<int>& shared, int output) {
   int sockets[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) != 0)
     throw std::system_error(errno, std::generic_category(), "cannot make a socket for " + program);
@@ -37,18 +37,19 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   // Moves them above the descriptors that the supervisor gets, so that no dup2 overwrites another.
-  int from[] = {sockets[1], shared, output};
+  std::vector<int> from{output, sockets[1]};
+  from.insert(from.end(), shared.begin(), shared.end());
   for (int& fd : from) fd = fd < 0 ? -1 : fcntl(fd, F_DUPFD_CLOEXEC, 16);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
     if (output < 0) {
       posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
     } else {
-      posix_spawn_file_actions_adddup2(&actions, from[2], stream);
+      posix_spawn_file_actions_adddup2(&actions, from[0], stream);
     }
   }
-  posix_spawn_file_actions_adddup2(&actions, from[0], 3);
-  if (shared >= 0) posix_spawn_file_actions_adddup2(&actions, from[1], 4);
+  for (std::size_t i = 1; i < from.size(); ++i)
+    posix_spawn_file_actions_adddup2(&actions, from[i], static_cast<int>(i) + 2);
   // A session of its own: Ctrl-C and the terminal concern only the calling process.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);

@@ -15,11 +15,12 @@ inline constexpr char kAlive = 1;
 
 class SupervisorProcess {
  public:
-  // program: a file name in the folder of the running program. It gets its end of a socket as descriptor 3, and
-  // `shared`, if given, as descriptor 4. It writes to `output`, or to /dev/null if -1.   Throws: std::system_error.
-  SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments, int shared, int output);
-  // Closes the socket, so that the supervisor ends all that it started. A supervisor that does not end within 6 s is
-  // killed. After a request to stop, graze leaves it to end by itself after 1 s.
+  // program: its file's name, in the folder of the running program. It has its end of a socket as descriptor 3, and
+  // those of `shared` from 4 on. It writes to `output`, or to /dev/null for -1.   Throws: std::system_error.
+  SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments,
+                    const std::vector<int>& shared, int output);
+  // The supervisor ends all that it started when the socket closes. One that does not end within 6 s is killed; after a
+  // request to stop, it is left to end by itself after 1 s.
   ~SupervisorProcess();
   SupervisorProcess(const SupervisorProcess&) = delete;
   SupervisorProcess& operator=(const SupervisorProcess&) = delete;

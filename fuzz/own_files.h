@@ -14,11 +14,15 @@ namespace graze::fuzz {
 // std::runtime_error for a file that cannot be read.
 bool may_replace(const std::filesystem::path& file, const std::string& text);
 
+// Why a file may not be replaced, and what to do.
+inline constexpr const char* kForeign =
+    "it does not begin as the file that graze writes there; move it away, choose another name, or add --force";
+
 // --force, for all of this process: foreign files may be replaced.
 inline bool may_replace_foreign = false;
 
-// Throws: UsageError for a file of a campaign's folder, or a file behind a link, that does not begin as this text does:
-// Graze did not write it. Damaged further on, it may be replaced.
+// Throws: UsageError for a file of a campaign's folder or of its cases/, or a file behind a link, that does not begin
+// as this text does: Graze did not write it. Damaged further on, it may be replaced.
 void expect_own(const std::filesystem::path& file, const std::string& text);
 
 // Whether results may go into the folder: it is missing, has nothing but empty folders and what a killed write left, or

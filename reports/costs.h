@@ -30,7 +30,7 @@ struct Costs {
 std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts);
 
 // Throws: std::runtime_error for costs that cannot be; Json::exception for another shape.
-std::optional<Costs> costs_of(const nlohmann::ordered_json& timings, const CampaignCounts& counts);
+std::optional<Costs> costs_of(const nlohmann::ordered_json& runs, const CampaignCounts& counts);
 
 // What costs.json holds: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],
 // "answer"}, as reports/web/src/report.ts describes it; group null: all strata together.

@@ -127,18 +127,23 @@ TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {
     return Json{{"pairs", pairs}, {"low", ns - 1}, {"middle", ns}, {"high", ns + 1}};
   };
   const Json lanes = {{"exact/f32/cpu", {{"uniform", cost(100, 40)}, {"degenerate", cost(300, 80)}}}};
-  const Json timings = {{"runs",
-                         {{{"machine", "old"}, {"costs", {{"passes", 9}, {"lanes", Json::object()}}}},
-                          {{"machine", "new"}, {"costs", {{"passes", 9}, {"lanes", lanes}}}},
-                          {{"machine", "untimed"}}}}};
-  const std::optional<Costs> costs = costs_of(timings, counts);
+  const Json runs = {{{"machine", "old"}, {"costs", {{"passes", 9}, {"lanes", Json::object()}}}},
+                     {{"machine", "new"}, {"costs", {{"passes", 9}, {"lanes", lanes}}}},
+                     {{"machine", "untimed"}}};
+  const std::optional<Costs> costs = costs_of(runs, counts);
   ASSERT_TRUE(costs);
   EXPECT_EQ(costs->machine, "new");
   EXPECT_EQ(costs->of(0, {0, 1})->middle, 70);  // (100 · 40 + 300 · 80) / 400
   EXPECT_EQ(costs->of(0, {0})->high, 41);
   EXPECT_FALSE(costs->of(1, {0}));
-  EXPECT_FALSE(costs_of({{"runs", {{{"machine", "untimed"}}}}}, counts));
-  EXPECT_FALSE(costs_of(nullptr, counts));
+  // Not of more pairs than the stratum has.
+  Json other = runs;
+  other[1]["costs"]["lanes"]["exact/f32/cpu"]["uniform"]["pairs"] = counts.stratum("uniform")->pairs;
+  EXPECT_TRUE(costs_of(other, counts));
+  other[1]["costs"]["lanes"]["exact/f32/cpu"]["uniform"]["pairs"] = counts.stratum("uniform")->pairs + 1;
+  EXPECT_THROW(costs_of(other, counts), std::runtime_error);
+  EXPECT_FALSE(costs_of(Json::array({{{"machine", "untimed"}}}), counts));
+  EXPECT_FALSE(costs_of(Json::array(), counts));
 }
 
 }  // namespace

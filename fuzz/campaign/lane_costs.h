@@ -3,6 +3,8 @@
 // the machine and on the moment.
 #pragma once
 
+#include <map>
+
 #include "fuzz/campaign/campaign.h"
 
 namespace graze::fuzz {
@@ -16,9 +18,13 @@ inline constexpr int kPassesTimed = 9;
 // Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, of the passes the quartiles.
 Json measure_costs(const Campaign& campaign);
 
-// Of costs that a file holds: lanes and sources are those of a campaign of so many pairs, and times can be.
+// Of costs that a file holds: lanes and sources (id, pairs) are those of the campaign, and times can be.
 // Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
-                           const std::vector<std::string>& sources, std::uint64_t pairs);
+                           const std::map<std::string, std::uint64_t>& sources);
+
+// The same of one of the runs in timings.json, with its costs if it has any. pairs: of the whole campaign.
+void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
+                         const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs);
 
 }  // namespace graze::fuzz

@@ -46,6 +46,14 @@ corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Js
 // leave of a campaign or a shard.
 bool may_hold_campaign(const std::filesystem::path& folder);
 
+// The runs in timings.json, each an object; none where there is no such file.
+// Throws: FormatError for a damaged one.
+Json read_timings(const std::filesystem::path& directory);
+
+// Before work in a campaign's folder, so that its records do not end the work: timings.json can be read, and
+// status.json too; a damaged one is removed.   Throws: as read_timings and remove_damaged_status.
+void expect_usable_records(const std::filesystem::path& directory);
+
 // Adds a run to timings.json, the only file that depends on when, where and by which engine the campaign ran.
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle = {});
 

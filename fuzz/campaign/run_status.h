@@ -37,6 +37,10 @@ std::string file_hash(const std::filesystem::path& file);
 // Adds the hash of the directory's database, which no run uses any more, to its status; merge compares it.
 void seal(const std::filesystem::path& directory);
 
+// Removes a status that is damaged or counts what cannot be: by its name in a campaign's folder it is Graze's.
+// Throws: std::runtime_error for one that is no file, or lies behind a link.
+void remove_damaged_status(const std::filesystem::path& directory);
+
 // The directory's status; null where there is none.
 // Throws: std::runtime_error that names the file where it is damaged, or counts what cannot be.
 Json read_status(const std::filesystem::path& directory);

@@ -9,7 +9,8 @@
 namespace graze::analysis {
 namespace {
 
-// 70 pairs, so that the second word is partly used; lane 0 is right, lane 1 wrong on pairs 3 and 65, declines 66.
+// 70 pairs, so that the second word is only partly used. Lane 0 is right; lane 1 is wrong on pairs 3 and 65, and
+// declines 66.
 struct Example {
   Bits truth{0xf0, 0x2}, right{0xf0, 0x2}, wrong{0xf8, 0x0}, none{0, 0}, declines{0, 0x4};
   std::vector<Bucket> buckets = std::vector<Bucket>(70, make_bucket(1, 5));
@@ -52,7 +53,7 @@ TEST(Tally, SumsAreTheTallyOfTheUnion) {
   }
 }
 
-// Blocks of any length: words that are full, begun, or not there at all.
+// Blocks of different lengths, whose last words are full, partly used, or absent.
 TEST(Tally, CountsEveryPairOfABlockOfAnyLength) {
   for (const std::size_t count :
        {std::size_t{1}, std::size_t{63}, std::size_t{64}, std::size_t{65}, std::size_t{128}, std::size_t{130}}) {
@@ -68,7 +69,7 @@ TEST(Tally, CountsEveryPairOfABlockOfAnyLength) {
   }
 }
 
-// Both bits of foreign code say that it failed, one alone is its verdict.
+// For foreign code, both bits set mean that it failed; one bit alone is its verdict.
 TEST(Tally, FailuresOfForeignCodeAreCountedAsWhatTheyAre) {
   struct Code : ForeignCode {
     void decide(const Pair*, std::size_t, std::uint64_t*, std::uint64_t*) override {}
@@ -177,7 +178,7 @@ TEST(Tally, StoredCountsGoToTheirBucketAndLane) {
   EXPECT_EQ(sum.pairs(make_bucket(-1, 2)), 0u);
 }
 
-// Proper triangles that touch in a point, that are coplanar, share a vertex, or are degenerate: each by its own bit.
+// Proper triangles that touch in a point, are coplanar, share a vertex, or are degenerate: each has its own bit.
 TEST(Convention, LeavesOpenWhatItNames) {
   const Pair touching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};
   const Pair coplanar{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 5, 0}, {9, 5, 0}, {5, 9, 0}}};

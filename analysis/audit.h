@@ -1,23 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the cause that an explanation names is the cause: the verdict becomes right when it alone is taken away, and
-// stays wrong when all else is.
+// Checks whether the cause that an explanation names is the real cause. Without this cause alone the verdict must
+// become right; with this cause alone it must stay wrong.
 #pragma once
 
 #include "analysis/explain.h"
 
 namespace graze::analysis {
 
-// What is taken away, and what is left when all else is:
-//   logic        nothing can be; exact arithmetic
-//   contraction  the contractions named, all others staying; only these. Where they are not known: all; all without
-//                limits of the exponent
-//   fast math    the compiler's freedom; what is left cannot be run, for what was computed is not known
-//   overflow, underflow   that limit of the exponent, and both; exact arithmetic with that limit alone
-//   rounding     the wrong outcomes of the deciding comparisons; rounding to the scalar's mantissa, without contraction
-//                and limits of the exponent
-// Where comparisons are known but no few of them decide, no cause but logic and fast math stands up to it.
-// The lane's source is run in other arithmetic for it, a contracted one by the rule that gives the lane's own run.
-// Requires: an explanation's lane for this pair, whose truth this is; its `settled` is not read.
+// The audit runs the lane twice: once without the cause, and once with nothing but the cause.
+// cause         run without the cause                          run with the cause alone
+// logic         none: logic cannot be removed                  exact arithmetic
+// contraction   the named contractions are rounded, all        only the named contractions are fused; all
+//               others stay fused; all are rounded if the      contractions if the named ones are not known
+//               named ones are not known                       (then without exponent limits)
+// fast math     the same source, rounded as written            none: what the lane computed is not known
+// overflow,     without this exponent limit, and without       exact arithmetic with this limit alone
+// underflow     both limits
+// rounding      the wrong outcomes of the deciding             rounding to the scalar's mantissa, without
+//               comparisons are corrected                      contraction and without exponent limits
+// If comparisons are known but no small set of them decides, the audit confirms no cause except logic and fast math.
+// The audit runs the lane's source in other arithmetic. A contracted lane uses the contraction rule that reproduces the
+// lane's own run.
+// Requires: an explanation's lane for this pair, and the pair's truth. The function does not read `lane.settled`.
 Settled audit(const LaneExplanation& lane, const Pair& pair, Verdict truth);
 
 }  // namespace graze::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The deciding comparison and the cause, checked by taking them away; and false causes, which must not pass.
+// Checks deciding comparisons and causes by removing them. False causes must not pass.
 #include "analysis/audit.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ const std::vector<Wrong>& all_wrong() {
   return kAll;
 }
 
-// The harmless rounding at line 48 comes first; what decides is the NaN that an overflow left.
+// The rounding at line 48 comes first but is harmless. The comparison that decides has a NaN from an overflow.
 TEST(Deciding, IsNotTheFirstWrongComparison) {
   const Pair pair = strata::generate(1, strata::Stratum::exact_contact, 10);
   const Lane* lane = find_lane("interval_overlap/f32/cpu");
@@ -62,7 +62,7 @@ TEST(Deciding, IsNotTheFirstWrongComparison) {
   EXPECT_TRUE(first_wrong->line.ends_with("interval_overlap.h:48")) << first_wrong->line;
 }
 
-// With the deciding comparisons corrected the lane is right; with only the first ones it is not.
+// The lane is right if all deciding comparisons are corrected, and wrong if only the first ones are.
 TEST(Deciding, CorrectedTheLaneIsRight) {
   std::size_t single = 0, sets = 0, none = 0;
   for (const Wrong& wrong : all_wrong()) {
@@ -87,7 +87,7 @@ TEST(Deciding, CorrectedTheLaneIsRight) {
   EXPECT_LT(none, single / 100);
 }
 
-// What a run's comparisons are when those at these numbers are corrected, and its verdict.
+// A run with the comparisons at these indices corrected: its path and its verdict.
 struct Corrected {
   Path path;
   Verdict verdict;
@@ -103,8 +103,8 @@ Corrected corrected(const Wrong& wrong, const std::vector<std::size_t>& comparis
   return {path_of(run), run.verdict};
 }
 
-// Every set that is smaller, or as small and earlier, tried one by one; two of the four pairs need one comparison where
-// a correction of values told of two, one told of a later comparison than the first.
+// Tries every smaller set, and every earlier set of the same size. For two of the four pairs one comparison is enough,
+// where correcting values named two. For one pair, correcting values named a later comparison than the first.
 TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   std::vector<Wrong> some;
   for (std::size_t i = 0; i < all_wrong().size(); i += 7) some.push_back(all_wrong()[i]);
@@ -144,7 +144,8 @@ TEST(Deciding, IsTheSmallestSetAndOfEqualOnesTheFirst) {
   EXPECT_GT(earlier, 10);
 }
 
-// Of an overflow the value told is one that the overflow made; a value that rounding alone gives is not told as one.
+// If the cause is overflow or underflow, the reported value is one that it produced. A value that rounding alone gives
+// is not reported.
 TEST(Deciding, WhatIsToldOfARangeComesFromIt) {
   int told = 0;
   for (const Wrong& wrong : all_wrong()) {
@@ -179,13 +180,13 @@ TEST(Audit, MostCausesStandUpToIt) {
   EXPECT_EQ(count[Cause::logic][1], 0);
 }
 
-// A cause put in place of the true one does not pass.
+// A false cause in place of the true one does not pass.
 TEST(Audit, AFalseCauseDoesNotPass) {
   std::map<std::pair<Cause, Cause>, int> tried;
   for (const Wrong& wrong : all_wrong()) {
     if (wrong.lane.settled != Settled::yes) continue;
     for (const Cause other : {Cause::rounding, Cause::contraction, Cause::overflow, Cause::underflow, Cause::logic}) {
-      if (other == wrong.lane.cause || other == Cause::rounding) continue;  // a range's value, made exact, is right too
+      if (other == wrong.lane.cause || other == Cause::rounding) continue;  // exact values make ranges right, too
       LaneExplanation lied = wrong.lane;
       lied.cause = other;
       lied.contractions = {};
@@ -196,7 +197,7 @@ TEST(Audit, AFalseCauseDoesNotPass) {
   EXPECT_GE(tried.size(), 12u);
 }
 
-// Of a rounding, another comparison of the same run than the deciding one does not pass.
+// For a rounding, another comparison of the same run than the deciding one does not pass.
 TEST(Audit, AnotherComparisonDoesNotPass) {
   int tried = 0, passed = 0;
   for (const Wrong& wrong : all_wrong()) {

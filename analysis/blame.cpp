@@ -7,7 +7,7 @@
 namespace graze::analysis {
 namespace {
 
-// Sites, a bit for each, in program order.
+// A set of sites, one bit for each site in program order.
 struct Set {
   std::size_t sites;
   std::vector<std::uint64_t> bits = std::vector<std::uint64_t>(sites / 64 + 1);
@@ -27,7 +27,7 @@ Set others(Set set) {
   return set;
 }
 
-// A kernel of which any sites can be fused.
+// A kernel in which any set of sites can be fused.
 class Fusing {
  public:
   Fusing(const Lane& lane, const Pair& pair, const std::function<void()>& asked)
@@ -54,8 +54,8 @@ class Fusing {
   std::span<const cuda::ContractionSite> sites_;
 };
 
-// A set of one or two sites: the first that is both enough for the verdict, fused alone, and needed for it, all others
-// fused; or else the first smallest that is enough; nothing where none is.
+// Finds a set of one or two sites. Prefers the first set that is sufficient (fused alone, it gives the verdict) and
+// necessary (with all others fused, the verdict changes). Otherwise the first smallest sufficient set, or nothing.
 std::optional<Set> one_or_two(const Fusing& kernel, Verdict verdict) {
   std::vector<Set> enough;
   Set set = kernel.none();
@@ -77,7 +77,7 @@ std::optional<Set> one_or_two(const Fusing& kernel, Verdict verdict) {
   return enough.empty() ? std::nullopt : std::optional(enough.front());
 }
 
-// Parts sites from the last one on as long as the verdict stays, until none can be parted any more.
+// Removes sites, the last one first, while the verdict stays the same; stops when no site can be removed.
 Set reduced(const Fusing& kernel, Set set, Verdict verdict) {
   for (int left = set.size() + 1; set.size() < left;) {
     left = set.size();
@@ -98,7 +98,7 @@ Blame blame(const Lane& lane, const Pair& pair, const std::function<void()>& ask
   if (verdict == kernel.verdict(kernel.none())) return {};
   const std::optional<Set> few = one_or_two(kernel, verdict);
   const Set set = few ? *few : reduced(kernel, kernel.all(), verdict);
-  // Where the sites that are left do the same without it, one such set after the other.
+  // While the sites outside `needed` are sufficient too, add a sufficient set of them.
   Set needed = set;
   while (kernel.verdict(others(needed)) == verdict) {
     const Set more = reduced(kernel, others(needed), verdict);

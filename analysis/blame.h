@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which contractions make the difference between a cuda-fma lane and the same source without contraction.
+// Finds the contractions that make a cuda-fma lane differ from the same source without contraction.
 #pragma once
 
 #include <functional>
@@ -12,20 +12,21 @@
 namespace graze::analysis {
 
 struct Blame {
-  std::vector<cuda::ContractionSite> sites;  // fused alone they give the lane's verdict; in program order
+  std::vector<cuda::ContractionSite> sites;  // if only these are fused, the lane gives its verdict; in program order
   bool smallest = true;                      // no smaller set does so
-  std::string why_not;                       // "…", where the search did not come to its end
+  std::string why_not;                       // "…", if the search did not finish
 };
 
-// Rather sites without which, all others being fused, the verdict is that of the source without contraction: of up to
-// two, or else several sets of which each is enough. Of equally small ones the first in program order.
-// Returns: no sites where the lane's verdict is that of its source without contraction.
+// Prefers a set of one or two sites that is also necessary: with all other sites fused, the verdict is that of the
+// source without contraction. Otherwise it may return the union of several sets, each of which is sufficient. Among
+// equally small sets it returns the first in program order.
+// Returns: no sites if the lane's verdict equals that of its source without contraction.
 // Requires: a cuda-fma lane with a twin.
 // asked: called before each verdict.
 Blame blame(const Lane& lane, const Pair& pair, const std::function<void()>& asked = {});
 
-// The same of foreign code, which may crash or not come back with some of its operations fused: in a process of its
-// own, in which each verdict may take `seconds`.   Deterministic, of code that takes less.
+// The same for foreign code, which may crash or hang when some of its operations are fused. The search runs in a
+// separate process, and each verdict may take `seconds`. Deterministic if the code never takes longer.
 Blame blame_apart(const Lane& lane, const Pair& pair, double seconds);
 
 }  // namespace graze::analysis

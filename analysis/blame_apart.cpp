@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search for contractions in foreign code, in a child of this process, which is ended when a verdict takes too
-// long.
+// Searches for contractions in foreign code in a child process, which is killed if a verdict takes too long.
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -21,8 +20,8 @@
 namespace graze::analysis {
 namespace {
 
-// What the child writes: kAsked before each verdict; at the end kDone, then whether the set is the smallest, then its
-// sites as they lie in memory, in which both processes have the texts that they point to.
+// The child's messages: kAsked before each verdict; at the end kDone, then whether the set is the smallest, then its
+// sites as raw memory. The sites' pointers to text are valid in both processes.
 constexpr char kAsked = 0, kDone = 1;
 
 void write_all(int pipe, const void* data, std::size_t size) {
@@ -53,7 +52,8 @@ void write_all(int pipe, const void* data, std::size_t size) {
   _exit(0);
 }
 
-// Reads what the child writes, until it ends, or until it writes nothing for so long.   Returns: whether it ended.
+// Reads what the child writes, until it closes the pipe or stays silent for `seconds`.   Returns: whether it closed the
+// pipe.
 bool read_to_end(int pipe, double seconds, std::string& tail) {
   for (;;) {
     pollfd waits{pipe, POLLIN, 0};
@@ -76,14 +76,14 @@ bool read_to_end(int pipe, double seconds, std::string& tail) {
 }  // namespace
 
 Blame blame_apart(const Lane& lane, const Pair& pair, double seconds) {
-  static std::mutex starting;  // no other child may hold on to the end that is written to
+  static std::mutex starting;  // no other child may inherit the write end of this pipe
   std::unique_lock lock(starting);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
     throw std::runtime_error(
         cannot("explain", lane.id, "no pipe to another process: " + std::generic_category().message(errno)));
   const pid_t parent = getpid(), child = fork();
-  const int error = errno;  // of fork, if it failed
+  const int error = errno;  // fork's errno, if it failed
   if (child == 0) search(ends[1], lane, pair, parent);
   close(ends[1]);
   lock.unlock();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a foreign subject's convention leaves open: its verdicts there are neither errors nor right.
+// A foreign subject's convention excludes some kinds of pairs. Its verdicts on those pairs are neither right nor wrong.
 #pragma once
 
 #include <span>
@@ -12,18 +12,18 @@
 
 namespace graze::analysis {
 
-// Whether a verdict that is not the truth is of a pair that the lane's convention leaves open. A crash, an endless
-// loop and a verdict that changes are never a convention.
+// Whether the verdict differs from the truth and the lane's convention excludes the pair. Crashes, time-outs and
+// unstable verdicts never count as convention.
 bool by_convention(const Lane& lane, Verdict verdict, const Pair& pair, const Relation& truth);
 
-// Whether the lane's convention leaves the pair open.   Requires: finite coordinates.
+// Whether the lane's convention excludes the pair.   Requires: finite coordinates.
 bool is_outside(const Lane& lane, const Pair& pair, const Relation& truth);
 
-// The lanes' verdicts, with the truth in place of those that are by convention: what counts as wrong is left.
+// Returns the verdicts, but replaces those that differ by convention with the truth. What still differs is wrong.
 std::vector<Verdict> excused(std::span<const Lane* const> lanes, std::vector<Verdict> verdicts, const Pair& pair,
                              const oracle::Truth& truth);
 
-// "touching pairs, coplanar pairs"; empty for a convention that leaves nothing open.
+// "touching pairs, coplanar pairs"; empty for a convention that excludes nothing.
 std::string outside_in_words(unsigned outside);
 
 }  // namespace graze::analysis

@@ -9,8 +9,8 @@ namespace {
 
 // The lane's run with some of its comparisons corrected.
 struct Corrected {
-  std::vector<std::size_t> comparisons;  // numbers of those corrected, in order
-  Path path;                             // its outcomes
+  std::vector<std::size_t> comparisons;  // indices of the corrected comparisons, in order
+  Path path;                             // outcomes of the corrected run
 };
 
 class Search {
@@ -18,7 +18,7 @@ class Search {
   Search(const Lane& lane, const Pair& pair, Verdict truth, Contraction rule)
       : lane_(lane), pair_(pair), truth_(truth), rule_(rule) {}
 
-  // Sets of one comparison, then those of one more, each in order.
+  // Tries sets of one comparison first, then larger ones; sets of equal size in order of execution.
   std::optional<Corrected> smallest(const Path& lane_path) const {
     std::vector<Corrected> sets{{{}, lane_path}};
     for (int size = 1; size <= kMostDeciding; ++size) {
@@ -41,7 +41,7 @@ class Search {
     return std::nullopt;
   }
 
-  // With what each of them compares, once those before it are corrected.
+  // Describes each comparison of the set as it runs once the earlier ones are corrected.
   std::vector<Decider> told(const Corrected& set, const WithoutCause& without_cause) const {
     std::vector<Decider> result;
     for (const std::size_t comparison : set.comparisons) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which comparisons of a wrong lane decide: the smallest set whose correction makes the verdict right.
-// To correct a comparison is to change its outcome alone, to the one that exact arithmetic gives at that point of the
-// same path; no value changes. Where the outcome selects a value (the smaller end of a range, an absolute value), the
-// lane goes on with the other value, as it computed it. All that follows is computed and compared as the lane does.
+// Finds the comparisons that decide a wrong lane's verdict: the smallest set whose correction makes the verdict right.
+// Correcting a comparison changes only its outcome, to the outcome that exact arithmetic gives at that point of the
+// same path. No value changes. If the outcome selects a value (the smaller end of a range, an absolute value), the lane
+// continues with the other value as it computed it. All later steps run as in the lane.
 #pragma once
 
 #include <functional>
@@ -13,16 +13,16 @@
 
 namespace graze::analysis {
 
-// A comparison whose outcome is wrong once those before it in the set are corrected.
+// A comparison whose outcome is wrong once the set's earlier comparisons are corrected.
 struct Decider {
-  std::size_t place;  // among what that run saw
+  std::size_t place;  // index in that run's trace
   Seen<double> seen;
   oracle::ExactStep exact;
   Path path;      // all outcomes of that run
-  Path before;    // those of the comparisons before it
+  Path before;    // the outcomes of the comparisons before it
   bool by_cause;  // see is_by_cause
 
-  // Outcomes up to this one, corrected.
+  // The outcomes up to and including this comparison, with this one corrected.
   Path corrected() const {
     Path outcomes = before;
     outcomes.push_back(exact.held);
@@ -30,21 +30,21 @@ struct Decider {
   }
 };
 
-// No larger set is searched for.
+// The size of the largest sets that the search tries.
 inline constexpr int kMostDeciding = 4;
 
-// What comparisons would say without the cause of the failure, along that path; one entry for each thing seen.
+// Returns the trace along a path without the cause of the failure; it has one entry for each thing seen.
 using WithoutCause = std::function<Trace<double>(const Path&)>;
 
-// The smallest set; of equally small ones the first, their comparisons taken in order of execution. Empty where no set
-// of up to kMostDeciding makes the verdict right.
-// Requires: the lane's replay, with evidence; in exact arithmetic the algorithm says `truth`.
-// without_cause: empty where exact arithmetic is what is without it.
+// Returns the smallest set; among equally small sets, the first in order of execution. Empty if no set of up to
+// kMostDeciding comparisons makes the verdict right.
+// Requires: a replay of the lane that has evidence; the algorithm in exact arithmetic returns `truth`.
+// without_cause: empty if removing the cause means exact arithmetic.
 std::vector<Decider> deciding_comparisons(const Lane& lane, const Pair& pair, Verdict truth, const Replay& replay,
                                           const WithoutCause& without_cause);
 
-// Whether its outcome is right without the cause, or it compares what is not finite: that is the cause's doing,
-// whatever rounding would say in its place.
+// Whether the comparison's outcome is right without the cause, or one of its operands is not finite. A non-finite
+// operand is blamed on the cause, whatever rounding would give instead.
 bool is_by_cause(const Decider& decider, const WithoutCause& without_cause);
 
 }  // namespace graze::analysis

@@ -15,11 +15,10 @@
 namespace graze::analysis {
 namespace {
 
-// After so many verdicts that took all of their time no more are asked for.
+// No more verdicts are requested after this many time-outs.
 constexpr int kMostLate = 3;
 
-// Which of the pairs the lane is right on. `late` counts the time-outs so far; pairs that are not asked about are
-// false.
+// For each pair, whether the lane is right. `late` counts the time-outs so far; pairs that were not tried are false.
 std::vector<bool> right_on(const Lane& lane, const std::vector<Pair>& pairs, Verdict truth, int& late) {
   constexpr std::size_t kAtOnce = 8;
   std::vector<bool> right(pairs.size());
@@ -45,7 +44,7 @@ const Lane* in_float64(const Lane& lane) {
   return found && cuda::block_on_host(*found) ? found : nullptr;
 }
 
-// A scale at which the lane is wrong and the next one to it, at which it is right.
+// Two neighbouring scales: the lane is wrong at one and right at the other.
 struct Turn {
   int wrong, right;
   std::string text() const { return fmt::format("scaled by 2^{} it is right, by 2^{} wrong", right, wrong); }
@@ -82,15 +81,14 @@ class Trial {
   // Whether no sum and no product of up to kUsualFactors differences rounds.
   bool has_few_bits() const { return kUsualFactors * (size_.high - size_.low + 1) + 5 <= limits().digits; }
 
-  // Whether products of differences stay in the exponents, as far as that can be known: the longest ones overflow, but
-  // only the usual ones have all their factors small.
+  // Whether products of differences stay within the exponents, as far as that can be known. Overflow is checked for the
+  // longest products; underflow only for the usual ones, whose factors may all be small.
   bool has_usual_exponents() const {
     return kUsualFactors * size_.smallest_difference >= limits().least &&
            kMostFactors * (size_.largest_difference + 1) < limits().most;
   }
 
-  // Right as it may be by luck, code that is wrong here in exact arithmetic too: then float64 or another scale shows
-  // it.
+  // Code that is wrong in exact arithmetic may be right on this pair by luck. Float64 or another scale reveals that.
   Experiment by_build(const Lane& rounded, Cause cause, std::string evidence) const {
     const Lane* f64 = in_float64(rounded);
     if (f64 && !asked(*f64, {pair_})[0]) return {cause, false, evidence + ", but in float64 so built wrong"};
@@ -109,7 +107,7 @@ class Trial {
 
   const ScalarLimits& limits() const { return limits_of(lane_.scalar); }
 
-  // At most `most` of the scales, evenly, and where the lane is right on them.
+  // Tries at most `most` evenly spaced scales. Returns each scale and whether the lane is right there.
   std::vector<std::pair<int, bool>> tried(const Lane& lane, Scales scales, int most) const {
     std::vector<std::pair<int, bool>> result;
     if (scales.empty()) return result;
@@ -124,7 +122,7 @@ class Trial {
     return result;
   }
 
-  // Somewhere between.   Requires: wrong and right at these two.
+  // Finds a turn between these two scales.   Requires: the lane is wrong at the first and right at the second.
   Turn bisected(int wrong, int right) const {
     while (std::abs(right - wrong) > 1) {
       const int middle = wrong + (right - wrong) / 2;
@@ -142,8 +140,8 @@ class Trial {
     return scales.has(0) && std::all_of(all.begin(), all.end(), [](const auto& one) { return one.second; });
   }
 
-  // Two scales next to each other among those in range, of which it is right at one; rather where it turns right
-  // upwards. Of those tried, `all` is whether it is right at all of them.
+  // Finds two neighbouring scales in range such that the lane is right at one of them only. Prefers a turn at which the
+  // larger scale is right. `all` becomes whether the lane is right at all scales tried.
   std::optional<Turn> turn_within(Scales in_range, int most, bool& all) const {
     auto inside = tried(lane_, in_range, most);
     const std::pair own{0, false};
@@ -159,8 +157,8 @@ class Trial {
     return std::nullopt;
   }
 
-  // Whether it is right at all scales above the turn and wrong below. What adds numbers of different units, lengths and
-  // areas, turns back where these grow apart; an epsilon does not, once it is small.
+  // Whether the lane is right at all scales above the turn and wrong at all below. Code that adds numbers of different
+  // units, lengths and areas, turns back where these grow apart. An epsilon does not, once it is small.
   bool turns_once(Turn turn) const {
     if (turn.right < turn.wrong) return false;
     auto near = tried(lane_, common(strictly_, {turn.wrong - 12, turn.right + 12}), 26);
@@ -195,7 +193,8 @@ class Trial {
     return beyond(in_range);
   }
 
-  // Right at all scales in range: the pair is out of it, and turns wrong on the way to it.
+  // The lane is right at all scales in range, so the pair is out of range. The lane turns wrong between the range and
+  // the pair.
   Experiment outside(Turn turn) const {
     const bool by_float64 = right_in_float64_at_every_scale();
     const std::string text = turn.text(), doubles = by_float64 ? ", and in float64 it is right at every scale" : "";
@@ -217,7 +216,7 @@ class Trial {
                  : text + doubles};
   }
 
-  // There is no scale at which nothing can leave the exponents.
+  // There is no scale at which every product stays within the exponents.
   std::optional<Experiment> by_any_scale() const {
     const Scales all = exact_scales(size_);
     const auto up = tried(lane_, {1, all.last}, 24), down = tried(lane_, {all.first, -1}, 24);
@@ -234,7 +233,8 @@ class Trial {
                       false, turn.text()};
   }
 
-  // Wrong at all scales in range. Some way above it, where only longer products can overflow, it may turn right.
+  // The lane is wrong at all scales in range. It may turn right some way above, where only longer products can
+  // overflow.
   std::optional<Experiment> beyond(Scales in_range) const {
     const Scales more{in_range.last + 1, scales_in_range(size_, lane_.scalar, kUsualFactors / 2).last};
     const auto up = tried(lane_, more, 12);
@@ -247,7 +247,7 @@ class Trial {
   std::optional<Experiment> by_precision() const {
     const Lane* f64 = in_float64(lane_);
     if (!f64 || !asked(*f64, {pair_})[0]) return std::nullopt;
-    // Where sums and products are exact it may be right by luck.
+    // If sums and products are exact here, it may be right by luck.
     const Lane* rounded = counterpart(*f64, rounded_variant(f64->variant));
     const bool as_written = !rounded || !cuda::block_on_host(*rounded) || asked(*rounded, {pair_})[0];
     if (!scale_is_no_matter_ || !has_usual_exponents() || has_few_bits() || !as_written ||
@@ -261,14 +261,14 @@ class Trial {
     return hulls.dimension_a < 2 || hulls.dimension_b < 2;
   }
 
-  // Sums and products do not round.
+  // The cause if sums and products do not round.
   Experiment without_rounding() const {
     const std::string exactly =
         fmt::format("no sum and no product of up to {} differences rounds in {} here", kUsualFactors, limits().name);
     const std::vector<Pair> other_orders = orders(pair_), mirror_images = mirrored(pair_);
     const int in_orders = count_of(asked(lane_, other_orders));
     const int in_mirrors = count_of(asked(lane_, mirror_images));
-    // Other multiples change how roots and quotients round.
+    // Multiples other than powers of two change how roots and quotients round.
     std::vector<Pair> multiples;
     for (const float factor : {3.0f, 5.0f, 7.0f, 11.0f, 13.0f}) {
       Pair& multiple = multiples.emplace_back(pair_);
@@ -286,10 +286,10 @@ class Trial {
     return {cause, in_orders + in_mirrors == 0 && !in_multiples, exactly + where};
   }
 
-  // Moved so that a vertex is the origin, where that is exact.
+  // Translates each vertex to the origin, if that is exact.
   std::vector<Pair> translated() const {
     std::vector<Pair> result;
-    if (size_.high - size_.low + 1 > 53) return result;  // in doubles, the differences are exact
+    if (size_.high - size_.low + 1 > 53) return result;  // differences are exact in doubles only up to this size
     for (const Vec3<float>* vertex = pair_.a; vertex != pair_.a + 6; ++vertex) {
       Pair moved;
       bool exact = true;
@@ -303,7 +303,7 @@ class Trial {
     return result;
   }
 
-  // Rounded to fewer bits, where that leaves truth and shape as they are.
+  // Rounds the pair to fewer bits, if that keeps its truth and shape.
   std::vector<Pair> snapped() const {
     std::vector<Pair> result;
     const Relation own = relation_of(pair_);
@@ -349,8 +349,8 @@ class Trial {
   Verdict truth_;
   Size size_;
   mutable int late_ = 0;
-  Scales strictly_{1, 0};            // at which not even the longest products leave the exponents
-  bool scale_is_no_matter_ = false;  // wrong at all scales at which usual products stay in the exponents
+  Scales strictly_{1, 0};            // scales at which even the longest products stay within the exponents
+  bool scale_is_no_matter_ = false;  // wrong at all scales at which the usual products stay within the exponents
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Causes by experiment: of the published algorithms as foreign code against those by their steps, and of planted code
-// whose fault is known.
+// Causes found by experiment. Compares those of the published algorithms, run as foreign code, with those found from
+// their steps; and tests code with known planted faults.
 #include "analysis/experiments.h"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@
 namespace graze::analysis {
 namespace {
 
-// A function in this process as foreign code.
+// Runs a function of this process as foreign code.
 class Stranger : public ForeignCode {
  public:
   using Function = std::function<Verdict(const Pair&)>;
@@ -57,7 +57,7 @@ std::deque<Subject>& subjects() {
   return all;
 }
 
-// Adds a lane of the subject, which is made when it is not there.
+// Adds a lane of the subject, and the subject if it does not exist.
 const Lane& add_lane(const std::string& subject, Scalar scalar, Variant variant, Stranger::Function function,
                      unsigned outside = 0) {
   auto found = std::find_if(subjects().begin(), subjects().end(), [&](const Subject& s) { return s.id == subject; });
@@ -90,7 +90,7 @@ bool is_degenerate(const Pair& pair) {
   return r.hulls.dimension_a < 2 || r.hulls.dimension_b < 2;
 }
 
-// What the settled steps call it, in the words of the experiments.
+// Translates a cause from settled steps to the terms of experiments.
 bool agree(Cause by_steps, Cause by_experiment) {
   if (by_steps == Cause::logic) return by_experiment == Cause::logic || by_experiment == Cause::degenerate_input;
   return by_steps == by_experiment;
@@ -107,7 +107,7 @@ TEST(Experiments, AgreeWithTheStepsOfThePublishedAlgorithms) {
   }
   std::map<std::pair<Cause, Cause>, int> settled;  // by steps, by experiment
   std::map<Cause, int> by_steps, open;
-  std::map<Cause, std::array<int, 2>> unsettled;  // alike, other
+  std::map<Cause, std::array<int, 2>> unsettled;  // equal, different
   for (const strata::StratumInfo& stratum : strata::kStrata) {
     for (std::uint64_t i = 0; i < 40; ++i) {
       const Pair pair = strata::generate(33, stratum.stratum, i);
@@ -149,7 +149,7 @@ TEST(Experiments, AgreeWithTheStepsOfThePublishedAlgorithms) {
   EXPECT_GT(alike, 1100);
 }
 
-// On the first pairs of all strata on which the lane is wrong, and that `chosen` takes.
+// Calls act for the first pairs of all strata on which the lane is wrong and that `chosen` accepts.
 void for_each_wrong(const Lane& lane, const std::function<bool(const Pair&)>& chosen,
                     const std::function<void(const Pair&, const Experiment&)>& act) {
   int wrong = 0;
@@ -244,7 +244,7 @@ TEST(Experiments, FindWhatDependsOnOrder) {
 }
 
 TEST(Experiments, FindOverflowAndUnderflow) {
-  // Right, but where the product of four large differences leaves the exponents.
+  // Right, except if the product of four large differences leaves the exponents.
   const auto product = [](const Pair& pair) {
     float most = 0;
     for (int i = 0; i < 18; ++i) most = std::max(most, std::fabs((&pair.a[0].x)[i] - (&pair.a[0].x)[i % 3]));

@@ -36,21 +36,21 @@ std::string_view name_of(Site site) {
 
 constexpr std::string_view kComparisons[] = {"<", "<=", "==", ">", ">="};
 
-// "core/vec3.h:46", wherever the compiler found the file.
+// "core/vec3.h:46", independent of the folder in which the compiler found the file.
 std::string line_of(const std::source_location& where) {
   const std::string_view file = where.file_name();
   const std::size_t folder = file.rfind("core/");
   return fmt::format("{}:{}", folder == std::string_view::npos ? file : file.substr(folder), where.line());
 }
 
-// Where roots or quotients leave a tie open in every precision, the verdict may be right with some numbers of bits and
-// wrong with others, without end. There, a number of bits is called enough only when it is less than half of kMostBits.
+// Roots or quotients can leave a tie open in every precision. Then the verdict may alternate between right and wrong
+// for ever as bits are added. In that case a number of bits counts as enough only if it is at most half of kMostBits.
 int bits_needed(int algorithm, const oracle::Exactly& exactly, const Pair& pair, Verdict truth) {
   const int bits = exactly.verdict == truth ? oracle::bits_needed(algorithm, pair, truth, 24) : 0;
   return !exactly.certain && bits > oracle::kMostBits / 2 ? 0 : bits;
 }
 
-// The pairs beside the pair, and the truth of those whose truth is another question.
+// The pair's neighbours. For nudged pairs, whether their truth is the pair's must be computed.
 struct Neighbours {
   std::vector<Pair> orders, mirrored, scalings;
   std::array<std::vector<Pair>, kCoordinates> nudged;
@@ -88,8 +88,8 @@ Cause first_cause(const Lane& lane, const Pair& pair, Verdict truth, const oracl
   return limited(true, true).first == oracle::RangeEvent::overflow ? Cause::overflow : Cause::underflow;
 }
 
-// Where more bits and wider exponents are both needed, the comparison that went wrong tells which failed first: when a
-// value is not a number any more, or is lost because it is less than the least normal number, rounding is not to blame.
+// Some pairs need both more bits and wider exponents. The comparison that went wrong tells which failed first. If a
+// value is no longer a number, or is lost because it is below the least normal number, rounding is not the cause.
 Cause refined(const LaneExplanation& lane, const Pair& pair) {
   const Step* told = lane.told();
   if (lane.cause != Cause::rounding || !told) return lane.cause;
@@ -114,7 +114,7 @@ Step step_of(const Seen<double>& seen, const oracle::ExactStep& exact) {
           exact.held};
 }
 
-// What the comparisons on a path would say without the cause; empty for rounding: exact arithmetic says it.
+// Returns the comparisons on a path without the cause; empty for rounding, where exact arithmetic says it.
 WithoutCause without(Cause cause, const Lane& lane, const Pair& pair, Contraction rule) {
   if (cause == Cause::contraction)
     return [&lane, &pair](const Path& path) { return run_led(lane, pair, Contraction::none, path); };
@@ -213,7 +213,7 @@ bool is_by_convention(const Lane& lane, Verdict verdict, const Pair& pair) {
   return lane.outside != 0 && by_convention(lane, verdict, pair, relation_of(pair));
 }
 
-// Lanes with the same run: the same source, every operation rounded as written.
+// Whether two lanes compute the same: the same source, with every operation rounded as written.
 bool same_run(const Lane& l, const Lane& r) {
   const auto rounded = [](const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; };
   return !l.foreign && l.policy == r.policy && l.info == r.info && l.scalar == r.scalar && rounded(l) && rounded(r);
@@ -241,7 +241,7 @@ Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth) {
   result.lane = &lane;
   result.exactly = oracle::decide_exactly(lane.algorithm, pair);
   result.cause = first_cause(lane, pair, truth, result.exactly);
-  // The steps can only tell of a rounding that the range had a part in it.
+  // If the cause is rounding, only the steps can tell whether the exponent range contributed.
   if (result.cause != Cause::rounding || !leaves_exponents(lane, pair)) return result.cause;
   add_steps(result, pair, truth);
   return refined(result, pair);
@@ -315,7 +315,7 @@ Explanation explain(const Pair& pair, std::span<const Lane* const> lanes) {
   std::map<const AlgorithmInfo*, int> bits;
   for (LaneExplanation& lane : result.lanes) {
     if (lane.lane->foreign || lane.lane->under) {
-      // Where each verdict may take all of its time, or a new process, the pair's own is enough.
+      // If each verdict may time out or need a new process, only the pair itself is tried.
       if (!lane.slow) add_surroundings(lane, truth, 0, neighbours);
       continue;
     }

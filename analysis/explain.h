@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why lanes are wrong on a pair: what they computed beside what it should have been, and what would have helped.
+// Explains why lanes are wrong on a pair: what they computed, what exact arithmetic gives, and what would have helped.
 #pragma once
 
 #include <array>
@@ -20,20 +20,19 @@
 
 namespace graze::analysis {
 
-// The first that holds:
-//   logic        the algorithm in exact arithmetic gives the wrong verdict too
+// The first cause whose condition holds:
+//   logic        the algorithm gives the wrong verdict in exact arithmetic too
 //   contraction  the same source without contraction, on the same kind of processor, is right
-//   fast math    the same, of a lane whose operations the compiler was allowed to rewrite or approximate
-//   overflow, underflow   with the scalar's mantissa and unlimited exponents it is right, not contracted. Overflow
-//                where the upper limit alone makes it wrong, underflow where the lower one alone does; where both or
-//                neither do, the limit that is exceeded first. Also where a longer mantissa is needed as well, but the
-//                limit made the comparison go wrong.
+//   fast math    the same, for a lane whose operations the compiler may rewrite or approximate
+//   overflow, underflow   without contraction, the scalar's mantissa with unlimited exponents is right. Overflow if the
+//                upper limit alone makes it wrong, underflow if the lower limit alone does. If both or neither do, the
+//                limit that is exceeded first. This also covers pairs that need a longer mantissa as well, if the limit
+//                made the comparison go wrong.
 //   rounding     otherwise
-// Of foreign code by experiments, see experiments.h; the causes from absolute_epsilon on are of foreign code alone, but
-// for the last:
-//   policy       of a lane under a policy: the same lane under none is right, or the policy may decline. Where that
-//   lane
-//                is wrong too, its cause; not settled.
+// Experiments find the cause for foreign code (experiments.h). The causes from absolute_epsilon on apply only to
+// foreign code, except policy:
+//   policy       the lane uses a policy, and the same lane without the policy is right, or the policy declined. If
+//                that lane is wrong too, its cause is reported, not settled.
 enum class Cause {
   rounding,
   contraction,
@@ -51,28 +50,28 @@ enum class Cause {
 };
 std::string_view name(Cause cause);
 
-// Whether the cause stands up to the audit of analysis/audit.h.
+// The result of the audit of the cause (analysis/audit.h).
 enum class Settled {
   yes,
-  not_without,  // without it something else makes the verdict wrong as well
-  not_alone,    // alone it does not make the verdict wrong
+  not_without,  // without the cause, the verdict is still wrong
+  not_alone,    // the cause alone does not make the verdict wrong
   not_by_few,   // correcting up to kMostDeciding comparisons does not make the verdict right (deciding.h)
-  unknown       // what the lane computed is not known, or no experiment shows it
+  unknown       // the lane's computation is not known, or no experiment shows the cause
 };
 std::string_view name(Settled settled);
 
 // A value that the algorithm asked its policy about, or a comparison.
 struct Step {
-  std::string line;           // "core/algorithms/moller_1997.h:96"
-  std::string_view site;      // what the policy was asked about; empty for a comparison of the algorithm's own
-  std::string_view relation;  // empty for a value
-  oracle::Beside left, right, difference;  // a value is `left`
-  bool held = true;                        // in the lane
+  std::string line;                        // "core/algorithms/moller_1997.h:96"
+  std::string_view site;                   // what the policy was asked about; empty for the algorithm's own comparison
+  std::string_view relation;               // empty for a value
+  oracle::Beside left, right, difference;  // a single value is in `left`
+  bool held = true;                        // in the lane's arithmetic
   bool holds = true;                       // in exact arithmetic
   bool wrong() const { return held != holds; }
 };
 
-// Of how many pairs with the same truth the lane is wrong.
+// The number of pairs with the same truth on which the lane is wrong, out of how many.
 struct WrongOf {
   int wrong, of;
 };
@@ -81,55 +80,55 @@ struct LaneExplanation {
   const Lane* lane;
   Verdict verdict;
   Cause cause;
-  oracle::Exactly exactly;  // what the algorithm says in exact arithmetic
-  Evidence evidence;        // how well the steps are known to be the lane's own
-  std::vector<Step> steps;  // in order: values and comparisons of the policy's, and all comparisons that went wrong
-  Contraction rule;         // by which the run was replayed
+  oracle::Exactly exactly;        // what the algorithm says in exact arithmetic
+  Evidence evidence;              // how sure it is that the steps are the lane's own
+  std::vector<Step> steps;        // in order: values and comparisons passed to the policy, and wrong comparisons
+  Contraction rule;               // the contraction rule of the replay
   std::vector<Decider> deciding;  // the comparisons that decide, see deciding.h; empty for logic
-  int decisive = -1;              // the first of them, a step; -1 where none is known
+  int decisive = -1;              // index in `steps` of the first deciding comparison; -1 if none is known
   std::vector<Step> then;         // the others: each goes wrong once those before it are corrected
-  Blame contractions;             // of a cuda-fma lane whose verdict contraction changes
+  Blame contractions;             // only for a cuda-fma lane whose verdict contraction changes
   Settled settled;
-  int bits_needed;  // least mantissa, from the lane's own on, with which and with any longer one of up to
-                    // kMostBits it is right; 0 without one, and where it would be luck (see explain.cpp)
-  std::array<bool, kCoordinates> matters;  // false: all its nudges leave the truth and the lane's verdict as they are
+  int bits_needed;  // the shortest mantissa, at least the lane's own, that gives the right verdict, as does every
+                    // longer one up to kMostBits; 0 if there is none, or if it would be luck (see explain.cpp)
+  std::array<bool, kCoordinates> matters;  // false: no nudge of the coordinate changes the truth or the lane's verdict
   WrongOf orders, mirrored, scalings;      // see neighbours.h
-  std::string experiment;                  // of lanes without steps, foreign or under a policy: what shows the cause
-  bool slow = false;                       // the same: it takes all of its time on other pairs; nothing around is asked
+  std::string experiment;  // for lanes without steps (foreign, or under a policy): the evidence for the cause
+  bool slow = false;       // for the same lanes: other pairs time out or fail, so no neighbours were tried
 
-  // The comparison to tell of, the first that decides; null without one, and where the algorithm itself is to blame.
+  // The comparison to report: the first deciding one. Null if there is none, and if the algorithm itself is to blame.
   const Step* told() const { return decisive < 0 ? nullptr : &steps[static_cast<std::size_t>(decisive)]; }
 };
 
 struct Explanation {
   Pair pair;
   oracle::Truth truth;
-  std::vector<LaneExplanation> lanes;  // the wrong ones, in the given order
-  std::vector<const Lane*> outside;    // those of which the pair is not in the contract, and that say otherwise
+  std::vector<LaneExplanation> lanes;  // wrong lanes, in the given order
+  std::vector<const Lane*> outside;    // lanes that differ from the truth because their convention excludes the pair
 };
 
-// Explains each of the lanes that is wrong on the pair; CUDA lanes by their twins. Deterministic.
-// Requires: lanes that run here, or have a twin. A pair with a coordinate that is not finite has no wrong lanes.
+// Explains each lane that is wrong on the pair; CUDA lanes run as twins. Deterministic.
+// Requires: lanes that run here or have a twin. For a pair with a non-finite coordinate, no lane is wrong.
 Explanation explain(const Pair& pair, std::span<const Lane* const> lanes);
 
-// The same of each wrong lane, without what lies around the pair: bits_needed, matters, orders, mirrored and scalings
-// are not set. A fraction of the time. Lanes that differ by their convention (convention.h) are not wrong.
+// The same for each wrong lane, but without the pair's neighbours: bits_needed, matters, orders, mirrored and scalings
+// are not set. Takes a fraction of the time. Lanes that differ only by their convention (convention.h) are not wrong.
 std::vector<LaneExplanation> accounts(const Pair& pair, Verdict truth, std::span<const Lane* const> lanes);
 
-// The cause that explain gives, without the rest of it: a twentieth of the time, or a third where it says rounding.
+// The cause that `explain` gives, without the rest. Takes a twentieth of its time, or a third if the cause is rounding.
 // Requires: the lane runs here or has a twin, and is wrong on the pair; truth is the pair's.
 Cause cause_of(const Lane& lane, const Pair& pair, Verdict truth);
 
-// Whether a result leaves the scalar's exponents when the lane's source runs without contraction; where none does, the
-// cause is neither overflow nor underflow. By the processor's flags, and so quick; may say yes where none does, and
-// says no of foreign code, of which it is not known.
+// Whether a result leaves the scalar's exponents when the lane's source runs without contraction. If false, the cause
+// is neither overflow nor underflow. The check is fast because it reads the processor's floating-point flags; it may
+// return a false true. Returns false for foreign code and for lanes under a policy, for which this is not known.
 bool leaves_exponents(const Lane& lane, const Pair& pair);
 
-// One English sentence on a wrong algorithm, for a bug report; empty when no lane of it is wrong. It names the lanes
-// that are wrong alike, with the numbers of one of them.
+// Returns one English sentence about a wrong algorithm, for a bug report; empty if none of its lanes is wrong. It names
+// the lanes that are wrong in the same way, with the numbers of one of them.
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject);
 
-// One sentence for each wrong algorithm, each on a line of its own.
+// Returns one sentence for each wrong algorithm.
 std::vector<std::string> sentences(const Explanation& explanation);
 
 nlohmann::ordered_json to_json(const LaneExplanation& lane);

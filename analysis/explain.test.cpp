@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each cause on a pair made for it, and invariants of explanations over all strata.
+// Tests each cause on a pair made for it, and invariants of explanations over all strata.
 #include "analysis/explain.h"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ const LaneExplanation& lane_of(const Explanation& explanation, std::string_view 
   throw std::runtime_error(std::string(id) + " is not wrong");
 }
 
-// The values that a replay shows are the lane's: without contraction they must be, for CUDA by hash, and for the host's
-// contraction all that can be asked is the verdict.
+// The values of a replay belong to the lane. Without contraction they must, and for CUDA their hash shows it. For
+// contraction on the host, only the verdict can be compared.
 TEST(Replay, IsTheLanesOwnRun) {
   for (const Lane* lane : lanes_here()) {
     int pairs = 0, known = 0;
@@ -53,7 +53,7 @@ TEST(Replay, IsTheLanesOwnRun) {
   }
 }
 
-// Replayed along its own path a run repeats itself, along another path it does not.
+// A run repeats itself if it is led along its own path, but not along another one.
 TEST(Replay, CanBeLed) {
   const Lane& lane = *find_lane("projected_sat/f32/cpu");
   const Pair pair = strata::generate(7, strata::Stratum::near_edge_edge, 3);
@@ -122,7 +122,7 @@ TEST(Explain, AtAHugeScaleItOverflows) {
   EXPECT_FALSE(std::isfinite(lane.told()->left.lane));
 }
 
-// 24 bits would not do without limits either, but what the comparison was given is no number.
+// Without limits 24 bits would not be enough either, but the operand of the comparison is not a number.
 TEST(Explain, ARangeThatIsNotAllThatLacksIsStillTheCause) {
   const Pair pair = strata::generate(1, strata::Stratum::extreme_scale, 2280);
   const Explanation explanation = explain(pair, lanes_here());
@@ -149,7 +149,8 @@ TEST(Explain, WhatMoreBitsWouldHelpIsRounding) {
             std::string::npos);
 }
 
-// Near-coplanar pairs on which cuda-fma and cuda-nofma differ: the sites to blame make the difference, and no fewer do.
+// Near-coplanar pairs on which cuda-fma and cuda-nofma differ. The blamed sites cause the difference, and no smaller
+// set does.
 TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
   int flips = 0;
   for (std::uint64_t i = 0; i < 60; ++i) {
@@ -174,7 +175,7 @@ TEST(Explain, FlipsByContractionAreBlamedOnSourceLines) {
         return cuda::decide_fusing(*lane.lane, pair, fused);
       };
       EXPECT_EQ(verdict_without(all.size()), lane.verdict);
-      // Either none of them can be spared, or it takes all of them to undo what each does.
+      // Either every site is necessary, or it takes all of them to undo the effect of each.
       const bool needed =
           std::all_of(blamed.begin(), blamed.end(), [&](std::size_t s) { return verdict_without(s) != lane.verdict; });
       EXPECT_TRUE(needed || lane.settled == Settled::yes || lane.cause == Cause::logic) << lane.lane->id << i;
@@ -203,7 +204,7 @@ TEST(Explain, ASentenceTellsOfACoplanarFlip) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
-// Whatever the pair: what is wrong has a cause, and if not by logic a comparison that went wrong.
+// For every pair, a wrong lane has a cause; unless the cause is logic, it has a wrong comparison.
 TEST(Explain, EveryWrongLaneHasItsAccount) {
   std::set<Cause> causes;
   int wrong = 0, decisive = 0, many = 0, unknown = 0;
@@ -286,7 +287,7 @@ TEST(Neighbours, NudgesMoveOneCoordinateBothWays) {
   }
 }
 
-// The minimiser asks for the cause alone. Where no flag was raised, MPFR knows of no overflow or underflow either.
+// The minimiser asks only for the cause. If no flag was raised, MPFR finds no overflow or underflow either.
 TEST(CauseOf, IsWhatExplainSays) {
   int wrong = 0, in_range = 0;
   std::set<Cause> seen;

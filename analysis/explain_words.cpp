@@ -37,7 +37,7 @@ std::string words(const cuda::ContractionSite& site) {
   return inlined ? fmt::format("{} (inlined at {})", text(site.at), text(site.from)) : text(site.at);
 }
 
-// What the compared value is: the last value of the policy's that it equals, or else what the policy was asked.
+// Names the compared value: the last value passed to the policy that equals it, or else what the policy was asked.
 std::string_view what(const LaneExplanation& lane, const Step& told) {
   const auto in_words = [](std::string_view site) -> std::string_view {
     return site == "plane_distance" ? "a signed distance"
@@ -55,7 +55,7 @@ std::string_view what(const LaneExplanation& lane, const Step& told) {
   return told.right.decimal == "0" && told.right.lane == 0 ? "a number" : "the difference of two numbers";
 }
 
-// "A", "A and B", "A, B and 3 more": equal ones once.
+// "A", "A and B", "A, B and 3 more"; duplicates appear once.
 std::string list(const std::vector<std::string>& all) {
   std::vector<std::string> names;
   for (const std::string& name : all) {
@@ -78,8 +78,8 @@ std::string words(double x) {
 
 std::string exact_words(const oracle::Beside& value) { return std::isnan(value.exact) ? "NaN" : value.decimal; }
 
-// "a signed distance of exactly 0 into 1.2e-09"; the lane computes no difference of two numbers, so where theirs is not
-// finite, "two interval ends of exactly 3 and 4 into infinity and 4".
+// "a signed distance of exactly 0 into 1.2e-09". The lane itself computes no difference of the two numbers. If that
+// difference is not finite, names both: "two interval ends of exactly 3 and 4 into infinity and 4".
 std::string turned(const LaneExplanation& lane, const Step& told) {
   const bool with_zero = told.right.decimal == "0" && told.right.lane == 0;
   if (with_zero || (std::isfinite(told.difference.lane) && std::isfinite(told.difference.exact)))
@@ -91,7 +91,7 @@ std::string turned(const LaneExplanation& lane, const Step& told) {
 }
 
 // ", which turns a signed distance of exactly 0 into 1.2e-09, so that the comparison at … goes the wrong way".
-// replayed: words about how that is known, or none.
+// replayed: words that say how this is known; may be empty.
 std::string effect(const LaneExplanation& lane, std::string_view replayed) {
   const Step* told = lane.told();
   if (!told) return "";
@@ -124,7 +124,7 @@ std::string fused(const LaneExplanation& lane) {
   return fmt::format("nvcc fuses the product{} into the addition{} at {}", plural, plural, list(sites));
 }
 
-// Why the cause is not settled; empty where it is, and where the reason says so already.
+// Explains why the cause is not settled; empty if it is settled or if the reason already says so.
 std::string doubt(const LaneExplanation& lane) {
   switch (lane.settled) {
     case Settled::not_without:
@@ -174,7 +174,7 @@ std::string remedy(const LaneExplanation& lane) {
   return bits + (lane.bits_needed == 0 ? ", even with" : " with") + " exponents without limits";
 }
 
-// Whether experiments gave the account, for want of steps.
+// Whether the account comes from experiments, because the lane has no steps.
 bool by_experiment(const Lane& lane) { return lane.foreign || lane.under; }
 
 // "cuda-fma", "cpu/rel:8".
@@ -218,7 +218,7 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
                      lane.experiment);
 }
 
-// Lanes that one account fits.
+// Lanes that share one account.
 bool alike(const LaneExplanation& l, const LaneExplanation& r) {
   const auto line = [](const LaneExplanation& lane) { return lane.told() ? lane.told()->line : ""; };
   return l.lane->scalar == r.lane->scalar && l.lane->policy == r.lane->policy && l.verdict == r.verdict &&
@@ -259,7 +259,7 @@ nlohmann::ordered_json to_json(const WrongOf& count) { return {{"wrong", count.w
 }  // namespace
 
 std::string sentence(const Explanation& explanation, const AlgorithmInfo* subject) {
-  const LaneExplanation* first = nullptr;  // to be told of: rather one whose values are known to be its own
+  const LaneExplanation* first = nullptr;  // lane to report; preferably one whose values are known to be its own
   const auto known = [](const LaneExplanation& lane) { return lane.evidence <= Evidence::hash; };
   for (const LaneExplanation& lane : explanation.lanes) {
     if (lane.lane->info != subject) continue;
@@ -293,7 +293,7 @@ std::vector<std::string> sentences(const Explanation& explanation) {
     const std::string text = sentence(explanation, lane.lane->info);
     if (result.empty() || result.back() != text) result.push_back(text);
   }
-  std::map<std::string, std::string> lanes_outside;  // of each subject, within it
+  std::map<std::string, std::string> lanes_outside;  // by subject: its lanes, named within it
   for (const Lane* lane : explanation.outside) {
     std::string& list = lanes_outside[std::string(lane->info->id)];
     list += (list.empty() ? "" : ", ") + lane->lane_name().within_subject();

@@ -164,7 +164,7 @@ TEST(Invariants, WhatBreaksThem) {
   EXPECT_FALSE(breaks(Invariant::part, none, yes));
 }
 
-// A new algorithm says what it claims, be it nothing: a row of kClaims.
+// Every published algorithm has a row in kClaims that claims at least one invariant.
 TEST(Invariants, EachAlgorithmSaysWhatItClaims) {
   for (const Lane& lane : published_lanes()) EXPECT_FALSE(claimed_invariants(lane.info->id).empty()) << lane.info->id;
   EXPECT_TRUE(claims(*find_lane("separating_axes/f32/cuda-nofma"), Invariant::swap));

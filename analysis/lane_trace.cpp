@@ -9,7 +9,7 @@
 namespace graze::analysis {
 namespace {
 
-// The hash of cuda/lanes/trace.h, of a run written down.
+// The hash of cuda/lanes/trace.h, computed from a recorded run.
 template <class Real>
 std::uint64_t trace_hash(const Trace<double>& run) {
   std::uint64_t hash = 0;
@@ -29,7 +29,7 @@ Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Pa
   return run_traced<Real>(algorithm, pair, lead);
 }
 
-// How well the run of a contracting lane is known to be its own.
+// How sure it is that the run of a contracting lane is the lane's own.
 Evidence evidence(const Lane& lane, const Pair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
   const cuda::TraceBlock twin = cuda::twin_trace(lane);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lane's run, written down: each comparison, and each value that it asks its policy about, in its own arithmetic.
+// Records a lane's run: each comparison, and each value passed to its policy, in the lane's own arithmetic.
 #pragma once
 
 #include "core/algorithms/traced.h"
@@ -7,9 +7,11 @@
 
 namespace graze::analysis {
 
-// source: the lane is the algorithm's source without contraction, and so is the replay. hash: contracted by a rule, and
-// all values asked of the policy have the hash that the lane's twin gives them. verdict: contracted by a rule, and the
-// verdict is the lane's; the values may not be. none: no rule gave even that.
+// How well a replay is known to match the lane's own run.
+// source   the lane and the replay are both the algorithm's source without contraction
+// hash     the replay contracts by a rule, and all values passed to the policy have the same hash as the lane's twin
+// verdict  the replay contracts by a rule, and its verdict is the lane's; its values may differ
+// none     no rule reproduces even the verdict
 enum class Evidence { source, hash, verdict, none };
 std::string_view name(Evidence evidence);
 std::string_view name(Contraction rule);
@@ -20,16 +22,17 @@ struct Replay {
   Trace<double> run;
 };
 
-// The lane's run on the pair; without evidence for a lane whose operations the compiler rewrites.
+// Replays the lane on the pair. A lane whose operations the compiler rewrites has no evidence.
 Replay replay(const Lane& lane, const Pair& pair);
 
-// The same in other circumstances: the algorithm in the lane's scalar and by that rule, led down the path.
+// Runs the algorithm in the lane's scalar with the given contraction rule, and forces the outcomes of the path `lead`.
 Trace<double> run_led(const Lane& lane, const Pair& pair, Contraction rule, const Path& lead);
 
-// The lane itself, on the host; for CUDA lanes the twin.   Throws: std::invalid_argument without either.
+// Returns the lane's own block on the host; for CUDA lanes, the twin's.   Throws: std::invalid_argument if there is
+// none.
 DecideBlock block_of(const Lane& lane);
 
-// The lane's verdict: by the host, or for CUDA lanes by the twin.   Throws: std::invalid_argument without either.
+// Decides the pair on the host; CUDA lanes use the twin.   Throws: std::invalid_argument without either.
 Verdict decide_lane(const Lane& lane, const Pair& pair);
 
 }  // namespace graze::analysis

@@ -53,18 +53,18 @@ void measure_sizes(const std::vector<Triangle>& triangles, const std::string& na
     const double area2 = length(cross(b - a, c - a));
     if (!(area2 > 1e-9 * longest * longest) && is_degenerate(t)) continue;
     edges.push_back(longest);
-    aspect.push_back(std::clamp(longest * longest / area2, 1.1547005, 1e12));  // one that rounding leaves without area
+    aspect.push_back(std::clamp(longest * longest / area2, 1.1547005, 1e12));  // a sliver whose area rounds to 0
   }
   if (edges.empty()) throw std::runtime_error(cannot("measure", name, "all triangles are degenerate"));
   scene.edges = quantiles_of(std::move(edges));
   scene.aspect = quantiles_of(std::move(aspect));
 }
 
-// A coordinate that has room for n more bits than the grid's agrees with it by chance once in 2^n times: so many must
-// be found in all.
+// If a coordinate has room for n bits below the grid, it lies on the grid by chance once in 2^n times. The grid is
+// accepted if these n add up to at least kEvidence bits.
 constexpr double kEvidence = 128;
 
-// Of all coordinates, signs left out, each value once.
+// The distinct absolute values of all coordinates, without 0.
 std::vector<float> values_of(const std::vector<Triangle>& triangles) {
   std::vector<float> values;
   for (const Triangle& t : triangles) {
@@ -82,7 +82,7 @@ double ulp_of(float x) { return static_cast<double>(std::nextafterf(x, INFINITY)
 
 std::optional<GridSpec> grid_of(const std::vector<float>& values) {
   const auto is_evident = [&](double step) {
-    if (static_cast<double>(values.back()) / step > 0x1p48) return false;  // what a scene takes
+    if (static_cast<double>(values.back()) / step > 0x1p48) return false;  // the most that a scene accepts
     double bits = 0;
     for (const float x : values) bits += std::max(std::floor(std::log2(step / ulp_of(x))), 0.0);
     return bits >= kEvidence;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene's file from real triangles and pairs: what a person would have to measure to write it by hand.
+// Measures a scene file from real triangles and pairs, so that nobody has to write it by hand.
 #pragma once
 
 #include <array>
@@ -15,18 +15,18 @@ namespace graze::analysis {
 
 struct SceneSample {
   std::vector<std::array<Vec3<float>, 3>> triangles;  // finite
-  std::uint64_t pairs = 0;                            // whose boxes overlap
+  std::uint64_t pairs = 0;                            // number of pairs whose boxes overlap
   std::function<Pair(std::uint64_t index)> pair;
 };
 
-// The pairs whose closed boxes overlap, and the triangles of all.
+// The pairs whose closed boxes overlap, and the triangles of all pairs.
 SceneSample sample_of(const std::vector<Pair>& pairs);
 
 inline constexpr int kSceneQuantiles = 17;
-inline constexpr std::uint64_t kSceneSample = 1 << 18;  // of more pairs, evenly spaced ones are looked at
+inline constexpr std::uint64_t kSceneSample = 1 << 18;  // larger samples are thinned to evenly spaced pairs
 
-// Extent, sizes to six digits, the grid if there is evidence of one, kinds of pairs, and exact margins.
-// Throws: std::runtime_error of what has no triangle but degenerate ones, or no pairs.
+// Measures extent, sizes to six digits, the grid if there is evidence of one, kinds of pairs, and exact margins.
+// Throws: std::runtime_error if all triangles are degenerate, if there are no pairs, or if a coordinate exceeds 2^126.
 strata::SceneFile measure_scene(const SceneSample& sample, const std::string& name);
 
 }  // namespace graze::analysis

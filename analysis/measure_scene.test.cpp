@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene of real triangles: what is drawn in it is like them, grids are found where they are and nowhere else, and
-// near contacts are near in the scene's own ulps.
+// Scenes of real triangles. Pairs drawn in a scene resemble its triangles, grids are found only if they exist, and near
+// contacts are near in the scene's own ulps.
 #include "analysis/measure_scene.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ Vec3<double> wide(const Vec3<float>& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
 }
 
-// A sheet of n * n squares with hills, each cut in two; neighbours share vertices.
+// A hilly sheet of n * n squares, each cut into two triangles; neighbours share vertices.
 std::vector<Triangle> sheet(int n, double step, Vec3<double> place) {
   const auto at = [&](int i, int j) -> Vec3<float> {
     const double x = i * (1 + i * 0.05), y = j * (1 + j * 0.03), z = 1.5 * std::sin(0.7 * i) + std::cos(0.9 * j);
@@ -85,7 +85,7 @@ TEST(MeasureScene, WhatIsDrawnIsLikeTheMesh) {
     }
   }
   std::vector<double> drawn_edges, drawn_aspects;
-  strata::SceneFile roomy = file;  // the sheet is low: with room above it, nothing drawn is flattened
+  strata::SceneFile roomy = file;  // the sheet is flat: room above it keeps drawn triangles unflattened
   roomy.extent[2] = {1900, 2100};
   const strata::Scene scene = strata::resolved(strata::parse_scene("s", strata::scene_text(roomy)));
   for (std::uint64_t i = 0; i < 20'000; ++i) {
@@ -120,7 +120,7 @@ TEST(MeasureScene, KindsAndMarginsAreThoseOfThePairs) {
   double all = 0;
   for (const auto& [bucket, share] : file.margins) all += share;
   EXPECT_NEAR(all, 1, 1e-5);
-  EXPECT_NEAR(file.margins.at(0), 4.0 / 6, 1e-5);  // the neighbours and the coplanar ones
+  EXPECT_NEAR(file.margins.at(0), 4.0 / 6, 1e-5);  // the neighbours and the coplanar pairs
 }
 
 std::optional<GridSpec> grid_found(double step, bool decimal, int places) {
@@ -145,7 +145,7 @@ TEST(MeasureScene, GridsAreFoundWhereTheyAre) {
   EXPECT_EQ(grid_found(3.7, true, 12), std::nullopt);        // finer than float32
   EXPECT_EQ(measure_scene(all_pairs_of(sheet(12, 3.7, {1e6, 2e6, 3e6})), "sheet").grid, std::nullopt);
   EXPECT_EQ(measure_scene(all_pairs_of(sheet(1, 1.25, {0, 0, 0})), "two").grid,
-            std::nullopt);  // few numbers tell nothing
+            std::nullopt);  // too few numbers as evidence
 }
 
 TEST(MeasureScene, WhatCannotBeMeasuredIsSaid) {
@@ -192,7 +192,7 @@ TEST(SceneStrata, NearContactsAreNearInTheScenesUlps) {
   }
 }
 
-// Both decisions of the oracle, and both verdicts, in the strata of a scene as in those without.
+// Both decisions of the oracle agree, and both verdicts occur, in scene strata as in others.
 TEST(SceneStrata, BothVerdictsOccurAndTheOraclesDecisionsAgree) {
   const strata::SceneFile file = strata::parse_scene("s",
                                                      "extent = [[1000, 1800], [-540, -500], [3, 900]]\nedges = [0.5, "

@@ -11,15 +11,15 @@
 namespace graze::analysis {
 namespace {
 
-// x + y where that is exact.   Reference: Knuth, two-sum.
+// x + y if the sum is exact.   Reference: Knuth, two-sum.
 std::optional<float> exact_sum(float x, float y) {
   const float sum = x + y, other = sum - x, rest = (x - (sum - other)) + (y - other);
   return std::isfinite(sum) && rest == 0 ? std::optional(sum) : std::nullopt;
 }
 
-// (x + y) / 2 where that is exact.
+// (x + y) / 2 if that is exact.
 std::optional<float> exact_middle(float x, float y) {
-  const double middle = (double{x} + double{y}) / 2;  // of floats far apart the sum is rounded
+  const double middle = (double{x} + double{y}) / 2;  // the sum is rounded if the floats are far apart
   const auto result = static_cast<float>(middle);
   const bool exact =
       double{result} == middle && middle * 2 - double{x} == double{y} && middle * 2 - double{y} == double{x};
@@ -36,7 +36,7 @@ std::optional<Pair> moved_by(const Pair& pair, const Vec3<float>& step) {
   return moved;
 }
 
-// The middles of the edges from v[0] to v[1], from v[1] to v[2] and from v[2] to v[0].
+// The midpoints of the edges from v[0] to v[1], from v[1] to v[2] and from v[2] to v[0], if they are exact.
 bool exact_middles(const Vec3<float> (&v)[3], Vec3<float> (&middles)[3]) {
   for (int i = 0; i < 3; ++i) {
     for (int axis = 0; axis < 3; ++axis) {

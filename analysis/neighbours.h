@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs beside a pair: those that must have the same verdict, and those with one coordinate moved a little.
+// Neighbours of a pair: images that must have the same verdict, and copies with one coordinate moved a little.
 #pragma once
 
 #include <vector>
@@ -8,23 +8,24 @@
 
 namespace graze::analysis {
 
-// All exact in float32, so that the truth is the pair's own (but of parts). The pair itself is the first of each.
+// All images are exact in float32, so their truth is the pair's own (except for `parts`). The first one is the pair
+// itself.
 std::vector<Pair> orders(const Pair& pair);    // the 72: which triangle is first, and the order of each one's vertices
-std::vector<Pair> mirrored(const Pair& pair);  // the 8: each axis turned round or not
-// Times 2^k, for the k from -kMostScaling to kMostScaling with which no coordinate overflows or loses bits.
+std::vector<Pair> mirrored(const Pair& pair);  // the 8: each axis negated or not
+// Scaled by 2^k, for each k from -kMostScaling to kMostScaling at which no coordinate overflows or loses bits.
 inline constexpr int kMostScaling = 64;
 std::vector<Pair> scalings(const Pair& pair);
 std::vector<Pair> axes(const Pair& pair);  // the 6 orders of the axes
-// Moved so that a vertex lies in the origin, and by the power of two of the largest coordinate along (1, 1, 1) and
-// back, where no coordinate is rounded by it.
+// Translated so that a vertex is at the origin, and by plus and minus the power of two of the largest coordinate along
+// (1, 1, 1). Translations that would round a coordinate are left out.
 std::vector<Pair> translated(const Pair& pair);
 
-// One triangle replaced by one of the four into which the middles of its edges divide it, where these are exact in
-// float32: what intersects a part intersects the pair.
+// Replaces one triangle by one of the four parts into which its edge midpoints divide it, if the midpoints are exact in
+// float32. If a part intersects, the pair intersects.
 std::vector<Pair> parts(const Pair& pair);
 
-// One coordinate moved by an ulp and by 2^-10 of itself, up and down; a zero by as much as the largest coordinate would
-// be. Those that stay finite: four, but near the ends of float32.
+// Moves one coordinate by an ulp and by 2^-10 of its size, up and down. A zero moves as far as the largest coordinate
+// would. Returns the finite results: four, except near the limits of float32.
 std::vector<Pair> nudged(const Pair& pair, int coordinate);
 
 }  // namespace graze::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lanes under policies over the strata: what bounds certify is the truth, and what explanations say of policies holds.
+// Lanes under policies over the strata: certified verdicts equal the truth, and explanations of policies hold.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +31,7 @@ std::vector<Pair> drawn(strata::Stratum stratum, std::uint64_t count) {
 
 class PolicyOverStratum : public testing::TestWithParam<strata::StratumInfo> {};
 
-// On 10,000 pairs of each stratum, by every algorithm, scalar and host variant that has the policy.
+// 10,000 pairs of each stratum, for every algorithm, scalar and host variant that has the policy.
 TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
   const std::vector<Pair> pairs = drawn(GetParam().stratum, 10'000);
   std::vector<bool> truth;
@@ -57,10 +57,10 @@ TEST_P(PolicyOverStratum, WhatABoundDecidesIsTheTruth) {
   EXPECT_GE(lanes_asked, 16);
   const bool open = GetParam().id.starts_with("coplanar_w") || GetParam().id.starts_with("shared_") ||
                     GetParam().stratum == strata::Stratum::degenerate;
-  EXPECT_TRUE(open || decided > 10'000u) << decided;  // else it is no filter
+  EXPECT_TRUE(open || decided > 10'000u) << decided;  // otherwise it would not be a filter
 }
 
-// What right_without_rounding says of an algorithm, of proper triangles.
+// Checks the claim right_without_rounding of an algorithm on proper triangles.
 TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
   int asked = 0;
   for (const Pair& pair : drawn(GetParam().stratum, 300)) {
@@ -80,7 +80,7 @@ TEST_P(PolicyOverStratum, AlgorithmsAreRightWithoutRoundingWhereTheySaySo) {
 INSTANTIATE_TEST_SUITE_P(Strata, PolicyOverStratum, testing::ValuesIn(strata::kStrata),
                          [](const auto& row) { return std::string(row.param.id); });
 
-// projected_sat says that it is not, and bears it out.
+// projected_sat does not claim it, and this test confirms that.
 TEST(PolicyLanes, AnAlgorithmThatIsWrongWithoutRoundingIsFound) {
   int wrong = 0;
   for (const Pair& pair : drawn(strata::Stratum::uniform, 300)) {
@@ -121,7 +121,7 @@ TEST(PolicyLanes, AreExplainedByTheLaneWithoutPolicy) {
             "largest coordinate): the policy (without paper it is right).");
 }
 
-// Twins of lanes under tolerances: without contraction they are the CPU lanes; with it they are not.
+// Twins of lanes under tolerances equal the CPU lanes without contraction, and differ from them with it.
 TEST(PolicyLanes, TwinsWithoutContractionAreTheCpuLanes) {
   std::uint64_t contracted_apart = 0;
   for (const Lane& zero : published_lanes()) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Powers of two by which a pair can be scaled, and with which no product of its coordinates leaves a scalar's
-// exponents.
+// Powers of two by which a pair can be scaled so that no product of its coordinates leaves a scalar's exponents.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +25,11 @@ inline const ScalarLimits& limits_of(Scalar scalar) {
   return kLimits[static_cast<int>(scalar)];
 }
 
-// All coordinates are multiples of 2^low and less than 2^high.   Requires: some coordinate is not zero.
+// Exponent bounds of a pair: all coordinates are multiples of 2^low and less than 2^high.
+// Requires: some coordinate is not zero.
 struct Size {
   int low = 1000, high = -1000;
-  int largest_difference = -1000, smallest_difference = 1000;  // their exponents, of two vertices on one axis
+  int largest_difference = -1000, smallest_difference = 1000;  // exponents; vertex differences along one axis
 
   explicit Size(const Pair& pair) {
     const float* c = coordinates(pair);
@@ -56,7 +56,7 @@ struct Size {
   }
 };
 
-// Scales 2^k.
+// A range of scales 2^k, first <= k <= last.
 struct Scales {
   int first, last;
   bool empty() const { return first > last; }
@@ -65,14 +65,14 @@ struct Scales {
 
 inline Scales common(Scales l, Scales r) { return {std::max(l.first, r.first), std::min(l.last, r.last)}; }
 
-// With which all coordinates stay as they are, but for the exponents.
+// The scales at which only the exponents of the coordinates change.
 inline Scales exact_scales(const Size& size) { return {-149 - size.low, 128 - size.high}; }
 
-// With which no product of so many coordinates, or sums of four of them, can leave the scalar's exponents: whatever
-// rounds, such a product is a multiple of 2^(factors * low), or 0.
+// The scales at which no product of this many coordinates, and no sum of four such products, can leave the scalar's
+// exponents. However it rounds, such a product is a multiple of 2^(factors * low), or 0.
 inline Scales scales_in_range(const Size& size, Scalar scalar, int factors) {
   const ScalarLimits& limits = limits_of(scalar);
-  // Divisions that round towards the inside of the range.
+  // Both divisions round towards the inside of the range.
   return common({-(-limits.least / factors) - size.low, limits.most / factors - 2 - size.high}, exact_scales(size));
 }
 
@@ -82,7 +82,7 @@ inline Pair scaled(const Pair& pair, int k) {
   return result;
 }
 
-// The same; nothing where a coordinate would lose bits or overflow.
+// The same; nothing if a coordinate would lose bits or overflow.
 inline std::optional<Pair> exactly_scaled(const Pair& pair, int k) {
   const Pair result = scaled(pair, k), back = scaled(result, -k);
   if (!std::equal(coordinates(pair), coordinates(pair) + kCoordinates, coordinates(back))) return std::nullopt;

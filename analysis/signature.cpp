@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kWrongMarks = "+-?!@%";
 
-// Takes the text before the next `end` off the front of `rest`; nothing without one.
+// Removes and returns the text before the next `end`; nothing if there is no `end`.
 std::optional<std::string_view> take_until(std::string_view& rest, char end) {
   const std::size_t at = rest.find(end);
   if (at == rest.npos) return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<Signature> parse_signature(std::string_view key) {
                    *bucket,
                    std::string(*subject),
                    std::move(*wrong_lanes)};
-  if (analysis::key(result) != key) return std::nullopt;  // a number written otherwise, or too large
+  if (analysis::key(result) != key) return std::nullopt;  // a number in another notation, or too large
   return result;
 }
 

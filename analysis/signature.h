@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signatures: the bucket key of a subject's failure. Pairs with one signature fail alike.
+// Signatures: the key under which a subject's failures are grouped. Pairs with one signature fail alike.
 #pragma once
 
 #include <compare>
@@ -16,8 +16,8 @@
 
 namespace graze::analysis {
 
-// How a lane's answer compares with the truth: '.' right, '+' false positive, '-' false negative, '?' declined; of
-// foreign code '!' crashed, '@' timed out, '%' unstable.
+// How a lane's verdict compares with the truth: '.' right, '+' false positive, '-' false negative, '?' declined.
+// Foreign code also has '!' crashed, '@' timed out and '%' unstable.
 char mark(Verdict lane, Verdict truth);
 
 // A lane whose verdict is not the truth: its mark, and its name within the subject, such as "f32/cpu-fma".
@@ -27,8 +27,8 @@ struct WrongLane {
   auto operator<=>(const WrongLane&) const = default;
 };
 
-// One subject's failure on a pair: a pair on which several fail has several. Lanes that are right, or did not run, are
-// not in it.
+// One subject's failure on a pair. If several subjects fail on a pair, it has several signatures. Lanes that are right
+// or did not run are not in it.
 struct Signature {
   Contact contact = Contact::none;
   Hulls hulls;
@@ -36,13 +36,13 @@ struct Signature {
   std::string subject;
   std::vector<WrongLane> wrong_lanes;  // in the order of the lane table
 
-  bool wrong() const;  // some lane is; one that declined is not
-  // Of a lane of the subject; '.' also for one that is right, or did not run.
+  bool wrong() const;  // some lane is wrong; declined does not count
+  // The mark of one of the subject's lanes; '.' also if the lane is right or did not run.
   char mark_of(std::string_view lane_within_subject) const;
   auto operator<=>(const Signature&) const = default;
 };
 
-// Requires: lanes are of one subject, verdicts theirs.
+// Requires: all lanes belong to one subject; verdicts[i] is that of lanes[i].
 Signature signature(const Relation& truth, Bucket bucket, std::span<const Lane* const> lanes,
                     std::span<const Verdict> verdicts);
 
@@ -50,16 +50,16 @@ Signature signature(const Relation& truth, Bucket bucket, std::span<const Lane* 
 // margin bucket, subject, and the wrong lanes, each after its mark.
 std::string key(const Signature& signature);
 
-// The same of all signatures that differ by their margin bucket alone: the key with bucket 0.
+// The key with margin bucket 0. Signatures that differ only in their margin bucket share it.
 std::string coarse_key(const Signature& signature);
 
-// The inverse of key; nothing for a text that is no key.
+// The inverse of key; nothing if the text is not a key.
 std::optional<Signature> parse_signature(std::string_view key);
 
-// "moller_1997" of such a key; empty for a text that is no key.
+// The subject in a key, such as "moller_1997"; empty if the text is not a key.
 std::string subject_of(std::string_view key);
 
-// Calls visit(first, count) for each run of lanes of one subject, but for exact lanes, which have no failures.
+// Calls visit(first, count) for each run of lanes of one subject. Skips exact lanes, which have no failures.
 // Requires: lanes in table order.
 template <class Visit>
 void for_each_subject(std::span<const Lane* const> lanes, Visit visit) {

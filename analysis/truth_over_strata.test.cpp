@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The oracle and the lanes over the strata: two exact decisions that must always agree, and subjects whose
-// failures must show where they are known to be.
+// The oracle and the lanes over the strata. Two exact decisions must always agree, and subjects must fail where they
+// are known to fail.
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
@@ -46,7 +46,7 @@ TEST_P(EveryStratum, TheOraclesTwoDecisionsAgree) {
     intersecting += intersects;
   }
   EXPECT_GT(intersecting, 0u);
-  // Neighbours in a mesh always share a point; everywhere else both verdicts must occur.
+  // Neighbours in a mesh always share a point; in all other strata both verdicts must occur.
   const bool shared =
       GetParam().stratum == strata::Stratum::shared_vertex || GetParam().stratum == strata::Stratum::shared_edge;
   EXPECT_EQ(intersecting == 100'000u, shared);
@@ -57,7 +57,7 @@ struct Decided {
   std::vector<std::uint64_t> intersects, declined;  // a bit for each
 };
 
-// Side by side, by the exact decision.
+// Decides with the exact decision, several pairs side by side.
 Decided drawn_and_decided(std::uint64_t seed, strata::Stratum stratum, std::size_t count) {
   const std::vector<std::uint64_t> none((count + 63) / 64);
   Decided all{std::vector<Pair>(count), none, none};
@@ -66,7 +66,7 @@ Decided drawn_and_decided(std::uint64_t seed, strata::Stratum stratum, std::size
   return all;
 }
 
-// The exact decision on machine numbers: verdict, contact, shape and the margin's sign are the oracle's.
+// The exact decision on machine numbers has the oracle's verdict, contact, shape and sign of the margin.
 TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   constexpr std::size_t kPairs = 100'000;
   const auto [pairs, side_by_side, declined] = drawn_and_decided(kSeed + 1, GetParam().stratum, kPairs);
@@ -87,7 +87,7 @@ TEST_P(EveryStratum, TheExactLaneAgreesWithTheOracle) {
   }
 }
 
-// Of 20,000 pairs of each stratum, how many a shortcut in single and in double precision decides, and how many
+// For 20,000 pairs of each stratum: how many the shortcuts in single and in double precision decide, and how many
 // distances are proven in integers.
 constexpr std::array<int, 3> kDecided[strata::kStrataCount] = {
     {20000, 20000, 0},   {19934, 19942, 9},  {19963, 19999, 0},  {19999, 19999, 0},    {11842, 19999, 0},
@@ -96,7 +96,7 @@ constexpr std::array<int, 3> kDecided[strata::kStrataCount] = {
     {17476, 17519, 193}, {1214, 14371, 169}, {5956, 15003, 56},  {10801, 10842, 1539},
 };
 
-// The engine's shortcuts to a bucket: quick bounds in two precisions, and the proof of a distance in integers.
+// The engine's shortcuts to a bucket are quick bounds in two precisions, and the proof of a distance in integers.
 TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
   int by_single = 0, by_double = 0, proven = 0, undecided = 0, left = 0;
   for (std::uint64_t index = 0; index < 20'000; ++index) {
@@ -132,19 +132,21 @@ TEST_P(EveryStratum, ShortcutsToTheBucketAreRightWhereTheyDecide) {
       GetParam().stratum == strata::Stratum::shared_vertex || GetParam().stratum == strata::Stratum::shared_edge;
   EXPECT_TRUE(touching || by_double > 3'000) << by_double;
   EXPECT_TRUE(!GetParam().id.starts_with("near_") || by_single > 5'000) << by_single;
-  // The same on every host: nothing contracts. Fewer is a worse guess, slower, which nothing else shows.
+  // The counts are the same on every host, because nothing contracts. Smaller counts mean a worse, slower estimate,
+  // which only this test shows.
   EXPECT_EQ((std::array{by_single, by_double, proven}), kDecided[static_cast<int>(GetParam().stratum)]);
   const bool mixed = GetParam().stratum == strata::Stratum::mixed_scale;
   EXPECT_TRUE(mixed ? undecided > 1'000 : undecided < 20) << undecided;
   EXPECT_LT(left, mixed ? 150 : 1) << left;
 }
 
-// Of 100,003 pairs of each stratum, how many are left open by vectors.
+// For 100,003 pairs of each stratum: how many the vector code leaves undecided.
 constexpr std::size_t kOpen[strata::kStrataCount] = {
     0, 91, 1, 1, 1, 3830, 4121, 1, 0, 94, 14811, 1640, 7856, 183, 116, 988, 917, 28142, 7605,
 };
 
-// By every instruction set of this processor; those without fused multiply-adds settle none, and all others the same.
+// Runs every instruction set of this processor. Those without fused multiply-adds decide none; all others decide the
+// same pairs.
 TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   constexpr std::size_t kPairs = 100'003;
   const auto [pairs, truth, declined] = drawn_and_decided(kSeed + 3, GetParam().stratum, kPairs);
@@ -175,7 +177,7 @@ TEST_P(EveryStratum, BucketsSideBySideAreRightWhereTheyAreSettled) {
   EXPECT_EQ(fewest, least);
 }
 
-// The margin's certified bucket, sign included, against the exact margin.
+// Compares the margin's certified bucket, including its sign, with the exact margin.
 TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
   for (std::uint64_t index = 0; index < 400; ++index) {
     const Pair pair = strata::generate(kSeed, GetParam().stratum, index);
@@ -184,7 +186,7 @@ TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
     ASSERT_EQ(bucket > 0, t.verdict == Verdict::disjoint) << index;
     ASSERT_EQ(bucket == 0, t.margin == 0 && t.verdict == Verdict::intersects) << index;
     if (bucket != 0 && t.margin_ulps != 0 && std::isfinite(t.margin_ulps)) {
-      // The rounded margin may sit on a bucket's border; the bucket may then be the one below.
+      // The rounded margin may be on a bucket's border; then the bucket may be the one below.
       const int log2_ulps = std::ilogb(t.margin_ulps);
       EXPECT_TRUE(bucket == make_bucket(bucket > 0 ? 1 : -1, log2_ulps) ||
                   std::abs(t.margin_ulps) == std::ldexp(1.0, log2_ulps))
@@ -196,7 +198,7 @@ TEST_P(EveryStratum, BucketsHoldTheExactMargin) {
 INSTANTIATE_TEST_SUITE_P(Strata, EveryStratum, testing::ValuesIn(strata::kStrata),
                          [](const auto& row) { return std::string(row.param.id); });
 
-// Every near, coplanar, degenerate and extreme stratum must defeat some lane, or it is not worth its name.
+// Every near, coplanar, degenerate and extreme stratum must make some lane fail; otherwise it is useless.
 TEST(Lanes, FailInEveryHardStratum) {
   for (const strata::StratumInfo& row : strata::kStrata) {
     if (row.stratum == strata::Stratum::uniform || row.stratum == strata::Stratum::thesis) continue;
@@ -210,8 +212,8 @@ TEST(Lanes, FailInEveryHardStratum) {
   }
 }
 
-// On {-1,0,1} nothing rounds in algorithms that neither divide nor take roots: each error is one of logic, and
-// on proper triangles they make none.
+// On {-1,0,1} algorithms that neither divide nor take roots do not round. So each error is an error of logic, and on
+// proper triangles there are none.
 TEST(Lanes, OnTheLatticeDivisionFreeAlgorithmsFailOnDegeneratePairsOnly) {
   std::uint64_t proper = 0, wrong_on_degenerate = 0;
   for (std::uint64_t index = 0; index < 200'000; ++index) {
@@ -243,7 +245,7 @@ TEST(Lanes, WideExactContactsDefeatDoublePrecision) {
   }
 }
 
-// Canaries: where contraction cannot show, the fused lanes have become the strict ones (see GRAZE_FP).
+// Canaries: if contraction has no effect, the fused lanes have become the strict ones (see GRAZE_FP).
 TEST(Canary, EveryHostVariantShowsInEveryAlgorithmAndScalar) {
   for (const Lane& fused : lanes()) {
     if (fused.exact || fused.variant == Variant::cpu || fused.is_cuda() || !runs_on_this_cpu(fused)) continue;

@@ -14,6 +14,7 @@
 namespace graze::analysis {
 namespace {
 
+constexpr double kOutward = 0x1p-40;  // more than the relative error of the library's quantiles
 constexpr std::uint64_t kPairsForScale = 100'000;
 
 std::string tolerance(const std::string& site, bool relative, double value) {
@@ -55,7 +56,7 @@ class Tuner {
       for (const bool relative : {true, false}) result_.curves.push_back({site, relative, {}});
     }
     add_points([&](const Curve&) { return steps(low_, high_, 1); });
-    // Quarter octaves around what is best so far.
+    // Adds points a quarter of an octave apart around the best one so far.
     add_points([&](const Curve& curve) {
       const auto best =
           std::min_element(curve.points.begin(), curve.points.end(),
@@ -110,7 +111,7 @@ class Tuner {
   PolicyRank rank(const PolicyErrors& errors) const { return analysis::rank(errors, spec_.forbid, spec_.max_rate); }
 
   void choose() {
-    const PolicyErrors* best = &result_.zero;  // curves stand in the order in which equals are preferred
+    const PolicyErrors* best = &result_.zero;  // curves are in the order of preference among equals
     for (const Curve& curve : result_.curves) {
       for (const PolicyErrors& point : curve.points) {
         if (rank(point) < rank(*best)) best = &point;
@@ -173,8 +174,8 @@ class Tuner {
   }
 
   const TuneSpec& spec_;
-  double low_, high_;  // of the range, as powers of two
-  double cube_;        // of a typical length cubed
+  double low_, high_;  // range of tolerances, as powers of two
+  double cube_;        // log2 of a typical length cubed
   Tuned result_;
 };
 
@@ -196,8 +197,9 @@ std::vector<strata::PairSource> scaled(Sources sources, int k) {
 
 double upper_bound(std::uint64_t count, std::uint64_t of) {
   if (of == 0 || count >= of) return 1;
-  return boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(of),
-                                                                     static_cast<double>(count), 0.05);
+  const double nearest = boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(of),
+                                                                                     static_cast<double>(count), 0.05);
+  return std::min(1.0, nearest * (1 + kOutward));
 }
 
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid) {

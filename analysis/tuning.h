@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which epsilon: a lane's errors under many policies on the same pairs, the policy that serves best, and what is wrong
-// with epsilons that no error count alone shows.
+// Chooses an epsilon. Compares a lane's errors under many policies on the same pairs and finds the best policy. Also
+// reports problems with epsilons that an error count alone does not show.
 #pragma once
 
 #include <compare>
@@ -15,19 +15,20 @@ namespace graze::analysis {
 // The number in the name of one tolerance, "rel:24" or "separation=abs:1e-6".
 double tolerance_of(const std::string& policy);
 
-// The pairs times 2^k; those for which that is not exact are left as they are.
+// The pairs times 2^k; pairs that cannot be scaled exactly stay as they are.
 std::vector<strata::PairSource> scaled(Sources sources, int k);
 
-// Upper bound of the rate behind `count` of `of` cases: at it, so few come once in twenty times.
-// Reference: Clopper and Pearson 1934, one-sided.
+// Upper 95 % confidence bound of the rate, given `count` of `of` cases: at this rate, so few cases have a 5 % chance.
+// Rounded outward. Reference: Clopper and Pearson 1934, one-sided.
 double upper_bound(std::uint64_t count, std::uint64_t of);
 
-// What may not happen more often than a rate.
+// The kind of error whose rate is limited.
 enum class Forbid { false_negative, false_positive, any };
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid);
 
-// What a policy is judged by. Compares less for the better one: its rate of what is forbidden is low enough first, then
-// by the other errors, then by those forbidden.
+// The rank of a policy; the better one compares less. First, the rate of forbidden errors must be low enough; then the
+// number of other errors decides, then the number of forbidden ones. If the rate is too high, forbidden errors come
+// before the others.
 struct PolicyRank {
   bool too_many;
   std::uint64_t first, second;
@@ -37,9 +38,9 @@ PolicyRank rank(const PolicyErrors& errors, Forbid forbid, double max_rate);
 
 struct TuneSpec {
   Sweep sweep;
-  std::vector<std::string> sites;           // that the lane asks
-  std::vector<strata::PairSource> sources;  // to choose on
-  std::vector<strata::PairSource> others;   // to judge the choice on
+  std::vector<std::string> sites;           // sites that the lane asks about
+  std::vector<strata::PairSource> sources;  // pairs to choose on
+  std::vector<strata::PairSource> others;   // pairs to verify the choice on
   Forbid forbid = Forbid::any;
   double max_rate = 1e-6;
 };
@@ -51,48 +52,49 @@ struct Curve {
   std::vector<PolicyErrors> points;  // by tolerance
 };
 
-// How far pairs may grow or shrink before the errors under a policy double; 0: not within kMostScale.
+// How far pairs may grow or shrink before the errors under a policy double; 0: they do not double within kMostScale.
 struct ScaleBreak {
   int up = 0, down = 0;  // exponents of two
   PolicyErrors at_up, at_down;
 };
 inline constexpr int kMostScale = 32;
 
-// Errors of two sites, alone and together, by the chosen tolerance.
+// Errors with the chosen tolerance at each of two sites alone, and at both together.
 struct Interaction {
   std::string first, second;
   PolicyErrors of_first, of_second, together;
 };
 
 enum class TuneResult {
-  satisfied,       // the rate's upper bound is below what is allowed
-  too_few_pairs,   // few enough errors were seen, but not on enough pairs to say so
-  not_confirmed,   // few enough on the pairs that it was chosen on, too many on the others
-  not_satisfiable  // too many on the pairs of the choice under every policy; none has fewer there than the choice
+  satisfied,       // the rate's upper bound is at most max_rate
+  too_few_pairs,   // few enough errors, but on too few pairs to prove it
+  not_confirmed,   // few enough errors on the pairs of the choice, too many on the others
+  not_satisfiable  // every policy has too many errors on the pairs of the choice; the chosen one has the fewest
 };
 
 struct Tuned {
-  PolicyErrors zero;  // on the pairs to choose on
+  PolicyErrors zero;  // on the pairs of the choice
   std::vector<Curve> curves;
-  std::string chosen;  // policy; empty: zero
+  std::string chosen;  // policy; empty: compare with zero exactly
   TuneResult result = TuneResult::not_satisfiable;
-  PolicyErrors confirmed, zero_confirmed;  // on the others
-  double bound = 1;                        // of the forbidden rate, by `confirmed`
+  PolicyErrors confirmed, zero_confirmed;  // on the other pairs
+  double bound = 1;                        // upper bound of the forbidden rate, computed from `confirmed`
   std::vector<std::string> dead;           // sites at which no tolerance changes any verdict
   ScaleBreak scale;
   std::vector<Interaction> interactions;
 };
 
-// What follows of the choice: its errors on the pairs that it was made on, those on the others, and their bound.
+// Judges the choice by its errors on the pairs of the choice, its errors on the other pairs, and the bound of those.
 TuneResult result_of(const PolicyErrors& chosen_on, const PolicyErrors& confirmed, double bound, Forbid forbid,
                      double max_rate);
 
-// Chooses on some pairs and judges on others. Of the policies whose rate of what is forbidden is low enough the one
-// with the fewest other errors; of equals relative tolerances, then all sites, then the smallest tolerance.
+// Chooses a policy on some pairs and verifies it on others. Among the policies whose forbidden rate is low enough, it
+// takes the one with the fewest other errors. Ties prefer no tolerance, then relative tolerances at all sites, then
+// absolute ones at all sites, then single sites, and then the smallest tolerance.
 // Requires: pairs in both lists.
 Tuned tune(const TuneSpec& spec);
 
-// The sites that the algorithm asks about, by name, on the first pairs of the sources.
+// The names of the sites that the algorithm asks about on the first 500 pairs of each source.
 std::vector<std::string> sites_asked(const Lane& lane, Sources sources);
 
 }  // namespace graze::analysis

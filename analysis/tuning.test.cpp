@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "core/exact/exact.h"
@@ -24,6 +27,21 @@ TEST(UpperBound, IsClopperAndPearsons) {
   // R: binom.test(3, 100, alternative = "less")
   EXPECT_NEAR(upper_bound(3, 100), 0.07571, 1e-5);
   EXPECT_EQ(upper_bound(5, 5), 1);
+}
+
+// At the bound, so few cases have a chance of 5 % or less, however the double is rounded: counted with 50 digits.
+TEST(UpperBound, IsRoundedOutward) {
+  using Precise = boost::multiprecision::cpp_bin_float_50;
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 2000; ++i) {
+    const std::uint64_t of = 1 + random() % (i % 2 ? 4000 : 1'000'000),
+                        count = i % 3 ? 0 : random() % std::min<std::uint64_t>(of, 40);
+    const Precise p = upper_bound(count, of), q = 1 - p;
+    Precise term = pow(q, Precise(of)), chance = term;
+    for (std::uint64_t k = 1; k <= count; ++k) chance += term *= Precise(of - k + 1) / k * p / q;
+    EXPECT_LE(chance, Precise("0.05")) << count << " of " << of;
+    EXPECT_GE(chance, Precise("0.0499999")) << count << " of " << of;
+  }
 }
 
 TEST(Scaled, IsExactOrLeftAlone) {
@@ -53,20 +71,19 @@ TEST(Tune, ChoosesForWhatIsForbidden) {
   EXPECT_EQ(no_negative.result, TuneResult::satisfied) << no_negative.chosen << " " << no_negative.bound;
   EXPECT_GT(no_negative.zero_confirmed.false_negative, 100u);
   EXPECT_LE(no_negative.bound, 1e-3);
-  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // not simply all of them
+  EXPECT_LT(no_negative.confirmed.false_positive, 20'000u * 3 / 4);  // but not all of them
   spec.forbid = Forbid::false_positive;
   const Tuned no_positive = tune(spec);
-  EXPECT_EQ(no_positive.result, TuneResult::not_satisfiable);  // a tolerance takes none away
+  EXPECT_EQ(no_positive.result, TuneResult::not_satisfiable);  // a tolerance removes no false positives
   spec.forbid = Forbid::any;
   spec.max_rate = 1e-6;
-  const Tuned neither = tune(spec);  // no epsilon can
+  const Tuned neither = tune(spec);  // no epsilon can satisfy it
   EXPECT_EQ(neither.result, TuneResult::not_satisfiable);
   EXPECT_LE(neither.confirmed.wrong(), neither.zero_confirmed.wrong());
   EXPECT_EQ(tune(spec).chosen, neither.chosen);
 }
 
-// What is said of the policy chosen holds on the curves: where none is good enough, none has fewer of what is
-// forbidden.
+// The claims about the chosen policy hold on the curves: if none is good enough, none has fewer forbidden errors.
 TEST(Tune, NoPolicyIsGoodEnoughOnlyWhereNoneOfTheCurvesIs) {
   std::set<TuneResult> results;
   for (const std::uint64_t pairs : {300u, 3000u}) {
@@ -116,7 +133,7 @@ TEST(Tune, SaysWhenPairsAreTooFew) {
   EXPECT_NEAR(tuned.bound, 1.5e-3, 1e-4);
 }
 
-// A knob that nothing is connected to is called dead, and one that decides is not.
+// A site whose tolerance has no effect is called dead; one that decides is not.
 TEST(Tune, FindsDeadKnobs) {
   TuneSpec spec;
   const auto real = [](const std::string& policy) {
@@ -133,7 +150,7 @@ TEST(Tune, FindsDeadKnobs) {
   EXPECT_EQ(tune(spec).dead, std::vector<std::string>{"orientation"});
 }
 
-// Exact, but for pairs whose coordinates are all smaller than 1/1000: these it says to intersect.
+// Exact, except for pairs whose coordinates are all smaller than 1/1000: it says that those intersect.
 class WrongWhenSmall : public ForeignCode {
  public:
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override {

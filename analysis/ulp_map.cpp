@@ -16,7 +16,7 @@
 namespace graze::analysis {
 namespace {
 
-// The truth and the lanes on a block of pairs.
+// Judges blocks of pairs: the truth and the lanes.
 class Panels {
  public:
   explicit Panels(std::span<const Lane* const> lanes) : lanes_{nullptr} {
@@ -27,12 +27,13 @@ class Panels {
     failed_.resize(blocks_.size());
   }
 
-  const std::vector<const Lane*>& lanes() const { return lanes_; }  // the truth's is null
+  const std::vector<const Lane*>& lanes() const { return lanes_; }  // null for the truth
 
-  // Foreign code that fails on so many pairs gets no panel: each takes a new process, or all of its time.
+  // Foreign code that fails on this many pairs gets no panel, because each failure takes a new process or the full time
+  // limit.
   bool given_up(std::size_t panel) const { return failed_[panel] >= kMostFailures; }
 
-  // Writes, for each panel that is not given up, the cells of these pairs one after the other.
+  // Appends the cells of these pairs to each panel that is not given up.
   void judge(std::span<const Pair> pairs, std::span<std::vector<Cell>> cells) {
     std::vector<Cell>& truth = cells.front();
     const std::size_t first = truth.size();
@@ -44,7 +45,7 @@ class Panels {
   }
 
  private:
-  static constexpr int kMostFailures = 3000, kOfALate = 1000;  // three that took all of their time are enough
+  static constexpr int kMostFailures = 3000, kOfALate = 1000;  // three time-outs are enough
 
   static Cell cell_of(Verdict said, Cell truth) {
     if (truth == Cell::not_finite) return truth;
@@ -65,8 +66,8 @@ class Panels {
     return Cell::unstable;
   }
 
-  // What the panel's lane says of the pairs; foreign code is asked eight at a time.
-  // Returns: false where the panel is given up.
+  // Asks the panel's lane about the pairs; foreign code gets eight pairs at a time.
+  // Returns: false if the panel is given up.
   bool ask(std::size_t p, std::span<const Pair> pairs) {
     const std::size_t at_once = lanes_[p]->foreign ? 8 : pairs.size();
     said_.clear();
@@ -139,7 +140,7 @@ Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row) {
 }
 
 MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* const> lanes) {
-  // Columns and rows 2^k from the middle, to both sides.
+  // Columns and rows at the distances 2^k from the middle, on both sides.
   std::vector<int> places{kMapCentre};
   for (int away = 1; away < kMapCentre; away *= 2) {
     places.insert(places.begin(), kMapCentre - away);
@@ -195,7 +196,7 @@ UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordi
   }
   confirm(map, kMapCentre * kMapSize + kMapCentre);
   for (int first = 0, k = 0; first < kMapSize * kMapSize; first += kMapSample, ++k)
-    confirm(map, first + 389 * k % kMapSample);  // in other columns each time
+    confirm(map, first + 389 * k % kMapSample);  // a different column each time
   return map;
 }
 

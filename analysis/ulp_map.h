@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ulp maps: the verdicts around a pair when two of its coordinates move by single ulps, in the manner of the pictures
-// in Kettner, Mehlhorn, Pion, Schirra and Yap 2008, "Classroom examples of robustness problems in geometric
-// computations".
+// Ulp maps: the verdicts around a pair when two of its coordinates move by single ulps. The maps follow the pictures in
+// Kettner, Mehlhorn, Pion, Schirra and Yap 2008, "Classroom examples of robustness problems in geometric computations".
 #pragma once
 
 #include <array>
@@ -19,19 +18,20 @@ namespace graze::analysis {
 
 inline constexpr int kMapSize = 256;             // cells on each side
 inline constexpr int kMapCentre = kMapSize / 2;  // column and row of the pair itself
-inline constexpr int kMapSample = 1024;          // the oracle confirms one cell in so many, and the pair itself
+inline constexpr int kMapSample = 1024;          // the oracle confirms one cell in 1024, and the pair itself
 
-// Two coordinates of a pair, as places in coordinates(pair).
+// Two coordinates of a pair, as indices into coordinates(pair).
 struct MovedCoordinates {
   int x, y;
   bool operator==(const MovedCoordinates&) const = default;
 };
 
-// "b[0].x", of all 18.
+// Names one of the 18 coordinates, such as "b[0].x".
 std::string name_of_coordinate(int coordinate);
 std::optional<int> coordinate_of_name(std::string_view name);
 
-// What a lane says in a cell, or of the truth the first two and not_finite; behind that what foreign code alone does.
+// A lane's result in a cell. The truth has only disjoint, intersects and not_finite; only foreign code has crashed,
+// timed_out and unstable.
 enum class Cell : std::uint8_t {
   disjoint,
   intersects,
@@ -59,21 +59,21 @@ struct UlpMap {
   std::vector<UlpPanel> panels;  // the truth, then the lanes
 };
 
-// The pair of a cell: x goes up by an ulp from column to column, y goes down by one from row to row, through zero and
-// the subnormals. At the ends of float32 it is not finite.
+// Returns the pair of a cell. x rises by an ulp from column to column, and y falls by an ulp from row to row, through
+// zero and the subnormals. At the limits of float32 the pair is not finite.
 Pair pair_at(const Pair& pair, MovedCoordinates moved, int column, int row);
 
-// The two coordinates of one vertex along which verdicts change most: of a few cells, close ones and far ones, those
-// are counted that differ from the one before, in the truth and in each lane; the fewer of both directions decides,
-// then the sum, then the order of the coordinates. Around zero an ulp is 2^-149, which says little: a zero moves only
-// where nothing changes in both directions without one.
-// Requires: finite coordinates; lanes that run here, or have a twin.
+// Chooses the two coordinates of one vertex along which verdicts change most. The function samples some cells, near and
+// far, and counts those that differ from the cell before, in the truth and in each lane. It compares the smaller count
+// of the two directions first, then the sum, then the order of the coordinates. Around zero an ulp is 2^-149, which
+// tells little. So a zero moves only if no other choice changes verdicts in both directions.
+// Requires: finite coordinates; lanes that run here or have a twin.
 MovedCoordinates liveliest_coordinates(const Pair& pair, std::span<const Lane* const> lanes);
 
-// CUDA lanes by their twins; exact lanes are left out, for the truth is theirs, and foreign code that takes all of its
-// time on three pairs, or crashes on 3000. Deterministic.
-// Requires: finite coordinates; lanes that run here, or have a twin; two coordinates.   Exact: the truth.
-// Throws: OracleMismatch where the oracle does not confirm the truth.
+// CUDA lanes run as twins. Exact lanes are left out, because their verdict is the truth. Foreign code is left out if it
+// times out on three pairs or crashes on 3000. Deterministic.
+// Requires: finite coordinates; lanes that run here or have a twin; two coordinates.   Exact: the truth.
+// Throws: OracleMismatch if the oracle does not confirm the truth.
 UlpMap ulp_map(const Pair& pair, std::span<const Lane* const> lanes, MovedCoordinates moved);
 
 }  // namespace graze::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze bench`: the tables of the thesis of 2012 again, on this machine.
+// `graze bench`: repeats the tables of the thesis of 2012 on this machine.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -61,7 +61,7 @@ nlohmann::ordered_json json_of(const Bench& bench) {
   return {{"machine", machine}, {"crossover", crossover}, {"rows", rows}};
 }
 
-// The rows of one array.
+// Formats the rows of one array.
 std::string table_of(const Bench& bench, std::size_t group) {
   using reports::Align;
   std::vector<std::vector<reports::Cell>> lines;
@@ -82,7 +82,7 @@ std::string table_of(const Bench& bench, std::size_t group) {
   return table.text(output_screen());
 }
 
-// What a device could do at most, and what the exact lane did.
+// Describes the device's limits and what the exact lane achieved.
 std::string shares(const Bench& bench) {
   std::string text;
   for (const char* data : {"resident", "host"}) {
@@ -102,7 +102,7 @@ std::string shares(const Bench& bench) {
   return text;
 }
 
-// Of the lanes that were asked for, those of CUDA, where there is no device.
+// The requested CUDA lanes, if there is no device.
 std::vector<fuzz::LaneLeftOut> without_device(const std::vector<std::string>& lanes) {
   std::vector<fuzz::LaneLeftOut> left_out;
   if (graze_devices() > 0) return left_out;
@@ -123,7 +123,7 @@ void bench(const Options& options, int& status) {
   }
   const std::atomic<bool>& interrupted = catch_interrupts();
   const bool on_terminal = isatty(STDERR_FILENO);
-  std::size_t printed = 0;  // arrays
+  std::size_t printed = 0;  // number of arrays
   const auto print_table = [&](const Bench& bench) {
     if (on_terminal) fmt::print(stderr, "\r\033[K");
     if (options.json) return;

@@ -14,7 +14,7 @@ namespace {
 using reports::svg_text;
 
 constexpr double kWidth = 900, kHeight = 420, kLeft = 64, kRight = 230, kTop = 44, kBottom = 52;
-// Decades of an axis that holds what it is given.
+// The range of decades of a logarithmic axis that holds the given values.
 struct Decades {
   int low = 99, high = -99;
   void hold(double value) {

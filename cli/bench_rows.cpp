@@ -26,9 +26,9 @@ namespace {
 using query::Answer;
 using query::Triangle;
 
-constexpr std::uint64_t kDrawn = 1'000'000;                               // distinct ones; larger arrays repeat them
-constexpr std::uint64_t kInTree = 1'000'000;                              // more would take minutes and gigabytes
-constexpr std::uint64_t kByLanes = 1'000'000, kByCudaLanes = 10'000'000;  // other ones: they are slower
+constexpr std::uint64_t kDrawn = 1'000'000;   // distinct triangles; larger arrays repeat them
+constexpr std::uint64_t kInTree = 1'000'000;  // more triangles would take minutes and gigabytes
+constexpr std::uint64_t kByLanes = 1'000'000, kByCudaLanes = 10'000'000;  // for inexact lanes: they are slower
 constexpr std::uint64_t kOnOneCore = 100'000'000;
 constexpr int kTimes = 3;
 constexpr Triangle kThesis = {2, -2, 4, 1, 5, -2, 1, -3, -3};
@@ -53,7 +53,7 @@ Array thesis_array(std::uint64_t count) {
   return array;
 }
 
-// A hit among the first hundred, and no other.
+// One hit among the first hundred triangles, and no other.
 Array any_array(std::uint64_t count) {
   Array array{"thesis", kThesis, std::vector<Triangle>(count, Triangle{9, 9, 9, 9, 8, 9, 9, 9, 8})};
   array.triangles[std::min<std::uint64_t>(99, count - 1)] = kThesis;
@@ -109,7 +109,7 @@ class Measuring {
     ++group_;
   }
 
-  // Verdicts of the lane go to `bytes`, or, beside exact ones, are compared with them.
+  // The lane's verdicts are written to `bytes` or, if `exact` is given, compared with it.
   void by_executors(const Array& array, const graze_triangles& host, const std::string& mode, const std::string& lane,
                     std::vector<std::uint8_t>& bytes, const std::vector<std::uint8_t>* exact) {
     BenchRow row{group_, array.name, host.count, "", "host", mode, lane, 0, 0, 0, {}};
@@ -138,7 +138,7 @@ class Measuring {
     query.parts = parts.data();
     add(row, query, GRAZE_ONE_GPU, "one GPU", nullptr, nullptr);
     if (devices_ == 1 || mode == "any") return;
-    query.part_count = parts.size();  // the array once on each device
+    query.part_count = parts.size();  // each device holds the array once
     row.triangles = host.count * parts.size();
     add(row, query, GRAZE_ALL_GPUS, fmt::format("{} GPUs", devices_), nullptr, nullptr);
   }
@@ -152,7 +152,7 @@ class Measuring {
     row.seconds = 1e9;
     for (int k = 0; k <= kTimes; ++k) {
       graze_query asked = query;
-      // The first time for the verdicts, and to warm up; then for the count alone.
+      // The first run warms up and writes the verdicts; the others only count.
       if (k == 0 && bytes && query.mode == GRAZE_ALL) asked.bytes = exact ? found.data() : bytes->data();
       const Answer answer = context_.run(asked);
       if (answer.status == GRAZE_BAD_ARGUMENT) throw UsageError(std::string(answer.what()));
@@ -168,7 +168,7 @@ class Measuring {
     tell(row);
   }
 
-  // All executors must tell the same of one array, which lies there once for each device.
+  // All executors must find the same hits in one array, which is stored once on each device.
   void expect_hits(const BenchRow& row) const {
     for (const BenchRow& other : bench_.rows) {
       if (other.group != row.group || other.lane != "exact" || other.mode != "all") continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `graze bench` measures: queries of arrays of several sizes, by all executors that are here, each the best of
-// three, after one that is not counted; and beside them what bounds a device, and CGAL's tree of boxes.
+// The measurements of `graze bench`: queries of arrays of several sizes on all available executors. Each is the best of
+// three runs after a warm-up. Also measures the limits of a device, and CGAL's tree of boxes.
 #pragma once
 
 #include <cstdint>
@@ -17,22 +17,22 @@ struct BenchOptions {
   std::vector<std::uint64_t> sizes;
   std::vector<query::Triangle> mesh;  // measured as well, unless empty
   std::string mesh_name;
-  std::vector<std::string> lanes;  // beside the exact one
+  std::vector<std::string> lanes;  // in addition to the exact one
 };
 
 struct BenchRow {
-  std::size_t group;  // rows of one array
+  std::size_t group;  // identifies the rows of one array
   std::string array;  // "thesis", or the name of a mesh
   std::uint64_t triangles;
   std::string executor;               // "one core", "all cores", "one GPU", "2 GPUs"
   std::string data;                   // "host", "resident"
   std::string mode;                   // "all", "any"
   std::string lane;                   // "exact"; "CGAL AABB tree"
-  double seconds, build_seconds = 0;  // of the tree
+  double seconds, build_seconds = 0;  // of building the tree
   std::uint64_t hits;
-  std::optional<std::uint64_t> mismatches;  // with the exact lane, of another one
+  std::optional<std::uint64_t> mismatches;  // triangles on which this lane differs from the exact one
 
-  double rate() const { return static_cast<double>(triangles) / seconds; }  // a second
+  double rate() const { return static_cast<double>(triangles) / seconds; }  // triangles a second
   std::string by() const { return executor + (data == "resident" ? ", resident" : ""); }
 };
 
@@ -45,16 +45,17 @@ struct BenchMachine {
 struct Bench {
   BenchMachine machine;
   std::vector<BenchRow> rows;
-  // The smallest array, of those measured, from which on one GPU is faster with its copies than all cores; 0: none.
+  // The smallest measured array such that one GPU, copies included, is faster than all cores at it and all larger ones;
+  // 0: none.
   std::uint64_t crossover = 0;
 };
 
-// Tells each row as it is measured, the last one of what there is so far; false ends it.   Throws: std::runtime_error
-// of what went wrong.
+// Calls `told` with the results so far after each row; `told` returns false to stop.
+// Throws: std::runtime_error if a measurement fails.
 Bench measure(const BenchOptions& options, const std::function<bool(const Bench&)>& told);
 
-// An SVG of 900 x 420: triangles of the thesis a second, exact, against the size of the array, both by decades; one
-// line for each executor. `machine`: its words.
+// Returns an SVG of 900 x 420: triangles per second of the exact lane on the thesis arrays, against the array's size.
+// Both axes are logarithmic; each executor has a line. `machine`: a description of the machine.
 std::string bench_plot(const Bench& bench, const std::string& machine);
 
 }  // namespace graze::cli

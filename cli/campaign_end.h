@@ -9,11 +9,12 @@
 
 namespace graze::cli {
 
-// What a campaign has to say at the end of `fuzz` and of `merge`; leaves its picture in `out`. Defined in fuzz.cpp.
+// Prints the result of a campaign at the end of `fuzz` and `merge`, and writes its picture to `out`. Defined in
+// fuzz.cpp.
 void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,
                     const std::vector<strata::LeftOut>& left_out = {});
 
-// The same of a shard.
+// The same for a shard.
 void print_shard(const std::string& out, const fuzz::Json& summary, bool json);
 
 }  // namespace graze::cli

@@ -13,7 +13,7 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-// The maps in the file; null where they are missing or damaged, and made anew.
+// The maps in the file; null if they are missing or damaged: then they are drawn again.
 Json stored(const std::filesystem::path& file) {
   try {
     return fuzz::read_sealed(file, "");
@@ -22,7 +22,7 @@ Json stored(const std::filesystem::path& file) {
   }
 }
 
-// Whether the stored maps are these lanes' of this pair.
+// Whether the stored maps belong to this pair and these lanes.
 bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
   if (!reports::is_map_of(maps, pair) || !maps.contains("panels") || !maps["panels"].is_array() ||
       maps["panels"].size() != lanes.size() + 1)

@@ -9,9 +9,9 @@
 
 namespace graze::cli {
 
-// Maps the file's first case on the subject's lanes under test, along the liveliest coordinates,
-// unless that is there already or `again`. Returns: whether it was done now. Throws: OracleMismatch,
-// std::runtime_error.
+// Maps the file's first case on the subject's lanes under test, along the liveliest coordinates, unless current maps
+// exist and `again` is false.
+// Returns: whether the maps were made now.   Throws: OracleMismatch, std::runtime_error.
 bool map_case(const fuzz::SelectedLanes& under_test, const std::filesystem::path& case_file, const std::string& subject,
               bool again);
 

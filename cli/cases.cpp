@@ -32,7 +32,7 @@ std::string words(const oracle::Truth& truth) {
 
 std::vector<corpus::Entry> read_cases(const std::string& name) {
   const std::size_t first = name.find(':'), last = name.rfind(':');
-  // A scene is named by a path, which may hold slashes and colons.
+  // A scene is named by a path, which may contain slashes and colons.
   const std::size_t at = std::min(name.find('@'), name.size());
   const std::size_t middle = last == std::string::npos || last == 0 ? std::string::npos : name.rfind(':', last - 1);
   std::error_code ignored;

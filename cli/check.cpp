@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze check`: the truth and every lane's verdict of pairs from a file or a pipe.
+// `graze check`: prints the truth and every lane's verdict for pairs from a file or a pipe.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -72,7 +72,7 @@ void check(const CheckOptions& options) {
     }
   }
   if (number_of_pair == 0) throw std::runtime_error("there is no pair in " + name_of_input);
-  if (wrong && !from_stdin && !options.json) fmt::print("Next: graze explain {}\n", shell_word(options.file));
+  if (wrong && !from_stdin && !options.json) fmt::print("Next: graze explain {}\n", path_word(options.file));
 }
 
 }  // namespace
@@ -85,7 +85,10 @@ void add_check(CLI::App& app, int&) {
   add_lane_options(*command, options->lanes);
   add_exact_input(*command, options->exact_input);
   command->add_flag("--json", options->json, "Print one JSON object per line, one line per pair");
-  command->add_flag("--truth-only", options->truth_only, "Print the truth alone; run no lane")->excludes("--lanes");
+  command->add_flag("--truth-only", options->truth_only, "Print the truth alone; run no lane")
+      ->excludes("--lanes")
+      ->excludes("--subject")
+      ->excludes("--executor");
   command->callback([options] { check(*options); });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command as users meet it: contracts of its JSON, one clear line for bad input, and nothing lost when killed.
+// The command as users run it: JSON contracts, one clear line for bad input, and no loss when it is killed.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -27,7 +27,7 @@ TEST_F(Cli, CheckPrintsOneObjectALine) {
     EXPECT_EQ(object["pair"], count);
     EXPECT_EQ(object["truth"].dump(), R"({"verdict":"intersects","contact":"point","margin":0.0,"margin_ulps":0.0})");
     EXPECT_EQ(object["lanes"]["interval_overlap/f32/cpu"], "intersects");
-    EXPECT_TRUE(object["lanes"].contains("interval_overlap/f64/cuda-fma"));  // without a device by its twin
+    EXPECT_TRUE(object["lanes"].contains("interval_overlap/f64/cuda-fma"));  // as a twin if there is no device
     EXPECT_FALSE(object["cuda"].get<std::string>().empty());
   }
   EXPECT_EQ(count, 2);
@@ -61,7 +61,7 @@ TEST_F(Cli, BadPairsGetOneLineAndKeepWhatCameBefore) {
   expect_error("graze repro missing.pairs", 1, {"missing.pairs", "No such file or directory"});
 }
 
-// What was not compared is no zero.
+// Verdicts that were not compared are not reported as zero.
 TEST_F(Cli, NothingComparedIsSaidEverywhere) {
   const std::string fuzz = "graze fuzz --executor twin --pairs 30 --strata uniform ";
   const Ran ran = shell(fuzz + "--lanes 'moller_1997/f32/cuda-fma' --out c");
@@ -115,7 +115,7 @@ TEST_F(Cli, DatabasesOfOthersAreRefused) {
                {"b", "database", "--out"});
 }
 
-// One byte of a batch, and the end of the file: one line, and the way on keeps the rest.
+// After a change of one byte of a batch, or of the end of the file: one line, and --discard-damaged keeps the rest.
 TEST_F(Cli, DamageIsOneLineAndWhatChecksIsKept) {
   const std::string fuzz = "graze fuzz --pairs 20000 --strata 'near_*,degenerate' --lanes '*/f32/cpu' ";
   ASSERT_EQ(shell(fuzz + "--out whole && cp -r whole c").status, 0);
@@ -137,7 +137,7 @@ TEST_F(Cli, DamageIsOneLineAndWhatChecksIsKept) {
   EXPECT_EQ(again.err, "");
 }
 
-// The folder's lock, held here by flock(1).
+// flock(1) holds the folder's lock here.
 TEST_F(Cli, TwoAtOnceInOneFolderAreRefused) {
   const std::string fuzz = "graze fuzz --pairs 2000 --strata degenerate --lanes '*/f32/cpu' --out c";
   ASSERT_EQ(shell(fuzz).status, 0);
@@ -147,7 +147,7 @@ TEST_F(Cli, TwoAtOnceInOneFolderAreRefused) {
   expect_done("graze minimize c > /dev/null && " + fuzz);
 }
 
-// Device nodes and pipes of our own, never those of the machine.
+// Uses device nodes and pipes made by the test, never those of the machine.
 TEST_F(Cli, OutGoesIntoWhatStandsThere) {
   const std::string minimize = "graze minimize exact_contact:1:1 --lanes 'guigue_*/f32/cpu' --out ";
   ASSERT_EQ(shell(minimize + "plain").status, 0);
@@ -165,7 +165,7 @@ TEST_F(Cli, OutGoesIntoWhatStandsThere) {
     expect_error("graze " + std::string(verb), 2, {"''"});
 }
 
-// Never a library's message.
+// The error is never a library's message.
 TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
   expect_error("mkdir a; echo '{\"signatures\":[{}],\"spec\":{\"lanes\":5}}' > a/summary.json; graze minimize a", 1,
                {"a/summary.json"});
@@ -187,7 +187,7 @@ TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
       "explain $'\\xff.pairs' --json");
 }
 
-// A full disk, played by a limit on the size of files: one line, and the same command goes on once there is room.
+// A limit on file sizes simulates a full disk: the error is one line, and the same command resumes once there is room.
 TEST_F(Cli, AFullDiskLosesNothing) {
   const std::string fuzz = "graze fuzz --seed 5 --pairs 150000 --strata 'near_*' ";
   expect_error("ulimit -f 400; " + fuzz + "--out disk", 1, {"disk", "File too large"});
@@ -196,14 +196,14 @@ TEST_F(Cli, AFullDiskLosesNothing) {
   EXPECT_EQ(shell("diff disk/summary.json whole/summary.json && diff -r disk/cases whole/cases").status, 0);
   for (const char* verb : {"strata", "lanes", "lanes --json"})
     expect_error(std::string("graze ") + verb + " > /dev/full", 1, {"standard output", "No space left on device"});
-  // Nor need there be room for the error itself.
+  // The exit status is right even if there is no room for the error message.
   EXPECT_EQ(shell("graze check nofile 2> /dev/full").status, 1);
   EXPECT_EQ(shell("graze check nofile 2>&-").status, 1);
   EXPECT_EQ(shell("graze fuzz --pairs -1 2> /dev/full").status, 2);
   EXPECT_EQ(shell("graze strata > /dev/full 2>&1").status, 1);
 }
 
-// What looks like a rank's folder, and is somebody's, stays.
+// A folder that looks like a rank's but belongs to somebody else stays.
 TEST_F(Cli, FoldersOfRanksAreKnownByTheirStores) {
   const std::string fuzz = "graze fuzz --pairs 400 --strata near_edge_edge --lanes moller_1997/f32/cpu --out r";
   ASSERT_EQ(shell(fuzz).status, 0);
@@ -215,7 +215,7 @@ TEST_F(Cli, FoldersOfRanksAreKnownByTheirStores) {
   EXPECT_EQ(shell("cat r/rank-7/deep/f other/f r/rank-9/f").out, "x\nx\nx\n");
 }
 
-// Killed at twelve places, the same command goes on each time, and the end is the same bytes.
+// Kills a campaign at twelve places. The same command resumes it each time, and the final files have the same bytes.
 TEST_F(Cli, KilledCampaignsGoOnToTheSameBytes) {
   const std::string fuzz = "graze fuzz --seed 9 --pairs 600000 --strata 'near_*,degenerate' ";
   ASSERT_EQ(shell(fuzz + "--threads 2 --out whole").status, 0);
@@ -246,7 +246,7 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
   const Ran changed = shell("sed 's|/22/|/21/|' c/" + first + " > changed.pairs; graze repro changed.pairs");
   EXPECT_EQ(changed.status, 1);
   EXPECT_NE(changed.out.find("CHANGED"), std::string::npos);
-  // Lanes that do not run now change nothing.
+  // Recorded lanes that do not run now make no difference.
   const std::string algorithm = Json::parse(contents(shell.folder / "c/summary.json"))["signatures"][0]["key"];
   const std::string other = algorithm.find("moller") == std::string::npos ? "moller_*" : "separating_*";
   const Ran others = shell("graze repro c/" + first + " --lanes '" + other + "'");
@@ -255,7 +255,7 @@ TEST_F(Cli, ReproRunsStoredCasesAndNoticesChange) {
   EXPECT_EQ(shell("echo '0 0 0 1 0 0 0 1 0 0 0 1 1 0 1 0 1 1 | stratum=x' > s.pairs; graze repro s.pairs").status, 0);
 }
 
-// Of a build without libFuzzer one line; otherwise a campaign's directory that other verbs take, gone on with.
+// A build without libFuzzer prints one line; otherwise the result is a campaign directory that other verbs accept.
 TEST_F(Cli, AHuntIsACampaignForOtherVerbs) {
   const std::string hunt = "graze hunt --runs 600 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' --out h";
   const Ran first = shell(hunt);
@@ -292,7 +292,7 @@ TEST_F(Cli, EveryVerbHasHelpWithAnExampleThatRuns) {
   }
 }
 
-// `graze_campaign` is what scripts/campaign builds, linked by this build.
+// `graze_campaign` is the program that scripts/campaign builds, linked by this build.
 TEST_F(Cli, WhatACampaignsBuildLeavesOutSaysSo) {
   EXPECT_EQ(verbs_in_help(shell, "graze_campaign"), verbs_in_help(shell, "graze"));
   const Ran left_out = shell("graze_campaign --help | awk '/Not in this build/ {print $1}'");

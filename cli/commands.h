@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verbs of `graze`: each adds its subcommand, whose callback runs it and leaves the exit status.
+// The verbs of `graze`. Each function adds a subcommand; its callback runs the verb and sets the exit status.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -40,11 +40,12 @@ void add_view(CLI::App& app, int& status);
 void add_query(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
 
-// --lanes, --subject and --executor, which every verb that runs lanes has; the last not where twins stand for devices.
+// --lanes, --subject and --executor of every verb that runs lanes. Verbs that replace devices by twins have no
+// --executor.
 struct LaneOptions {
   std::vector<std::string> globs;
   std::vector<std::string> subjects;  // NAME=WHAT
-  std::vector<std::string> flags;     // of the compiler
+  std::vector<std::string> flags;     // for the compiler
   double timeout = 1;
   fuzz::Executor executor = fuzz::Executor::automatic;
 };
@@ -54,44 +55,45 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
 // Opens the subjects.   Throws: as subjects::open.
 void open_subjects(const LaneOptions& options);
 
-// Opens the subjects that a campaign's directory recorded, or that of which this is a case file.   Throws: as
-// subjects::open_recorded. Of anything else: nothing happens.
+// Opens the subjects that a campaign recorded. `name` is its directory or one of its case files; for other names
+// nothing happens.
+// Throws: as subjects::open_recorded.
 void open_subjects_of(const std::filesystem::path& name);
 
-// Opens the subjects, those of what the command is about as well, then selects the lanes. Says on standard error which
-// ones that were asked for do not run here, and why.
+// Opens the subjects, including those recorded for `about`, then selects the lanes. Reports on standard error which
+// requested lanes do not run here, and why.
 // Throws: as subjects::open, fuzz::select_lanes and fuzz::expect_each_runs.
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
                                    bool require_device = false);
 
-// Names these lanes on standard error, each with the reason.
+// Lists these lanes on standard error, each with the reason.
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
 
-// Patterns, separated by commas, in one argument.
+// Adds an option for patterns, separated by commas in one argument.
 CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::string>& globs, const char* description);
 
-// --scene, of every verb that draws from one.
+// Adds --scene to a verb that draws pairs.
 void add_scene_option(CLI::App& command, std::string& file);
 
-// What the verb draws then, and what its results record under "scene".
+// Draws from the scene; sets `recorded` to what the verb's results record under "scene".
 // Throws: as fuzz::open_scene and strata::scene_sources.
 strata::SceneSources drawn_from_scene(const std::string& file, std::uint64_t seed, std::uint64_t pairs,
                                       const std::vector<std::string>& globs, fuzz::Json& recorded);
 
-// The same of a scene, or without one (an empty name) of strata; recorded nowhere.
+// The same without recording; if `scene` is empty, draws from the strata.
 strata::SceneSources drawn(const std::string& scene, std::uint64_t seed, std::uint64_t pairs,
                            const std::vector<std::string>& globs);
 
-// Which strata the scene cannot contain, and why: a line for each, below a heading; empty for none.
+// Lists the strata that the scene cannot contain, with the reasons, below a heading; empty for none.
 std::string left_out_text(const std::vector<strata::LeftOut>& left_out);
 
-// The most of any number of pairs, and of seeds: 2^53, up to which all are whole in every reader of JSON.
+// The limit of pair counts and seeds: 2^53, up to which every JSON reader represents all whole numbers exactly.
 inline constexpr std::uint64_t kMostWhole = std::uint64_t{1} << 53;
 
 // Accepts whole numbers in [least, most], also as 1e6, 10M or 1_000_000, and nothing else. To be used by transform().
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 
-// An option of a whole number in [least, most], whose default its help says.
+// Adds an option for a whole number in [least, most]; its help shows the default.
 template <class Whole>
 CLI::Option* add_count(CLI::App& command, const char* name, Whole& count, std::uint64_t least, std::uint64_t most,
                        const char* description) {
@@ -101,30 +103,30 @@ CLI::Option* add_count(CLI::App& command, const char* name, Whole& count, std::u
       ->option_text("N");
 }
 
-// --threads, of every verb that runs several.
+// Adds --threads to a verb that runs in parallel.
 inline constexpr std::uint64_t kMostThreads = 4096;
 CLI::Option* add_threads_option(CLI::App& command, int& threads);
 
-// A number within these bounds, which no NaN is.
+// Accepts a number within these bounds; rejects NaN.
 CLI::Validator number(double least, double most);
 
-// Throws: UsageError for a file's name that results, which are UTF-8, could not record.
+// Throws: UsageError for a file name that is not UTF-8, because results, which are UTF-8, could not record it.
 void expect_utf8(const std::string& what, const std::string& file);
 
-// Accepts any text but an empty one, which names no file.
+// Rejects empty text, which names no file.
 CLI::Validator not_empty();
 
-// Accepts these words and nothing else. To be used by transform(), which leaves the word or its place.
+// Accepts only these words. To be used by transform(), which leaves the word or its index.
 enum class Chosen { word, place };
 CLI::Validator one_of(std::vector<std::string> words, Chosen chosen);
 
 // Each lane's verdict on one pair; reports on standard error where a device and its twin differ.
 std::vector<Verdict> decide(const fuzz::SelectedLanes& under_test, const Pair& pair);
 
-// Whether a verdict is not the truth; no verdict is wrong of a pair that the truth declines.
+// Whether a verdict is wrong; no verdict is wrong if the truth is declined.
 bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth);
 
-// What runs the CUDA lanes under test, in one line: each kind of evidence once. Empty without CUDA lanes.
+// Describes in one line what runs the CUDA lanes under test, each kind of evidence once. Empty without CUDA lanes.
 std::string cuda_evidence(const fuzz::SelectedLanes& under_test);
 
 }  // namespace graze::cli

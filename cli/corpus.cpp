@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze corpus`: the regression corpus. add takes failures in, list shows them, verify replays them.
+// `graze corpus`: the regression corpus. `add` adds failures, `list` shows them, `verify` replays them.
 #include <fmt/format.h>
 
 #include <array>
@@ -24,7 +24,7 @@ namespace {
 
 struct CorpusOptions {
   std::string folder = "corpus/regression";
-  std::vector<std::string> names;  // of cases and campaigns
+  std::vector<std::string> names;  // cases and campaigns
   std::vector<std::string> signatures;
   std::size_t most = std::numeric_limits<std::size_t>::max();
   LaneOptions lanes;
@@ -64,7 +64,7 @@ std::vector<corpus::Entry> cases_to_add(const std::string& name, bool exact_inpu
 
 void print_next(const CorpusOptions& options, const char* verb) {
   const bool usual = options.folder == CorpusOptions().folder;
-  fmt::print("Next: graze corpus {}{}\n", verb, usual ? "" : " --corpus " + shell_word(options.folder));
+  fmt::print("Next: graze corpus {}{}\n", verb, usual ? "" : " --corpus " + path_word(options.folder));
 }
 
 void add(const CorpusOptions& options) {
@@ -86,7 +86,7 @@ void add(const CorpusOptions& options) {
 
   std::error_code failed;
   std::filesystem::create_directories(options.folder, failed);
-  // Held from reading the corpus to writing it, so that two commands at once lose nothing.
+  // The lock is held from reading the corpus until writing it, so that two commands at once lose nothing.
   const fuzz::FolderLock lock(options.folder, fuzz::FolderLock::WhenTaken::wait);
   fuzz::RegressionCorpus corpus;
   if (std::filesystem::exists(options.file())) corpus = fuzz::read_regressions(options.file());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze corpus` as users meet it, and the regression corpus of the repository.
+// `graze corpus` as users run it, and the regression corpus of the repository.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ TEST_F(CorpusVerb, TakesACampaignListsItAndHolds) {
       << some.err;
   EXPECT_EQ(shell("graze corpus list --corpus some | grep -v moller_1997 | grep -cE '^ +(point|segment|area)/'").out,
             "0\n");
-  // The same campaign again counts nothing; another one counts.
+  // Adding the same campaign again counts nothing; another campaign counts.
   EXPECT_EQ(shell("cp corpus/regression/cases.pairs a; graze corpus add c --top 3; cmp corpus/regression/cases.pairs a")
                 .status,
             0);
@@ -56,7 +56,7 @@ TEST_F(CorpusVerb, TakesTheSimplestCaseOfEachKind) {
   EXPECT_EQ(ran.status, 0) << ran.out << ran.err << added.out;
 }
 
-// Another campaign's failures of the same kinds are no new cases, whatever their signatures; the corpus counts them.
+// Failures of another campaign with the same kinds are counted but add no cases, whatever their signatures are.
 TEST_F(CorpusVerb, CountsAnotherCampaignByKind) {
   campaign("c", "--pairs 5000 --strata lattice");
   campaign("d", "--pairs 4000 --strata lattice --seed 2");
@@ -78,7 +78,7 @@ TEST_F(CorpusVerb, AMinimisedCaseStandsForItsFile) {
                   "truth/ kind=minimised from=x truth/'; tail -n +3 $1; } > m")
                 .status,
             0);
-  // A file of cases by itself: its minimised case stands for all of it.
+  // A file of cases: its minimised case represents all of them.
   EXPECT_TRUE(shell("graze corpus add m --corpus s").out.starts_with("1 new"));
   EXPECT_EQ(shell("grep -c 'kind=minimised from=x' s/cases.pairs").out, "1\n");
   EXPECT_EQ(shell("graze repro s/cases.pairs > /dev/null").status, 0);
@@ -94,7 +94,7 @@ TEST_F(CorpusVerb, AChangedVerdictFailsUntilItIsRecorded) {
   EXPECT_NE(changed.out.find(": moller_1997/f32/cpu: was intersects (right), is disjoint (wrong)\n"), std::string::npos)
       << changed.out;
   EXPECT_NE(changed.out.find(": fixed -> failing\n"), std::string::npos) << changed.out;
-  EXPECT_EQ(shell("cmp forged r/cases.pairs").status, 0);  // looking changes nothing
+  EXPECT_EQ(shell("cmp forged r/cases.pairs").status, 0);  // verify without --update changes nothing
   EXPECT_EQ(shell("graze corpus verify --corpus r --update").status, 0);
   EXPECT_EQ(shell("graze corpus verify --corpus r").status, 0);
 }
@@ -125,7 +125,8 @@ TEST_F(CorpusVerb, NoRecordOfTheLanesThatRunIsAFailure) {
                {"r/cases.pairs", "--lanes"});
 }
 
-// Killed before each of its writes: the file is the old or the new one, and the same command ends with the same bytes.
+// Kills `add` before each of its writes. The file is the old or the new one, and the same command ends with the same
+// bytes.
 TEST_F(CorpusVerb, KilledWhileAddingLosesNothing) {
   campaign("c", "--pairs 30000 --strata 'near_*,coplanar_*'");
   ASSERT_EQ(shell("graze corpus add c --corpus whole --top 3 && graze corpus add c --corpus whole").status, 0);
@@ -135,7 +136,7 @@ TEST_F(CorpusVerb, KilledWhileAddingLosesNothing) {
     ASSERT_LT(++killed, 100);
     EXPECT_EQ(shell("cmp killed/cases.pairs old || cmp killed/cases.pairs whole/cases.pairs").status, 0);
   }
-  EXPECT_GE(killed, 2);  // before the new file is written, and before it takes its place
+  EXPECT_GE(killed, 2);  // before the new file is written, and before it replaces the old one
   ASSERT_EQ(shell("graze corpus add c --corpus killed").status, 0);
   EXPECT_EQ(shell("cmp killed/cases.pairs whole/cases.pairs").status, 0);
 }
@@ -166,7 +167,7 @@ TEST_F(CorpusVerb, ExamplesInTheHelpRun) {
   }
 }
 
-// Lanes without contraction give one answer everywhere; the others are the compiler's and the toolkit's business.
+// Lanes without contraction give the same verdicts everywhere; the others depend on the compiler and the toolkit.
 TEST_F(CorpusVerb, TheRepositorysOwnHolds) {
   const Ran ran =
       shell("graze corpus verify --lanes '*/cpu,*/cuda-nofma' --corpus '" GRAZE_SOURCE_DIR "/corpus/regression'");

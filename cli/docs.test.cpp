@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The documents are true: each `$ command` of a console block is run, and must print what stands under it; what is
-// linked or named by its path exists; README files stay short.
+// Checks the documents. Each `$ command` of a console block must print the text below it. Linked files and named paths
+// must exist. README files must be short.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -26,7 +26,7 @@ Lines lines_of(const std::string& text) {
   return lines;
 }
 
-// Whether the lines from e and f on are alike; "…" stands for any number of lines.
+// Whether the lines from e and f on match; "…" matches any number of lines.
 bool matches(const Lines& expected, std::size_t e, const Lines& found, std::size_t f) {
   if (e == expected.size()) return f == found.size();
   if (expected[e] == "…")
@@ -34,7 +34,7 @@ bool matches(const Lines& expected, std::size_t e, const Lines& found, std::size
   return f < found.size() && expected[e] == found[f] && matches(expected, e + 1, found, f + 1);
 }
 
-// What was printed, abridged as the document abridged it: as many lines before and behind its "…".
+// The output, shortened like the document: as many lines before and after its "…".
 Lines abridged(const Lines& expected, const Lines& found) {
   const auto dots = std::find(expected.begin(), expected.end(), "…");
   const auto before = dots - expected.begin(), behind = expected.end() - dots - 1;
@@ -45,8 +45,8 @@ Lines abridged(const Lines& expected, const Lines& found) {
   return lines;
 }
 
-// Returns: the tool that the command needs and this machine lacks, or nothing. The subject `cu` and what comes of it
-// need NVRTC, and `js` needs Node.
+// Returns: the tool that the command needs and this machine lacks, or nothing. The subject `cu` and its results need
+// NVRTC, and `js` needs Node.
 std::string missing_tool(const Shell& shell, const std::string& command) {
   static const std::regex of_cuda("\\bcu\\b"), of_node("\\bjs\\b");
   if (std::regex_search(command, of_cuda) &&
@@ -55,16 +55,16 @@ std::string missing_tool(const Shell& shell, const std::string& command) {
   return std::regex_search(command, of_node) && shell("command -v node").status != 0 ? "Node" : "";
 }
 
-// Runs the document's commands in one folder; a block that begins with ```language NAME is the file of that name there.
-// Where an output differs, DOCUMENT.new has all of them as they are now. The test counts as skipped if a command needs
-// a tool that is missing and all other commands print what they should.
+// Runs the document's commands in one folder. A block that begins with ```language NAME becomes the file NAME there. If
+// an output differs, DOCUMENT.new receives all present outputs. The test is skipped if a command needs a missing tool
+// and all other commands print what they should.
 void expect_true_commands(const std::string& document, std::size_t least_commands) {
   const fs::path file = kRoot / document, renewed = file.string() + ".new";
   const Lines lines = lines_of(contents(file));
   const Shell shell(file.stem().string());
   std::ostringstream text;
   std::size_t commands = 0;
-  std::map<std::string, int> not_run;  // commands by the tool that is missing
+  std::map<std::string, int> not_run;  // number of commands by missing tool
   bool in_console = false, all_match = true;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     text << lines[i] << '\n';
@@ -140,7 +140,7 @@ std::vector<fs::path> documents() {
   return files;
 }
 
-// [links](to/files), and `folder/file.h` or `folder/` in code.
+// Checks [links](to/files), and `folder/file.h` or `folder/` in code.
 TEST(Docs, WhatTheyNameExists) {
   const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
   const std::regex path(R"(`([a-z]+/[A-Za-z0-9_./-]*(\.(h|inl|cuh?|cpp|ts|py|md|json|pairs|cmake|txt)|/))`)");
@@ -160,8 +160,8 @@ TEST(Docs, WhatTheyNameExists) {
   EXPECT_GE(paths, 15);
 }
 
-// Commits, and builds by their commit, in prose, in records of measurements and in published data. A build of sources
-// that were changed since is none.
+// Checks commits, and builds named by their commit, in prose, measurements and published data. A build of sources that
+// were changed since does not count.
 TEST(Docs, CommitsThatTheyNameAreInTheHistory) {
   const Shell shell("history");
   const std::string git = "git -C '" + kRoot.string() + "' ";

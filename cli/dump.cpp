@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze dump`: the pairs of a stratum or a campaign with their truth, as a file of pairs or a table.
+// `graze dump`: writes the pairs of a stratum or a campaign with their truth, as a file of pairs or a table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ struct DumpOptions {
 struct Dumped {
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
-  std::string scene;  // that they were drawn from; may be empty
+  std::string scene;  // the scene that they were drawn from; may be empty
 };
 
 // STRATUM or STRATUM:SEED; the stratum may be a pattern.
@@ -54,7 +54,7 @@ Dumped of_stratum(const DumpOptions& options) {
   return dumped;
 }
 
-// The campaign's pairs, drawn or read again; of an unfinished one also those that are not judged yet.
+// The campaign's pairs, drawn or read again. For an unfinished campaign, includes pairs that are not judged yet.
 Dumped of_campaign(const DumpOptions& options) {
   const Json summary = fuzz::checked_summary(options.name);
   Dumped dumped;
@@ -69,7 +69,7 @@ Dumped of_campaign(const DumpOptions& options) {
   } catch (const Json::exception&) {
     throw std::runtime_error(cannot("use", options.name + "/summary.json", "it is not the summary of a campaign"));
   }
-  if (options.pairs > 0) {  // the same share of every source, the first ones taking the rest
+  if (options.pairs > 0) {  // every source gets the same share; the first ones also get the remainder
     for (std::size_t s = 0; s < dumped.sources.size(); ++s) {
       const std::uint64_t share = options.pairs / dumped.sources.size() + (s < options.pairs % dumped.sources.size());
       dumped.sources[s].pairs = std::min(dumped.sources[s].pairs, share);
@@ -78,7 +78,7 @@ Dumped of_campaign(const DumpOptions& options) {
   return dumped;
 }
 
-// The lane's name as a field's key: moller_1997.f32.cpu.
+// The lane's name as a field key, such as moller_1997.f32.cpu.
 std::string key_of(const Lane& lane) {
   std::string key = lane.id;
   for (char& c : key) c = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ? c : '.';
@@ -97,7 +97,7 @@ void print_header(Format format, const std::vector<const Lane*>& lanes) {
 void print_row(Format format, const corpus::Entry& entry) {
   if (format == Format::pairs) return corpus::write_entry(std::cout, entry);
   for (int i = 0; i < 3; ++i) std::cout << (i > 0 ? "," : "") << entry.fields[static_cast<std::size_t>(i)].second;
-  // The shortest decimals whose nearest double, as their nearest float32, is the very number.
+  // The shortest decimal whose nearest double converts back to this float32.
   for (int i = 0; i < kCoordinates; ++i) std::cout << ',' << fmt::format("{}", double{coordinates(entry.pair)[i]});
   for (std::size_t i = 3; i < entry.fields.size(); ++i) std::cout << ',' << entry.fields[i].second;
   std::cout << '\n';
@@ -150,6 +150,7 @@ void add_dump(CLI::App& app, int&) {
       ->option_text("N");
   add_lane_options(*command, options->lanes);
   command->get_option("--lanes")->description("Patterns of the lanes whose verdicts are added")->default_str("none");
+  for (const char* of_lanes : {"--executor", "--subject"}) command->get_option(of_lanes)->needs("--lanes");
   command->callback([options] { dump(*options); });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze dump` as users meet it.
+// `graze dump` as users run it.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-// Every row is what `graze check` says of the pair that its numbers name.
+// Every row equals the output of `graze check` for the pair with the same numbers.
 TEST_F(Dump, ATableSaysWhatCheckSays) {
   const Ran ran =
       shell("graze dump near_edge_edge:7 --pairs 20 --lanes 'moller_1997/f32/cpu,exact/f32/cpu' > t.csv; cat t.csv");
@@ -54,7 +54,7 @@ TEST_F(Dump, ATableSaysWhatCheckSays) {
   }
 }
 
-// What a field of a line of a file of pairs says.
+// The value of a field in a line of a file of pairs.
 std::string field_of(const std::string& line, const std::string& key) {
   const std::size_t at = line.find(' ' + key + '=') + key.size() + 2;
   return line.substr(at, line.find(' ', at) - at);
@@ -98,7 +98,7 @@ for row in rows:
   expect_done("graze dump 'near_*' --pairs 60 --lanes exact/f32/cpu > t.csv && python3 read.py");
 }
 
-// A hundred times as many pairs take no more memory.
+// A hundred times as many pairs need no more memory.
 TEST_F(Dump, IsWrittenAsItIsMade) {
   if (shell("command -v python3").status != 0) GTEST_SKIP() << "no python3";
   std::ofstream(shell.folder / "peak.py") << R"(import resource, subprocess, sys

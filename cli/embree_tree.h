@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Embree's tree of bounding boxes over an array of triangles, beside which `graze bench` puts queries where the library
-// is installed. Its boxes find candidates, in floats; our exact decision says which of them meet.
+// Embree's tree of bounding boxes over an array of triangles, which `graze bench` compares with queries if the library
+// is installed. Its boxes find candidates in float arithmetic; our exact decision tells which candidates intersect.
 #pragma once
 
 #include <embree3/rtcore.h>
@@ -16,12 +16,12 @@
 
 namespace graze::cli {
 
-// On one core.
+// Runs on one core.
 class EmbreeTree {
  public:
   using Triangle = std::array<float, 9>;
 
-  // Builds it.   Requires: finite coordinates; the triangles stay where they are.
+  // Builds the tree.   Requires: finite coordinates; the triangles stay in place while the tree lives.
   explicit EmbreeTree(std::span<const Triangle> triangles) : triangles_(triangles) {
     one_core_.execute([&] { tree_ = scene_of(triangles_); });
   }
@@ -32,7 +32,7 @@ class EmbreeTree {
     rtcReleaseDevice(device_);
   }
 
-  // How many of its triangles meet the reference; exact.   Requires: finite coordinates.
+  // Returns how many of the tree's triangles intersect the reference; exact.   Requires: finite coordinates.
   std::uint64_t count(const Triangle& reference) {
     Question question{{&reference, 1}, triangles_, 0};
     one_core_.execute([&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze repro --emit`: one of a user's cases as a snippet.
+// `graze repro --emit`: prints one of a user's cases as a snippet.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace graze::cli {
 
-// The first case on which a lane under test is wrong that the snippet can show, and the first such lane, if it
-// can be of the algorithm in the case's signature. Where the kind shows no lane: the first case on which any lane is
-// wrong, or else the first case. `name` is what the user called the cases. Throws: std::runtime_error when there is
-// none, or none with finite coordinates.
+// Emits the first case with a wrong lane under test that the snippet can show. Prefers the first such lane of the
+// algorithm in the case's signature. If the kind shows no lane, emits the first case on which any lane is wrong, or
+// else the first case. `name` is the user's name for the cases.
+// Throws: std::runtime_error if there is no such case, or none with finite coordinates.
 std::string emit(reports::SnippetKind kind, const std::string& name, const std::vector<corpus::Entry>& entries,
                  const fuzz::SelectedLanes& under_test);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze repro --emit`: every kind compiled by the command in its first comment, run, and its answer read.
+// `graze repro --emit`: compiles every kind with the command in its first comment, runs it, and checks its output.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,17 +18,17 @@ struct EmitCase {
 
 std::ostream& operator<<(std::ostream& out, const EmitCase& c) { return out << c.name; }
 
-// Wrong lanes are named, so that a case which stops being one turns the test red.
+// Wrong lanes are named explicitly, so that the test fails if a case is no longer wrong.
 constexpr EmitCase kCases[] = {
     // The thesis's figure 3.4.
     {"Plain", "0 0 0 4 0 0 0 4 0  1 2 1 11 0 -1 9 0 -1", "projected_sat/f32/cpu", "projected_sat/f64/cuda-fma"},
-    // The same, every zero negative.
+    // The same pair with every zero negative.
     {"NegativeZero", "-0 -0 -0 4 -0 -0 -0 4 -0  1 2 1 11 -0 -1 9 -0 -1", "projected_sat/f64/cpu",
      "projected_sat/f32/cuda-nofma"},
     // Two segments on parallel lines.
     {"Degenerate", "0 0 0 4 0 0 2 0 0  1 0 1 1 0 4 1 0 2", "separating_axes/f64/cpu",
      "interval_overlap/f32/cuda-nofma"},
-    // A segment's end on a segment.
+    // The end of one segment lies on the other segment.
     {"DegenerateContact", "0 0 0 4 0 0 2 0 0  1 0 0 1 0 4 1 0 2", "moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"},
     // Every product underflows.
     {"Subnormal",
@@ -38,7 +38,7 @@ constexpr EmitCase kCases[] = {
     // Every product overflows.
     {"Huge", "0 0 0 3e38 0 0 0 3e38 0  1e38 1e38 1e30 1e38 1e38 3e38 2e38 1e38 3e38", "moller_1997/f32/cpu",
      "separating_axes/f32/cuda-fma"},
-    // The README's pair: right without contraction, on both.
+    // The README's pair: right without contraction, on host and device.
     {"ContractionOnly", "0.1 0.2 0.3 0.4 0.9 0.2 0.7 0.1 0.6  0.1 0.2 0.3 0.5 0.5 0.9 -0.3 0.8 0.4",
      "guigue_devillers_2003/f64/cpu-fma", "guigue_devillers_2003/f64/cuda-fma"},
 };
@@ -49,7 +49,7 @@ class Emit : public testing::TestWithParam<EmitCase> {
 
   void SetUp() override { std::ofstream(shell.folder / "case.pairs") << GetParam().pair << '\n'; }
 
-  // Emits to `file`, then runs the command of its first comment.
+  // Emits to `file`, then runs the command in its first comment.
   Ran run(const std::string& kind, const std::string& file, const std::string& lane = "") {
     const std::string lanes = lane.empty() ? "" : " --lanes '" + lane + "'";
     const Ran emitted = shell("graze repro case.pairs --emit " + kind + lanes + " > " + file);
@@ -65,7 +65,7 @@ class Emit : public testing::TestWithParam<EmitCase> {
 #endif
   }
 
-  // Only an optimising compiler contracts, and only for a processor that can.
+  // Whether this build contracts: it takes an optimising compiler and a processor that can.
   bool contracts() const {
 #ifdef NDEBUG
     return shell("graze lanes | grep -q '/cpu-fma *available'").status == 0;
@@ -74,7 +74,7 @@ class Emit : public testing::TestWithParam<EmitCase> {
 #endif
   }
 
-  // "algorithm/scalar: X; truth: Y", X and Y opposite, and the status of a failed check.
+  // Expects "algorithm/scalar: X; truth: Y" with opposite X and Y, and the status of a failed check.
   static void expect_wrong(const Ran& ran, const std::string& lane) {
     const std::string what = lane.substr(0, lane.rfind('/'));
     EXPECT_EQ(ran.status, 1) << ran.out << ran.err;
@@ -118,7 +118,7 @@ TEST_P(Emit, CgalAndPythonProveTheTruth) {
   EXPECT_TRUE(python.out.ends_with(cgal.out)) << python.out << cgal.out;
 }
 
-// The obj file's decimals, read back as a pair, have the bits of the case.
+// The decimals of the obj file, read back as a pair, have the bits of the case.
 TEST_P(Emit, ObjHoldsTheSameBits) {
   const Ran emitted = shell("graze repro case.pairs --emit obj > case.obj; grep -c '^[of] ' case.obj");
   EXPECT_EQ(emitted.out, "4\n");
@@ -144,7 +144,7 @@ TEST(EmitLane, IsOfTheRecordedSignature) {
   EXPECT_EQ(shown(" | signature=none/11/skew/+2^21/moller_1997:++++++++"), "projected_sat/f32/cpu\n");  // is right
 }
 
-// A lane is its flags.
+// A snippet is compiled with its lane's flags.
 TEST(EmitFlags, AreThoseOfTheLane) {
   const Shell shell("emit-flags");
   shell("echo '0 0 0 4 0 0 0 4 0  1 2 1 11 0 -1 9 0 -1' > p");
@@ -157,15 +157,15 @@ TEST(EmitFlags, AreThoseOfTheLane) {
   EXPECT_EQ(first_line("cuda --lanes '*/f32/cuda-fma'").find("fmad"), std::string::npos);
 }
 
-// Without a device: by the contraction rules that were verified on one, a snippet's kernel has as many fused operations
-// as its lane's.
+// Without a device. Under the contraction rules that were verified on one, a snippet's kernel has as many fused
+// operations as its lane's.
 TEST(EmitCuda, ContractsAsItsLaneDoes) {
 #ifndef GRAZE_NVCC_DIR
   GTEST_SKIP() << "built without nvcc";
 #else
   const Shell shell("emit-cuda");
   const std::string explicit_ptx = "graze_twin_generator " GRAZE_LANE_PTX " --explicit lanes.ptx && ";
-  // Segments, on which some lane of every algorithm is wrong, alike on host and device.
+  // Segments on which some lane of every algorithm is wrong, on host and device.
   shell("printf '0 0 0 4 0 0 2 0 0 1 0 1 1 0 4 1 0 2\\n0 0 0 4 0 0 2 0 0 1 0 0 1 0 4 1 0 2\\n' > p");
   const std::string ids = shell("graze lanes | sed -n 's|^  \\([a-z0-9_]*\\)/f32/cpu .*|\\1|p' | grep -v exact").out;
   std::istringstream algorithms(ids);
@@ -204,7 +204,7 @@ TEST(EmitErrors, SayWhatIsMissing) {
   expect(easy + "cpp --lanes '*/cuda-*fma'", 1, {"easy", "CPU lanes"});
   expect(easy + "fortran", 2, {"fortran"});
   expect("echo 'nan 0 0 4 0 0 0 4 0  0 0 9 4 0 9 0 4 9' > n; graze repro n --emit obj", 1, {"n", "finite coordinates"});
-  EXPECT_NE(shell(easy + "python").out.find("Graze: disjoint"), std::string::npos);  // the truth needs no wrong lane
+  EXPECT_NE(shell(easy + "python").out.find("Graze: disjoint"), std::string::npos);  // needs no wrong lane
 }
 
 }  // namespace

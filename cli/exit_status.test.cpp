@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exit statuses that docs/formats.md promises, of every verb: done, a failed run, wrong use, interrupted.
+// The exit statuses that docs/formats.md promises, for every verb: done, a failed run, wrong use, interrupted.
 #include <set>
 #include <vector>
 
@@ -9,7 +9,7 @@ namespace graze::cli {
 namespace {
 
 struct Verb {
-  const char *name, *done, *fails;  // command lines without `graze`; empty where this machine may have no such run
+  const char *name, *done, *fails;  // command lines without `graze`; empty if this machine cannot run one
 };
 
 constexpr const char* kMoller = " --lanes moller_1997/f32/cpu ";
@@ -121,7 +121,7 @@ TEST_F(ExitStatus, PlacesWithOtherThingsAreWrongUse) {
   expect_done(
       "graze minimize p --lanes 'guigue*/f32/cpu' --out link --force && test -L link && head -n 1 p | grep -q "
       "graze-pairs");
-  expect_done("graze minimize p --lanes 'guigue*/f32/cpu' --out link");  // graze's own by now
+  expect_done("graze minimize p --lanes 'guigue*/f32/cpu' --out link");  // the file is graze's own by now
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze explain`: why each wrong lane is wrong on a case, in numbers and in one sentence for each algorithm.
+// `graze explain`: explains why lanes are wrong on a case, in numbers, and in one sentence for each algorithm.
 #include "analysis/explain.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@
 namespace graze::cli {
 namespace {
 
-// Whether a value is off by more than a thousandth: less is what rounding does, and explains nothing.
+// Whether a value is off by more than a thousandth. Rounding explains smaller errors, so they tell nothing.
 bool is_off(const oracle::Beside& beside, Scalar scalar) {
   return !(beside.ulps <= std::ldexp(1e-3, scalar == Scalar::f32 ? 23 : 52));
 }
@@ -28,8 +28,8 @@ bool is_off(const oracle::Beside& beside, Scalar scalar) {
 // "guigue_devillers_2003.h:111"
 std::string place(const analysis::Step& step) { return step.line.substr(step.line.rfind('/') + 1); }
 
-// A value, with the exact one where it is off; a comparison, with that of the exact values where it goes another way.
-// Of these the one to tell of is marked. places: columns for the place.
+// Prints a value, with the exact value if it is off, or a comparison, with the exact values if its outcome differs.
+// Marks the step to report. places: width of the column for the place.
 void print_step(const analysis::Step& step, bool told, Scalar scalar, int places, const reports::Screen& screen) {
   std::string text = fmt::format("{}{:<{}}  ", told ? "   => " : "      ", place(step), places), exactly;
   const int hang = reports::width_of(text);
@@ -49,7 +49,7 @@ void print_step(const analysis::Step& step, bool told, Scalar scalar, int places
   fmt::print("{}\n", told ? reports::red(screen, text) : text);
 }
 
-// The values up to the comparison to tell of, or all; at most the last kMost of them.
+// Prints the values up to the comparison to report, or all of them; at most the last kMost.
 void print_steps(const analysis::LaneExplanation& lane, const reports::Screen& screen) {
   constexpr int kMost = 12;
   if (lane.evidence == analysis::Evidence::none) {
@@ -157,12 +157,12 @@ void explain_cases(const ExplainOptions& options) {
       line.update(to_json(explanation));
       line["cuda"] = cuda_evidence(under_test);
       if (const std::string note = written_note(entry, explanation.truth); !note.empty()) line["note"] = note;
-      // A file's name need not be UTF-8, as JSON must.
+      // A file name may not be valid UTF-8, which JSON requires.
       fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
       continue;
     }
     fmt::print("{}{}\n", options.name, entry.line > 0 ? fmt::format(":{}", entry.line) : "");
-    // What it comes down to is said first.
+    // The conclusion comes first.
     for (const std::string& text : analysis::sentences(explanation))
       fmt::print("{}", reports::bold(screen, reports::wrapped(text, screen.columns, 2, 4)));
     if (const std::string note = written_note(entry, explanation.truth); !note.empty())
@@ -185,7 +185,7 @@ void explain_cases(const ExplainOptions& options) {
     }
     wrong = wrong || !explanation.lanes.empty();
   }
-  if (wrong) fmt::print("Next: graze map {}\n", shell_word(options.name));
+  if (wrong) fmt::print("Next: graze map {}\n", path_word(options.name));
 }
 
 }  // namespace

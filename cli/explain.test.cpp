@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze explain` as users meet it.
+// `graze explain` as users run it.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -22,7 +22,8 @@ TEST_F(ExplainCommand, SaysWhyInOneSentenceAnAlgorithm) {
   EXPECT_EQ(ran.err, "");
 }
 
-// Rounding by an ulp or two is no news: only what is off has the exact value beside it, and only what decides a mark.
+// Rounding by an ulp or two is not reported. Only a value that is off has the exact value beside it, and only a
+// deciding step has a mark.
 TEST_F(ExplainCommand, SaysItsSentenceFirstAndMarksWhatMatters) {
   std::ofstream(shell.folder / "p") << "0.1 0.2 0.3 0.4 0.9 0.2 0.7 0.1 0.6 0.1 0.2 0.3 0.5 0.5 0.9 -0.3 0.8 0.4\n";
   const std::string out = shell("graze explain p --lanes 'guigue*/f32/cpu'").out;

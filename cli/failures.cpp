@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze failures`: what a campaign's failures have in common, a kind at a time.
+// `graze failures`: groups a campaign's failures by kind.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,14 +20,14 @@ namespace {
 
 using fuzz::Json;
 
-// "f32/cpu f32/cpu-fma" of lanes' ids.
+// Lane ids without their subject, such as "f32/cpu f32/cpu-fma".
 std::string lanes_within(const Json& lanes, const std::string& subject) {
   std::string names;
   for (const Json& id : lanes) names += (names.empty() ? "" : " ") + id.get<std::string>().substr(subject.size() + 1);
   return names;
 }
 
-// "near_edge_edge 70 %, uniform 30 %", the commonest first.
+// "near_edge_edge 70 %, uniform 30 %", most frequent first.
 std::string shares(const Json& counts, std::size_t most) {
   std::vector<std::pair<std::string, std::uint64_t>> rows;
   double sum = 0;
@@ -70,7 +70,7 @@ void print(const Json& kind, std::size_t number, const reports::Screen& screen) 
   }
 }
 
-// Of each cause, how many of the lanes looked at stood up to the audit (analysis/audit.h).
+// For each cause, prints how many of the examined lanes passed the audit (analysis/audit.h).
 void print_audit(const Json& kinds, const reports::Screen& screen) {
   std::map<std::string, std::array<std::uint64_t, 2>> of_cause;
   for (const Json& kind : kinds) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze` beside foreign code that hangs, floods or leaves processes: it ends when it is asked to, and nothing stays.
+// `graze` with foreign code that hangs, floods its output or leaves processes: it stops when asked to, and leaves
+// nothing.
 #include <gtest/gtest.h>
 
 #include "cli/run_graze.h"
@@ -9,7 +10,7 @@ namespace {
 
 class ForeignCode : public CommandTest {
  protected:
-  // A number of seconds that no other process sleeps.
+  // A sleep duration that no other process uses.
   const std::string sleeps = "sleep 9" + std::to_string(getpid());
 
   ForeignCode() { shell("echo '0 0 0 4 0 0 0 4 0  1 1 -1 1 1 1 3 3 1' > pair.txt"); }
@@ -22,7 +23,7 @@ class ForeignCode : public CommandTest {
   }
 };
 
-// Asked to stop once the campaign has begun; it then ends in order within two minutes.
+// Sent after the campaign has begun; the campaign must stop normally within two minutes.
 TEST_F(ForeignCode, SigtermEndsACampaignInOrderWhileASubjectHangs) {
   ASSERT_EQ(shell("echo 'int intersects(const float a[9], const float b[9]) { for (;;) ; }' > h.c && cc -shared -fPIC "
                   "h.c -o h.so")
@@ -52,7 +53,7 @@ TEST_F(ForeignCode, NothingOutlivesACampaignOrItsKill) {
   expect_none_sleeps();
 }
 
-// The compiler waits for ever for what is in the pipe; a verb that catches no signals ends in order all the same.
+// The compiler waits for ever for input from the pipe. Even a verb that catches no signals stops normally.
 TEST_F(ForeignCode, ACompilerEndsWithGraze) {
   ASSERT_EQ(shell("mkfifo pipe.h && echo '#include \"pipe.h\"' > waits.cpp").status, 0);
   const std::string verbs[] = {"fuzz --lanes 'w/*' --strata uniform --pairs 10 --out o", "check pair.txt"};
@@ -87,7 +88,7 @@ TEST_F(ForeignCode, WhatCannotBeWrittenForACompilerIsSaidWithItsReason) {
       1, {"cache/graze/include/graze/subject.h", "File too large"});
 }
 
-// Whether a constructor says that it has no function, or nonsense: one line says whose code it is.
+// If a constructor reports no function or garbage, one line names the code.
 TEST_F(ForeignCode, ASubjectWithoutAFunctionIsNamed) {
   ASSERT_EQ(
       shell(

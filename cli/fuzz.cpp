@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze fuzz`: runs or goes on with a campaign.
+// `graze fuzz`: runs or resumes a campaign.
 #include <fmt/format.h>
 #include <sys/sysinfo.h>
 #include <tbb/info.h>
@@ -41,7 +41,7 @@ namespace graze::cli {
 using fuzz::Json;
 namespace {
 
-constexpr std::size_t kMostShrunk = 8;  // signatures, for the smallest case of a subject that is wrong too often
+constexpr std::size_t kMostShrunk = 8;  // signatures that are minimised to find a subject's smallest case
 
 struct FuzzOptions {
   std::uint64_t pairs = 1'000'000;
@@ -60,7 +60,7 @@ struct FuzzOptions {
   std::string scratch;
 };
 
-// What the live line says besides progress, where there is room.
+// Further parts of the live line, shown if there is room.
 std::vector<std::string> details(const fuzz::Progress& progress, const std::vector<strata::PairSource>& sources) {
   const double rate = static_cast<double>(progress.done_here) / std::max(progress.seconds, 1e-9);
   const auto& yields = progress.disagreements_of_source;
@@ -70,9 +70,8 @@ std::vector<std::string> details(const fuzz::Progress& progress, const std::vect
           reports::grouped(static_cast<std::uint64_t>(rate)) + " pairs/s", "most in " + sources[best].id};
 }
 
-// The subject's smallest case: of its signatures the kMostShrunk whose first kept pair is the simplest are minimised,
-// as `graze minimize` would; the simplest result counts, and of equal ones that of the simpler kept pair. Returns: it,
-// and its file.
+// The subject's smallest case. Minimises, as `graze minimize` would, the kMostShrunk signatures whose first kept pairs
+// are the simplest. Returns the simplest result and its file; of equal results, the one from the simpler kept pair.
 std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path& campaign,
                                                      const fuzz::SelectedLanes& under_test, const Json& summary,
                                                      const std::string& subject) {
@@ -103,8 +102,9 @@ std::pair<Pair, std::filesystem::path> smallest_case(const std::filesystem::path
   return smallest;
 }
 
-// The first subject of these, or of any where there are none, that is wrong on more pairs than it may be: says so in
-// one line, with its simplest case, minimised.   Returns: the exit status.
+// Finds the first of the given subjects (of all, if none are given) that is wrong on more pairs than allowed. Reports
+// it in one line with its simplest case, minimised.
+// Returns: the exit status.
 int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test, const Json& summary) {
   std::map<std::string, std::uint64_t> wrong;
   for (const Json& row : summary["signatures"]) {
@@ -121,16 +121,16 @@ int fail_above(const FuzzOptions& options, const fuzz::SelectedLanes& under_test
                "graze: {} is wrong on {} pairs, above the limit {} of --fail-above; the smallest is {}; again: graze "
                "repro {}\n",
                subject, reports::grouped(count), reports::grouped(*options.fail_above), fuzz::pair_text(pair),
-               shell_word(file.string()));
+               path_word(file.string()));
     return 1;
   }
   return 0;
 }
 
-// One of the processes that mpirun started.   Returns: the exit status.
+// Runs one of the processes that mpirun started.   Returns: the exit status.
 int on_ranks(const FuzzOptions& options, fuzz::Campaign& campaign, const std::vector<strata::LeftOut>& left_out,
              fuzz::Ranks& ranks) {
-  // Where mpirun bound the ranks to cores, each has fewer than the machine.
+  // If mpirun bound the ranks to cores, each rank already sees fewer cores than the machine has.
   const int cores = tbb::info::default_concurrency();
   if (campaign.threads == 0 && cores == get_nprocs()) campaign.threads = std::max(1, cores / ranks.local_size);
   const std::optional<fuzz::Outcome> outcome = fuzz::run_on_ranks(campaign, ranks, catch_interrupts());
@@ -158,7 +158,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
     campaign.sources = std::move(drawn.sources);
     left_out = std::move(drawn.left_out);
   } else if (options.mesh.empty() ||
-             !options.strata.empty()) {  // a mesh stands alone unless strata are asked for as well
+             !options.strata.empty()) {  // with a mesh, strata are used only if the user asks for them
     campaign.sources = strata::stratum_sources(options.seed, options.pairs, options.strata);
   }
   Json mesh_spec;
@@ -216,7 +216,7 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   return options.fail_above ? fail_above(options, under_test, outcome.summary) : 0;
 }
 
-// Alone, or as one of those that mpirun started: of these one that fails ends all.
+// Runs alone or as one of mpirun's processes; there, a failing process ends all of them.
 int start(const FuzzOptions& options) {
   if (!options.scratch.empty() && options.shard.whole())
     throw UsageError("--scratch is for shards alone; add --shard K/N");
@@ -228,7 +228,7 @@ int start(const FuzzOptions& options) {
   try {
     return fuzz(options, ranks.get());
   } catch (const std::exception& error) {
-    // What all ranks find wrong is said once: the root's abort is the first.
+    // An error that all ranks find is reported only once, because the root aborts first.
     if (ranks->rank != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
     fmt::print(stderr, "graze: {}\n", error.what());
     ranks->abort(1);
@@ -270,7 +270,7 @@ void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool j
   if (summary["signatures"].empty()) return;
   const std::string first = out + '/' + summary["signatures"][0]["case"].get<std::string>();
   std::cout << fmt::format("The commonest disagreement again: graze repro {}\nNext: graze minimize {}\n",
-                           shell_word(first), shell_word(out));
+                           path_word(first), path_word(out));
 }
 
 void add_fuzz(CLI::App& app, int& status) {

@@ -13,12 +13,12 @@
 namespace graze::cli {
 namespace {
 
-constexpr int kWithoutTerminal = 100;  // columns: the same text in every file and pipe
-constexpr int kNarrow = 64;            // columns, below which a description has lines of its own
+constexpr int kWithoutTerminal = 100;  // columns; files and pipes get the same text everywhere
+constexpr int kNarrow = 64;            // columns; below this, a description starts on its own line
 
 int columns_of_help() { return isatty(STDOUT_FILENO) ? output_screen().columns : kWithoutTerminal; }
 
-// A name, and beside it what it means; below it where there is no room.
+// Formats a name with its meaning beside it, or below it if there is no room.
 std::string row(const std::string& name, const std::string& meaning, int columns) {
   const int aside = columns < kNarrow ? 6 : 26;
   const std::string text = reports::wrapped(meaning, columns, aside, aside);
@@ -48,14 +48,14 @@ std::string meaning_of(const CLI::Option& option) {
   return text;
 }
 
-// Of the options that are asked for.
+// Formats the options that `asked` selects.
 std::string rows_of(const CLI::App& app, int columns, const std::function<bool(const CLI::Option*)>& asked) {
   std::string text;
   for (const CLI::Option* option : app.get_options(asked)) text += row(name_of(*option), meaning_of(*option), columns);
   return text;
 }
 
-// Every verb, option and argument is a row; the sections are separated by empty lines.
+// Every verb, option and argument is a row; empty lines separate the sections.
 class Help : public CLI::FormatterBase {
  public:
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const override {
@@ -89,7 +89,7 @@ class Help : public CLI::FormatterBase {
                         return !is_argument(option) && option->get_group() == group;
                       }));
     }
-    // An example is there to be copied, so its line is not broken.
+    // The example must not be wrapped, so that it can be copied.
     return app->get_footer().empty() ? text : text + '\n' + app->get_footer() + '\n';
   }
 };

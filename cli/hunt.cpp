@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze hunt`: guided search for pairs on which lanes are wrong, or goes on with one.
+// `graze hunt`: starts or resumes a guided search for pairs on which lanes are wrong.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -129,7 +129,7 @@ int hunt(const HuntOptions& options) {
   print_mutations(options.out);
   fmt::print("\nWrote {0}/summary.json, {0}/hunt.json, {0}/cases/, {0}/timings.json, {0}/campaign.sqlite, {0}/hunt/\n",
              options.out);
-  if (!summary["signatures"].empty()) fmt::print("Next: graze minimize {}\n", shell_word(options.out));
+  if (!summary["signatures"].empty()) fmt::print("Next: graze minimize {}\n", path_word(options.out));
   return 0;
 }
 

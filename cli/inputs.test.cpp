@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people type: wrong words, counts, pairs as they are pasted, files that are missing, and the commands they are
-// given back.
+// User input: wrong words, counts, pairs as pasted, missing files, and the commands that graze suggests.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -35,7 +34,7 @@ TEST_F(Inputs, WrongUseExitsWithTwo) {
                {"here", "pairs", "100", "200", "--out"});
 }
 
-// A file or a folder that is missing is a failed run, whatever the verb; wrong use is what the command line gets wrong.
+// For every verb, a missing file or folder is a failed run; only errors in the command line are wrong use.
 TEST_F(Inputs, MissingFilesAndFoldersAreTheSameFailure) {
   for (const char* verb : {"check", "repro", "explain", "map", "minimize", "report", "corpus add", "dump",
                            "report --out r.html --from", "fuzz --mesh", "corpus list --corpus"}) {
@@ -45,7 +44,7 @@ TEST_F(Inputs, MissingFilesAndFoldersAreTheSameFailure) {
   }
 }
 
-// What cannot be read: never a library's words for it.
+// Unreadable inputs are never reported with a library's message.
 TEST_F(Inputs, FoldersAndDevicesInAFilesPlaceAreNamed) {
   expect_error("mkdir d; graze check d", 1, {"d", "Is a directory"});
   expect_error("graze fuzz --mesh d", 1, {"d", "Is a directory"});
@@ -89,14 +88,14 @@ TEST_F(Inputs, ForeignTextDoesNotReachTheTerminal) {
   std::ofstream(shell.folder / "a:b:c")
       << kTouching << R"( | name="a\x1b[31mb" stratum="\x1b]0;t" seed=1 index=2 signature="\x07/x:")";
   for (const char* verb : {"check", "repro", "explain", "repro --emit obj", "repro --emit python"}) {
-    const Ran ran = shell(std::string("graze ") + verb + " a:b:c");  // the file, for there is one
+    const Ran ran = shell(std::string("graze ") + verb + " a:b:c");  // the file, because it exists
     EXPECT_LE(ran.status, 1) << verb << ran.err;
     EXPECT_EQ((ran.out + ran.err).find_first_of("\x1b\x07"), std::string::npos) << verb << ran.out;
   }
   EXPECT_NE(shell("graze check a:b:c").out.find("a\\x1b[31mb"), std::string::npos);
 }
 
-// Decimals that float32 rounds to another pair: both truths are told.
+// If float32 rounds decimals to another pair, both truths are reported.
 TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
   std::ofstream(shell.folder / "near.pairs")
       << "0 0 1 1 0 1 0 1 1  0 0 1.00000000001 1 0 1.00000000001 0 1 1.00000000001\n";
@@ -108,19 +107,19 @@ TEST_F(Inputs, WhatFloat32MakesOfDecimalsIsSaid) {
     EXPECT_NE((ran.out + ran.err).find(note), std::string::npos) << command << ran.out << ran.err;
     expect_error(command + " --exact-input", 2, {"near.pairs:1", "\"1.00000000001\"", "--exact-input", "12"});
   }
-  // A double in hex that float32 cannot hold.
+  // A double in hex that float32 cannot represent.
   const Ran hex = shell(
       "echo '0 0 1 1 0 1 0 1 1  0 0 0x1.0000000000001p0 1 0 0x1.0000000000001p0 0 1 "
       "0x1.0000000000001p0' | graze check -");
   EXPECT_NE(hex.out.find("as written: disjoint, 2.22e-16 apart; as stored in float32: they share an area"),
             std::string::npos)
       << hex.out;
-  // Rounding that changes nothing is not worth a word.
+  // Rounding that does not change the truth is not reported.
   expect_done("echo '0.1 0 0 4 0 0 0 4 0  1 1 0.3 1 2 4 2 1 4' > p; graze check p > out; ! grep -q written out");
   expect_done(std::string("echo '") + kTouching + "' | graze check - --exact-input");
 }
 
-// As people paste it, in every verb that takes a pair: here two segments that meet in a point.
+// Pasted pairs, in every verb that takes a pair; here two segments that meet in a point.
 TEST_F(Inputs, PastedPairsAreReadByEveryVerb) {
   const std::pair<const char*, const char*> pasted[] = {
       {"commas", "0, 0, 0, 4, 0, 0, 2, 0, 0, 1, 0, 0, 1, 0, 4, 1, 0, 2\n"},
@@ -156,7 +155,7 @@ TEST_F(Inputs, PrintedCommandsRunAsTheyStand) {
   ASSERT_NE(at, std::string::npos) << ran.out;
   expect_done(ran.out.substr(at + 7, ran.out.find('\n', at) - at - 7));
   EXPECT_TRUE(ran.out.ends_with("\nNext: graze minimize 'my campaign'\n")) << ran.out;
-  // Each ends with the next one.
+  // Each verb ends with the next command.
   const Ran minimized = shell("graze minimize 'my campaign'");
   EXPECT_TRUE(minimized.out.ends_with("\nNext: graze report 'my campaign'\n")) << minimized.out << minimized.err;
   EXPECT_TRUE(shell("graze repro exact_contact:1:1").out.ends_with("\nNext: graze minimize exact_contact:1:1\n"));
@@ -175,12 +174,12 @@ TEST_F(Inputs, PrintedCommandsRunAsTheyStand) {
   EXPECT_TRUE(shell("graze corpus list --corpus 'its corpus'")
                   .out.ends_with("\nNext: graze corpus verify --corpus 'its corpus'\n"));
   expect_done("graze corpus verify --corpus 'its corpus'");
-  for (const char* verb : {"lanes", "strata"}) {  // what they print runs
+  for (const char* verb : {"lanes", "strata"}) {  // the commands that they print can be run
     const std::string table = shell(std::string("graze ") + verb).out;
     expect_done(table.substr(table.find("Next: ") + 6, table.size() - table.find("Next: ") - 7) + " --pairs 50 --out " +
                 verb);
   }
-  // What another program reads has no such line.
+  // Output for other programs has no such line.
   EXPECT_EQ(shell("graze check 'a b' --json; graze explain 'a b' --json; graze lanes --json; graze dump lattice")
                 .out.find("Next"),
             std::string::npos);

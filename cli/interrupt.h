@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C and SIGTERM for verbs that run long: they end what they are at, say what they did, and exit with 130.
+// Handles Ctrl-C and SIGTERM for long-running verbs: they finish the current step, report what they did, and exit with
+// 130.
 #pragma once
 
 #include "core/stop.h"
@@ -8,7 +9,7 @@ namespace graze::cli {
 
 inline constexpr int kInterrupted = 130;
 
-// From here on the two signals only set this flag, which is stop_requested.
+// From this call on, the two signals only set the returned flag, which is stop_requested.
 const std::atomic<bool>& catch_interrupts();
 
 }  // namespace graze::cli

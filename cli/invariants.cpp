@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze invariants`: how often each lane's verdict changes although the question is the same.
+// `graze invariants`: counts how often each lane's verdict changes although the correct answer stays the same.
 #include <fmt/format.h>
 
 #include "cli/commands.h"
@@ -58,7 +58,7 @@ int invariants(const InvariantsOptions& options) {
              cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
   if (cases.empty()) return 0;
   const std::string first = (out / "cases" / cases.begin()->first).string();
-  fmt::print("Next: graze explain {}\n", shell_word(first));
+  fmt::print("Next: graze explain {}\n", path_word(first));
   return 0;
 }
 

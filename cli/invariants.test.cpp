@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze invariants` as a user runs it.
+// `graze invariants` as users run it.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -42,7 +42,7 @@ TEST_F(InvariantsCommand, LeavesTheSameBytesWhateverTheThreads) {
   EXPECT_GT(json["lanes"][0]["invariants"]["order"]["changed"], 0);
 }
 
-// What doubling changes alone stands beside what some scaling changes, in the file and in the table.
+// The effect of doubling alone is listed beside that of any scaling, in the file and in the table.
 TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
   const std::string invariants =
       "graze invariants --lanes 'projected_sat/f32/cpu' --strata near_edge_edge --pairs 500 --out l";
@@ -65,7 +65,7 @@ TEST_F(InvariantsCommand, TellsWhatEachScalingChangesAlone) {
   EXPECT_EQ(shell(invariants + " | grep -cE '" + line + "$'").out, "1\n") << line << '\n' << ran.out;
 }
 
-// Each lane's case of each invariant: what stands first is wrong, as explain and minimize see it.
+// In each lane's case of each invariant, the first pair is wrong according to explain and minimize.
 TEST_F(InvariantsCommand, ItsCasesAreWrongVerdicts) {
   expect_done("graze invariants --lanes 'guigue*/f32/cpu' --strata 'near_*' --pairs 400 --out l");
   for (const char* invariant : {"order", "mirror", "axes"}) {
@@ -80,13 +80,13 @@ TEST_F(InvariantsCommand, ItsCasesAreWrongVerdicts) {
   }
 }
 
-// A subject that looks at the order, one that does what its convention leaves open, and a scene.
+// A subject that depends on the order, one that differs only within its convention, and a scene.
 TEST_F(InvariantsCommand, OfOnesOwnCodeAndWithinAScene) {
   std::ofstream(shell.folder / "mine.c") << "int mine(const float a[9], const float b[9]) { return a[0] > b[0]; }\n";
   expect_done("cc -shared -fPIC mine.c -o mine.so");
   expect_done("graze invariants --subject mine=mine.so:mine --lanes 'mine/*' --strata uniform --pairs 200 --out l");
   const auto of = json_of(shell.folder / "l/invariants.json")["lanes"][0]["invariants"];
-  EXPECT_EQ(of["swap"]["changed"], 200);  // of random numbers one is larger, and then the other one
+  EXPECT_EQ(of["swap"]["changed"], 200);  // one of two random numbers is larger, and after the swap the other one
   EXPECT_EQ(of["scale"]["changed"], 0);
   EXPECT_EQ(of["translate"]["changed"], 0);
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze lanes` and `graze strata`: the two tables, as the code has them.
+// `graze lanes` and `graze strata`: print the tables of lanes and strata from the code.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -49,7 +49,7 @@ void print_lanes(bool json, const std::vector<std::string>& globs) {
       line("order", lane.info->order, 2);
       last = lane.info;
     }
-    // What a twin is trusted for is long, and the same for most: it stands once, below.
+    // The evidence for twins is long and mostly the same, so it is printed once at the end.
     const bool twin = here.starts_with(kTwin);
     if (twin) twins.insert(here.substr(kTwin.size(), here.size() - kTwin.size() - 1));
     if (here == "available (twin)") twins.insert("not verified");
@@ -76,6 +76,7 @@ void add_lanes(CLI::App& app, int&) {
   command->add_flag("--json", *json, "Print one JSON array");
   auto lanes = std::make_shared<LaneOptions>();
   add_lane_options(*command, *lanes);
+  command->get_option("--lanes")->description("Patterns of the lanes to list");
   command->callback([json, lanes] {
     open_subjects(*lanes);
     print_lanes(*json, lanes->globs);
@@ -86,7 +87,7 @@ void add_strata(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand("strata", "List the strata: the named generators of pairs");
   command->footer("Example: graze strata");
   command->callback([] {
-    // One line each for programs that read the list.
+    // One line each, for programs that read the list.
     const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
     for (const strata::StratumInfo& row : strata::kStrata)
       fmt::print("{}", reports::wrapped(fmt::format("{:<20} {}", row.id, row.what), columns, 0, 21));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze league`: libraries and our algorithms on the same pairs, side by side.
+// `graze league`: compares libraries and our algorithms on the same pairs.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kStartOfAProgram = 10;  // seconds; it is part of what it takes for its first pair
+constexpr double kStartOfAProgram = 10;  // seconds; added to the time for a program's first pair
 
 struct LeagueOptions {
   std::string subjects, scene, out = "league";
@@ -45,8 +45,9 @@ std::string trimmed(const std::string& text) {
   return first == text.npos ? "" : text.substr(first, last - first + 1);
 }
 
-// NAME=WHAT a line; an indented `version: …`, `source: …` or `convention: …` below it says what the code itself does
-// not; # begins a comment.   Throws: std::runtime_error with file and line. `pairs: N`: it is slow, and takes no more.
+// Reads lines NAME=WHAT. Indented lines `version: …`, `source: …` or `convention: …` below one give facts that the code
+// does not report. `pairs: N` limits the pairs of a slow subject. # begins a comment.
+// Throws: std::runtime_error with file and line.
 std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::MostPairs& most) {
   std::vector<reports::LeagueSubject> subjects;
   if (!fs::exists(file)) throw std::runtime_error(cannot("read", file, ENOENT));
@@ -85,7 +86,7 @@ std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::Mo
   return subjects;
 }
 
-// What the code says of itself goes before what the file says.
+// Facts that the code reports take precedence over those in the file.
 void open(reports::LeagueSubject& subject, double timeout) {
   subjects::Wanted wanted = subjects::parse_subject(subject.name + '=' + subject.what);
   wanted.timeout = wanted.what.starts_with("cmd:") ? std::max(timeout, kStartOfAProgram) : timeout;
@@ -96,7 +97,7 @@ void open(reports::LeagueSubject& subject, double timeout) {
   if (!said.convention.empty()) subject.convention = said.convention;
 }
 
-// Of another run.
+// Removes the drawings of an earlier run.
 void remove_other_drawings(const fs::path& folder, const std::map<std::string, std::string>& drawings) {
   if (drawings.empty()) return;
   for (const auto& there : std::vector<fs::directory_entry>(fs::directory_iterator(folder), fs::directory_iterator())) {
@@ -134,9 +135,9 @@ int league(const LeagueOptions& options) {
   }
   const fuzz::Json json = reports::league_json(found, subjects, fuzz::league_costs(found), fuzz::machine_name(),
                                                fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))));
-  std::string command = fmt::format("graze league --subjects {} --pairs {} --seed {}", shell_word(options.subjects),
+  std::string command = fmt::format("graze league --subjects {} --pairs {} --seed {}", path_word(options.subjects),
                                     options.pairs, options.seed);
-  if (!options.scene.empty()) command += " --scene " + shell_word(options.scene);
+  if (!options.scene.empty()) command += " --scene " + path_word(options.scene);
   for (const std::string& glob : options.strata) command += " --strata " + shell_word(glob);
   const fs::path& out = folder.path;
   fs::create_directories(out / "league");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze league` as a user runs it: a file of subjects, a table, a page whose commands show what it says.
+// `graze league` as users run it: a file of subjects, a table, and a page whose commands reproduce its results.
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -30,7 +30,7 @@ class LeagueCommand : public CommandTest {
 
 constexpr const char* kRun = "graze league --subjects subjects.txt --pairs 1000 --strata lattice,uniform --out found";
 
-// Within a scene all pairs are the scene's: none is so wide that its boxes do not fit the extent.
+// Within a scene all pairs belong to the scene: no box is wider than the extent.
 TEST_F(LeagueCommand, DrawsWithinAScene) {
   std::ofstream(shell.folder / "hall.toml") << "extent = [[100, 108], [0, 4], [0, 4]]\nedges = [0.5, 1, 2]\n";
   expect_done("graze league --subjects subjects.txt --pairs 600 --scene hall.toml --strata uniform --out found");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for the verbs that scripts/campaign does not build: they say so, whatever follows them.
+// Stand-ins for the verbs that scripts/campaign does not build. Each says so, whatever its arguments are.
 #include "cli/commands.h"
 #include "core/error.h"
 

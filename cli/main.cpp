@@ -18,7 +18,7 @@
 
 namespace {
 
-// What `graze --help` groups the verbs by.
+// A group of verbs in `graze --help`.
 struct Task {
   const char* name;
   std::vector<void (*)(CLI::App& app, int& status)> verbs;
@@ -37,7 +37,7 @@ const Task kTasks[] = {
     {"Keep and publish results",
      {graze::cli::add_report, graze::cli::add_corpus, graze::cli::add_dump, graze::cli::add_prove_twin}}};
 
-// The first word is a verb, or one of the flags that stand without one.
+// Expects a verb as the first word, or one of the flags that stand without a verb.
 void expect_verb(const CLI::App& app, const std::string& word) {
   if (word == "--help" || word == "-h" || word == "--version") return;
   std::vector<std::string> verbs;
@@ -49,10 +49,10 @@ void expect_verb(const CLI::App& app, const std::string& word) {
                                              "'; `graze --help` lists them" + graze::did_you_mean(word, verbs));
 }
 
-// One line, whatever is in the names and texts that it quotes.
+// Prints one line, even if the quoted names and texts contain control characters.
 int fail(std::string what, int status) {
   for (char& c : what) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
-  // Where even this cannot be written, the exit status says it all.
+  // If even this cannot be written, only the exit status tells of the failure.
   std::fputs(fmt::format("{} {}\n", graze::reports::red(graze::cli::error_screen(), "graze:"), what).c_str(), stderr);
   return status;
 }
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
   app.set_help_flag("-h,--help", "Print this help");
   app.set_version_flag("--version", GRAZE_VERSION, "Print the version");
   app.require_subcommand(1);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit shows as a failed write, as a full disk does
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file-size limit then fails a write, like a full disk
   int status = 0;
   for (const Task& task : kTasks) {
     for (const auto add : task.verbs) {
@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
       app.get_subcommands([](const CLI::App*) { return true; }).back()->group(task.name);
     }
   }
-  app.footer("Run `graze VERB --help` for the options of a verb.");  // verbs added before have their own
+  app.footer("Run `graze VERB --help` for the options of a verb.");  // verbs that exist already keep their own footers
   graze::cli::add_force(app);
   try {
     expect_verb(app, argc > 1 ? argv[1] : "");
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
   } catch (const graze::UsageError& error) {
     return fail(error.what(), 2);
   } catch (const std::exception& error) {
-    constexpr std::string_view kByFmt = "cannot write to file";  // which does not know that it is the standard output
+    constexpr std::string_view kByFmt = "cannot write to file";  // fmt does not know that this is standard output
     std::string what = error.what();
     if (what.starts_with(kByFmt)) what.replace(0, kByFmt.size(), "cannot write standard output");
     return fail(what, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze map`: a picture of the verdicts around a case when two of its coordinates move by single ulps.
+// `graze map`: draws the verdicts around a case when two of its coordinates move by single ulps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ int coordinate(const std::string& option, const std::string& name) {
   return *found;
 }
 
-// Those asked for, if any.
+// The requested coordinates, if any.
 std::optional<analysis::MovedCoordinates> asked_for(const MapOptions& options) {
   if (options.x.empty() && options.y.empty()) return std::nullopt;
   if (options.x.empty() || options.y.empty()) throw UsageError("--x and --y need each other; add the other one");
@@ -44,7 +44,7 @@ std::optional<analysis::MovedCoordinates> asked_for(const MapOptions& options) {
   return moved;
 }
 
-// Whether no verdict changes in it.
+// Whether no verdict changes in the map.
 bool is_plain(const analysis::UlpMap& map) {
   return std::all_of(map.panels.begin(), map.panels.end(), [](const analysis::UlpPanel& panel) {
     return std::all_of(panel.cells.begin(), panel.cells.end(),
@@ -71,7 +71,7 @@ void print_counts(const analysis::UlpMap& map) {
   std::vector<reports::Column> columns{{"", reports::Align::left}};
   std::vector<Cell> shown;
   for (const auto& [cell, title] : kColumns) {
-    if (cell > Cell::not_finite && all[static_cast<std::size_t>(cell)] == 0) continue;  // of foreign code that fails
+    if (cell > Cell::not_finite && all[static_cast<std::size_t>(cell)] == 0) continue;  // failing foreign code only
     columns.push_back({title});
     shown.push_back(cell);
   }
@@ -90,7 +90,7 @@ void print_counts(const analysis::UlpMap& map) {
   fmt::print("{}", table.text(output_screen(), 2));
 }
 
-// One picture, or one for each panel where a directory is asked for.
+// Writes one picture, or one for each panel if `out` is a directory.
 void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
   if (out.extension() == ".png") {
     write_result(out, reports::sheet_png(map), fuzz::NamedBy::user);
@@ -124,7 +124,7 @@ void draw_map(const MapOptions& options) {
   fmt::print("{}", reports::wrapped(what, output_screen().columns));
   print_counts(map);
   write_pictures(map, options.out);
-  fmt::print("Next: graze repro {} --emit cpp\n", shell_word(options.name));
+  fmt::print("Next: graze repro {} --emit cpp\n", path_word(options.name));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze map` as users meet it, and the maps that `graze minimize` leaves for a report.
+// `graze map` as users run it, and the maps that `graze minimize` stores for a report.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -72,11 +72,11 @@ TEST_F(MapCommand, MinimizeStoresTheMapsOfCardsOnceAndForItsPairs) {
     const auto json = nlohmann::json::parse(contents(file.path()));
     EXPECT_EQ(json["panels"][0]["name"], "truth");
     EXPECT_EQ(json["panels"].size(), 6u)
-        << file.path();  // and the f32 lanes of one algorithm that have no need of a device
+        << file.path();  // and the f32 lanes of one algorithm that do not need a device
   }
   EXPECT_GT(maps, 10u);
   EXPECT_LE(maps, 40u);
-  // What is there stays; what is missing, or another pair's, is made anew.
+  // Existing maps stay; missing maps and those of another pair are made again.
   expect_done(
       "cp -r one/cases before; touch -d 2000-01-01 one/cases/*.maps.json; set -- one/cases/*.maps.json; rm $1; cp $2 "
       "$3; "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze merge`: one campaign of several shards.
+// `graze merge`: merges shards into one campaign.
 #include <fmt/format.h>
 
 #include "cli/campaign_end.h"
@@ -24,7 +24,7 @@ int merge(const MergeOptions& options) {
   }
   const fuzz::Outcome outcome = fuzz::merge(wanted);
   const std::filesystem::path out = options.out;
-  // "b/../c" leads nowhere where there is no b.
+  // "b/../c" is invalid if b does not exist.
   print_campaign(std::filesystem::exists(out) ? options.out : out.lexically_normal().string(), outcome, options.json);
   if (!outcome.complete) {
     std::fflush(stdout);

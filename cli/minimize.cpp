@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze minimize`: shrinks a case, or all cases of a campaign, to pairs that a person can read.
+// `graze minimize`: reduces a case, or all cases of a campaign, to pairs that are easy to read.
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -52,7 +52,7 @@ struct MinimizeOptions {
   LaneOptions lanes;
 };
 
-// Of this thread, so that it does not depend on what else the machine does.
+// Processor time of this thread, so that other load on the machine does not count.
 double processor_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -87,9 +87,9 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
   std::cout.flush();
 }
 
-// By which graze knows the file again.
+// Adds the header by which graze recognises the file as its own.
 std::string with_header(const std::string& text) {
-  constexpr std::string_view kMark = "\xef\xbb\xbf";  // of UTF-8, which stands first or nowhere
+  constexpr std::string_view kMark = "\xef\xbb\xbf";  // UTF-8 byte order mark, allowed only at the start
   const std::string plain = text.starts_with(kMark) ? text.substr(kMark.size()) : text;
   return plain.starts_with(std::string_view(kPairs).substr(0, 11)) ? plain : kPairs + plain;
 }
@@ -106,7 +106,7 @@ int minimize_case(const MinimizeOptions& options) {
   std::string text;
   if (std::all_of(entries.begin(), entries.end(), [](auto& entry) { return entry.line != 0 && entry.lines == 1; })) {
     text = fuzz::read_whole(options.name, fuzz::NamedBy::user);
-  } else {  // a stratum's pair, or a pasted one: as a file of pairs
+  } else {  // a stratum's pair or pasted numbers become a file of pairs
     std::ostringstream out;
     corpus::write_header(out);
     for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -140,18 +140,18 @@ int minimize_case(const MinimizeOptions& options) {
   for (const fuzz::MinimisedCase& found : results) print(found, options.name);
   if (!options.out.empty())
     write_result(options.out, with_header(fuzz::with_results(text, entries, results)), fuzz::NamedBy::user);
-  // Nothing can be read again from a pipe or a device; behind a link may be the standard output.
+  // A pipe or a device cannot be read again, and a link may lead to standard output.
   if (options.out.empty() || fs::is_regular_file(fs::symlink_status(options.out)))
-    fmt::print("Next: graze explain {}\n", shell_word(options.out.empty() ? options.name : options.out));
+    fmt::print("Next: graze explain {}\n", path_word(options.out.empty() ? options.name : options.out));
   return 0;
 }
 
-// What became of a signature of a campaign.
+// The result for one signature of a campaign.
 struct Done {
-  bool minimised = false;   // now or before; otherwise no selected lane is wrong on it
+  bool minimised = false;   // now or earlier; otherwise no selected lane is wrong on it
   int magnitudes = 0;       // of the first result
-  double milliseconds = 0;  // of each case; 0 where it was done before
-  double seconds = 0;       // of the file; 0 where it was done before
+  double milliseconds = 0;  // for each case; 0 if it was done earlier
+  double seconds = 0;       // for the file; 0 if it was done earlier
   double processor = 0;     // seconds of one core for the file's cases
 };
 
@@ -199,8 +199,9 @@ void print_directory(const std::string& directory, const std::vector<Done>& all)
 int minimize_directory(MinimizeOptions options) {
   const fs::path directory = options.name;
   if (!options.out.empty()) throw UsageError("--out is for cases alone; the results of a campaign go into its cases/");
+  if (options.exact_input) throw UsageError("--exact-input is for cases alone; a campaign's pairs are stored exactly");
   const bool whole = options.shard.whole();
-  // Read before the lock is taken, which reading the database of a run that was killed takes for itself.
+  // Reads the summary before the lock is taken, because reading the database of a killed run takes the lock itself.
   const std::string text = fuzz::read_whole(directory / "summary.json");
   const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
@@ -213,11 +214,12 @@ int minimize_directory(MinimizeOptions options) {
     throw std::runtime_error(
         cannot("minimise", options.name, "another process has just changed it; run the command again"));
   std::vector<Json> rows;
-  for (std::size_t i = 0; i < summary["signatures"].size(); ++i) {  // the commonest first: each shard gets some of them
+  for (std::size_t i = 0; i < summary["signatures"].size(); ++i) {  // most frequent first, dealt to the shards in turn
     if (i % options.shard.of == options.shard.number - 1) rows.push_back(summary["signatures"][i]);
   }
   expect_writable(directory);
-  fuzz::read_timings(directory);  // now, as its end adds to them
+  fuzz::read_timings(directory);  // before the work, because its end adds to them
+  fuzz::expect_file(directory / "failures.json");
   if (whole) fuzz::expect_own(directory / "failures.json", Json{{"summary", ""}}.dump(1));
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -233,7 +235,7 @@ int minimize_directory(MinimizeOptions options) {
     all[i] = minimize_file(under_test, summary["spec"], directory, rows[i], options.again);
     const std::lock_guard lock(mutex);
     ++count;
-    all[i].seconds > 0 ? work.add(0, 1, all[i].seconds) : work.skip(0, 1);  // 0: it was there before
+    all[i].seconds > 0 ? work.add(0, 1, all[i].seconds) : work.skip(0, 1);  // 0: done earlier
     auto left = work.seconds_left();
     if (left) left = *left / threads;
     if (const auto line = progress.line(count, seconds_since(start), left)) fmt::print(stderr, "{}", *line);
@@ -257,14 +259,14 @@ int minimize_directory(MinimizeOptions options) {
   if (!whole) {
     fmt::print("shard {}: {} of {} signatures looked at\nNext, when all shards are done: graze minimize {}\n",
                options.shard.name(), reports::grouped(rows.size()), reports::grouped(summary["signatures"].size()),
-               shell_word(options.name));
+               path_word(options.name));
     return 0;
   }
   const double map_seconds = seconds_since(mapping);
   fuzz::write_kinds(directory, under_test, kinds);
   print_directory(options.name, all);
   fmt::print("{} kinds of failure, listed by: graze failures {}\nNext: graze report {}\n",
-             reports::grouped(kinds.size()), shell_word(options.name), shell_word(options.name));
+             reports::grouped(kinds.size()), path_word(options.name), path_word(options.name));
 
   std::vector<double> times;
   double processor = 0, worst = 0;
@@ -313,6 +315,8 @@ void add_minimize(CLI::App& app, int& status) {
     if (!fs::is_directory(options->name)) {
       if (!options->shard.whole())
         throw UsageError("--shard is for campaign directories alone, and " + options->name + " is none");
+      if (options->again)
+        throw UsageError("--again is for campaign directories alone; " + options->name + " is minimised each time");
       status = minimize_case(*options);
       return;
     }

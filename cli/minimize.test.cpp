@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze minimize` as users meet it.
+// `graze minimize` as users run it.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -28,13 +28,13 @@ TEST_F(Minimize, ACaseIsPrintedAndWrittenWithItsOriginal) {
   EXPECT_LT(worst, original);
   EXPECT_NE(original, std::string::npos);
   EXPECT_NE(file.find("from=exact_contact:1:1"), std::string::npos);
-  // Both fail as they say.
+  // Both pairs fail as recorded.
   const Ran repro = shell("graze repro small.pairs --lanes 'guigue_*/f32/cpu'");
   EXPECT_EQ(repro.status, 0) << repro.out;
   std::size_t as_recorded = 0;
   for (std::size_t at = 0; (at = repro.out.find("(as recorded)", at)) != std::string::npos; ++at) ++as_recorded;
   EXPECT_EQ(as_recorded, 2u) << repro.out;
-  // The file as the case: what is in it already is made anew, not minimised further.
+  // The result as input: its cases are minimised again from the start, not further.
   expect_done("graze minimize small.pairs --lanes 'guigue_*/f32/cpu' --out again.pairs && cmp small.pairs again.pairs");
 }
 
@@ -55,7 +55,7 @@ TEST_F(Minimize, ACampaignTwiceIsTheSameBytesWhateverTheThreads) {
   }
   expect_done("graze minimize one && diff -r one/cases two/cases");
   expect_done("graze minimize one --again && diff -r one/cases two/cases");
-  // The campaign, asked for again, leaves the results where they are.
+  // Running the campaign's command again leaves the results in place.
   expect_done(std::string(kFuzz) + "--out one > /dev/null && diff -r one/cases two/cases");
   expect_done(
       "f=$(grep -om1 'cases/[0-9a-f]*.pairs' one/summary.json); graze repro one/$f --executor twin > /dev/null");
@@ -120,7 +120,7 @@ TEST_F(Minimize, LanesAreThoseOfTheCampaignOrThoseAskedFor) {
   expect_error("graze minimize host --lanes 'moller_*/cuda-nofma'", 2, {"the campaign did not run it"});
 }
 
-// Each file of cases says its signature; one that another wrote or moved there is not believed.
+// Each file of cases states its signature; a file that another program wrote or moved there is rejected.
 TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && cp -r c whole");
   const auto rows = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["signatures"];
@@ -146,7 +146,7 @@ TEST_F(Minimize, CasesThatAreNotTheCampaignsAreRefusedAndCanBeBroughtBack) {
   }
 }
 
-// A pair whose truth fits and on which other lanes are wrong: only the lanes can tell.
+// The pair's truth fits, but other lanes are wrong on it: only the lanes reveal that.
 TEST_F(Minimize, CasesOnWhichOtherLanesAreWrongAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null");
   const auto rows = nlohmann::json::parse(contents(shell.folder / "c/summary.json"))["signatures"];
@@ -178,7 +178,7 @@ TEST_F(Minimize, KindsAreTheOldOnesOrTheNewOnes) {
     shell(std::string("timeout -s KILL ") + seconds + " graze minimize c --again");
     expect_done("cmp whole c/failures.json");
   }
-  // Those of cases that have changed since are not believed.
+  // Kinds are rejected if their cases have changed since.
   expect_done(std::string(kFuzz) +
               "--out d > /dev/null && graze failures d > /dev/null && cp d/failures.json of_originals");
   expect_done("graze minimize d --shard 1/1000 && graze report d > said");

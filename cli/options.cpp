@@ -18,7 +18,7 @@ namespace graze::cli {
 
 namespace {
 
-// "1000000", "1_000_000", "1e6", "2.5e6", "10M".   Returns: the whole number; nothing when it is none, or too large.
+// Parses "1000000", "1_000_000", "1e6", "2.5e6" or "10M".   Returns: nothing if it is not a whole number, or too large.
 std::optional<std::uint64_t> parse_count(std::string_view text) {
   std::string digits;
   int power = 0;
@@ -59,7 +59,7 @@ CLI::Option* add_globs(CLI::App& command, const char* name, std::vector<std::str
         if (begin == end)
           throw UsageError(fmt::format("{}: expected patterns with commas between, found '{}'", name, text));
         std::string part = text.substr(begin, end - begin);
-        // Of a lane's policy for several sites: "moller_1997/f32/cpu/plane_distance=abs:1e-6,separation=rel:8".
+        // A comma may also continue a lane's policy: "moller_1997/f32/cpu/plane_distance=abs:1e-6,separation=rel:8".
         if (const bool goes_on = part.find('=') < part.find('/') && !globs.empty(); goes_on) {
           globs.back() += ',' + part;
         } else {
@@ -139,19 +139,22 @@ CLI::Validator not_empty() {
 
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
   add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run");
-  command
-      .add_option(
-          "--subject", options.subjects,
-          "Your own code, as lanes NAME/…. WHAT is a shared object or a C, C++ or CUDA source with :FUNCTION, or "
-          "cmd:COMMAND; see docs/your_own_code.md. May be repeated")
-      ->allow_extra_args(false)
-      ->option_text("NAME=WHAT");
+  CLI::Option* subject =
+      command
+          .add_option(
+              "--subject", options.subjects,
+              "Your own code, as lanes NAME/…. WHAT is a shared object or a C, C++ or CUDA source with :FUNCTION, or "
+              "cmd:COMMAND; see docs/your_own_code.md. May be repeated")
+          ->allow_extra_args(false)
+          ->option_text("NAME=WHAT");
   command
       .add_option("--flags", options.flags,
                   "Compiler flags for subjects that are sources, such as --flags='-O3 -Iinclude'")
+      ->needs(subject)
       ->allow_extra_args(false)
       ->option_text("TEXT");
   command.add_option("--subject-timeout", options.timeout, "Time limit of a subject for one pair, in seconds")
+      ->needs(subject)
       ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A person's own code: its failures as programs, which fail while the code is wrong and pass when it is fixed; and
-// `graze fuzz --fail-above`.
+// A user's own code: its failures as programs, which fail while the code is wrong and pass once it is fixed; and `graze
+// fuzz --fail-above`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 namespace graze::cli {
 namespace {
 
-// These two intersect.
+// Two triangles that intersect.
 constexpr const char* kPair = "0 0 0 4 0 0 0 4 0  1 1 -1 1 1 1 3 3 1";
 
 struct OwnCode {
   const char* name;
   const char* write;  // writes and builds the code that answers $ANSWER
-  const char* what;   // of --subject
+  const char* what;   // value of --subject
 };
 
 std::ostream& operator<<(std::ostream& out, const OwnCode& code) { return out << code.name; }
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(cli, Emitted, testing::ValuesIn(kCodes),
 
 class OwnCodeTest : public CommandTest {};
 
-// One that hangs, and one that crashes.
+// Code that hangs, and code that crashes.
 TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
   for (const char* does : {"for (;;) pause();", "abort();"}) {
     shell(
@@ -112,7 +112,7 @@ TEST_F(OwnCodeTest, FailuresAreEmittedToo) {
   }
 }
 
-// A CUDA source: the test asks graze, which has the replay where there is no device.
+// A CUDA source: the test asks graze, which replays it if there is no device.
 TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
   const auto write = [&](const char* answer) {
     shell(
@@ -154,7 +154,7 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
   const Ran ran = shell("PATH=$PATH:" GRAZE_NVCC_DIR "\nbash run.sh");
   ASSERT_TRUE(std::filesystem::exists(shell.folder / "case")) << ran.err;
   if (shell("graze lanes | grep -q 'available (device)'").status != 0) {
-    EXPECT_EQ(ran.status, 2) << ran.out;  // says that there is no device
+    EXPECT_EQ(ran.status, 2) << ran.out;  // because there is no device
     return;
   }
   EXPECT_EQ(ran.status, 1) << ran.err;
@@ -162,8 +162,8 @@ TEST_F(OwnCodeTest, CudaSourcesAreEmittedToo) {
 #endif
 }
 
-// The products whose fusing matters are looked for in a process of its own: with only some of them fused, this code
-// counts for seconds.
+// The relevant products are searched in a separate process, because with only some of them fused this code loops for
+// seconds.
 TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
   shell(
       "cat > own.cu <<'EOF'\n"
@@ -179,7 +179,7 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
       "    for (unsigned i = 0; i != 4000000000u; ++i) n = n * n + i;\n"
       "  return product(a) != 0 && n != 0;\n"
       "}\nEOF\n"
-      // Each with two products that are equal once they are rounded.
+      // Each has two products that are equal after rounding.
       "echo '0x1.000002p+0 0x1.000002p+0 1 0x1.000004p+0 1 1 3 3 1  0x1.000006p+0 0x1.000006p+0 9 0x1.00000cp+0 1 9 0 "
       "2 9' > p");
   const std::string explain =
@@ -198,7 +198,7 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
       << late.out << late.err;
 }
 
-// Lanes that were asked for and do not run are named, recorded and reported; none of a pattern is an error.
+// Requested lanes that do not run are named, recorded and reported. A pattern that matches no lane is an error.
 TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
   const std::string lanes = " --lanes 'moller_1997/f32/c*' ";
   const Ran ran = shell("graze fuzz --executor twin --pairs 200 --strata uniform --out c" + lanes);
@@ -215,12 +215,12 @@ TEST_F(OwnCodeTest, LanesThatDoNotRunAreNamedEverywhere) {
   for (const char* verb : {"check p --executor twin", "explain p", "invariants --pairs 19 --out l",
                            "plan --executor twin", "corpus verify --executor twin"})
     EXPECT_TRUE(shell(std::string("graze ") + verb + lanes).err.starts_with(ran.err)) << verb;
-  // Of those that run nothing is said, and nothing is recorded.
+  // For lanes that run, nothing is said or recorded.
   const Ran all =
       shell("graze fuzz --pairs 200 --strata uniform --out d --executor twin --lanes 'moller_1997/f32/c*fma'");
   EXPECT_EQ(all.err, "");
   EXPECT_EQ(contents(shell.folder / "d/summary.json").find("left_out"), std::string::npos);
-  // A user's own code is asked for without a pattern as well.
+  // A user's own code is also requested without a pattern.
   std::ofstream(shell.folder / "own.cu") << "__device__ bool meet(const float a[9], const float b[9]) "
                                             "{ return expf(a[0]) > b[0]; }\n";
   const Ran own = shell(
@@ -242,8 +242,8 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   const Ran repro = shell(ran.err.substr(again + 7) + " ");
   EXPECT_NE(repro.out.find("own/f32"), std::string::npos) << repro.out << repro.err;
   EXPECT_NE(repro.out.find("!"), std::string::npos) << repro.out;
-  expect_done(fuzz + "400");  // moller is wrong too, and not asked about
-  // The smallest is the smallest of all that are minimised, not that of the smallest kept pair; the file has it.
+  expect_done(fuzz + "400");  // moller is wrong too, but was not requested
+  // The smallest case is the smallest of all minimised ones, not that of the smallest kept pair; it is in the file.
   const auto pairs_of = [&](const std::string& command) {
     shell(command + " > some.pairs");
     std::vector<fuzz::Simplicity> found;
@@ -260,13 +260,13 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   EXPECT_LE(minimised.size(), 8u);
   EXPECT_EQ(smallest[0], *std::min_element(minimised.begin(), minimised.end())) << ran.err;
   EXPECT_EQ(shell(fuzz + "0").err, ran.err);
-  // Without a subject any lane counts.
+  // Without a named subject, any lane counts.
   const std::string ours = "graze fuzz --pairs 400 --out d --fail-above ";
   expect_error(ours + "0 --lanes 'moller*/f32/cpu'", 1, {"moller_1997", "0", "--fail-above"});
   expect_done("graze fuzz --pairs 400 --out e --lanes 'exact/f32/cpu' --fail-above 0");
 }
 
-// All verbs on a campaign of code that is wrong, crashes, hangs and wavers.
+// Runs all verbs on a campaign of code that is wrong, crashes, hangs or is unstable.
 TEST_F(OwnCodeTest, EveryVerbTakesWhatMisbehaves) {
   shell(
       "cat > own.c <<'EOF'\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze pareto`: errors against nanoseconds, and how far from ordinary pairs each lane stays right.
+// `graze pareto`: measures errors against nanoseconds, and how extreme pairs may become before each lane fails.
 #include <fmt/format.h>
 
 #include "analysis/pareto.h"
@@ -31,14 +31,14 @@ struct ParetoOptions {
   bool device = false;
 };
 
-// Lanes by their names, and what measures them.
+// Lane names, the lanes, and the function that measures them.
 struct Measured {
   std::vector<std::string> ids;
   std::vector<const Lane*> lanes;
   analysis::Sweep sweep;
 };
 
-// Why the lane's time cannot be measured: what twins and processes take is not what the code takes.
+// Why the lane's time cannot be measured: the time of a twin or a process is not the time of the code.
 std::string why_not_timed(const Lane& lane, bool device) {
   if (lane.foreign) return "pareto times no foreign code";
   if (device) return lane.is_cuda() ? "" : "--device times only CUDA lanes";
@@ -61,8 +61,7 @@ Measured measured(const ParetoOptions& options, const fuzz::SelectedLanes& under
   return result;
 }
 
-// The simplest pair that the minimiser makes of the first one on which the lane is wrong; of a lane without a twin that
-// pair itself.
+// Minimises the first pair on which the lane is wrong; without a twin, returns that pair itself.
 std::optional<Pair> smallest_failure(const Lane& lane, const analysis::PolicyErrors& errors,
                                      const std::vector<strata::PairSource>& sources) {
   if (!errors.first_broken) return std::nullopt;
@@ -154,7 +153,7 @@ int pareto(ParetoOptions options) {
     results.push_back({std::string(name(extreme)) + ".svg", reports::extreme_figure(pareto.curves, extreme)});
   write_results(out, results);
   fmt::print("Wrote {}/{{pareto.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n", out.string());
-  if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", shell_word(out.string()));
+  if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", path_word(out.string()));
   return 0;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze plan`: how long a campaign takes and how much disk, before it is run.
+// `graze plan`: estimates the time and disk space of a campaign.
 #include <fmt/format.h>
 
 #include <iostream>
@@ -48,7 +48,7 @@ int plan(const PlanOptions& options) {
   campaign.spec = fuzz::campaign_spec(campaign);
   if (!scene.is_null()) campaign.spec["scene"] = scene;
   const bool gpu = options.gpus > 0;
-  // A rate that is given needs no device; the store's rows are then measured on the CPU.
+  // A given rate needs no device; the store's rows are then measured on the CPU.
   if (gpu && options.rate == 0) campaign.engines = fuzz::choose_engines(campaign, fuzz::EngineChoice::gpu);
   if (campaign.engines.size() > 1) campaign.engines.resize(1);
   const fuzz::Sample sample = fuzz::measure(campaign);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a long run is: one line on a terminal, rewritten five times a second; otherwise a line of its own for every
-// tenth of the way, ten seconds apart at least, and when half a minute went by without one.
+// Progress of a long run. On a terminal, one line that is rewritten five times a second. Otherwise a new line for every
+// tenth of the run, at least ten seconds apart, and after half a minute without one.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,19 @@ namespace graze::cli {
 // "45 s", "3 min", "2 h 5 min".
 std::string duration(double seconds);
 
-// Parts of a line, those that matter most first: as many as fit on a terminal without filling its last column, where
-// some would wrap. A first part that is too wide is cut.
+// Joins as many parts, the most important first, as fit on a terminal line without its last column, where some
+// terminals wrap. Cuts the first part if it is too wide.
 std::string fitting(const std::vector<std::string>& parts, int columns);
 
 class Progress {
  public:
-  // things: what is counted, as "signatures". screen: what it is printed on; the terminal, if it is on one.
+  // things: the name of the counted things, such as "signatures". screen: where the line is printed; used on a
+  // terminal.
   Progress(std::string things, std::size_t total, bool on_terminal, const reports::Screen& screen = {})
       : things_(std::move(things)), total_(total), on_terminal_(on_terminal), screen_(screen) {}
 
-  // What to print when so many are done, so many seconds after the start; nothing when it is too soon.
-  // Returns: a line that does not wrap. `left` is the estimate; nothing where there is none yet. `more`: what else a
-  // terminal shows where there is room.
+  // Returns the line to print when `done` are done after `seconds`; nothing if it is too soon. The line does not wrap.
+  // `left`: the estimated remaining seconds, if known. `more`: further parts that a terminal shows if there is room.
   std::optional<std::string> line(std::size_t done, double seconds, std::optional<double> left,
                                   const std::vector<std::string>& more = {});
 
@@ -40,7 +40,7 @@ class Progress {
   bool on_terminal_;
   reports::Screen screen_;
   double printed_ = 0;      // seconds after the start
-  std::size_t tenths_ = 0;  // of the way, when the last line was printed
+  std::size_t tenths_ = 0;  // tenths of the run that were done when the last line was printed
 };
 
 }  // namespace graze::cli

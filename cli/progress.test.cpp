@@ -44,7 +44,7 @@ TEST(Progress, WithoutTerminalHalfAMinuteIsTheLongestSilence) {
 TEST(Progress, NeverWraps) {
   const auto line = Progress("signatures", 999'999'999, false).line(999'999'998, 1e6, 3.6e6);
   ASSERT_TRUE(line);
-  EXPECT_LE(line->size(), 80u);  // the end of the line included
+  EXPECT_LE(line->size(), 80u);  // including the newline
   const std::vector<std::string> more{"1,234,567,890 disagreements", "7,562 signatures", "123,456 pairs/s",
                                       "most in near_vertex_vertex"};
   std::size_t widest = 0;
@@ -53,7 +53,7 @@ TEST(Progress, NeverWraps) {
         Progress("pairs", 1'000'000'000, true, {columns, false}).line(999'999'999, 1e6, 3.6e6, more).value();
     ASSERT_TRUE(shown.starts_with('\r') && shown.ends_with("\033[K"));
     ASSERT_LT(shown.size() - 4, static_cast<std::size_t>(columns)) << shown;
-    ASSERT_GE(shown.size(), widest);  // more room, more said
+    ASSERT_GE(shown.size(), widest);  // with more room, more is shown
     widest = shown.size();
   }
   EXPECT_NE(fitting(more, 200).find("most in"), std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze prove-twin`: on a device, verifies that the twins give its verdicts, and writes the record.
+// `graze prove-twin`: verifies on a device that the twins give its verdicts, and writes the record.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace graze::cli {
 namespace {
 
-// The twins of the subjects, where there are any; else those of the published algorithms.
+// Proves the twins of the subjects if there are any; otherwise those of the published algorithms.
 cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions& lanes, std::string& out) {
   open_subjects(lanes);
   std::vector<cuda::NamedBuild> builds = subjects::cuda_builds();

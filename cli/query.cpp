@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze query`: which triangles of a mesh meet a reference, by one lane and executor or by several, compared.
+// `graze query`: finds the triangles of a mesh that intersect a reference, and compares lanes and executors.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -28,7 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostMismatches = 1000;  // kept as cases
+constexpr std::size_t kMostMismatches = 1000;  // mismatches kept as cases
 const std::vector<std::string> kExecutors = {"auto", "one-core", "all-cores", "one-gpu", "all-gpus"};
 
 struct QueryOptions {
@@ -39,7 +39,7 @@ struct QueryOptions {
   std::string obj, pairs, mismatches;
 };
 
-// A lane and an executor, and what they said.
+// A lane, an executor, and their verdicts.
 struct Run {
   std::string lane, executor;
   query::Answer answer;
@@ -48,7 +48,7 @@ struct Run {
 
 std::string name_of(int executor) { return kExecutors.at(static_cast<std::size_t>(executor)); }
 
-// The lanes that the patterns match; `exact` is the exact lane, on whatever runs it.
+// The lanes that match the patterns; `exact` is the exact lane on any executor.
 std::vector<std::string> lanes_of(const std::vector<std::string>& globs) {
   if (globs.empty()) return {"exact"};
   std::vector<std::string> ids;
@@ -83,7 +83,7 @@ int tell(void* user, std::uint64_t done, std::uint64_t triangles) {
   return told.interrupted;
 }
 
-// The triangles on which another run says something else than the first one, and what each says.
+// The triangles on which some run differs from the first one, with the verdict of each run.
 std::vector<corpus::Entry> mismatches_of(const std::vector<Run>& runs, const std::vector<query::Triangle>& references,
                                          const std::vector<query::Triangle>& triangles, std::uint64_t& count) {
   constexpr const char* kWords[] = {"disjoint", "intersects", "declined"};
@@ -112,7 +112,7 @@ void write_pairs(const std::string& file, const std::vector<corpus::Entry>& entr
   write_result(file, text.str(), fuzz::NamedBy::user);
 }
 
-// What the first run found, as files.
+// Writes the hits of the first run to files.
 void write_hits(const QueryOptions& options, const Run& run, const std::vector<query::Triangle>& references,
                 const std::vector<query::Triangle>& triangles) {
   std::vector<corpus::Entry> entries;
@@ -158,6 +158,8 @@ std::vector<Run> runs_of(const QueryOptions& options, const std::vector<query::T
   for (const std::string& lane : lanes_of(options.lanes)) {
     for (const std::string& executor : options.executors) runs.push_back({lane, executor, {}, {}});
   }
+  if (runs.size() == 1 && !options.mismatches.empty())
+    throw UsageError("--mismatches is for lanes or executors that are compared; name several by --lanes or --executor");
   if (options.any && runs.size() > 1) throw UsageError("--any works with one lane and one executor alone");
   const query::Context context;
   const std::atomic<bool>& interrupted = catch_interrupts();
@@ -221,7 +223,7 @@ void query_mesh(const QueryOptions& options, int& status) {
   }
   fmt::print("{} mismatch{}, {} of them kept in {}\n", reports::grouped(count), count == 1 ? "" : "es",
              mismatches.size(), printable(kept));
-  fmt::print("Next: graze explain {}\n", shell_word(kept));
+  fmt::print("Next: graze explain {}\n", path_word(kept));
 }
 
 }  // namespace
@@ -261,8 +263,9 @@ void add_query(CLI::App& app, int& status) {
       ->option_text("FILE");
   command->callback([options, &status] {
     if (options->self.empty()) return query_mesh(*options, status);
-    if (options->any || !options->lanes.empty() || options->executors != std::vector<std::string>{"auto"})
-      throw UsageError("--self is exact and runs on all cores; leave out --any, --lanes and --executor");
+    if (options->any || !options->lanes.empty() || !options->mismatches.empty() ||
+        options->executors != std::vector<std::string>{"auto"})
+      throw UsageError("--self is exact and runs on all cores; leave out --any, --lanes, --executor and --mismatches");
     query_self({options->self, options->json, options->obj, options->pairs});
   });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze query` and `graze bench` as a user meets them.
+// `graze query` and `graze bench` as users run them.
 #include <nlohmann/json.hpp>
 
 #include "cli/run_graze.h"
@@ -9,8 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A square of two triangles, one that pierces it, one that touches it in a point, one that shares a vertex with it, one
-// that is far away, and the square's first triangle again, shifted by less than float32 tells apart from touching.
+// A square of two triangles, and triangles that pierce it, touch it in a point, share a vertex with it, or are far
+// away. The last one is the square's first triangle, shifted from touching by less than float32 can represent.
 constexpr const char* kMesh = R"(v 0 0 0
 v 4 0 0
 v 4 4 0
@@ -83,12 +83,12 @@ TEST_F(QueryCommand, WritesHits) {
   EXPECT_TRUE(
       obj.starts_with("# Written by graze query\ng reference\nv 3 2 0\nv 1 2 5\nv 2 1 5\nf 1 2 3\ng hits\nv 0 0 0\n"))
       << obj;
-  EXPECT_EQ(json("graze query mesh.obj#3 hits.obj --json")["hits"], 3);  // the reference is there too
+  EXPECT_EQ(json("graze query mesh.obj#3 hits.obj --json")["hits"], 3);  // the reference is in the file too
   const Ran checked = shell("graze check hits.pairs --truth-only | grep -c 'truth: intersects'");
   EXPECT_EQ(checked.out, "2\n");
 }
 
-// Triangles that share a vertex, which one algorithm calls disjoint: the example of the README.
+// Triangles that share a vertex but that one algorithm calls disjoint: the README's example.
 TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
   std::ofstream(shell.folder / "mesh.obj") << "v .1 .2 .3\nv .5 .5 .9\nv -.3 .8 .4\nv 9 9 9\nf 1 2 3\nf 4 2 3\n";
   std::ofstream(shell.folder / "ref.txt") << "0.1 0.2 0.3  0.4 0.9 0.2  0.7 0.1 0.6\n";
@@ -122,7 +122,7 @@ TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
   EXPECT_EQ(
       json("printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n' > one.obj; graze query --self one.obj --json")["hits"],
       0);
-  // Folded over on itself, and twice the same.
+  // A mesh that is folded onto itself, and has one triangle twice.
   EXPECT_EQ(json("printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nv .1 .2 0\\nf 1 2 3\\nf 1 2 4\\nf 2 3 1\\n' > f.obj; "
                  "graze query --self f.obj --json")["hits"],
             3);
@@ -174,7 +174,7 @@ TEST_F(QueryCommand, BenchMeasuresAndCompares) {
     }
     if (row["lane"] == "CGAL AABB tree" && of_20000) {
       ++trees;
-      EXPECT_LE(row["hits"], hits);  // without the degenerate ones
+      EXPECT_LE(row["hits"], hits);  // without degenerate triangles
       EXPECT_GT(row["hits"].get<double>(), 0.95 * static_cast<double>(hits));
     }
     if (row["lane"] == "Embree" && of_20000) {

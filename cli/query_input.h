@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `graze query` is about: reference triangles, and the triangles of a mesh.
+// The inputs of `graze query`: reference triangles, and the triangles of a mesh.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace graze::cli {
 
-// Of a text file with nine numbers for each reference, or of MESH#FACE, one triangle of a mesh, the first one being 0.
-// Throws: std::runtime_error that names the file and the line; UsageError of a face that is no whole number.
+// Reads a text file with nine numbers for each reference, or MESH#FACE, one triangle of a mesh; faces count from 0.
+// Throws: std::runtime_error that names the file and the line; UsageError if FACE is not a whole number.
 std::vector<query::Triangle> read_references(const std::string& name);
 
 std::vector<query::Triangle> read_mesh(const std::string& file);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh against itself. Pairs whose boxes overlap come from CGAL; the exact relation of each tells what neighbours
-// share from what pierces. Triangles with one common vertex pierce when they have more than a point in common, those
-// with a common edge when they have more than a segment.
+// Tests a mesh against itself. CGAL finds the pairs whose boxes overlap. The exact relation of each pair tells whether
+// the triangles only touch as neighbours or pierce each other. Triangles with one common vertex pierce if they share
+// more than a point, and those with a common edge if they share more than a segment.
 #include "cli/query_self.h"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ enum Kind : std::uint8_t { kApart, kVertex, kEdge, kTouching, kPiercing };
 
 bool same(const Vec3<float>& p, const Vec3<float>& q) { return p.x == q.x && p.y == q.y && p.z == q.z; }
 
-// Distinct points that are vertices of both.
+// The number of distinct points that are vertices of both.
 int common_vertices(const Pair& pair) {
   int common = 0;
   for (int i = 0; i < 3; ++i) {

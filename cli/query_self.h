@@ -11,8 +11,8 @@ struct SelfOptions {
   std::string obj, pairs;  // files, or empty
 };
 
-// `graze query --self`: prints how many pairs of a mesh's triangles have more in common than their common vertices and
-// edges, and writes them.
+// `graze query --self`: prints how many pairs of a mesh's triangles share more than their common vertices and edges,
+// and writes those pairs.
 void query_self(const SelfOptions& options);
 
 }  // namespace graze::cli

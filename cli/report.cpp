@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze report`: a campaign as a page, and as data.
+// `graze report`: writes a campaign as a page and as data.
 #include "reports/report.h"
 
 #include <fmt/format.h>
@@ -36,7 +36,7 @@ void say_what_the_page_is() {
     fmt::print("The page is plain: this build had no Node, or no npm packages (see reports/README.md)\n");
 }
 
-// NAME.html, NAME.json, costs.json and tables in the directory.
+// Writes NAME.html, NAME.json, costs.json and tables to the directory.
 void write_report(const fs::path& directory, const Json& report, const char* name) {
   const Json costs = reports::make_costs(directory);
   const std::string html = reports::page(report, costs, reports::make_choices(directory));
@@ -56,7 +56,7 @@ void write_report(const fs::path& directory, const Json& report, const char* nam
   say_what_the_page_is();
 }
 
-// With what lanes cost, and what was tuned and traded, if that lies beside the report.
+// Includes the lane costs and the results of tune and pareto if they are beside the report.
 std::string page_of(const std::string& file) {
   try {
     const Json report = reports::read_report(file);
@@ -89,7 +89,7 @@ void report(const ReportOptions& options) {
     open_subjects_of(options.directory);
     const Json made = reports::make_report(options.directory);
     write_report(options.directory, made, "report");
-    if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", shell_word(options.directory));
+    if (made["signature_count"] > 0) fmt::print("Next: graze corpus add {}\n", path_word(options.directory));
   }
 }
 
@@ -109,7 +109,7 @@ void add_report(CLI::App& app, int&) {
                    "second directory")
       ->expected(2)
       ->option_text("DIR1 DIR2");
-  command->add_option("--from", options->from, "Existing report.json, from which only the page is written, to --out")
+  command->add_option("--from", options->from, "Existing report.json; writes only its page, into the file of --out")
       ->option_text("FILE");
   command->add_option("--out", options->out, "File for the page of --from")->check(not_empty())->option_text("FILE");
   command->callback([options] { report(*options); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze repro`: a stored case, or a pair named by its three numbers, run again on every lane and on the oracle.
+// `graze repro`: runs a stored case, or a pair named by its three numbers, again on every lane and on the oracle.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@ namespace {
 
 enum class Compared { same, changed, nothing };
 
-// Compares the signature on record with that of now: everything but the lanes, and of these the ones on record that
-// ran.
+// Compares the recorded signature with the present one: everything except the lanes, and those of the recorded lanes
+// that ran.
 Compared compare(const analysis::Signature& recorded, const analysis::Signature& now,
                  std::span<const Lane* const> run) {
   const auto ran = [&](const std::string& lane) {
@@ -39,7 +39,7 @@ Compared compare(const analysis::Signature& recorded, const analysis::Signature&
   return r != n ? Compared::changed : compared ? Compared::same : Compared::nothing;
 }
 
-// Prints the pair's signatures, and whether the recorded one still holds.   Returns: whether it changed.
+// Prints the pair's signatures, and whether the recorded one still applies.   Returns: whether it changed.
 bool compare_signatures(const corpus::Entry& entry, const oracle::Truth& t, std::span<const Lane* const> run,
                         std::span<const Verdict> verdicts) {
   const std::string* text = corpus::field(entry, "signature");
@@ -86,7 +86,7 @@ int repro(const std::string& name, const LaneOptions& lanes, const std::string& 
     wrong = wrong || some_is_wrong(counted, t.verdict);
     std::cout.flush();
   }
-  if (wrong) fmt::print("Next: graze minimize {}\n", shell_word(name));
+  if (wrong) fmt::print("Next: graze minimize {}\n", path_word(name));
   return changed ? 1 : 0;
 }
 

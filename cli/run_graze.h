@@ -61,13 +61,13 @@ class Shell {
   std::filesystem::path folder;
 };
 
-// The verbs that the program's --help lists: the names at the beginning of its rows.
+// The verbs that the program's --help lists: the first words of its rows.
 inline std::vector<std::string> verbs_in_help(const Shell& shell, const std::string& program) {
   std::istringstream names(shell(program + " --help | sed -n 's/^  \\([a-z][a-z-]*\\) .*/\\1/p'").out);
   return {std::istream_iterator<std::string>(names), {}};
 }
 
-// To stand before a command: it gets the signal before its `write`-th write to a file (signal_at_write.cpp).
+// A prefix for a command: the command gets the signal before its `write`-th write to a file (signal_at_write.cpp).
 inline std::string signal_at_write(int signal, int write) {
   return "ASAN_OPTIONS=verify_asan_link_order=0 GRAZE_SIGNAL=" + std::to_string(signal) +
          " GRAZE_AT_WRITE=" + std::to_string(write) + " LD_PRELOAD='" + GRAZE_SIGNAL_AT_WRITE + "' ";
@@ -84,13 +84,13 @@ class CommandTest : public testing::Test {
     EXPECT_EQ(ran.status, 0) << command << '\n' << ran.out << ran.err;
   }
 
-  // The command, sent `signal` once it catches SIGTERM, which would end it with 143 before.
+  // Runs the command and sends it `signal` once it catches SIGTERM; earlier, SIGTERM would end it with status 143.
   Ran signalled(const std::string& command, const std::string& signal, const std::string& before = "true") const {
     return shell(command + " & p=$!; until [ $((0x$(awk '/SigCgt/ {print $2}' /proc/$p/status) >> 14 & 1)) = 1 ] && " +
                  before + "; do sleep 0.02; kill -0 $p || exit 99; done; kill -" + signal + " $p; wait $p");
   }
 
-  // One line on stderr that names these words (core/message_testing.h), and this exit status.
+  // Expects this exit status, and one line on stderr that names these words (core/message_testing.h).
   void expect_error(const std::string& command, int status, const std::vector<std::string>& words) const {
     const Ran ran = shell(command);
     EXPECT_EQ(ran.status, status) << command << '\n' << ran.err;

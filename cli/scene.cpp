@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze scene`: a scene's file from meshes or pairs; and --scene of the verbs that draw from one.
+// `graze scene`: writes a scene file from meshes or pairs. Also adds --scene to the verbs that draw from a scene.
 #include <fmt/format.h>
 
 #include <iostream>
@@ -82,7 +82,7 @@ void scene(const SceneVerb& options) {
   write_result(options.out, text, fuzz::NamedBy::user);
   fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", options.out,
              reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
-  fmt::print("Next: graze fuzz --scene {}\n", shell_word(options.out));
+  fmt::print("Next: graze fuzz --scene {}\n", path_word(options.out));
 }
 
 }  // namespace

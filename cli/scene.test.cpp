@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes as a user meets them: measured, edited, drawn from, gone on with, named by cases, refused in one line.
+// Scenes as users handle them: measured, edited, drawn from, resumed, named by cases, refused in one line.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -46,7 +46,7 @@ TEST_F(SceneVerb, AMeshBecomesAPageThatIsRead) {
   expect_done("graze scene hills.off --units mm > again.toml && cmp hills.toml again.toml");
   expect_done("mkdir sub && graze scene hills.off --out sub/s.toml && grep -q '\"../hills.off\"' sub/s.toml");
   expect_done("graze fuzz --scene sub/s.toml --pairs 300 --strata mesh --lanes 'moller*/f32/cpu' --out sub/c");
-  // Its pairs as a file, measured, have the same sizes.
+  // Its pairs, written to a file and measured, have the same sizes.
   expect_done(
       "graze fuzz --scene hills.toml --pairs 1000 --strata mesh --lanes 'moller*/f32/cpu' --out m && "
       "graze dump m --format pairs > m.pairs && graze scene m.pairs --out m.toml && grep -q '^edges' m.toml");
@@ -71,7 +71,7 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   EXPECT_EQ(summary["spec"]["scene"]["left_out"]["far_from_origin"], "your coordinates stay within 0 … 201.125 units");
   for (const char* id : {"near_edge_edge", "shared_edge", "mesh", "mesh_ulps", "mesh_moved"})
     EXPECT_GT(summary["strata"][id]["pairs"], 0) << id;
-  // A case's name draws the same pair again, by the file and by the campaign.
+  // A case's name draws the same pair again, from the file and from the campaign.
   const std::string text = contents(shell.folder / "one" / summary["signatures"][0]["case"].get<std::string>());
   std::smatch found;
   ASSERT_TRUE(std::regex_search(text, found, std::regex("stratum=(\\w+) seed=(\\d+) index=(\\d+) scene=(\\S+) ")))
@@ -87,13 +87,14 @@ TEST_F(SceneVerb, ACampaignInASceneIsRepeatedResumedAndNamed) {
   EXPECT_GT(vertices.size(), 60u);
   for (const std::string& scene : {of, std::string("hills.toml"), std::string("one")})
     EXPECT_EQ(vertices_of(id + "@" + scene + numbers), vertices) << scene;
-  // What follows a campaign works on one in a scene.
+  // The verbs that use a campaign accept one in a scene.
   expect_done("graze minimize one > minimised && graze failures one > kinds && graze report one > report");
   EXPECT_NE(contents(shell.folder / "one/failures.json").find("@hills.toml#"), std::string::npos);
   EXPECT_NE(contents(shell.folder / "one/report.json").find("--scene 'hills.toml' --pairs 20000"), std::string::npos);
   const Ran dumped = shell("graze dump one --pairs 40 --format pairs");
   EXPECT_NE(dumped.out.find("scene=" + of), std::string::npos) << dumped.err;
-  // The same scene with a comment goes on; another scene is another campaign, and its names are not these.
+  // With only a comment added, the scene's campaign resumes. Another scene is another campaign, and case names do not
+  // match.
   expect_done("sed -i '1i # mine' hills.toml && " + fuzz + "--out one");
   expect_done("sed -i 's/^units.*/units = \"m\"/' hills.toml");
   expect_error(fuzz + "--out one", 2, {"one"});

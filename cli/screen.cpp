@@ -29,7 +29,7 @@ reports::Screen screen_of(int file_descriptor) {
   } else if (const auto columns = parse_whole(environment("COLUMNS")); columns && *columns > 0) {
     screen.columns = static_cast<int>(std::min(*columns, kMost));
   }
-  // Set and not empty, as no-color.org has it.
+  // NO_COLOR counts if it is set and not empty, as no-color.org requires.
   screen.colour = environment("NO_COLOR").empty() && environment("TERM") != "dumb";
   return screen;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people see on a terminal, played by a pseudo-terminal: it fits, and it has colour where it may.
+// The output on a terminal, simulated by a pseudo-terminal: it fits, and it has colour if allowed.
 #include <fcntl.h>
 #include <pty.h>
 
@@ -16,8 +16,8 @@ namespace {
 
 constexpr const char* kColour = "\033[1m";
 
-// Runs a command on a pseudo-terminal of so many columns.   Returns: all that it wrote there, without carriage
-// returns at the ends of lines.
+// Runs a command on a pseudo-terminal with `columns` columns.   Returns: its output without carriage returns at line
+// ends.
 std::string on_terminal(const Shell& shell, const std::string& command, unsigned short columns,
                         const std::string& environment = "unset NO_COLOR COLUMNS; export TERM=xterm") {
   const winsize size{50, columns, 0, 0};
@@ -46,7 +46,7 @@ std::string without_colour(std::string text) {
   return text;
 }
 
-// The widest line; what a carriage return starts anew counts by itself.
+// The width of the widest line; a carriage return starts a new line.
 int widest(const std::string& text) {
   int most = 0;
   std::string line;
@@ -78,7 +78,7 @@ TEST_F(TerminalTest, ColourIsForTerminalsThatWantIt) {
   const std::string shown = on_terminal(shell, explain, 80);
   EXPECT_NE(shown.find(kColour), std::string::npos) << shown;
   EXPECT_NE(shown.find("\033[31mdisjoint !\033[0m"), std::string::npos) << shown;
-  EXPECT_EQ(without_colour(shown), piped);  // nothing is said by colour alone
+  EXPECT_EQ(without_colour(shown), piped);  // colour adds no information
   for (const char* without : {"export TERM=xterm NO_COLOR=1", "unset NO_COLOR; export TERM=dumb"})
     EXPECT_EQ(on_terminal(shell, explain, 80, without), piped) << without;
   EXPECT_NE(on_terminal(shell, explain, 80, "export TERM=xterm NO_COLOR=").find(kColour), std::string::npos);
@@ -130,7 +130,7 @@ TEST_F(TerminalTest, TheLiveLineNeverWraps) {
   EXPECT_LT(widest(text), 40) << text;
 }
 
-// The lines of a text that are no example: an example is copied, so it is one line.
+// The lines of a text without examples, which are not wrapped so that they can be copied.
 std::string without_examples(const std::string& text) {
   std::istringstream in(text);
   std::string kept;
@@ -192,7 +192,7 @@ TEST_F(ScreenTest, LanesSayOnceWhatTheirTwinsAreTrustedFor) {
   EXPECT_NE(out.find("CUDA lanes run by their twins, on the CPU"), std::string::npos) << out;
 }
 
-// What is said without nvcc is so: a variant is called unavailable when its lanes have no twin, and none else.
+// The build's message without nvcc is true: it calls exactly those variants unavailable whose lanes have no twin.
 TEST_F(ScreenTest, TheBuildSaysWhatRunsWithoutNvcc) {
   const std::string text = contents(std::filesystem::path(GRAZE_SOURCE_DIR) / "cmake/cuda.cmake");
   const std::size_t at = text.find("CUDA lanes: run by their twins, on the CPU (built without nvcc); ");

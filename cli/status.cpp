@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze status`: how far shards, ranks and campaigns are, from the status.json that each of them writes.
+// `graze status`: shows the progress of shards, ranks and campaigns from their status.json files.
 #include <fmt/format.h>
 #include <signal.h>
 #include <unistd.h>
@@ -33,8 +33,8 @@ struct StatusOptions {
   bool json = false;
 };
 
-// A run that does not say how it ended: killed, where its process is gone from this machine; stalled, where it has said
-// nothing for long.
+// The state of a run. A run that did not record its end was killed if its process is gone from this machine. It has
+// stalled if it has been silent for long.
 std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stalled) {
   const std::string state = status.at("state");
   if (state != "running") return state;
@@ -46,7 +46,7 @@ std::string state_of(const Json& status, std::int64_t silent, std::uint64_t stal
   return silent > static_cast<std::int64_t>(stalled) ? "stalled" : "running";
 }
 
-// known: ways to fail of the rows above, to which those of this one are added.
+// known: signatures without margins of the rows above; those of this row are added.
 Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::string>& known) {
   Json row = {{"directory", directory.string()},
               {"shard", nullptr},
@@ -80,8 +80,8 @@ Json row_of(const fs::path& directory, std::uint64_t stalled, std::set<std::stri
   return row;
 }
 
-// In the order of the directories. {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements",
-// "states": {state: shards}}
+// Returns {"shards": [row, …], "pairs", "done", "rate", "seconds_left", "disagreements", "states": {state: shards}},
+// with rows in the order of the directories.
 Json status_of(const StatusOptions& options) {
   Json all = {{"shards", Json::array()},
               {"pairs", 0},
@@ -99,7 +99,7 @@ Json status_of(const StatusOptions& options) {
     std::uint64_t of_ranks = 0;
     for (const fs::path& place : places) {
       const Json row = row_of(place, options.stalled, known);
-      // Each rank knows the pairs of all.
+      // Each rank reports the pairs of all ranks.
       of_ranks = std::max(of_ranks, row["pairs"].get<std::uint64_t>());
       done += row["done"].get<std::uint64_t>();
       disagreements += row["disagreements"].get<std::uint64_t>();
@@ -143,7 +143,7 @@ std::string table(const Json& all) {
   return text;
 }
 
-// Prometheus' text format, as its node exporter reads it from a folder of *.prom files.
+// Prometheus' text format. Its node exporter reads it from a folder of *.prom files.
 std::string prometheus(const Json& all) {
   const auto label = [](const std::string& text) {
     std::string escaped;

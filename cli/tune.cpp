@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze tune`: which epsilon policy serves a lane on given pairs, and what no error count shows of epsilons.
+// `graze tune`: finds the best epsilon policy for a lane on given pairs, and problems with epsilons that error counts
+// hide.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,8 +37,8 @@ struct TuneOptions {
   double max_rate = 1e-6;
 };
 
-// The smallest pair that the policy mends, or breaks: the verdicts of both lanes stay as they are. Of lanes without a
-// twin the pair itself.
+// Minimises a pair that the policy fixes or breaks, keeping the verdicts of both lanes. Without twins, returns the pair
+// itself.
 std::string smallest(const Lane& zero, const Lane& under, const Pair& pair) {
   fuzz::SelectedLanes both;
   both.lanes = {&zero, &under};
@@ -50,7 +51,7 @@ std::string smallest(const Lane& zero, const Lane& under, const Pair& pair) {
   return text.str();
 }
 
-// Empty for a lane that runs by its twin: what a twin takes is not what the code takes.
+// Empty if the lane runs as a twin, because a twin's time is not the time of the code.
 std::string cost_sentence(const Lane& zero, const Lane& chosen, const std::vector<strata::PairSource>& sources,
                           bool on_device) {
   if (!zero.is_cuda()) {
@@ -85,12 +86,12 @@ int tune(const TuneOptions& options) {
     return policy.empty() ? *lane : lane_under(*lane, policy);
   })
                          : analysis::host_sweep(*lane, options.threads);
-  // Chosen on a tenth of the pairs, judged on all of the next seed's.
+  // Chooses on a tenth of the pairs, and verifies on all pairs of the next seed.
   strata::SceneSources others = drawn(options.scene, options.seed + 1, options.pairs, options.strata);
   spec.others = std::move(others.sources);
   spec.sources =
       drawn(options.scene, options.seed, std::max<std::uint64_t>(options.pairs / 10, 1), options.strata).sources;
-  // A mesh's own pairs do not change with the seed: the choice is judged on them, and not made on them.
+  // A mesh's own pairs do not depend on the seed, so they only serve to verify the choice.
   std::erase_if(spec.sources, [](const strata::PairSource& source) { return source.id == "mesh"; });
   if (spec.sources.empty())
     throw UsageError("the pairs of a mesh do not depend on the seed, so none are left to choose on; add --strata");
@@ -126,7 +127,7 @@ int tune(const TuneOptions& options) {
   }
   fmt::print("Wrote {}/{{{}}}\n", out.string(), fmt::join(written, ","));
   if (written.back().ends_with(".pairs")) {
-    fmt::print("Next: graze check {} --lanes {}\n", shell_word((out / written.back()).string()),
+    fmt::print("Next: graze check {} --lanes {}\n", path_word((out / written.back()).string()),
                shell_word(lane->id + "," + chosen.id));
   } else {
     fmt::print("Next: graze pareto\n");

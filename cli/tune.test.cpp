@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Policies as users meet them: lanes under a policy on every verb, `graze tune` and `graze pareto`.
+// Policies as users handle them: lanes under a policy with every verb, `graze tune` and `graze pareto`.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -35,7 +35,7 @@ TEST_F(Policies, AreLanesOnEveryVerb) {
   expect_done("graze minimize c && graze failures c > kinds && graze report c && graze dump c > /dev/null");
   EXPECT_NE(contents(shell.folder / "kinds").find("moller_1997: policy"), std::string::npos)
       << contents(shell.folder / "kinds");
-  // A case of a lane under a policy, as a program that shows it.
+  // A case of a lane under a policy, emitted as a program.
   const Ran emitted = shell(
       "graze repro small.pairs --lanes moller_1997/f32/cpu/paper --emit cpp > case.cpp && g++ -std=c++20 -O2 "
       "-ffp-contract=off case.cpp -o case && ./case");
@@ -61,7 +61,7 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   const auto json = json_of(shell.folder / "t/tune.json");
   ASSERT_EQ(json["result"], "satisfied") << ran.out;
   const std::string policy = json["chosen"];
-  // Ten times the pairs, another seed: the rate stays under the bound that was stated.
+  // With ten times the pairs and another seed, the rate stays below the reported bound.
   expect_done("graze fuzz --strata 'near_*' --pairs 200k --seed 99 --lanes 'moller_1997/f32/cpu/" + policy +
               "' --out c > /dev/null");
   double negatives = 0;
@@ -69,9 +69,9 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   for (const auto& [stratum, row] : summary["strata"].items())
     negatives += row["lanes"]["moller_1997/f32/cpu/" + policy]["false_negative"].get<double>();
   EXPECT_LE(negatives / 200'000, json["bound"].get<double>());
-  // The same bytes again, whatever the threads.
+  // The bytes are the same for any number of threads.
   expect_done(tune + "--threads 1 --out u > /dev/null && diff -r t u");
-  // Smallest cases of what it mends and breaks, as it says.
+  // The smallest cases that the policy fixes and breaks are as described.
   for (const auto& [file, zero_wrong] : {std::pair{"fixed", true}, {"broken", false}}) {
     const Ran check = shell(std::string("graze check t/") + file +
                             ".pairs --lanes 'moller_1997/f32/cpu,moller_1997/f32/cpu/" + policy + "' | grep moller");
@@ -92,7 +92,7 @@ TEST_F(TuneCommand, AForeignFileStopsItBeforeAnythingIsWritten) {
 }
 
 TEST_F(TuneCommand, NextIsACommandThatRuns) {
-  // Something is fixed and broken; then, in the same folder, nothing is.
+  // First something is fixed and broken; then, in the same folder, nothing is.
   for (const char* lane : {"moller_1997/f32/cpu --strata near_vertex_face --forbid false-negative --max-rate 1e-2",
                            "guigue_devillers_2003/f64/cpu --strata uniform --max-rate 1e-2"}) {
     const Ran ran = shell(std::string("graze tune --pairs 3k --out t ") + lane);
@@ -104,7 +104,7 @@ TEST_F(TuneCommand, NextIsACommandThatRuns) {
   EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/fixed.pairs"));
 }
 
-// The header decides as the lane: compiled by itself, on the smallest cases.
+// The header, compiled by itself, decides like the lane on the smallest cases.
 TEST_F(TuneCommand, TheHeaderDecidesAsTheLane) {
   expect_done(
       "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 5k --forbid false-negative --max-rate 1e-2 "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze view`: one page in which every verdict is decided anew while a triangle is dragged.
+// `graze view`: writes a page that decides every verdict again as a triangle is dragged.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 using reports::Viewed;
 
 constexpr std::size_t kMostCandidates = 100'000;  // pairs of a mesh that are searched for wrong verdicts
-constexpr std::size_t kMostOfAMesh = 500;         // that are shown
+constexpr std::size_t kMostOfAMesh = 500;         // pairs of a mesh that are shown
 
 std::string name_of(const std::string& file, const corpus::Entry& entry) {
   if (const std::optional<std::string> numbers = corpus::numbers_of(entry)) return printable(*numbers);
@@ -45,7 +45,7 @@ void add_cases(const std::string& name, Viewed& viewed, std::size_t most = repor
   }
 }
 
-// Of a campaign the simplest case of each signature, of another folder all cases.
+// Adds the simplest case of each signature of a campaign, or all cases of another folder.
 void add_folder(const fs::path& folder, Viewed& viewed) {
   const bool campaign = fs::is_directory(folder / "cases");
   std::vector<fs::path> files;
@@ -71,7 +71,7 @@ bool some_lane_is_wrong(const Pair& pair) {
   });
 }
 
-// The triangles, and of the pairs whose boxes overlap first those on which some lane is wrong.
+// Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong.
 void add_mesh(const fs::path& file, Viewed& viewed) {
   const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
   const std::size_t shown = std::min(mesh.triangles.size(), reports::kMostViewedTriangles);
@@ -96,7 +96,7 @@ using Triangle = std::array<Vec3<float>, 3>;
 
 Triangle first_of(const Pair& pair) { return {pair.a[0], pair.a[1], pair.a[2]}; }
 
-// What `graze query` writes as hits: pairs of one reference. Seen all at once.
+// If all pairs are hits of `graze query` with one reference, shows them all at once.
 void show_against_the_first(Viewed& viewed) {
   const auto of_it = [&](const reports::ViewedPair& one) {
     return one.name.starts_with("reference_") && first_of(one.pair) == first_of(viewed.pairs[0].pair);
@@ -107,7 +107,7 @@ void show_against_the_first(Viewed& viewed) {
   viewed.opens_with_triangles = true;
 }
 
-// The question of `graze query REFERENCE MESH`: all triangles, the hits first, which are the pairs as well.
+// Adds the triangles of `graze query REFERENCE MESH`, hits first; the hits are also the pairs.
 void add_query(const std::string& reference, const std::string& file, Viewed& viewed) {
   const std::vector<query::Triangle> references = read_references(reference);
   if (references.size() != 1)
@@ -119,7 +119,7 @@ void add_query(const std::string& reference, const std::string& file, Viewed& vi
   for (std::size_t i = 0; i < mesh.size(); ++i) {
     const Pair pair = pair_of(references[0], mesh[i]);
     const bool hit = decide_one(exact->decide, pair) == Verdict::intersects;
-    const bool shown = hit || (viewed.pairs.empty() && i + 1 == mesh.size());  // one, where nothing is hit
+    const bool shown = hit || (viewed.pairs.empty() && i + 1 == mesh.size());  // one if there are no hits
     if (shown && viewed.pairs.size() < kMostOfAMesh)
       viewed.pairs.push_back({fmt::format("{}, triangle {}", printable(fs::path(file).filename().string()), i), pair});
     std::vector<Triangle>& of = hit ? viewed.triangles : others;
@@ -150,7 +150,7 @@ Viewed viewed_of(const std::string& what, const std::string& mesh) {
   return viewed;
 }
 
-// By the desktop, where there is one; whether it does is its affair.
+// Opens the page with the desktop's program, if there is a desktop; ignores failures.
 void open_page(const std::string& page) {
   if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
   std::string file = page, opener = "xdg-open";
@@ -172,7 +172,7 @@ void view(const std::string& what, const std::string& mesh, const std::string& o
   const Viewed viewed = viewed_of(what, mesh);
   write_result(out, reports::viewer_page(viewed), fuzz::NamedBy::user);
   const std::size_t count = viewed.pairs.size();
-  fmt::print("Wrote {}: {}{}\n", shell_word(out),
+  fmt::print("Wrote {}: {}{}\n", path_word(out),
              count == 0 ? "the special cases of 2012" : fmt::format("{} pair{}", count, count == 1 ? "" : "s"),
              viewed.triangles.empty() ? "" : fmt::format(", {} triangles", viewed.triangles.size()));
   std::fflush(stdout);

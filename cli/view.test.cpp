@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze view` as users meet it; what its page does is tested in a browser, reports/web/tests/viewer.spec.ts.
+// `graze view` as users run it; reports/web/tests/viewer.spec.ts tests its page in a browser.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ class ViewCommand : public CommandTest {
       GTEST_SKIP() << "this build has no viewer: it takes Node and a compiler for WebAssembly";
   }
 
-  // What the page holds.
+  // The data in the page.
   nlohmann::json data(const std::string& page) const {
     const std::string text = contents(shell.folder / page), start = "<script type=\"application/json\" id=\"view\">";
     const std::size_t begin = text.find(start) + start.size();
@@ -71,7 +71,7 @@ TEST_F(ViewCommand, FilesFoldersAndMeshes) {
   EXPECT_EQ(data("small.html")["pairs"][0]["name"], "minimised from mesh:1:597");
 }
 
-// What `graze query` answers, all triangles at once: by its own two words, or of the hits that it wrote.
+// Shows a query with all triangles at once, from the arguments of `graze query` or from the hits that it wrote.
 TEST_F(ViewCommand, QueriesAndTheirResults) {
   std::ofstream(shell.folder / "tent.obj")
       << "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 3 1 -1\nv 3 1 1\nv 4 2 1\nf 1 3 4\nf 1 2 3\nf 5 6 7\n";
@@ -81,7 +81,7 @@ TEST_F(ViewCommand, QueriesAndTheirResults) {
   EXPECT_EQ(held["opens"], "triangles");
   EXPECT_EQ(held["title"], "hits of ref.txt in tent.obj");
   EXPECT_EQ(held["pairs"][0]["name"], "tent.obj, triangle 1");
-  EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().substr(72), held["triangles"][0]);  // the hits first
+  EXPECT_EQ(held["pairs"][0]["bits"].get<std::string>().substr(72), held["triangles"][0]);  // hits come first
   EXPECT_EQ(held["pairs"][1]["bits"].get<std::string>().substr(72), held["triangles"][1]);
   expect_done("graze query ref.txt tent.obj --pairs hits.pairs --obj hits.obj");
   EXPECT_EQ(shell("graze view hits.pairs").out, "Wrote view.html: 2 pairs, 2 triangles\n");
@@ -112,7 +112,7 @@ TEST_F(ViewCommand, BadInputGetsOneLine) {
   }
 }
 
-// With a display the page is opened, by what stands for xdg-open; without one nothing is.
+// With a display, the substitute for xdg-open opens the page; without one, nothing does.
 TEST_F(ViewCommand, OpensThePageOnlyWhereThereIsADisplay) {
   expect_done("printf '#!/bin/sh\\necho \"$1\" >> opened\\n' > xdg-open && chmod +x xdg-open");
   expect_done("unset DISPLAY WAYLAND_DISPLAY; PATH=$PWD:$PATH graze view --out a.html && test ! -e opened");

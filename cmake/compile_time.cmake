@@ -1,24 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-# What makes a release build short. Other builds compile each file by itself, so that each has to include what it uses; and
-# lanes, twins, kernels, core, strata, oracle and cuda are compiled so in every build.
+# Shortens release builds. Other builds compile each file by itself, so that each has to include what it uses. In every
+# build the lanes, twins, kernels, core, strata, oracle and cuda are compiled that way.
 set(is_release FALSE)
 if(CMAKE_BUILD_TYPE STREQUAL Release)
   set(is_release TRUE)
 endif()
 
-# Of a campaign's build most time is the compiler's: it does not look for what it could warn of, which other builds do.
+# A campaign's build takes mostly compile time. It turns warnings off; other builds show them.
 if(GRAZE_CAMPAIGN)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-w>)
 endif()
 
-# graze_cold(file…): of this folder; what no pair of a campaign passes through.
+# graze_cold(file…): files of this folder that no pair of a campaign passes through.
 function(graze_cold)
   if(GRAZE_CAMPAIGN)
     set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O1)
   endif()
 endfunction()
 
-# Headers of libraries, read once for many targets. Two sets, as GCC wants the same flags where one is used.
+# Library headers, precompiled once for many targets. There are two sets, because GCC requires the same flags where a
+# set is used.
 set(has_precompiled FALSE)
 if(is_release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   set(has_precompiled TRUE)
@@ -37,23 +38,25 @@ if(is_release AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   endforeach()
 endif()
 
-# graze_precompiled(LEVEL TARGET…): LEVEL is O3, or O1 where the compiler takes more time than the code ever will. It uses fmt.
+# graze_precompiled(LEVEL TARGET…): LEVEL is O3, or O1 for code that takes longer to compile than it ever runs. The
+# targets use fmt.
 function(graze_precompiled level)
   if(GRAZE_CAMPAIGN)
     set(level O1)
   endif()
   foreach(target IN LISTS ARGN)
     if(has_precompiled)
-      # -fPIC: programs have -fPIE else, with which GCC refuses what was precompiled for libraries.
+      # -fPIC: programs are compiled with -fPIE by default, and then GCC rejects headers precompiled for libraries.
       target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-${level}$<SEMICOLON>-fPIC>)
       target_precompile_headers(${target} REUSE_FROM graze_precompiled_${level})
     endif()
   endforeach()
 endfunction()
 
-# graze_together(TARGET [ALONE file…] [MUTATED file…]): its sources are compiled nine at once, for a campaign eighteen, but
-# for these files: ALONE has names that others have too; scripts/mutate compiles MUTATED anew, which a campaign's build does
-# not know. Of CLI11 and our own headers each file alone costs seconds, and each copy of what it takes of the JSON library.
+# graze_together(TARGET [ALONE file…] [MUTATED file…]): unity build of nine sources at a time, or eighteen for a
+# campaign. ALONE files are left out because their private names clash with other files'. MUTATED files are left out
+# because scripts/mutate compiles them itself, except in a campaign's build. A file that is compiled alone takes seconds
+# for CLI11, our own headers and its copy of the JSON library.
 function(graze_together target)
   cmake_parse_arguments(arg "" "" "ALONE;MUTATED" ${ARGN})
   set(batch 9)

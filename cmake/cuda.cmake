@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-# nvcc, where it is found; without it CMAKE_CUDA_COMPILER is false.
+# Finds nvcc. Without it, CMAKE_CUDA_COMPILER is false.
 include(CheckLanguage)
-# A campaign without a device is run by the twins, whose PTX is stored.
+# Without a device, twins run a campaign, and their PTX is stored.
 file(GLOB devices /dev/nvidia[0-9]* /dev/dxg)
 if(devices OR NOT GRAZE_CAMPAIGN)
   check_language(CUDA)
 endif()
 if(CMAKE_CUDA_COMPILER)
-  # sm_90 native; everything else from sm_75 on compiles the same PTX when it is loaded.
+  # Machine code for sm_90. Other devices from sm_75 on compile the same PTX when it is loaded.
   if(NOT CMAKE_CUDA_ARCHITECTURES)
     set(CMAKE_CUDA_ARCHITECTURES 75-virtual 90-real)
   endif()

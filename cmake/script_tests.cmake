@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The scripts, and their own tests.
+# Tests that run scripts, and the scripts' own tests.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME scripts.IncludeDirection COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/check_includes.py ${PROJECT_SOURCE_DIR})
 foreach(script check_includes findings league measurements mutate same_results speed_table torture update_generated)
@@ -11,15 +11,15 @@ set_tests_properties(scripts.Format PROPERTIES SKIP_RETURN_CODE 77)
 add_test(NAME scripts.test.format COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/format.test.py ${CMAKE_BINARY_DIR})
 set_tests_properties(scripts.test.format PROPERTIES SKIP_REGULAR_EXPRESSION "OK .skipped")
 add_test(NAME scripts.AuditExplanations COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/audit_explanations.test.py $<TARGET_FILE:graze>)
-# A minute of it on an idle machine; an hour by hand: scripts/torture --minutes 60. Each commit has another seed, so
-# that ten commits kill campaigns and minimisations a hundred times, each at other moments.
+# A minute on an idle machine; by hand for an hour: scripts/torture --minutes 60. Each commit has another seed, so ten
+# commits kill campaigns and minimisations a hundred times, at different moments.
 add_test(NAME scripts.Torture COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/torture --rounds 2 --kills 10 --seed commits --graze $<TARGET_FILE:graze>)
 set_tests_properties(scripts.Torture PROPERTIES TIMEOUT 1500)
-# Defects planted in our own sources; each is compiled anew from what this build knows, so Ninja has to have made it.
+# Defects planted in our own sources. Each is compiled with Ninja's commands of this build.
 if(CMAKE_GENERATOR STREQUAL Ninja)
   add_test(NAME scripts.PlantedDefects COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/mutate --planted --build ${CMAKE_BINARY_DIR} --out ${CMAKE_BINARY_DIR}/planted)
 endif()
-# A thousand by hand: scripts/simulate_shards.
+# By hand with a thousand shards: scripts/simulate_shards.
 add_test(NAME scripts.SimulateShards COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/simulate_shards --graze $<TARGET_FILE:graze>
   --shards 12 --pairs 12000 --strata near_*,degenerate --lanes */f32/cpu --kill 0.5)
 add_test(NAME scripts.Slurm COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/slurm/campaign.test.py $<TARGET_FILE:graze>)
@@ -28,10 +28,11 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_test(NAME scripts.test.odr COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/odr.test.py ${CMAKE_CXX_COMPILER})
 endif()
 add_test(NAME scripts.test.campaign COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/scripts/campaign.test.py ${CMAKE_BINARY_DIR} ${CMAKE_CXX_COMPILER})
-# Three seconds for each fuzz target, from another start each time, and what they take to build; an hour by hand: scripts/fuzz --seconds 400.
+# Three seconds for each fuzz target, from another start each time, plus build time. By hand for an hour:
+# scripts/fuzz --seconds 400.
 add_test(NAME scripts.Fuzz COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 3 --build ${CMAKE_BINARY_DIR}/fuzz-targets)
 set_tests_properties(scripts.Fuzz PROPERTIES TIMEOUT 900 SKIP_RETURN_CODE 77)
-# Of a minute and more: they begin first.
+# Tests of a minute or more start first.
 set_tests_properties(scripts.Fuzz scripts.Torture scripts.test.torture PROPERTIES COST 100)
 if(GRAZE_LIBFUZZER)
   add_test(NAME scripts.FuzzEngine COMMAND ${PROJECT_SOURCE_DIR}/scripts/fuzz --seconds 3 --build ${CMAKE_BINARY_DIR}/fuzz-engine --program $<TARGET_FILE:graze_engine_targets>)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hand examples and invariants over the whole lane table; other scalars and policies through the same source.
+// Hand-made examples and invariants for the whole lane table, and the same sources with other scalars and policies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,12 +40,12 @@ struct Example {
   const char* what;
   Pair pair;
   Verdict truth;
-  bool projection_overlaps = false;  // seen along some triangle's normal: projected_sat is wrong by logic
+  bool projection_overlaps = false;  // along some triangle's normal: projected_sat's logic is wrong there
 };
 
 constexpr Verdict kYes = Verdict::intersects, kNo = Verdict::disjoint;
 
-// Small integers, non-degenerate: every algorithm must be right, whatever its arithmetic (but see projection_overlaps).
+// Small integers, not degenerate: every algorithm must be right in any arithmetic (but see projection_overlaps).
 const Example kExamples[] = {
     {"apart, all of b above a", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 0, 1}, {4, 0, 2}, {0, 4, 3}}}, kNo},
     {"apart, all of a beside b's plane", {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 0, -1}, {6, 0, 1}, {6, 4, 1}}}, kNo},
@@ -70,7 +70,7 @@ const Example kExamples[] = {
 class EveryHostLane : public testing::TestWithParam<const Lane*> {};
 
 TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
-  // -ffast-math promises no NaN: interval_overlap, which divides zero by zero, is then wrong even on small integers.
+  // -ffast-math assumes no NaN. interval_overlap divides zero by zero and is then wrong even on small integers.
   if (info_of(GetParam()->variant).arithmetic == Arithmetic::fast) GTEST_SKIP() << "fast math promises nothing";
   for (const Example& example : kExamples) {
     if (example.projection_overlaps && GetParam()->info->id == "projected_sat") continue;
@@ -86,7 +86,7 @@ TEST_P(EveryHostLane, IsRightOnHandExamplesInAllOrders) {
   }
 }
 
-// Multiplying by a power of two rounds nothing, so no verdict may change. (Short of over- and underflow.)
+// Multiplication by a power of two is exact, so no verdict may change. (Here nothing over- or underflows.)
 TEST_P(EveryHostLane, DoesNotSeePowersOfTwo) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> uniform(-1, 1);
@@ -153,7 +153,7 @@ TEST(LaneTable, CounterpartsDifferInTheVariantAlone) {
   EXPECT_EQ(counterpart(*find_lane("exact/f32/cpu"), Variant::cpu_fma), nullptr);
 }
 
-// -ffast-math must not reach the linker, which would make the whole process flush subnormal numbers to zero.
+// -ffast-math must not reach the linker: it would make the whole process flush subnormal numbers to zero.
 TEST(Variants, NoneSwitchesAModeOfTheProcess) {
   volatile float least = std::numeric_limits<float>::denorm_min();
   const Pair pair = kExamples[0].pair;
@@ -163,7 +163,6 @@ TEST(Variants, NoneSwitchesAModeOfTheProcess) {
   }
 }
 
-// Figure 3.4 of the thesis: both plane tests pass and the projections overlap, yet the triangles are apart.
 TEST(Algorithms, IncludeNoOtherAlgorithm) {
   for (const Lane& lane : published_lanes()) {
     std::ifstream in(std::string(GRAZE_SOURCE_DIR "/core/algorithms/") + std::string(lane.info->id) + ".h");
@@ -175,6 +174,7 @@ TEST(Algorithms, IncludeNoOtherAlgorithm) {
   }
 }
 
+// Figure 3.4 of the thesis: both plane tests pass and the projections overlap, but the triangles are disjoint.
 TEST(ProjectedSat, HasTheFalsePositiveOfTheThesis) {
   const Pair pair{{{0, 0, 0}, {8, 0, 0}, {0, 8, 0}}, {{1, 1, 4}, {6, 6, 4}, {6, 6, -1}}};
   Vec3<double> a[3], b[3];
@@ -187,7 +187,7 @@ TEST(ProjectedSat, HasTheFalsePositiveOfTheThesis) {
   EXPECT_EQ(Moller1997::decide(a, b), kNo);
 }
 
-// One NaN coordinate: Moller's test intersects wherever it stands, for no comparison rejects.
+// With one NaN coordinate, wherever it is, Moller's test says intersects, because no comparison rejects the pair.
 TEST(Moller1997, SaysIntersectsOfNaN) {
   for (int c = 0; c < kCoordinates; ++c) {
     Pair pair = kExamples[0].pair;
@@ -221,7 +221,7 @@ TEST(Scalars, TheSameSourceRunsOnRationalsAndMultiprecision) {
   expect_right_in<Multiprecision, Moller1997>("MPFR numbers");
 }
 
-// Counts the comparisons of each site, and holds small plane distances for zero.
+// Counts the comparisons at each site, and treats small plane distances as zero.
 struct CountingEpsilon {
   double epsilon;
   int* counts;

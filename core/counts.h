@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often a lane's verdict is not the truth's, by what it is. One meaning of wrong for everything that counts.
+// Counts of verdicts that differ from the truth, by kind. All code that counts errors uses this meaning of wrong.
 #pragma once
 
 #include <cstdint>
@@ -8,22 +8,22 @@
 
 namespace graze {
 
-// A declined verdict is no answer, and not wrong: it is counted beside the wrong ones and never added to them.
+// A declined verdict is not wrong: it is counted beside the wrong ones and never added to them.
 constexpr bool is_wrong(Verdict verdict, Verdict truth) { return verdict != truth && verdict != Verdict::declined; }
 
 struct Counts {
   std::uint64_t false_positive = 0;
   std::uint64_t false_negative = 0;
   std::uint64_t declined = 0;
-  std::uint64_t crashed = 0, timed_out = 0, unstable = 0;  // of foreign code
-  std::uint64_t by_convention = 0;  // another verdict than the truth's where the lane's convention leaves that open
+  std::uint64_t crashed = 0, timed_out = 0, unstable = 0;  // foreign code only
+  std::uint64_t by_convention = 0;  // differs from the truth, but the lane's convention allows it
 
   constexpr std::uint64_t failed() const { return crashed + timed_out + unstable; }
   constexpr std::uint64_t wrong() const { return false_positive + false_negative + failed(); }
-  constexpr std::uint64_t not_right() const { return wrong() + declined; }  // no right verdict: wrong, or no answer
+  constexpr std::uint64_t not_right() const { return wrong() + declined; }  // wrong or declined
   constexpr bool any_foreign() const { return failed() != 0 || by_convention != 0; }
 
-  // The count of a verdict that is not the truth.
+  // The count that a verdict belongs to, if it is not the truth.
   constexpr std::uint64_t& of(Verdict verdict) {
     switch (verdict) {
       case Verdict::intersects:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verdicts of a block of pairs as bits: what every block function does around the decision of one pair.
+// The loop that block functions share: it decides a block's pairs one by one and packs the verdicts into bits.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Bit i % 64 of word i / 64 says what decide(pairs[i]) does. Unused bits become zero.
+// Bit i % 64 of word i / 64 is the verdict of decide(pairs[i]). Unused bits become zero.
 template <class Decide>
 void decide_each(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined,
                  const Decide& decide) {

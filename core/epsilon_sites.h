@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Epsilon policies: every comparison that a paper or a library guards with an epsilon passes through one.
+// Epsilon policies: every comparison that a paper or a library guards with an epsilon goes through a policy.
 #pragma once
 
 #include <string_view>
@@ -24,21 +24,21 @@ constexpr std::string_view name(Site site) {
 
 inline namespace GRAZE_FP {
 
-// The default policy: exact comparison. Other policies hold for zero what is small; a tracing one records.
+// The default policy: exact comparison. Other policies treat small values as zero; a tracing policy records.
 struct ExactZero {
-  // x itself, or zero where the policy holds x for zero.
+  // Returns x, or zero if the policy treats x as zero.
   template <class Real>
   GRAZE_HD Real snap(Site, const Real& x) const {
     return x;
   }
 
-  // l < r, beyond doubt in the policy's eyes. (Not l - r < 0: a subtraction would invite contraction.)
+  // True if the policy is certain that l < r. (Not l - r < 0: a subtraction would invite contraction.)
   template <class Real>
   GRAZE_HD bool less(Site, const Real& l, const Real& r) const {
     return l < r;
   }
 
-  // l <= r, or too close to tell; false for NaN.
+  // True if l <= r or if they are too close to tell; false for NaN.
   template <class Real>
   GRAZE_HD bool at_most(Site, const Real& l, const Real& r) const {
     return l <= r;

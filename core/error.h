@@ -6,12 +6,12 @@
 
 namespace graze {
 
-// The user asked for something that cannot be meant: the command exits with 2, where other errors exit with 1.
+// The user's request is invalid: the command exits with 2. After other errors it exits with 1.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What is said of what scripts/campaign leaves out.
+// The message for a feature that scripts/campaign leaves out.
 inline std::string not_in_a_campaigns_build(const std::string& what) {
   return what + ": not in this build, which scripts/campaign made; scripts/setup builds everything";
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FNV-1a of 64 bits (Fowler, Noll and Vo): names for texts. Not against malice.
+// The 64-bit hash FNV-1a (Fowler, Noll and Vo), used to name texts. It gives no protection against forged texts.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace graze {
 
-// The hash of the bytes, continued from `hash`.
+// The hash of the bytes. To hash several texts in turn, pass the previous result as `hash`.
 constexpr std::uint64_t fnv1a(std::string_view bytes, std::uint64_t hash = 0xcbf29ce484222325u) {
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   return hash;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pair that a fuzz target's bytes stand for.
+// Makes a pair from the bytes of a fuzz input.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace graze {
 
-// First byte even: the 72 bytes that follow, whatever they are. Odd: small whole numbers, 18 bytes, times the power of
-// two that the second byte says, so that contacts are common. Bytes that are missing are zeros, so any are a pair.
+// First byte even: the next 72 bytes are the coordinates' bits. First byte odd: the second byte is an exponent and the
+// next 18 are small whole numbers, scaled by that power of two so that contacts are common. Missing bytes are zeros.
 inline Pair pair_of(std::string_view bytes) {
   unsigned char all[1 + sizeof(Pair)] = {};
   std::copy_n(bytes.begin(), std::min(bytes.size(), sizeof all), all);
@@ -27,7 +27,7 @@ inline Pair pair_of(std::string_view bytes) {
   return pair;
 }
 
-// The same, but of a coordinate that is not finite the exponent is one less.
+// Like pair_of, but the exponent of a coordinate that is not finite is one less, which makes it finite.
 inline Pair finite_pair_of(std::string_view bytes) {
   Pair pair = pair_of(bytes);
   for (int i = 0; i < kCoordinates; ++i) {

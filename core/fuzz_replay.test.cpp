@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stored corpora of the fuzz targets that are linked, replayed: without clang, in every build.
+// Replays the stored corpora of the fuzz targets that are linked. It needs no clang and is part of every build.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ TEST(FuzzTargets, GetThroughTheirStoredCorpora) {
     for (const fs::path& file : files) {
       std::ifstream in(file, std::ios::binary);
       const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-      target.one(bytes);  // aborts where something that must hold does not
+      target.one(bytes);  // aborts if a condition that must hold does not
       for (const std::size_t length : {bytes.size() / 2, bytes.size() - std::min<std::size_t>(bytes.size(), 1)})
         target.one(std::string_view(bytes).substr(0, length));
     }

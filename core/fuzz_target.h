@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fuzz targets: functions that must get through any bytes. They stand beside what they test, as x.fuzz.cpp;
-// fuzz/targets runs them under libFuzzer, core/fuzz_replay.test.cpp on the stored corpora alone.
+// Fuzz targets: functions that must handle any bytes. Each stands beside the code that it tests, as x.fuzz.cpp.
+// fuzz/targets runs them under libFuzzer; core/fuzz_replay.test.cpp runs them on the stored corpora only.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace graze {
 
 struct FuzzTarget {
-  const char* name;  // also of its folder in corpus/fuzz
+  const char* name;  // and the name of its folder in corpus/fuzz
   void (*one)(std::string_view bytes);
 };
 
@@ -25,19 +25,19 @@ struct RegisterFuzzTarget {
   RegisterFuzzTarget(const char* name, void (*one)(std::string_view)) { fuzz_targets().push_back({name, one}); }
 };
 
-// Ends the process where a target finds something that must hold and does not.
+// Ends the process if a condition that must hold does not.
 inline void must_hold(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "expected that %s\n", what);
   std::abort();
 }
 
-// Says that the target got to something worth keeping the input for, which branches do not show or nothing instruments.
+// Marks the input as worth keeping for a result that no branch shows, or that lies in code without instrumentation.
 // libFuzzer finds these counters by the section's name.
 __attribute__((used, section("__libfuzzer_extra_counters"))) inline std::uint8_t fuzz_counters[4096];
 inline void reached(std::size_t feature) { fuzz_counters[feature % sizeof fuzz_counters] = 1; }
 
-// What errors of readers must be: one line, and not empty.
+// Error messages of readers must be one line and not empty.
 inline void must_be_one_line(std::string_view error) {
   must_hold(!error.empty() && error.find('\n') == error.npos, "an error is one line");
 }

@@ -23,7 +23,7 @@ inline const float* coordinates(const Pair& pair) { return &pair.a[0].x; }
 inline float* coordinates(Pair& pair) { return &pair.a[0].x; }
 
 inline bool is_finite(const Pair& pair) {
-  unsigned others = 0;  // no branch for each coordinate: vector instructions
+  unsigned others = 0;  // no branch for each coordinate, so that this becomes vector instructions
   for (int i = 0; i < kCoordinates; ++i)
     others |= unsigned{(std::bit_cast<std::uint32_t>(coordinates(pair)[i]) & 0x7f800000u) == 0x7f800000u};
   return others == 0;

@@ -7,7 +7,7 @@
 
 namespace graze {
 
-// Requires: finite coordinates.   Exact: always.
+// Requires: finite coordinates. Exact for every such pair.
 GRAZE_HD inline Relation relation_of(const Pair& pair) { return exact::relation(&pair.a[0].x, &pair.b[0].x); }
 
 }  // namespace graze

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The request to stop, of Ctrl-C or SIGTERM. Whatever may wait long looks at it at least ten times a second.
+// The request to stop, by Ctrl-C or SIGTERM. Code that may wait long checks for it at least ten times a second.
 #pragma once
 
 #include <atomic>
@@ -9,14 +9,14 @@ namespace graze {
 
 inline std::atomic<bool> stop_requested{false};
 
-// Thrown out of what cannot come to its end in time; a verb then ends as if it had been asked between two steps. It is
-// no std::exception: nobody who expects something to fail takes it for that failure.
+// Thrown by code that cannot finish soon after a request to stop. The verb then ends as if the request had come between
+// two steps. It is no std::exception, so no handler of an expected failure catches it.
 struct Stopped {};
 
 extern "C" inline void request_stop(int) { stop_requested = true; }
 
-// While it lives, Ctrl-C and SIGTERM only set the flag, where they would end the process: for a wait within a verb that
-// does not catch them. A signal that is ignored stays ignored.
+// While it lives, Ctrl-C and SIGTERM only set the flag and do not end the process. For a wait in a verb that does not
+// catch them itself. A signal that is ignored stays ignored.
 class StopSignals {
  public:
   StopSignals() {

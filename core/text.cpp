@@ -53,7 +53,7 @@ std::optional<float> parse_float32(std::string_view text) {
                                             hex ? std::chars_format::hex : std::chars_format::general);
   if (end != text.data() + text.size() || error == std::errc::invalid_argument) return std::nullopt;
   if (error == std::errc::result_out_of_range) {
-    // from_chars does not say which way; strtof rounds what underflows and returns infinity otherwise.
+    // from_chars does not say which way. strtof rounds on underflow and returns infinity on overflow.
     magnitude = std::strtof(magnitude_text.c_str(), nullptr);
     if (std::isinf(magnitude)) return std::nullopt;
   }
@@ -126,12 +126,16 @@ std::string shell_word(std::string_view word) {
   return text + "'";
 }
 
+std::string path_word(std::string_view path) {
+  return shell_word(path.starts_with('-') ? "./" + std::string(path) : std::string(path));
+}
+
 std::string did_you_mean(std::string_view found, const std::vector<std::string>& candidates) {
   const auto letters = found.size() - static_cast<std::size_t>(std::count(found.begin(), found.end(), '*'));
   std::size_t least = letters / 3 + 1;
   const std::string* nearest = nullptr;
   for (const std::string& candidate : candidates) {
-    // Levenshtein's distance, one row for each character found; after a * the candidate's characters cost nothing.
+    // Levenshtein distance with one row per character of `found`. For a *, characters of the candidate cost nothing.
     std::vector<std::size_t> row(candidate.size() + 1);
     for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
     for (const char c : found) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers from text: decimals round once, ties to even, and what is no number in full is none.
+// Numbers from text: decimals round once, ties to even, and text that is not entirely a number is rejected.
 #include "core/text.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(ParseFloat32, RoundsDecimalsOnce) {
   // Ties: 2^24 + 1 and 2^24 + 3 lie halfway, and go to the even neighbour.
   EXPECT_EQ(parse_float32("16777217"), 16777216.0f);
   EXPECT_EQ(parse_float32("16777219"), 16777220.0f);
-  // Just beyond a tie, by less than a double can tell: two roundings would end at 2^24.
+  // Just beyond a tie, by less than a double can represent: two roundings would give 2^24.
   EXPECT_EQ(parse_float32("16777217.0000000001"), 16777218.0f);
   EXPECT_EQ(parse_float32("0x1000001.00000000001p0"), 16777218.0f);
   EXPECT_EQ(parse_float32("0x1000001p0"), 16777216.0f);
@@ -116,6 +116,10 @@ TEST(ShellWord, QuotesWhereAShellWouldSplit) {
   EXPECT_EQ(shell_word("a/b-1.pairs"), "a/b-1.pairs");
   EXPECT_EQ(shell_word("my case's"), "'my case'\\''s'");
   EXPECT_EQ(shell_word(""), "''");
+  EXPECT_EQ(shell_word("-O3"), "-O3");
+  EXPECT_EQ(path_word("a/-b"), "a/-b");
+  EXPECT_EQ(path_word("--x"), "./--x");
+  EXPECT_EQ(path_word("-my case"), "'./-my case'");
   EXPECT_EQ(shell_word("$(x)"), "'$(x)'");
   EXPECT_EQ(shell_word("a\x1b[1m'\\"), "$'a\\x1b[1m\\'\\\\'");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The variants as C++ sees them; core/variants.inc is the table.
+// The variants in C++, from the table core/variants.inc.
 #pragma once
 
 #include <cstdint>

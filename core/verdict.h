@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdict of a lane or the oracle on a pair, the exact relation of a pair, and the words for both in every output.
+// Names of verdicts and contacts in every output, and which verdicts are failures of foreign code.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace graze {
 
-// Whether it is of foreign code that failed.
+// Whether foreign code failed: it crashed, timed out or was unstable.
 constexpr bool is_failure(Verdict verdict) { return verdict >= Verdict::crashed; }
 
 constexpr std::string_view name(Verdict verdict) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every entry of every file of the corpus is a test of its own: its fields truth and contact against the oracle.
+// Every entry of every corpus file is a separate test, which compares its fields truth and contact with the oracle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace graze::corpus {
 namespace {
 
 struct Case {
-  std::string name;            // folder and name: classic_thesis_2012_case_3
+  std::string name;            // relative to the root of the sources
   std::filesystem::path file;  // below the root of the sources
   Entry entry;
 };
@@ -24,7 +24,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.fil
 
 struct Corpus {
   std::vector<Case> cases;
-  std::string errors;  // of files that do not read, and entries without a name, one line for each
+  std::string errors;  // one line for each unreadable file and each entry without a name
 };
 
 Corpus read_corpus() {
@@ -66,7 +66,7 @@ std::string value(const Entry& entry, std::string_view key) {
 
 TEST(Corpus, EveryFileReads) { EXPECT_EQ(corpus().errors, ""); }
 
-// An empty corpus fails twice: here, and because GoogleTest fails a parameterised test without parameters.
+// An empty corpus fails twice: here, and in GoogleTest, which fails a parameterised test without parameters.
 TEST(Corpus, HasEntriesOfEveryKind) {
   std::set<std::string> contacts;
   for (const Case& c : corpus().cases) contacts.insert(value(c.entry, "contact"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text format of pairs and cases: a line is cut from the left, word by word, and every misfit is named.
+// The text format of pairs and cases. A line is parsed word by word from the left, and every error is named.
 #include "corpus/pair_format.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view kFormat = "graze-pairs";
 constexpr std::string_view kVersion = "1";
-constexpr std::size_t kLongestLine = 65536;  // so that an endless line is an error, not all of the memory
+constexpr std::size_t kLongestLine = 65536;  // so that an endless line is an error and does not fill the memory
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 bool is_printable(char c) { return c >= ' ' && c <= '~'; }
@@ -37,7 +37,7 @@ std::string coordinate_name(std::size_t i) {
   return {i < 9 ? 'a' : 'b', '[', "012"[i % 9 / 3], ']', '.', "xyz"[i % 3]};
 }
 
-// What is left of a line that is being read.
+// The rest of a line that is being read.
 struct Line {
   std::string_view rest;
   std::string where;  // FILE:LINE
@@ -46,7 +46,7 @@ struct Line {
     throw FormatError(where + ": expected " + expected + ", found " + found);
   }
 
-  // Skips white space.   Returns: whether nothing or a comment is left.
+  // Skips white space.   Returns: whether only a comment or nothing is left.
   bool at_end() {
     while (!rest.empty() && is_space(rest[0])) rest.remove_prefix(1);
     return rest.empty() || rest[0] == '#';
@@ -58,19 +58,19 @@ struct Line {
     return taken;
   }
 
-  // Takes what stands before white space.
+  // Takes the text up to the next white space.
   std::string_view take_word() {
     return take(static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), is_space) - rest.begin()));
   }
 
-  // The same, or before punctuation or a '|'.
+  // Takes the text up to the next white space, punctuation or '|'.
   std::string_view take_number() {
     const auto ends = [](char c) { return is_space(c) || is_punctuation(c) || c == '|'; };
     return take(static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), ends) - rest.begin()));
   }
 };
 
-// Skips "float t[2][3][3] =", "Vec3 a" before a bracket and the like.   Returns: whether there was one.
+// Skips text such as "float t[2][3][3] =", or "Vec3 a" before a bracket.   Returns: whether there was any.
 bool skip_name(Line& line) {
   const char first = line.rest[0];
   if (std::isalpha(static_cast<unsigned char>(first)) == 0 && first != '_') return false;
@@ -78,7 +78,7 @@ bool skip_name(Line& line) {
     line.take(assigned + 1);
     return true;
   }
-  // One name or more, then a bracket.
+  // One or more names, then a bracket.
   Line ahead(line);
   while (!ahead.at_end() && (std::isalpha(static_cast<unsigned char>(ahead.rest[0])) != 0 || ahead.rest[0] == '_')) {
     const auto is_name = [](char c) { return is_key_char(c) || c == ':' || c == '<' || c == '>'; };
@@ -90,7 +90,7 @@ bool skip_name(Line& line) {
   return true;
 }
 
-// "1.5", or "1.5f" as in C.   Returns: the number without the suffix; empty when it is none.
+// Accepts "1.5", or "1.5f" as in C.   Returns: the number without the suffix; empty if it is none.
 std::string_view number_in(std::string_view word) {
   if (parse_float32(word)) return word;
   const bool suffix = word.size() > 1 && (word.back() == 'f' || word.back() == 'F');
@@ -100,15 +100,15 @@ std::string_view number_in(std::string_view word) {
   return parse_float32(word) ? word : std::string_view();
 }
 
-// The numbers of an entry so far, which may take several lines.
+// The numbers read so far of an entry, which may take several lines.
 struct Draft {
   Entry entry;
   std::size_t count = 0;
   bool open = false;  // the last line ended in a comma or an opening bracket
-  std::string where;  // of the first line with a number
+  std::string where;  // FILE:LINE of the first line with a number
 };
 
-// Takes the line's numbers, to its end or a '|'.
+// Takes the line's numbers, up to its end or a '|'.
 void take_numbers(Line& line, Draft& draft) {
   for (;;) {
     while (!line.at_end() && is_punctuation(line.rest[0])) draft.open = is_opening(line.take(1)[0]);
@@ -135,7 +135,7 @@ void take_numbers(Line& line, Draft& draft) {
   }
 }
 
-// Takes a value in quotes, the first of which is taken already.
+// Takes the rest of a value in quotes; the opening quote is already taken.
 std::string take_quoted(Line& line, const std::string& key) {
   std::string value;
   while (!line.rest.empty()) {
@@ -184,7 +184,7 @@ void take_fields(Line& line, Entry& entry) {
   }
 }
 
-// Whether the line is one of an OBJ file.
+// Whether the line belongs to an OBJ file.
 bool is_obj(Line line) {
   const std::string_view word = line.take_word();
   constexpr std::string_view kKeywords[] = {"v", "vt", "vn", "o", "g", "s", "mtllib", "usemtl"};
@@ -226,12 +226,12 @@ bool PairReader::read_line(std::string& text) {
 
 std::string PairReader::where() const { return name_ + ':' + std::to_string(line_); }
 
-// The rest of the stream is the fragment, of which `text` is the first line.
+// Reads the rest of the stream as an OBJ fragment, whose first line is `text`.
 Entry PairReader::read_obj_fragment(std::string text) {
   constexpr std::size_t kLongestFragment = 1 << 20;
   Entry entry;
   entry.line = line_;
-  std::string bytes(line_ - 1, '\n');  // so that line numbers in messages are those of the stream
+  std::string bytes(line_ - 1, '\n');  // so that messages have the stream's line numbers
   const std::string begins = where();
   do {
     bytes += text + '\n';
@@ -249,7 +249,7 @@ Entry PairReader::read_obj_fragment(std::string text) {
     throw FormatError(begins + ": expected two triangles, or six vertices without a face; found " +
                       std::to_string(soup.triangles.size()) + " triangles and " + std::to_string(soup.vertices.size()) +
                       " vertices");
-  std::vector<std::array<std::string, 3>> written;  // coordinates, in the order of the vertices
+  std::vector<std::array<std::string, 3>> written;  // coordinates as typed, in the order of the vertices
   std::istringstream lines(bytes);
   for (std::string line, keyword; std::getline(lines, line);) {
     std::istringstream words(line);
@@ -286,7 +286,7 @@ std::optional<Entry> PairReader::next() {
     take_numbers(line, draft);
     if (first) draft.entry.line = line_;
     const bool fields = !line.at_end() && line.rest[0] == '|';
-    if (draft.count == 0 && !fields) continue;  // brackets, or the name of an array
+    if (draft.count == 0 && !fields) continue;  // only brackets or the name of an array
     if (draft.count < kCoordinates && !fields && !versioned_ && (draft.open || draft.count % 3 == 0)) continue;
     if (draft.count != kCoordinates) expect_18(draft.count == 0 ? line.where : draft.where);
     draft.entry.lines = line_ - draft.entry.line + 1;

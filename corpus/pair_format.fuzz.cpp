@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs in the case format and in every form that people paste: what is read is written and read again, the same bits.
+// Pairs in the case format and in every form that people paste. A pair that was read must survive writing and reading
+// with the same bits.
 #include <cstring>
 #include <sstream>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text format of pairs and cases: a pair a line, 18 numbers and optional fields. One reader, one writer.
-// corpus/README.md describes the format.
+// The text format of pairs and cases: one pair per line, 18 numbers and optional fields. One reader, one writer.
+// docs/formats.md describes the format.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +22,9 @@ namespace graze::corpus {
 struct Entry {
   Pair pair{};
   std::vector<std::pair<std::string, std::string>> fields = {};  // key and value, in the order of the line
-  std::size_t line = 0;                                          // where it begins; 0 when it was not read
-  std::size_t lines = 1;                                         // that it takes
-  std::vector<std::string> written = {};  // the 18 numbers as they were typed; empty when it was not read
+  std::size_t line = 0;                                          // where the entry begins; 0 if it was not read
+  std::size_t lines = 1;                                         // how many lines the entry takes
+  std::vector<std::string> written = {};                         // the 18 numbers as typed; empty if it was not read
 };
 
 // Input that is not in the format; what() is one line: "FILE:LINE: expected 18 numbers, found 17".
@@ -32,16 +32,16 @@ struct FormatError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Reads the entries of a stream one at a time, so that a pipe can be followed as it is written. Without a version line
-// it also takes what people paste: commas, brackets, f suffixes, a vertex a line, arrays of C or Python, and an OBJ
+// Reads the entries of a stream one at a time, so that it can follow a pipe as it is written. Without a version line it
+// also accepts pasted text: commas, brackets, f suffixes, one vertex per line, arrays of C or Python, and an OBJ
 // fragment of two faces, or of six vertices without faces.
 class PairReader {
  public:
-  // Requires: in outlives the reader.   name stands for the stream in messages.
+  // Requires: in outlives the reader. name: what error messages call the stream.
   PairReader(std::istream& in, std::string name);
 
   // Returns: the next entry, or nothing at the end of the stream.
-  // Throws: FormatError; the reader then stands at the line after the bad one.
+  // Throws: FormatError; reading can continue at the line after the bad one.
   std::optional<Entry> next();
 
  private:
@@ -55,32 +55,33 @@ class PairReader {
   bool versioned_ = false;
 };
 
-// Opens a file of pairs.   Throws: FormatError for one that is missing, a folder, or cannot be read.
+// Opens a file of pairs.   Throws: FormatError if it is missing, is a folder, or cannot be read.
 std::ifstream open_pairs(const std::filesystem::path& file);
 
-// All entries of a file.   Throws: FormatError, also for a file that is missing or cannot be read.
+// All entries of a file.   Throws: FormatError, also if the file is missing or cannot be read.
 std::vector<Entry> read_pairs(const std::filesystem::path& file);
 
 // Writes the version line, the first line of every file.
 void write_header(std::ostream& out);
 
-// Writes one line: hex floats, then the fields. Reading it gives the same bits (a NaN: some NaN) and texts.
-// Requires: keys are distinct, and words of letters, digits and "_-.".
+// Writes one line: hex floats, then the fields. Reading it gives the same bits (for a NaN, some NaN) and the same
+// texts.
+// Requires: keys are distinct and consist of letters, digits and "_-.".
 void write_entry(std::ostream& out, const Entry& entry);
 
 // Returns: the shortest hex float, such as "0x1.8p+1", "-0x0p+0", "0x1p-149"; or "inf", "-inf", "nan".
 std::string hex_float(float value);
 
-// Returns: the value of the field, or null when the entry has none of that key.
+// Returns: the value of the field, or null if the entry has no such key.
 const std::string* field(const Entry& entry, std::string_view key);
 
-// The same, or an empty text.
+// Like field, but an empty text if there is no such key.
 std::string text_of(const Entry& entry, std::string_view key);
 
-// STRATUM:SEED:INDEX of a case that has these fields; STRATUM@SCENE:SEED:INDEX of one drawn in a scene.
+// STRATUM:SEED:INDEX if the case has these fields, STRATUM@SCENE:SEED:INDEX if it was drawn in a scene; else nothing.
 std::optional<std::string> numbers_of(const Entry& entry);
 
-// The same, or else what the field `from` says: where a minimised case came from.
+// Like numbers_of, or else the field `from`, which tells where a minimised case came from.
 std::string origin_of(const Entry& entry);
 
 }  // namespace graze::corpus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text format: what is written reads back bit for bit, decimals round once, and every misfit has its message.
+// The text format: written pairs read back bit for bit, decimals round once, and every error has its message.
 #include "corpus/pair_format.h"
 
 #include <gtest/gtest.h>
@@ -193,7 +193,7 @@ TEST(PairFormat, GarbageIsEscapedAndCutShort) {
   expect_named("\n" + std::string(1 << 20, '0'), {"in.pairs:2", "65536"});
 }
 
-// Without a version line the reader takes what people paste.
+// Without a version line the reader accepts what people paste.
 TEST(PairFormat, TakesWhatPeoplePaste) {
   const Entry expected = read("0 0 0 4 0 0 0 4.5 0 1 1 0 1 2 4 2 1 4\n").at(0);
   const char* const kPasted[] = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for device.cu where there is no nvcc: there is no device, and the CUDA lanes run by their twins.
+// Replaces device.cu in builds without nvcc: there is no device, and CUDA lanes run on their twins.
 #include "cuda/lanes/device.h"
 
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts as JSON: one set of keys, for campaigns, the league, tune, pareto and reports.
+// Counts as JSON, with the same keys in campaigns, the league, tune, pareto and reports.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,7 +11,7 @@ namespace graze::fuzz {
 struct CountField {
   const char* key;
   std::uint64_t Counts::*count;
-  bool foreign;  // of foreign code alone
+  bool foreign;  // only foreign code has this count
 };
 inline constexpr CountField kCountFields[] = {{"false_positive", &Counts::false_positive, false},
                                               {"false_negative", &Counts::false_negative, false},
@@ -21,7 +21,7 @@ inline constexpr CountField kCountFields[] = {{"false_positive", &Counts::false_
                                               {"unstable", &Counts::unstable, true},
                                               {"by_convention", &Counts::by_convention, true}};
 
-// An object of all fields, or without those of foreign code.
+// Returns an object with all fields; without `foreign`, those of foreign code are left out.
 inline nlohmann::ordered_json counts_json(const Counts& counts, bool foreign = false) {
   nlohmann::ordered_json row = nlohmann::ordered_json::object();
   for (const CountField& field : kCountFields) {
@@ -30,7 +30,8 @@ inline nlohmann::ordered_json counts_json(const Counts& counts, bool foreign = f
   return row;
 }
 
-// Of an object with more fields too; those of foreign code may be missing.   Throws: Json::exception otherwise.
+// Reads such an object; it may have other fields. The fields of foreign code may be missing.   Throws: Json::exception
+// otherwise.
 inline Counts counts_of(const nlohmann::ordered_json& row) {
   Counts counts;
   for (const CountField& field : kCountFields) {

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int kLockAttempts = 10;  // a second
 
-constexpr const char* kPart = ".graze.part";  // behind the name of a file that is being written
+constexpr const char* kPart = ".graze.part";  // suffix of a file that is being written
 
 [[noreturn]] void fail(const char* act, const fs::path& file, int error) {
   throw std::runtime_error(cannot(act, file, error));
@@ -36,7 +36,7 @@ struct Handle {
   }
 };
 
-// Until a pipe is ready. The one at its other end may never come, so this looks at the request to stop.
+// Waits until the pipe is ready. Its other end may never open, so this checks for a request to stop.
 void wait_for(int handle, short events) {
   pollfd ready{handle, events, 0};
   while (poll(&ready, 1, 100) <= 0) {
@@ -44,7 +44,7 @@ void wait_for(int handle, short events) {
   }
 }
 
-// Whether all of it was written; errno says why not.
+// Returns whether all of it was written; if not, errno says why.
 bool write_all(int handle, const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const ssize_t written = write(handle, text.data() + at, text.size() - at);
@@ -65,7 +65,7 @@ bool is_standard_output(const struct stat& file) {
   return fstat(STDOUT_FILENO, &output) == 0 && same_file(output, file);
 }
 
-// Opened for writing. A named pipe opens once somebody reads it.
+// Opens the file for writing. A named pipe opens once somebody reads it.
 int opened(const fs::path& file, bool pipe) {
   if (!pipe) return open(file.c_str(), O_WRONLY | O_CLOEXEC);
   while (true) {
@@ -76,7 +76,7 @@ int opened(const fs::path& file, bool pipe) {
   }
 }
 
-// Into a device or a pipe, which cannot be replaced by a file.
+// Writes into a device or a pipe, which a file must not replace.
 void write_into(const fs::path& file, bool pipe, bool standard_output, const std::string& text) {
   std::cout.flush();
   std::fflush(stdout);
@@ -84,9 +84,9 @@ void write_into(const fs::path& file, bool pipe, bool standard_output, const std
   if (own.number < 0 || !write_all(own.number, text)) fail("write", file, errno);
 }
 
-// Makes a new file for this writer alone: another one waits until this one has moved it to its place. What a killed
-// writer left is removed, and never written to: it may be a hard link to somebody else's file.
-// Returns: its number; negative when errno says why not.
+// Makes a new file for this writer alone: other writers wait until this one has moved it to its place. A file that a
+// killed writer left is removed and never written to, because it may be a hard link to somebody else's file.
+// Returns: its descriptor; negative on failure, with the reason in errno.
 int made_alone(const std::string& file) {
   while (true) {
     int number = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -116,7 +116,7 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
   if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode))
     throw std::runtime_error(cannot("write", asked, beside + " is in the way and is no file; remove it"));
   bool done = write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
-  // A full disk may show only on closing; the file itself stays open, and so locked, until it is in its place.
+  // A full disk may show only on close. The file itself stays open, and so locked, until it is in its place.
   done = done && close(dup(part.number)) == 0;
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
   const int error = errno;
@@ -124,7 +124,7 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
   fail("write", asked, error);
 }
 
-// Throws: std::runtime_error for what is no file, by the act that fails.
+// Throws: std::runtime_error unless the mode is a file's.   act: "read".
 void expect_file(const char* act, const fs::path& file, mode_t mode) {
   if (S_ISDIR(mode)) fail(act, file, EISDIR);
   if (!S_ISREG(mode)) throw std::runtime_error(cannot(act, file, "it is a pipe or a device; remove it"));
@@ -170,7 +170,7 @@ void write_whole(const fs::path& file, const std::string& text, NamedBy named_by
   const bool exists = stat(file.c_str(), &there) == 0;
   if (!exists && errno != ENOENT) fail("write", file, errno);
   if (exists && (named_by == NamedBy::graze || S_ISDIR(there.st_mode))) expect_file("write", file, there.st_mode);
-  // The standard output may be a file too: replaced, it would lose what else is printed.
+  // The standard output may be a file too. Replacing it would lose everything else that is printed.
   const bool standard_output = exists && is_standard_output(there);
   if (exists && (standard_output || !S_ISREG(there.st_mode)))
     return write_into(file, S_ISFIFO(there.st_mode), standard_output, text);
@@ -184,7 +184,7 @@ FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)
   const int how = when_taken == WhenTaken::wait     ? LOCK_EX
                   : when_taken == WhenTaken::refuse ? LOCK_EX | LOCK_NB
                                                     : LOCK_SH | LOCK_NB;
-  // A process that was killed a moment ago may have a child that still ends.
+  // A process that was killed a moment ago may have a child that has not ended yet.
   int error = 0;
   for (int attempt = 0; attempt == 0 || (attempt < kLockAttempts && !stop_requested); ++attempt) {
     if (flock(handle_, how) == 0) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole files, and a folder's lock. A file is written beside its place and then moved there, so a reader never sees
-// half of one.
+// Reads and writes whole files, and locks folders. A file is written beside its place and then moved there, so a reader
+// never sees a partial file.
 #pragma once
 
 #include <filesystem>
@@ -22,16 +22,16 @@ std::string read_whole(const std::filesystem::path& file, NamedBy named_by = Nam
 // Throws: std::runtime_error for a folder, and when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text, NamedBy named_by = NamedBy::graze);
 
-// The file or folder that the name leads to through symbolic links, also where there is none yet.
+// Follows symbolic links to the file or folder that they name, even if it does not exist yet.
 std::filesystem::path behind_links(std::filesystem::path file);
 
-// Held as long as it lives: no other process, and no other part of this one, holds the folder's lock; where it is
-// shared, only others that share it.
+// Holds the folder's lock while it lives. No other process, and no other part of this one, can take the lock; a shared
+// lock excludes only exclusive ones.
 class FolderLock {
  public:
-  enum class WhenTaken { wait, refuse, share };  // share: refuses where one holds it alone
+  enum class WhenTaken { wait, refuse, share };  // share: fails if an exclusive lock is held
 
-  // Throws: std::runtime_error without such a folder, or when the lock is taken and that is refused.
+  // Throws: std::runtime_error if the folder does not exist, or if the lock is taken and when_taken is not `wait`.
   explicit FolderLock(const std::filesystem::path& folder, WhenTaken when_taken);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

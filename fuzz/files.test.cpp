@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands where a file is written: links, devices, pipes and folders stay what they are.
+// Writing over existing links, devices, pipes and folders leaves them what they are.
 #include "fuzz/files.h"
 #include "core/error.h"
 #include "core/message_testing.h"
@@ -99,7 +99,7 @@ TEST_F(Files, RecordsThatAreNoFilesAreRefused) {
   }
 }
 
-// A hard link at the name of the part that is written: what it leads to is not written to.
+// The part's name may be a hard link to another file, which must not change.
 TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   write_whole(folder_ / "theirs", "precious");
   fs::create_hard_link(folder_ / "theirs", folder_ / "a.graze.part");
@@ -108,7 +108,7 @@ TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   EXPECT_EQ(fs::hard_link_count(folder_ / "theirs"), 1u);
   EXPECT_EQ(read_whole(folder_ / "a"), "new");
   EXPECT_EQ(count(), 2u);
-  // What a killed writer left is no obstacle, whatever its permissions and length.
+  // A long file that a killed writer left is no obstacle.
   write_whole(folder_ / "a.graze.part", std::string(100'000, 'x'));
   write_whole(folder_ / "a", "newer");
   EXPECT_EQ(read_whole(folder_ / "a"), "newer");
@@ -148,7 +148,7 @@ TEST_F(Files, AChangeOfASealedFileIsNoticed) {
   EXPECT_THROW(read_sealed(file, "remove it"), std::runtime_error);
 }
 
-// Nobody may ever come to the other end: the request to stop ends the wait.
+// The other end may never open: the request to stop ends the wait.
 TEST_F(Files, WaitingForAPipeStops) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -161,7 +161,7 @@ TEST_F(Files, WaitingForAPipeStops) {
   stop_requested = false;
 }
 
-// A node of our own for the null device, made in our folder; only root may make one.
+// A null device made in the test's folder; only root may make one.
 TEST_F(Files, DevicesStayDevices) {
   const fs::path device = folder_ / "null";
   if (mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) != 0) GTEST_SKIP() << "no right to make a device node";
@@ -187,7 +187,7 @@ TEST_F(Files, FoldersAreRefusedInBothDirections) {
   EXPECT_EQ(count(), 1u);
 }
 
-// A full disk, played by a limit on the size of files.
+// A limit on file sizes simulates a full disk.
 TEST_F(Files, AFailureLeavesNothingBesideAndTheOldFile) {
   write_whole(folder_ / "a", "old");
   std::signal(SIGXFSZ, SIG_IGN);
@@ -261,7 +261,7 @@ TEST_F(Files, GrazeKnowsItsOwn) {
   EXPECT_FALSE(may_replace(folder_ / "link", "graze-pairs 1\n"));
 }
 
-// What has a campaign's file name, or lies behind a link, is replaced only where it begins as the new text does.
+// A file with a campaign's file name, or behind a link, is replaced only if it begins like the new text.
 TEST_F(Files, ACampaignsFilesDoNotReplaceThoseOfAnother) {
   const std::string summary = "{\n \"spec\": {}\n}\n", status = "{\n \"state\": \"done\"\n}\n";
   write_whole(folder_ / "victim", "precious");

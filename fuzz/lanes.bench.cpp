@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time per pair of every host lane on every stratum, and beside them of CGAL's do_intersect on triangles made before,
-// and of the oracle's two decisions. GRAZE_MESH=FILE adds the candidate pairs of a mesh as a stratum.
-// What claims to be exact must first agree with the oracle on every pair that is timed.
+// Time per pair of every host lane on every stratum. For comparison, the time of CGAL's do_intersect on ready-made
+// triangles, and of the oracle's two decisions. GRAZE_MESH=FILE adds the candidate pairs of a mesh as a stratum.
+// Exact lanes must first agree with the oracle on every pair that is timed.
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
@@ -25,7 +25,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::size_t kPairs = 1 << 14;  // 1.2 MB: too many branches to be remembered, and still in the cache
+constexpr std::size_t kPairs = 1 << 14;  // 1.2 MB: too many branches for the predictor, but fits in the cache
 
 struct Block {
   std::vector<Pair> pairs;
@@ -35,7 +35,7 @@ struct Block {
 struct PairsToTime {
   std::string id;
   Block all;
-  Block proper;  // the pairs of two triangles that are not degenerate: all that CGAL's do_intersect takes
+  Block proper;  // pairs without degenerate triangles, as CGAL's do_intersect requires
 };
 
 // Writes one bit for each pair, as lanes do.
@@ -94,7 +94,7 @@ void measure(benchmark::State& state, const Block& block, bool exact, const Deci
   state.counters["pairs"] = static_cast<double>(block.pairs.size());
 }
 
-// Triangles are made once for all runs on a block: EPECK's points remember their exact coordinates.
+// Triangles are made once for all runs on a block, because EPECK's points cache their exact coordinates.
 template <class Kernel>
 void by_cgal(const Block& block, std::uint64_t* intersects, std::uint64_t*) {
   using Triangle = typename Kernel::Triangle_3;

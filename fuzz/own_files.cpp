@@ -24,11 +24,11 @@ std::vector<std::string> first_keys(const nlohmann::ordered_json& object) {
   return keys;
 }
 
-// What files of this kind have in common. Of a JSON object up to the end of its first key; else the line ends before
-// `>`, behind which a picture has its own.
+// The mark that all files of this kind share: a JSON object up to the end of its first key, else the first line. The
+// line ends before `>`, because what follows differs between pictures.
 std::string mark_of(const std::string& text) {
   constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
-  constexpr std::size_t kColours = 24;  // bytes: the first eight, which all ulp maps have
+  constexpr std::size_t kColours = 24;  // bytes: the first eight colours, which all ulp maps share
   if (text.starts_with("\x89PNG"))
     return text.substr(std::min(text.find(kPalette), text.size()), kPalette.size() + kColours);
   const std::size_t key = text.find('"');
@@ -56,7 +56,7 @@ bool is_nothing(const fs::path& entry) {
 
 bool may_replace(const fs::path& file, const std::string& text) {
   std::error_code none;
-  if (!fs::is_regular_file(file, none)) return true;  // a folder is refused by write_whole
+  if (!fs::is_regular_file(file, none)) return true;  // write_whole rejects folders
   const std::string there = read_whole(file);
   if (there.empty()) return true;
   if (text.starts_with('{')) return same_kind_of_object(there, text);
@@ -79,7 +79,7 @@ void expect_own(const fs::path& file, const std::string& text) {
 
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   std::error_code none;
-  if (!fs::is_directory(folder, none)) return true;  // who makes it finds out what is wrong
+  if (!fs::is_directory(folder, none)) return true;  // creating the folder will report what is wrong
   return std::any_of(own.begin(), own.end(), [&](const char* name) { return fs::exists(folder / name); }) ||
          std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
                      [](const auto& e) { return is_nothing(e.path()); });

@@ -29,7 +29,7 @@ struct SelectedLanes {
   std::vector<std::string> asked;        // the patterns; none: all lanes that run here, and all of the user's own code
   std::vector<LaneLeftOut> left_out;     // of those asked for
 
-  // Foreign code runs in a process of its own, on a device as well.
+  // Foreign code does not count, even if it uses a device: it runs in a process of its own.
   bool on_device(std::size_t l) const { return device && lanes[l]->is_cuda() && !lanes[l]->foreign; }
   // Those that the device runs, in order.
   std::vector<const Lane*> device_lanes() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CGAL's tree of bounding boxes over an array of triangles, beside which `graze bench` puts queries.
+// CGAL's tree of bounding boxes over an array of triangles; `graze bench` compares queries with it.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@ namespace graze::oracle {
 
 class AabbTree {
  public:
-  // Builds it. Triangles without area are left out, which CGAL's trees do not take.   Requires: finite coordinates.
+  // Builds the tree without triangles that have no area, which CGAL's trees reject.   Requires: finite coordinates.
   explicit AabbTree(std::span<const std::array<float, 9>> triangles);
   ~AabbTree();
-  // How many of its triangles meet the reference; exact.   Requires: a reference with area.
+  // The exact number of its triangles that intersect the reference.   Requires: the reference has an area.
   std::uint64_t count(const std::array<float, 9>& reference) const;
 
  private:

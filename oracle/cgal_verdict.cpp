@@ -15,19 +15,19 @@
 namespace graze::oracle {
 namespace {
 
-// Plain arithmetic on 128-bit integers. Every do_intersect below between points, segments and triangles takes
-// only signs of determinants of degree three at most and comparisons of coordinates, never a quotient (read in
-// CGAL 5.5: orientation, coplanar orientation, collinear, and, for two segments, line points p + v).
+// Plain arithmetic on 128-bit integers. Every do_intersect below between points, segments and triangles uses only
+// comparisons of coordinates and signs of determinants of degree three at most, never a quotient. (Read in CGAL 5.5:
+// orientation, coplanar orientation, collinear, and, for two segments, line points p + v.)
 using SmallKernel = CGAL::Simple_cartesian<boost::int128_type>;
 
-// Filtered double arithmetic for the rest. Any float32 is a double, and a product of three differences of
-// float32 lies between 2^-447 and 2^390: nothing over- or underflows, so the filters' error bounds hold.
+// Filtered double arithmetic for the other pairs. Any float32 is a double, and a product of three differences of
+// float32 lies between 2^-447 and 2^390. So nothing over- or underflows, and the filters' error bounds hold.
 using WideKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-// Rationals, for pairs that are no float32 pairs.
+// Rationals, for pairs whose numbers are not float32.
 using LargeKernel = CGAL::Simple_cartesian<mpq_class>;
 
-// The closed convex hull of three points as what it is: dimension 0, 1 or 2, with its dimension + 1 vertices.
+// The closed convex hull of three points: its dimension (0, 1 or 2) and its dimension + 1 vertices.
 template <class Kernel>
 struct Hull {
   using Point = typename Kernel::Point_3;

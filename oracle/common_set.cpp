@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One hull as an intersection of half-spaces, by which the other, a polygon, is clipped: Sutherland and Hodgman 1974.
+// Clips one hull, a polygon, by the half-spaces whose intersection is the other hull: Sutherland and Hodgman 1974.
 #include "oracle/common_set.h"
 
 #include <algorithm>
@@ -64,7 +64,7 @@ Polygon clipped(const Polygon& polygon, const HalfSpace& half) {
     if (at_p >= 0) kept.push_back(p);
     if (at_p * at_q < 0) kept.push_back(p + Point(q - p) * mpq_class(at_p / (at_p - at_q)));
   }
-  // A segment is walked there and back, which finds the same crossing twice.
+  // A segment is traversed in both directions, which finds the same crossing twice.
   Polygon distinct;
   for (const Point& p : kept) {
     if (std::find(distinct.begin(), distinct.end(), p) == distinct.end()) distinct.push_back(p);
@@ -109,11 +109,11 @@ std::vector<Vec3<double>> planes_line(const Pair& pair) {
   const auto normal_of = [](const Point(&p)[3]) { return cross(Point(p[1] - p[0]), Point(p[2] - p[0])); };
   const Point na = normal_of(hulls.a), nb = normal_of(hulls.b), along = cross(na, nb);
   if (is_zero(along)) return {};
-  // The point of both planes nearest to the origin.
+  // The point in both planes that is nearest to the origin.
   const mpq_class da = dot(na, hulls.a[0]), db = dot(nb, hulls.b[0]);
   const Point at = (cross(nb, along) * da + cross(along, na) * db) * mpq_class(1 / dot(along, along));
 
-  // The line is at + t along; from low to high it is in the box.
+  // The line is at + t along. It is in the box for t from low to high.
   mpq_class low, high;
   bool bounded = false;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where two triangles meet, as points for a drawing: constructed exactly on rationals, and rounded at the end.
+// The common set of two triangles as points for a drawing: constructed exactly on rationals, rounded at the end.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace graze::oracle {
 
-// The extreme points of the common set of the two closed hulls, in order around it: none, one, two, or a convex
-// polygon's.   Requires: finite coordinates.   Exact: but for the rounding to double.
+// The extreme points of the common set of the two closed hulls: none, one, two, or those of a convex polygon in order
+// around it.   Requires: finite coordinates.   Exact: except for the rounding to double.
 std::vector<Vec3<double>> common_set(const Pair& pair);
 
-// The part of the line in both triangles' planes that lies in the box around the pair, a tenth wider on each side: two
-// points. None where a triangle is flat, the planes are parallel, or the line passes the box by.
-// Requires: finite coordinates.   Exact: as common_set.
+// Two points that bound a part of the line in both triangles' planes: the part within the pair's box, enlarged by a
+// tenth on each side. No points if a triangle is flat, the planes are parallel, or the line misses the box.
+// Requires: finite coordinates.   Exact: like common_set.
 std::vector<Vec3<double>> planes_line(const Pair& pair);
 
 }  // namespace graze::oracle

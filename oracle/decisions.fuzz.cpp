@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of any bits: the exact decision, GMP's and CGAL's are the same, and the certified bounds of the margin hold the
-// exact one, rounded once by MPFR.
+// For pairs of any bits, the exact decision, GMP's and CGAL's must agree. The certified bounds of the margin must
+// contain the exact margin, rounded once by MPFR.
 #include <cmath>
 
 #include "core/exact/exact.h"

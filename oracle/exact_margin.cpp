@@ -15,7 +15,7 @@ using Vector = Vec3<mpz_class>;
 
 bool is_zero(const Vector& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
 
-// Keeps the lesser of two rationals; an empty one (denominator 0) is greater than all.
+// Keeps the lesser of two rationals. An unset one (denominator 0) counts as greater than all.
 void keep_least(SquaredMargin& least, const Int& numerator, const Int& denominator) {
   if (least.denominator != 0 && numerator * least.denominator >= least.numerator * denominator) return;
   least.numerator = numerator;
@@ -27,7 +27,7 @@ void vertex_and_vertex(SquaredMargin& least, const Vector& p, const Vector& q) {
   keep_least(least, dot(between, between), 1);
 }
 
-// Where the foot of the perpendicular lies on the edge.
+// Applies if the foot of the perpendicular lies on the edge.
 void vertex_and_edge(SquaredMargin& least, const Vector& p, const Vector& start, const Vector& edge) {
   const Vector at = p - start;
   const Int along = dot(at, edge), length2 = dot(edge, edge);
@@ -36,7 +36,7 @@ void vertex_and_edge(SquaredMargin& least, const Vector& p, const Vector& start,
   keep_least(least, dot(moment, moment), length2);
 }
 
-// Where the foot of the perpendicular lies in the face.
+// Applies if the foot of the perpendicular lies in the face.
 void vertex_and_face(SquaredMargin& least, const Vector& p, const Vector (&face)[3]) {
   const Vector n = cross(Vector(face[1] - face[0]), Vector(face[2] - face[0]));
   if (is_zero(n)) return;
@@ -48,7 +48,7 @@ void vertex_and_face(SquaredMargin& least, const Vector& p, const Vector (&face)
   keep_least(least, Int(height * height), dot(n, n));
 }
 
-// Where the common perpendicular of the two lines meets both edges, w the start of v's seen from the start of u's.
+// Applies if the lines' common perpendicular meets both edges. w is the start of v relative to the start of u.
 void edge_and_edge(SquaredMargin& least, const Vector& w, const Vector& u, const Vector& v) {
   const Vector n = cross(u, v);
   if (is_zero(n)) return;
@@ -120,8 +120,8 @@ int floor_log2(const SquaredMargin& margin) {
 
 double rounded(const SquaredMargin& margin) {
   if (margin.numerator == 0) return 0;
-  // root = floor(sqrt(numerator / denominator) * 2^shift) has 64 bits or more. Doubled, with the lowest bit set
-  // when anything was cut off, it rounds to 53 bits exactly as the unrounded root does.
+  // root = floor(sqrt(numerator / denominator) * 2^shift) has at least 64 bits. It is doubled, and its lowest bit is
+  // set if anything was cut off. It then rounds to 53 bits exactly like the unrounded root.
   const int shift = 64 - (floor_log2(margin) - margin.exponent);
   Int numerator = margin.numerator, denominator = margin.denominator;
   if (shift > 0) numerator <<= static_cast<unsigned>(2 * shift);
@@ -141,7 +141,7 @@ double rounded(const SquaredMargin& margin) {
 Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, double size, int log2_ulp) {
   const double margin = verdict == Verdict::disjoint ? size : -size;
   const int sign = (margin > 0) - (margin < 0);
-  // Adding zero turns -0 into 0; the power of two is exact, for margins stay far from the ends of double.
+  // Adding zero turns -0 into 0. The power of two is exact, because margins stay far from the limits of double.
   return {{verdict, contact, sign, hulls}, margin + 0.0, std::ldexp(margin, -log2_ulp) + 0.0};
 }
 

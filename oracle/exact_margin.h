@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The margin as the square root of a rational, from GMP integers; rounded once by MPFR.
+// The margin as the square root of a rational, computed with GMP integers and rounded once by MPFR.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ struct SquaredMargin {
 // Exact: always.
 SquaredMargin exact_distance(const LargePair& pair, int exponent);
 
-// The least overlap of two intersecting hulls along the nonzero ones of these axes; zero if there is none.
-// axes: bit i stands for separating axis i of core/margin/directions.h.   Exact: always.
+// The least overlap of two intersecting hulls along those of these axes that are nonzero; zero if none is.
+// axes: bit i selects separating axis i of core/margin/directions.h.   Exact: always.
 SquaredMargin exact_depth(const LargePair& pair, int exponent, std::uint32_t axes);
 
-// How far apart the hulls are along direction d of core/margin/directions.h: a lower bound of their distance, zero if
+// The separation of the hulls along direction d of core/margin/directions.h, a lower bound of their distance; zero if
 // they are not separated.   Exact: always.
 SquaredMargin exact_separation(const LargePair& pair, int exponent, int d);
 
@@ -37,10 +37,10 @@ int floor_log2(const SquaredMargin& margin);
 // |margin|, rounded to nearest once. Nonzero margins lie in [2^-705, 2^130], so the double is always normal.
 double rounded(const SquaredMargin& margin);
 
-// The truth of a pair whose distance or depth this is. log2_ulp: that of its largest coordinate.
+// The truth of a pair whose distance or depth is `size`. log2_ulp: log2 of the ulp of its largest coordinate.
 Truth truth_of(Verdict verdict, Contact contact, const Hulls& hulls, double size, int log2_ulp);
 
-// Direction d as in core/margin/directions.h, exactly; generic in the integer.
+// Direction d of core/margin/directions.h, exactly, for any integer type.
 template <class Int>
 Vec3<Int> integer_direction(const Vec3<Int> (&a)[3], const Vec3<Int> (&b)[3], int d) {
   const auto edge = [](const Vec3<Int>(&p)[3], int i) { return p[(i + 1) % 3] - p[i]; };
@@ -55,7 +55,7 @@ Vec3<Int> integer_direction(const Vec3<Int> (&a)[3], const Vec3<Int> (&b)[3], in
   return cross(cross(e, between), e);
 }
 
-// min(max n.a - min n.b, max n.b - min n.a), n being separating axis `axis`.   Exact: when Int holds all products.
+// min(max n.a - min n.b, max n.b - min n.a), where n is separating axis `axis`.   Exact: if Int holds all products.
 template <class Int>
 Int integer_overlap(const Vec3<Int> (&a)[3], const Vec3<Int> (&b)[3], int axis, const Vec3<Int>& n) {
   Vec3<Int> seen[3];

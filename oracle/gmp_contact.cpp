@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The independent decision: counts the extreme points of the common set with signs of determinants of GMP integers.
+// The independent decision: counts the extreme points of the common set, using signs of determinants of GMP integers.
 //
 // A point x of A ∩ B lies in the relative interior of exactly one face (vertex, edge, triangle) of A and one of B.
-// It is extreme in A ∩ B just when those two faces have no direction in common. So the extreme points are:
+// It is extreme in A ∩ B if and only if those two faces have no direction in common. So the extreme points are:
 //   vertices of A in B, and vertices of B in A that are no vertex of A,
 //   points where an open edge crosses an open edge that is not parallel to it,
 //   points where an open edge pierces an open triangle that it is not parallel to.
-// None, one, two or more of them: the common set, their convex hull, is empty, a point, a segment or an area.
+// The common set is their convex hull. With 0, 1, 2 or more of them it is empty, a point, a segment or an area.
 #include <bit>
 
 #include "oracle/gmp_simplex.h"
@@ -23,7 +23,7 @@ struct Workspace {
   using Point = gmp::Point<Number>;
   Point p[3], q[3];         // the pair
   Point u, v, w, normal;    // vectors
-  Point na, nb, moment[3];  // noncoplanar(): normals, and a[i] x a[i+1] seen from b[0]
+  Point na, nb, moment[3];  // noncoplanar(): normals, and a[i] x a[i+1] relative to b[0]
   Point ra[3];              // noncoplanar(): a[i] - b[0]
   Number along_u[3], along_v[3], heights[3], height, side, term;
 };
@@ -39,10 +39,10 @@ Simplex<Number> simplex_of(Workspace<Number>& work, const Point<Number> (&p)[3],
 
 Contact contact_of(int extreme_points) { return static_cast<Contact>(extreme_points < 3 ? extreme_points : 3); }
 
-// Two triangles whose planes differ, by the signs of the 15 determinants of four of their six vertices, each
-// a sum of dot products with three moments.
+// Two triangles whose planes differ, by the signs of the 15 determinants of four of their six vertices. Each
+// determinant is a sum of dot products with three moments.
 // Requires: neither is flat; ra[i] = a[i] - b[0], u = b[1] - b[0], v = b[2] - b[0], nb = u x v, na is A's normal,
-// heights[i] = ra[i] . nb, sa[i] its sign, not all zero.
+// heights[i] = ra[i] . nb, sa[i] is the sign of heights[i], and the signs are not all zero.
 template <class Number>
 Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   // The moments add up to A's normal.
@@ -54,7 +54,7 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
     dot(work.along_u[i], work.moment[i], work.u);
     dot(work.along_v[i], work.moment[i], work.v);
   }
-  // b[j] against A's plane, from b[0] on.
+  // The sides of b[j] relative to A's plane, starting with b[0].
   dot(work.height, work.moment[1], work.ra[0]);
   int tb[3] = {-work.height.sign(), 0, 0};
   for (int j = 1; j < 3; ++j) {
@@ -77,7 +77,7 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
     side[i][1] = work.side.sign();
   }
 
-  // One bit for each extreme point, so that what is seen from both sides counts once.
+  // One bit for each extreme point, so that a point found from both triangles counts once.
   unsigned found = 0;
   const auto vertex_a = [](int i) { return 1u << i; };
   const auto vertex_b = [](int j) { return 1u << (3 + j); };
@@ -87,7 +87,7 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   for (int i = 0; i < 3; ++i) {
     const int next = (i + 1) % 3;
     if (sa[i] == 0) {
-      // Seen along an edge that leaves B's plane at a_i.
+      // Looks along an edge that leaves B's plane at a_i.
       const Location at = locate(sa[next] != 0 ? side[i] : side[(i + 2) % 3]);
       if (at.place != Place::outside) found |= vertex_a(i);
     }
@@ -114,7 +114,7 @@ Contact noncoplanar(Workspace<Number>& work, const int (&sa)[3]) {
   return contact_of(std::popcount(found));
 }
 
-// A segment whose line meets the plane of triangle b in one point: inside b, or nowhere.
+// A segment whose line meets the plane of triangle b in one point. That point is in b, or there is no contact.
 // Requires: the segment's ends are not both in the plane, nor strictly on one side of it.
 template <class Number>
 Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const Simplex<Number>& b) {
@@ -130,7 +130,7 @@ Contact pierced(Workspace<Number>& work, const Simplex<Number>& segment, const S
   return locate(side).place == Place::outside ? Contact::none : Contact::point;
 }
 
-// Two simplices of one plane (or line), seen with coordinate `dropped` left out, which keeps the plane a plane.
+// Two simplices in one plane or on one line, without the coordinate `dropped`; dropping it keeps them in shape.
 template <class Number>
 struct Planar {
   Workspace<Number>& work;
@@ -147,7 +147,7 @@ struct Planar {
     return work.side.sign();
   }
 
-  // Signed sides of one simplex's vertices (second index) against the other's edges (first index).
+  // Signed sides of one simplex's vertices (second index) relative to the other's edges (first index).
   struct Sides {
     int of[3][3];
   };
@@ -166,7 +166,7 @@ struct Planar {
   static bool inside(const Point<Number>& p, int j, const Simplex<Number>& s, const Sides& sides) {
     if (s.count == 1) return compare(p, *s.vertex[0]) == 0;
     if (s.count == 3) return locate({sides.of[0][j], sides.of[1][j], sides.of[2][j]}).place != Place::outside;
-    // On the line, and between the ends: in every coordinate, so in lexicographic order too.
+    // On the line and between the ends in every coordinate, hence also in lexicographic order.
     return sides.of[0][j] == 0 && compare(p, *s.vertex[0]) * compare(p, *s.vertex[1]) <= 0;
   }
 
@@ -189,13 +189,13 @@ struct Planar {
   }
 };
 
-// A coordinate that can be left out of the plane with this normal.
+// A coordinate that can be dropped in a plane with this normal.
 template <class Number>
 int droppable(const Point<Number>& normal) {
   return normal.c[0].sign() ? 0 : normal.c[1].sign() ? 1 : 2;
 }
 
-// A coordinate that can be left out of a line with this direction (any, if it is zero).
+// A coordinate that can be dropped for a line with this direction (any if the direction is zero).
 template <class Number>
 int droppable_of_line(const Point<Number>& direction) {
   return direction.c[0].sign() ? 2 : 0;
@@ -233,11 +233,11 @@ Contact flat_with_flat(Workspace<Number>& work, const Simplex<Number>& a, const 
     }
   }
   cross(work.normal, direction, work.w);
-  if (!is_zero(work.normal)) return Contact::none;  // beside a's line, and not crossing it
+  if (!is_zero(work.normal)) return Contact::none;  // b starts off a's line and does not cross it
   return Planar<Number>(work, droppable_of_line(direction)).contact(a, b);
 }
 
-// Requires: p and q are the pair.
+// Requires: p and q hold the pair.
 template <class Number>
 Contact contact_of_pair(Workspace<Number>& work) {
   const Simplex<Number> b = simplex_of(work, work.q, work.nb);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of GMP integers in registers that are never freed, and the simplices that gmp_contact.cpp compares. A
-// register is of any size, or of two limbs.
+// Vectors of GMP integers in registers that are reused, and the simplices that gmp_contact.cpp compares. A register
+// holds an integer of any size, or one of two limbs.
 #pragma once
 
 #include <gmp.h>
@@ -10,7 +10,7 @@
 
 namespace graze::gmp {
 
-// A GMP integer that lives as long as its thread, so that nothing is allocated in the steady state.
+// A GMP integer that lives as long as its thread, so that nothing is allocated once it has grown.
 struct Register {
   mpz_t value;
   Register() { mpz_init2(value, 1024); }
@@ -28,7 +28,7 @@ inline void sub_mul(Register& out, const Register& p, const Register& q) { mpz_s
 inline int compare(const Register& p, const Register& q) { return mpz_cmp(p.value, q.value); }
 inline void exchange(Register& p, Register& q) { mpz_swap(p.value, q.value); }
 
-// A number modulo 2^128, read as one in [-2^127, 2^127), by GMP's functions of limbs: without a branch on any sign.
+// A number modulo 2^128, read as one in [-2^127, 2^127). It uses GMP's limb functions, which branch on no sign.
 struct TwoLimbs {
   mp_limb_t limb[2];
   int sign() const { return limb[1] >> 63 ? -1 : (limb[0] | limb[1]) != 0; }
@@ -99,7 +99,7 @@ int compare(const Point<Number>& p, const Point<Number>& q) {
   return 0;
 }
 
-// The convex hull of a triangle's vertices: `count` affinely independent points, and its edges between them.
+// The convex hull of a triangle's vertices: `count` affinely independent points, and the edges between them.
 // Edge i runs from vertex[i] to vertex[(i + 1) % 3].
 template <class Number>
 struct Simplex {
@@ -110,7 +110,7 @@ struct Simplex {
   const Point<Number>& to(int edge) const { return *vertex[(edge + 1) % 3]; }
 };
 
-// The flat triangle's simplex: its two extreme points, or one.
+// The simplex of a flat triangle: its two extreme points, or one point.
 template <class Number>
 Simplex<Number> flat_simplex(const Point<Number> (&p)[3]) {
   int low = 0, high = 0;
@@ -122,7 +122,7 @@ Simplex<Number> flat_simplex(const Point<Number> (&p)[3]) {
   return {{&p[low], &p[high], nullptr}, 2};
 }
 
-// Where a point of a triangle's plane lies, from its signed sides of the three edges of that triangle.
+// The place of a point in a triangle's plane, given its sides relative to the triangle's three edges.
 enum class Place { outside, face, edge, vertex };
 struct Location {
   Place place;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a pair's hulls are, by exact ranks of integer vectors.
+// The dimensions of a pair's hulls and whether they are coplanar, by exact ranks of integer vectors.
 #include <cstdint>
 #include <type_traits>
 
@@ -15,7 +15,7 @@ struct Vector {
   bool is_zero() const { return x == 0 && y == 0 && z == 0; }
 };
 
-// Products of differences are of a wider kind where there is one.
+// The type of products of differences: a wider one if the differences are 64-bit integers.
 template <class Difference>
 using Wide = std::conditional_t<std::is_same_v<Difference, std::int64_t>, __int128, Difference>;
 
@@ -44,7 +44,7 @@ Hulls hulls_of(const Integers& pair) {
   Vector<Integer> from_a0[5] = {difference<Integer>(pair.a[1], pair.a[0]), difference<Integer>(pair.a[2], pair.a[0]),
                                 difference<Integer>(pair.b[0], pair.a[0]), difference<Integer>(pair.b[1], pair.a[0]),
                                 difference<Integer>(pair.b[2], pair.a[0])};
-  // The first two independent vectors span the plane that all others must lie in.
+  // The first two independent vectors span the plane; all others must lie in it.
   const Vector<Integer>* first = nullptr;
   Vector<Wide<Integer>> normal{0, 0, 0};
   bool coplanar = true;

@@ -23,7 +23,7 @@ Parts split(float value) {
   return {fraction | hidden, static_cast<int>(std::max(biased, 1u)) - 150, (bits >> 31) != 0};
 }
 
-// mantissa * 2^shift, of which no bit is lost.   Requires: it fits.
+// mantissa * 2^shift, without losing a bit.   Requires: it fits.
 std::int64_t shifted(const Parts& parts, int shift) {
   const std::int64_t size = shift >= 0 ? std::int64_t{parts.mantissa} << shift : std::int64_t{parts.mantissa} >> -shift;
   return parts.negative ? -size : size;
@@ -47,7 +47,7 @@ SmallPair small_integers(const Pair& pair, const Grid& grid) {
   std::int64_t* out = &result.a[0].x;
   for (int i = 0; i < kCoordinates; ++i) {
     const Parts parts = split(coordinates(pair)[i]);
-    // A zero may carry any exponent; the shifts of all others stay below kSmallBits.
+    // A zero may have any exponent; the shifts of all others stay below kSmallBits.
     out[i] = parts.mantissa == 0 ? 0 : shifted(parts, parts.exponent - grid.exponent);
   }
   return result;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair as integers: every float32 coordinate is an integer times one power of two that all 18 share.
-// Signs of determinants do not see that factor; lengths are multiplied by it at the end.
+// A pair as integers: every float32 coordinate is an integer times one power of two that all 18 share. That factor does
+// not affect the signs of determinants. Lengths are multiplied by it at the end.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace graze::oracle {
 //   a difference                  < 2 * 2^40           = 2^41
 //   a 2x2 minor                   < 2 * 2^41 * 2^41    = 2^83
 //   a 3x3 determinant             < 3 * 2^83 * 2^41    < 2^126
-//   one row a sum of two differences, as CGAL's line-line test has it:  < 3 * 2^83 * 2^42 < 2^127
+//   one row a sum of two differences, as in CGAL's line-line test:      < 3 * 2^83 * 2^42 < 2^127
 inline constexpr int kSmallBits = 40;
 
 // The common grid: every coordinate is an integer of at most `bits` bits times 2^exponent.
@@ -38,8 +38,8 @@ struct SmallPair {
 // Requires: grid is the pair's, and is_small().   Exact: always.
 SmallPair small_integers(const Pair& pair, const Grid& grid);
 
-// The same one coordinate at a time, of any size, into an initialised GMP integer.
-// Requires: grid is that of the pair the coordinate is from.   Exact: always.
+// Like small_integers for one coordinate, of any size, stored in an initialised GMP integer.
+// Requires: grid is that of the coordinate's pair.   Exact: always.
 void set_integer(mpz_t out, float coordinate, const Grid& grid);
 
 struct LargePair {
@@ -50,7 +50,7 @@ struct LargePair {
 // The pair's coordinates divided by 2^grid.exponent.
 LargePair large_integers(const Pair& pair, const Grid& grid);
 
-// The two decisions of truth.h on a pair of integers of any size, and its hulls.   Exact: always.
+// The two decisions of truth.h, and the hulls, for a pair of integers of any size.   Exact: always.
 Verdict cgal_verdict(const LargePair& pair);
 Contact gmp_contact(const LargePair& pair);
 Hulls hulls(const LargePair& pair);

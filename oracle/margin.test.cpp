@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Margins: certified bounds and buckets against the exact margin, and that against an independent search.
+// Margins: compares certified bounds and buckets with the exact margin, and that with an independent search.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -31,7 +31,7 @@ SquaredMargin exact_margin(const Pair& pair, Verdict verdict) {
                                       : exact_depth(large, grid.exponent, kAllAxes);
 }
 
-// Whether the bounds leave one bucket; if so it is the expected one.
+// Whether the bounds allow one bucket only. If so, it must be the expected one.
 template <class Real>
 bool expect_bounds(const Pair& pair, Verdict verdict, double exact, Bucket expected) {
   const MarginBounds bounds = margin_bounds<Real>(pair, verdict);
@@ -67,7 +67,8 @@ TEST(MarginBucket, IsTheExactMarginsBucket) {
   }
 }
 
-// Each operation against rationals, next to the bounds that its authors prove; half of the sums cancel.
+// Compares each operation with rationals. Its errors come near the bounds that the authors prove. Half of the sums
+// cancel.
 TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   std::mt19937_64 random(7);
   const auto value = [&](int spread) {
@@ -103,7 +104,7 @@ TEST(DoubleDouble, OperationsKeepTheirErrorBounds) {
   const double bounds[] = {3.001, 3.001, 5, 15.001};
   for (int k = 0; k < 4; ++k) {
     EXPECT_LE(largest[k].get_d(), bounds[k]) << k;
-    EXPECT_GE(largest[k].get_d(), 0.5) << k;  // of numbers that round at all
+    EXPECT_GE(largest[k].get_d(), 0.5) << k;  // among numbers that round at all
     EXPECT_LE(largest[k].get_d() * 0x1p-106, kRoundoff<DoubleDouble>) << k;
   }
 }
@@ -120,8 +121,8 @@ TEST(MarginBounds, AreTightOnPairsInGeneralPosition) {
 
 using Long = Vec3<long double>;
 
-// The distance by another road: of the origin from the Minkowski difference, the hull of nine points b[j] - a[i]; it
-// is attained on a simplex of one, two or three of them. In long double, over all 129.
+// Computes the distance in another way: as that of the origin from the Minkowski difference, the hull of the nine
+// points b[j] - a[i]. One, two or three of them span a simplex that attains it. Tries all 129 simplices in long double.
 long double distance_of_difference(const Pair& pair) {
   std::vector<Long> points;
   for (const auto& a : pair.a) {
@@ -173,7 +174,7 @@ Pair moved(const Pair& pair, const Vec3<double>& by) {
   return result;
 }
 
-// The depth d by its meaning: no push shorter than d parts the pair, and some push a little longer does.
+// A depth d by its definition: no translation shorter than d separates the pair, and one slightly longer does.
 TEST(ExactDepth, IsTheShortestPartingPush) {
   for (const Kind kind : {Kind::uniform, Kind::lattice3, Kind::degenerate}) {
     PairSource source(kind, kSeed + 3);
@@ -206,7 +207,7 @@ TEST(ExactDepth, IsTheShortestPartingPush) {
   }
 }
 
-// On small integers the bounds' directions are exact: those of integers are the same.
+// On small integers the directions of the bounds are exact and equal those computed with integers.
 TEST(ExactSeparation, IsAlongTheDirectionsOfTheBounds) {
   PairSource source(Kind::lattice3, kSeed + 4);
   int reached = 0;  // how often a separation is the distance
@@ -249,11 +250,11 @@ TEST(BucketFromBounds, IsTheOneThatBoundsLeave) {
   EXPECT_EQ(bucket(1, 1, no), make_bucket(1, 3));
   EXPECT_EQ(bucket(0.999, 1, no), 99);
   EXPECT_EQ(bucket(0, 1, no), 99);
-  // Of a disjoint pair a distance below all buckets is in the least, however little is known of it.
+  // For a disjoint pair, a distance below all buckets is in the least bucket, however wide its bounds.
   EXPECT_EQ(bucket(0, 0x1p-60, no), make_bucket(1, kBucketLowest));
 }
 
-// lo <= margin <= hi, without a rounding.
+// lo <= margin <= hi, tested without rounding.
 bool holds(const MarginBounds& bounds, const SquaredMargin& exact) {
   const mpq_class lo(bounds.lo), hi(bounds.hi), unit(std::ldexp(1.0, exact.exponent));
   const mpq_class squared = mpq_class(exact.numerator) / mpq_class(exact.denominator) * unit * unit;
@@ -277,7 +278,7 @@ TEST(GuessedDistance, BoundsHoldTheExactDistance) {
       if (cgal_verdict(pair) == Verdict::disjoint) expect_held(pair);
     }
   }
-  // Two vertices all but along an axis: a connection of one term, whose root is rounded down.
+  // Two vertices almost along an axis: a connection of one term, whose root is rounded down.
   for (int n = 0; n < 500; ++n) {
     const float off = std::ldexp(1 + static_cast<float>(n) / 256, -26);
     expect_held(oracle_test::pair_of({0, 0, 0, -1, 0.25f, 0, -1, 0, 0.5f, 1, off, 0, 2, 0.125f, 0, 2, 0, 0.5f}));
@@ -285,7 +286,7 @@ TEST(GuessedDistance, BoundsHoldTheExactDistance) {
   EXPECT_GT(finite, 5000);
 }
 
-// What the comments of quick_depth.h derive: no test on pairs comes near to them.
+// The errors that quick_depth.h derives. No test on pairs comes near them.
 TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
   const double u = 0x1p-24, overlap = 98 * u * (3 * 5 * 7), length = 8 * u * (5 * 7 + 7 * 3 + 3 * 5);
   const first_attempt::AxisErrors<float> errors({3, 5, 7}, u);
@@ -295,7 +296,7 @@ TEST(QuickDepth, ErrorsAreThoseDerivedAndNoMoreThanAPercentAbove) {
   EXPECT_LE(errors.length, 1.01 * length);
 }
 
-// All is seen from a vertex that the axis belongs to: what touches there overlaps by zero, without a rounding.
+// All points are relative to a vertex that the axis belongs to. A contact there gives an overlap of exactly zero.
 TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
   std::mt19937 random(9);
   std::uniform_real_distribution<float> any(-1, 1);
@@ -305,7 +306,7 @@ TEST(QuickDepth, OverlapsByNothingWhereItTouchesTheAxis) {
     const Vec3<float> a[3] = {point(), point(), point()};
     Vec3<float> b[3] = {point(), point(), point()};
     const bool edges = n % 2 == 0;
-    const int shared = edges ? n % 4 : n % 3;  // b's edge begins at b[0], and b[2] is beside it
+    const int shared = edges ? n % 4 : n % 3;  // b's edge begins at b[0]; b[2] is off the edge
     b[shared] = a[0];
     const Vec3<float> axis = cross(a[1] - a[0], edges ? b[1] - b[0] : a[2] - a[0]);
     const auto side = [&](const Vec3<float>& v) { return dot(axis, v - a[0]) > 0; };
@@ -325,7 +326,7 @@ TEST(TieProof, ShiftsByAnyNumberOfBits) {
     ASSERT_TRUE(tie_proof::shifted_up(x, bits) == expected) << bits;
 }
 
-// Two parallel triangles at a distance of 1: of 1 and 40 bits, and units so much smaller.
+// Two parallel triangles at a distance of 1, with coordinates of 1 and of 40 bits, and in much smaller units.
 TEST(TieProof, RefusesWhatIsTooLarge) {
   const auto is_proven = [](float largest, int exponent) {
     const float a[9] = {0, 0, 0, largest, 0, 0, 0, 1, 0}, b[9] = {0, 0, 1, 1, 0, 1, 0, 1, 1};
@@ -338,7 +339,7 @@ TEST(TieProof, RefusesWhatIsTooLarge) {
   EXPECT_FALSE(is_proven(0x1p40f, 0));
 }
 
-// Square roots that lie exactly, or all but exactly, half-way between two doubles.
+// Square roots that lie exactly or almost exactly half-way between two doubles.
 TEST(Rounded, RoundsOnceToNearestEven) {
   const mpz_class half = (mpz_class(1) << 53) + 1;  // 2^53 + 1, half-way between two doubles
   EXPECT_EQ(rounded({half * half, 1, 0}), 0x1p53);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The margin's bucket: by certified double-precision bounds nearly always, else by integers. Nothing is rounded.
+// The margin's bucket. Certified double-precision bounds nearly always decide it, otherwise integers. Nothing is
+// rounded.
 #include "core/margin/margin.h"
 #include "oracle/exact_margin.h"
 #include "oracle/integer_pair.h"
@@ -11,7 +12,7 @@ namespace {
 using Int128 = __int128;
 
 // Whether the intersecting hulls only touch: some nonzero axis among these has no overlap.
-// Exact: always; an axis n is of degree two, and an overlap is n . (p - q) of two vertices, degree three (kSmallBits).
+// Exact: always. An axis n has degree two, and an overlap n . (p - q) of two vertices has degree three (kSmallBits).
 bool touches(const SmallPair& small, std::uint32_t axes) {
   Vec3<Int128> a[3], b[3];
   for (int i = 0; i < 3; ++i) {
@@ -40,7 +41,7 @@ Bucket margin_bucket(const Pair& pair, Verdict verdict) {
     const SquaredMargin depth = exact_depth(large_integers(pair, grid), grid.exponent, bounds.axes);
     return depth.numerator == 0 ? Bucket{0} : make_bucket(-1, floor_log2(depth) - ulp);
   }
-  // Most often the distance is a power of two, which the lower bound just misses, but an exact one does not.
+  // Most often the distance is a power of two. The rounded lower bound just misses it; an exact lower bound does not.
   const LargePair large = large_integers(pair, grid);
   const SquaredMargin lower = exact_separation(large, grid.exponent, bounds.direction);
   if (lower.numerator != 0) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// MPFR numbers for the algorithms: with any mantissa, with or without the ends of a format's exponents, and with a
-// bound of their error. Boost's have decimal precisions only.
+// MPFR numbers for the algorithms: with a mantissa of any size, with or without the limits of a format's exponents, and
+// with an error bound. Boost's wrapper has decimal precisions only.
 #pragma once
 
 #include <mpfr.h>
@@ -12,13 +12,13 @@
 
 namespace graze::oracle {
 
-// A number of `precision` mantissa bits, rounded to nearest even after each operation. Exponents are limited by
-// mpfr_set_emin and mpfr_set_emax, gradually at the lower end where `subnormals` says so.
+// A number of `precision` mantissa bits, rounded to nearest even after each operation. mpfr_set_emin and mpfr_set_emax
+// limit its exponents. If `subnormals` is set, underflow is gradual.
 class Multi {
  public:
   static inline thread_local mpfr_prec_t precision = 53;
   static inline thread_local bool subnormals = false;
-  static inline thread_local int first_event = 0;  // of a limited run: 1 overflow, -1 underflow, 0 neither so far
+  static inline thread_local int first_event = 0;  // in a limited run: 1 overflow, -1 underflow, 0 neither so far
 
   Multi() : Multi(0.0) {}
   explicit Multi(int x) : Multi(double{static_cast<double>(x)}) {}
@@ -44,7 +44,7 @@ class Multi {
 
   mpfr_srcptr get() const { return m_; }
   mpfr_ptr get() { return m_; }
-  bool exact() const { return exact_; }  // whether the operation that made it did not round
+  bool exact() const { return exact_; }  // whether the operation that computed it did not round
 
   friend Multi operator+(const Multi& l, const Multi& r) { return made(mpfr_add, l, r); }
   friend Multi operator-(const Multi& l, const Multi& r) { return made(mpfr_sub, l, r); }
@@ -94,7 +94,7 @@ class Multi {
     exact_ = ternary == 0;
     if (tiny && !exact_ && first_event == 0) first_event = -1;
   }
-  // Whether the result lies below the least normal number: where zero, because it was rounded there.
+  // Whether the result is below the least normal number. A zero result counts if it was rounded to zero.
   bool ternary_is_tiny(int ternary) const {
     return mpfr_zero_p(m_) ? ternary != 0 : mpfr_get_exp(m_) < mpfr_get_emin() + mpfr_get_prec(m_) - 1;
   }
@@ -103,10 +103,10 @@ class Multi {
   bool exact_ = true;
 };
 
-// A number known to lie within 2^radius of `mid`; kExact: it is mid. What cannot be told from equal counts as equal.
+// A number within 2^radius of `mid`, or equal to mid for kExact. Numbers that cannot be told apart count as equal.
 struct Ball {
   static constexpr long kExact = LONG_MIN / 4, kUnknown = LONG_MAX / 4;
-  static inline thread_local long untold = 0;  // comparisons so far that counted as equal without being known to be
+  static inline thread_local long untold = 0;  // how many comparisons counted as equal without proof
 
   Multi mid;
   long radius = kExact;
@@ -116,7 +116,7 @@ struct Ball {
   explicit Ball(Number x) : mid(x) {}
   Ball(Multi m, long r) : mid(std::move(m)), radius(r) {}
 
-  // 2^(exponent - 1) <= |mid| < 2^exponent; of zero, and of what is not finite, nothing is known to matter.
+  // 2^(exponent - 1) <= |mid| < 2^exponent. Zero and numbers that are not finite give kExact, as if they had no size.
   static long exponent(const Multi& m) { return mpfr_regular_p(m.get()) ? mpfr_get_exp(m.get()) : kExact; }
   // An upper bound of log2(2^r + 2^s).
   static long either(long r, long s) {
@@ -125,9 +125,10 @@ struct Ball {
   static long scaled(long r, long by) {
     return r == kExact || by == kExact ? kExact : r >= kUnknown ? kUnknown : r + by;
   }
-  // With the rounding of mid.
+  // Adds the rounding of mid to the radius. Under limits of the exponent, zero and infinity are the model's own values.
   static Ball rounded(Multi mid, long radius) {
-    const long rounding = mid.exact() ? kExact : exponent(mid) - static_cast<long>(mpfr_get_prec(mid.get()));
+    const bool no_rounding = mid.exact() || !mpfr_regular_p(mid.get());
+    const long rounding = no_rounding ? kExact : exponent(mid) - static_cast<long>(mpfr_get_prec(mid.get()));
     return {std::move(mid), either(radius, rounding)};
   }
 
@@ -138,7 +139,8 @@ struct Ball {
     const long cross = either(scaled(l.radius, exponent(r.mid)), scaled(r.radius, exponent(l.mid)));
     return rounded(l.mid * r.mid, either(cross, scaled(l.radius, r.radius)));
   }
-  // |l/r - L/R| <= (|l| 2^rr + |r| 2^rl) / (|r| (|r| - 2^rr)), and |r| - 2^rr >= |r| / 2 where r is known that well.
+  // |l/r - L/R| <= (|l| 2^rr + |r| 2^rl) / (|r| (|r| - 2^rr)), and |r| - 2^rr >= |r| / 2 if r is known precisely
+  // enough.
   friend Ball operator/(const Ball& l, const Ball& r) {
     const long e = exponent(r.mid);
     if (l.radius == kExact && r.radius == kExact) return rounded(l.mid / r.mid, kExact);
@@ -154,7 +156,7 @@ struct Ball {
     return rounded(sqrt(n.mid), n.radius - (e - 1) / 2 + 1);
   }
 
-  // Whether zero is among what the number can be.
+  // Whether the number may be zero.
   bool can_be_zero() const { return mpfr_zero_p(mid.get()) || (radius != kExact && radius >= exponent(mid) - 1); }
 
   friend std::partial_ordering compare_numbers(const Ball& l, const Ball& r) {

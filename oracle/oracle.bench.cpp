@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time a pair of each decision of the oracle, by kind of pair.
+// Time per pair of each decision of the oracle, by kind of pair.
 #include <string>
 #include <vector>
 
@@ -34,7 +34,7 @@ Work work_of(Kind kind) {
   return work;
 }
 
-// CGAL's own filtered test, as it comes; only for triangles that are not flat.
+// CGAL's own filtered test without our additions; only for triangles that are not flat.
 bool raw_epick(const Pair& pair) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   const auto triangle = [](const Vec3<float>(&p)[3]) {

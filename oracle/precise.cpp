@@ -12,7 +12,7 @@ namespace {
 
 int mantissa_bits(Scalar scalar) { return scalar == Scalar::f32 ? 24 : 53; }
 
-// MPFR's exponents while it lives: 0.5 2^emin is the least positive number, and all are below 2^emax.
+// Sets MPFR's exponent range while it lives. 0.5 2^emin is the least positive number; all are below 2^emax.
 struct ExponentRange {
   mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
 
@@ -50,7 +50,7 @@ Path outcomes_of(const Trace<Ball>& run) {
   return outcomes;
 }
 
-// Led down the path, with as many bits as that path needs. Multi::precision stays at them.
+// A run led down the path, with as many bits as that path needs. Multi::precision keeps that number of bits.
 struct SettledRun {
   Trace<Ball> run;
   Exactly exactly;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The algorithms in other arithmetic than a lane's, by MPFR: with more bits, without limits of the exponent, exactly.
-// Algorithms are named by their place in Algorithms (core/algorithms/algorithms.h).
+// Runs the algorithms in other arithmetic than a lane's, with MPFR: with more bits, without limits of the exponent, or
+// exactly. An algorithm is given by its index in Algorithms (core/algorithms/algorithms.h).
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace graze::oracle {
 
-// Which ends of a scalar's exponents an arithmetic has: beyond them numbers become infinite, or subnormal and zero.
+// Which exponent limits of a scalar to apply. Beyond them numbers become infinite, or subnormal and then zero.
 struct Limits {
   bool upper = false;
   bool lower = false;
@@ -22,58 +22,58 @@ struct Limits {
 enum class RangeEvent { none, overflow, underflow };
 struct Limited {
   Verdict verdict;
-  RangeEvent first;  // result that left the exponents and was changed by it
+  RangeEvent first;  // the first result that exceeded the exponents and was changed by it
 };
 
-// The algorithm with the scalar's mantissa, round to nearest even. With both limits it is the scalar's cpu lane.
+// Runs the algorithm with the scalar's mantissa, round to nearest even. With both limits it equals the cpu lane.
 Limited decide_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits);
 
-// The same, written down: contracted by that rule, and led down the path. Values beyond the doubles are rounded to
-// them.
+// Like decide_limited, but traced, contracted by the rule, and led down the path. Values beyond the range of double are
+// rounded to it.
 Trace<double> run_limited(int algorithm, Scalar scalar, const Pair& pair, Limits limits, Contraction rule,
                           const Path& lead = {});
 
-// The algorithm with a mantissa of that many bits, and exponents without limits.
+// Runs the algorithm with a mantissa of `bits` bits and no exponent limits.
 Verdict decide_with_bits(int algorithm, const Pair& pair, int bits);
 
-// Least number of bits, from `least` on, such that the algorithm gives this verdict with it and with any more of up to
-// kMostBits; 0 when it does not give it with kMostBits.
+// The least number of bits, at least `least`, that gives this verdict, as do all greater numbers up to kMostBits. 0 if
+// kMostBits bits do not give it.
 inline constexpr int kMostBits = 512;
 int bits_needed(int algorithm, const Pair& pair, Verdict verdict, int least);
 
-// The algorithm in exact arithmetic, by error bounds: two numbers count as equal when their bounds leave that open.
+// The algorithm in exact arithmetic, with error bounds: two numbers count as equal if their bounds leave that open.
 struct Exactly {
   Verdict verdict;
-  int bits;      // that its mantissas were given
-  bool certain;  // no comparison was left open. Otherwise four times the bits less left the same ones open
-  bool settled;  // certain, or as said
+  int bits;      // bits of the mantissas
+  bool certain;  // no comparison was left open
+  bool settled;  // certain, or a quarter of the bits left the same comparisons open
 };
 Exactly decide_exactly(int algorithm, const Pair& pair);
 
-// The algorithm in exact arithmetic, but for one end of the scalar's exponents.
-// Requires: bits as decide_exactly found them.
+// Runs the algorithm in exact arithmetic, but with these exponent limits of the scalar.
+// Requires: bits as found by decide_exactly.
 Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits);
 
-// A number of a lane beside what it should be.
+// A number of a lane and the number that it should be.
 struct Beside {
   double lane;
-  double exact;         // rounded; may be 0 or infinite where `decimal` is neither
-  std::string decimal;  // to 6 digits; "0" only for what cannot be told from zero
-  double ulps;          // the lane's error, in ulps of the exact number without limits of the exponent
+  double exact;         // rounded; may be 0 or infinite even if `decimal` is neither
+  std::string decimal;  // 6 digits; "0" only for what cannot be distinguished from zero
+  double ulps;          // the lane's error, in ulps of the exact number, ignoring exponent limits
 };
 
 struct ExactStep {
   Beside left, right;
-  Beside difference;  // left less right
-  bool held;          // by the exact numbers
+  Beside difference;  // left minus right
+  bool held;          // the outcome by the exact numbers
 };
 
-// The exact values of a lane's run, step by step, along the path that the lane took.
-// With as many bits as that path needs.
+// The exact values of a lane's run, step by step, along the path that the lane took. It uses as many bits as that path
+// needs.
 // Requires: run is of that algorithm in that scalar.
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run);
 
-// The outcomes alone, of each comparison on the path.
+// Only the outcomes of the comparisons on the path.
 Path exact_outcomes(int algorithm, const Pair& pair, const Path& path);
 
 }  // namespace graze::oracle

@@ -20,7 +20,7 @@ Verdict decide(const Lane& lane, const Pair& pair) {
   return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
 }
 
-// Bounds add: neither may get lost where the other is exact.
+// Error bounds add up. Neither may be lost if the other is exact.
 TEST(Ball, ARadiusHoldsBothErrors) {
   constexpr long kExact = Ball::kExact, kUnknown = Ball::kUnknown;
   EXPECT_EQ(Ball::either(kExact, kExact), kExact);
@@ -33,6 +33,21 @@ TEST(Ball, ARadiusHoldsBothErrors) {
   EXPECT_EQ(Ball::scaled(3, kExact), kExact);
   EXPECT_EQ(Ball::scaled(kUnknown, 3), kUnknown);
   EXPECT_EQ(Ball::scaled(-7, 3), -4);
+}
+
+// Under a limit of the exponent, what underflows is zero, and what overflows is infinite: no later sum of radii
+// overflows, as signed integers would.
+TEST(Ball, ZeroAndInfinityOfALimitedRangeAreExact) {
+  const mpfr_exp_t emin = mpfr_get_emin(), emax = mpfr_get_emax();
+  mpfr_set_emin(-148);
+  mpfr_set_emax(128);
+  const Ball tiny = Ball(0x1p-100) * Ball(0x1p-100), huge = Ball(0x1p100) * Ball(0x1p100);
+  const Ball of_tiny = tiny * tiny, of_huge = huge * huge;
+  mpfr_set_emin(emin);
+  mpfr_set_emax(emax);
+  for (const Ball* ball : {&tiny, &huge, &of_tiny, &of_huge}) EXPECT_EQ(ball->radius, Ball::kExact);
+  EXPECT_TRUE(tiny.can_be_zero());
+  EXPECT_FALSE(huge.can_be_zero());
 }
 
 TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
@@ -48,7 +63,8 @@ TEST(Multi, KnowsWhetherItWasRoundedWhereverItIsMovedTo) {
   EXPECT_FALSE(assigned.exact());
 }
 
-// An underflow is what is rounded below the least normal number, 2^-126; there and above nothing is lost.
+// A result underflows if it is rounded below the least normal number, 2^-126. At that number and above, nothing is
+// lost.
 TEST(Multi, UnderflowsBelowTheLeastNormalNumber) {
   const mpfr_exp_t emin = mpfr_get_emin();
   Multi::precision = 24;
@@ -71,7 +87,7 @@ TEST(Multi, UnderflowsBelowTheLeastNormalNumber) {
   Multi::precision = 53;
 }
 
-// MPFR with a format's mantissa and exponents, subnormals included, is that format.
+// MPFR with a format's mantissa and exponents, subnormals included, computes like that format.
 TEST(Precise, WithBothLimitsIsTheCpuLane) {
   int overflows = 0, underflows = 0;
   for (const Kind kind : kKinds) {
@@ -91,7 +107,7 @@ TEST(Precise, WithBothLimitsIsTheCpuLane) {
   EXPECT_GT(underflows, 100);
 }
 
-// The three algorithms without quotients and roots, on GMP's rationals: another library, and no error bounds.
+// The three algorithms without quotients and roots, on GMP's rationals: another library, without error bounds.
 TEST(Precise, ExactlyIsWhatRationalsSay) {
   using Rational = boost::multiprecision::number<boost::multiprecision::gmp_rational, boost::multiprecision::et_off>;
   using Decide = Verdict (*)(const Pair&);
@@ -111,8 +127,8 @@ TEST(Precise, ExactlyIsWhatRationalsSay) {
   }
 }
 
-// interval_overlap is right in exact arithmetic unless a triangle is degenerate; its roots and quotients never make an
-// exact contact exact in any number of bits, so that this shows how open comparisons are settled.
+// interval_overlap is right in exact arithmetic unless a triangle is degenerate. Its roots and quotients never make an
+// exact contact exact, with any number of bits. So this test shows how open comparisons are settled.
 TEST(Precise, ExactlySettlesRootsAndQuotients) {
   int untold = 0;
   for (const Kind kind : {Kind::uniform, Kind::near, Kind::touching, Kind::coplanar}) {
@@ -146,7 +162,7 @@ TEST(Precise, BitsNeededIsTheLeastFromWhichAllAreRight) {
   EXPECT_GT(more, 0);
 }
 
-// A distance of 2^-180, which float32 has as 0: all 2^23 ulps of it are lost.
+// A distance of 2^-180, which float32 rounds to 0: all 2^23 ulps of it are lost.
 TEST(Precise, ErrorsAreInUlpsOfTheExactNumberWithoutLimits) {
   const Pair pair{{{0, 0, 0}, {0x1p-60f, 0, 0}, {0, 0x1p-60f, 0}}, {{0, 0, 0x1p-60f}, {1, 0, 1}, {0, 1, 2}}};
   const Trace<double> run = run_traced<float>(2, pair);

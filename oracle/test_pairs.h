@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs for the oracle's tests and benchmarks: from seeded generators, and written by hand.
+// Pairs for the oracle's tests and benchmarks, from seeded generators and written by hand.
 #pragma once
 
 #include <bit>
@@ -26,7 +26,7 @@ class PairSource {
     Pair pair;
     for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = coordinate();
     if (kind_ == Kind::near || kind_ == Kind::touching) {
-      // b[0] near, or on, a point of A: its centre, an edge's middle or a vertex.
+      // b[0] near or on a point of A: its centre, the middle of an edge, or a vertex.
       const int i = below(3), j = below(2) ? (i + 1) % 3 : i, k = below(3);
       for (int axis = 0; axis < 3; ++axis) {
         const float sum = component(pair.a[i], axis) + component(pair.a[j], axis) + component(pair.a[k], axis);
@@ -86,14 +86,14 @@ class PairSource {
   std::mt19937_64 random_;
 };
 
-// A pair written as 18 numbers.
+// A pair from 18 numbers.
 inline Pair pair_of(const float (&c)[kCoordinates]) {
   Pair pair;
   for (int i = 0; i < kCoordinates; ++i) coordinates(pair)[i] = c[i];
   return pair;
 }
 
-// The same two sets in another of the 72 orders: who comes first, and the order of each one's vertices.
+// The same two sets in another of the 72 orders: of the triangles, and of each triangle's vertices.
 inline Pair reordered(const Pair& pair, int order) {
   static constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   Pair result;
@@ -105,7 +105,7 @@ inline Pair reordered(const Pair& pair, int order) {
   return result;
 }
 
-// Axes permuted (in 6 ways) and, with the three bits above, negated: congruent, and exactly so in float.
+// Permutes the axes (6 ways) and negates them by the three higher bits of `way`: congruent, and exact in float.
 inline Pair turned(const Pair& pair, int way) {
   static constexpr int kAxes[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   Pair result;

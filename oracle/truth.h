@@ -16,28 +16,28 @@ struct Truth : Relation {
   double margin_ulps = 0;  // the same in float32 ulps of the largest coordinate
 };
 
-// The oracle's two decisions differ: a defect in the oracle itself.
+// The oracle's two decisions differ, which is a defect of the oracle itself.
 struct OracleMismatch : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Relation and margin; the verdict is CGAL's, confirmed by the decision on GMP integers.
+// Relation and margin. The verdict is CGAL's, confirmed by the decision on GMP integers.
 // Exact: always; the margin is a rational's square root, rounded once by MPFR.
-// Throws: OracleMismatch.   Returns: declined, unknown, NaN where a coordinate is not finite.
+// Throws: OracleMismatch.   Returns: declined, unknown and NaN if a coordinate is not finite.
 Truth truth(const Pair& pair);
 
-// CGAL's decision: closed triangles by its triangle test, degenerate ones as segments and points.
+// CGAL's decision: its triangle test for proper triangles, and its tests of segments and points for degenerate ones.
 // Requires: finite coordinates.   Exact: always.
 Verdict cgal_verdict(const Pair& pair);
 
-// The independent decision: the dimension of the common set from signs of determinants of GMP integers.
-// Requires: finite coordinates.   Exact: always.   The pair intersects when this is not Contact::none.
+// The independent decision: the dimension of the common set, from signs of determinants of GMP integers.
+// Requires: finite coordinates.   Exact: always. The pair intersects if this is not Contact::none.
 Contact gmp_contact(const Pair& pair);
 
-// By exact ranks of integer vectors.   Requires: finite coordinates.   Exact: always.
+// The hulls, by exact ranks of integer vectors.   Requires: finite coordinates.   Exact: always.
 Hulls hulls(const Pair& pair);
 
-// Bucket of the exact margin. A certified double-precision estimate decides nearly always, GMP otherwise.
+// The bucket of the exact margin. A certified double-precision estimate nearly always decides it, otherwise GMP.
 // Requires: finite coordinates; verdict is the pair's true verdict.   Exact: always.
 Bucket margin_bucket(const Pair& pair, Verdict verdict);
 

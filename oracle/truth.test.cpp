@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Truths that a person can check: every contact, degeneracy and sort of margin, and the ends of float32.
+// Truths that a person can check: every contact, degeneracy and kind of margin, and the limits of float32.
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -27,7 +27,7 @@ struct Example {
 
 const double kRoot2 = std::sqrt(2.0), kRoot3 = std::sqrt(3.0);
 
-// A is most often the right triangle (0,0,0) (4,0,0) (0,4,0).
+// A is usually the right triangle (0,0,0) (4,0,0) (0,4,0).
 const Example kExamples[] = {
     // Two triangles.
     {"parallel_apart", pair_of({0, 0, 0, 4, 0, 0, 0, 4, 0, 0, 0, 3, 4, 0, 3, 0, 4, 3}), Contact::none, 3},
@@ -82,7 +82,7 @@ const Example kExamples[] = {
     {"points_apart", pair_of({0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 3, 6, 2, 3, 6, 2, 3, 6}), Contact::none, 7},
     {"points_at_zero", pair_of({0, 0, 0, 0, -0.0f, 0, 0, 0, 0, 0, 0, 0, -0.0f, 0, 0, 0, 0, 0}), Contact::point, 0},
 
-    // The ends of float32.
+    // The limits of float32.
     {"subnormal_apart",
      pair_of({0, 0, 0, 0x4p-149f, 0, 0, 0, 0x4p-149f, 0, 0, 0, 0x1p-149f, 0x4p-149f, 0, 0x1p-149f, 0, 0x4p-149f,
               0x1p-149f}),
@@ -132,7 +132,7 @@ TEST(Shape, NamesDimensionsAndCommonPlane) {
     int dimension_a, dimension_b;
     bool coplanar;
   };
-  // The first prefix that fits decides.
+  // The first prefix that matches decides.
   const Group kGroups[] = {
       {"coplanar", 2, 2, true},       {"same_triangle", 2, 2, true},  {"segment_in", 2, 1, true},
       {"segment_across", 2, 1, true}, {"segment_along", 2, 1, true},  {"segment_touches", 2, 1, true},

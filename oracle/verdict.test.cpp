@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CGAL's verdict and the GMP contact: by hand, against each other, and against CGAL's exact intersection.
+// CGAL's verdict and the GMP contact: on hand-made pairs, against each other, and against CGAL's exact intersection.
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 #include <CGAL/intersections.h>
 #include <gtest/gtest.h>
@@ -47,8 +47,8 @@ TEST(Verdict, BothDecisionsIgnoreOrderAxesAndSigns) {
   }
 }
 
-// A hull too wide for 40 bits is decided on double or on long integers. The same hulls scaled by powers of two per
-// axis are wide or small as we please, and the verdict must not change: a far axis scale is an affine map.
+// A hull too wide for 40 bits is decided on doubles or on long integers. Scaling each axis by a power of two makes the
+// same hulls wide or small. This map is affine, so the verdict must not change.
 TEST(Verdict, SmallAndWideKernelsAgree) {
   for (const Kind kind : {Kind::lattice1, Kind::lattice3, Kind::degenerate, Kind::flat, Kind::near, Kind::coplanar}) {
     PairSource source(kind, kSeed + 2);
@@ -67,7 +67,7 @@ TEST(Verdict, SmallAndWideKernelsAgree) {
 
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
 
-// CGAL's constructed intersection, as a contact; it may give a polygon of three or more points.
+// Turns the result of CGAL's intersection into a contact. The result may be a polygon of three or more points.
 struct ContactOf {
   using result_type = Contact;
   Contact operator()(const Exact::Point_3&) const { return Contact::point; }
@@ -101,7 +101,7 @@ TEST(Contact, AgreesWithCgalsConstructedIntersection) {
       } else if (a.is_degenerate() && b.is_degenerate()) {
         continue;
       } else {
-        // One is flat: intersect the other with its longest edge (any of its edges is inside the longest).
+        // One triangle is flat: intersect the other one with its longest edge, which contains its other edges.
         const Exact::Triangle_3 &flat = a.is_degenerate() ? a : b, &full = a.is_degenerate() ? b : a;
         Exact::Segment_3 longest(flat[0], flat[1]);
         for (int i = 1; i < 3; ++i) {

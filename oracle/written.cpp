@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as GMP rationals. Times their common denominator all 18 are integers, on which the oracle decides as ever;
-// only lengths are divided by it at the end.
+// Numbers as GMP rationals. Multiplied by their common denominator, all 18 are integers, on which the oracle decides as
+// usual. Only lengths are divided by it at the end.
 #include "oracle/written.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ mpz_class power(unsigned long base, unsigned long exponent) {
   return result;
 }
 
-// Requires: text is a finite number for parse_float32.
+// Requires: text is a finite number that parse_float32 accepts.
 mpq_class rational(const std::string& text) {
   std::string_view rest = text;
   const bool negative = rest.starts_with('-');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The truth of pairs as they are written: where float32 makes another pair of them, and where it does not.
+// The truth of pairs as written: where float32 changes the pair, and where it does not.
 #include "oracle/written.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Pair stored(const std::vector<std::string>& numbers) {
 }
 
 TEST(TruthAsWritten, SeesWhatFloat32RoundsAway) {
-  // Two faces of z = 1, or nearly.
+  // Two faces in z = 1, or nearly so.
   const auto numbers = words_of("0 0 1 1 0 1 0 1 1  0 0 1.00000000001 1 0 1.00000000001 0 1 1.00000000001");
   const Pair pair = stored(numbers);
   EXPECT_EQ(truth(pair).contact, Contact::area);
@@ -54,7 +54,7 @@ TEST(TruthAsWritten, IsNothingWhereEveryNumberIsStored) {
   EXPECT_THROW(first_rounded(words_of("1e-999999 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0"), Pair{}), std::runtime_error);
 }
 
-// Float32 pairs moved by what float32 cannot hold, and moved alike, keep their truth; so do scaled ones.
+// A motion that float32 cannot represent, applied to both triangles, keeps their truth; so does a scaling.
 TEST(TruthAsWritten, IsTheStoredTruthUnderExactMotions) {
   std::mt19937 random(12);
   int contacts[4] = {};

@@ -68,7 +68,7 @@ void Collector::take(const cuda::QueryRange& range, const std::uint64_t* hits, c
     chunk.add({ones(hits + r * words, range.count), 0, first_of(hits + r * words, range.count)}, r);
   for (std::size_t r = 0; r < (any_ ? 1 : references_); ++r)
     chunk.declined += ones(declined + r * words, any_ ? std::min(range.count, chunk.first) : range.count);
-  if (outputs_.list) {  // which grows in the order of the triangles
+  if (outputs_.list) {  // the list grows in the order of the triangles
     std::unique_lock lock(mutex_);
     in_order_.wait(lock, [&] { return stopped_ || found_.position == range.first; });
     if (found_.position != range.first) return;

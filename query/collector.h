@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands out the ranges of a query and puts together what is found in them, in the order of the triangles, whoever finds
-// it: the same answer from one thread and from many, from processors and devices.
+// Hands out the ranges of a query and combines their results in the order of the triangles. The answer does not depend
+// on which thread, processor or device finds a result.
 #pragma once
 
 #include <condition_variable>
@@ -20,12 +20,12 @@ struct Outputs {
   std::uint64_t room = 0;
 };
 
-// Called with how many triangles are done.   Returns: whether to go on.
+// Called with the number of triangles that are done.   Returns: whether to continue.
 using Progress = std::function<bool(std::uint64_t done)>;
 
 class Collector final : public cuda::QueryWork {
  public:
-  // Requires: outputs only where all triangles are asked for.
+  // Requires: outputs are given only if all triangles are asked for.
   Collector(std::vector<std::uint64_t> counts, std::vector<int> places, std::size_t references, bool any,
             const Outputs& outputs, Progress progress);
 
@@ -65,11 +65,11 @@ class Collector final : public cuda::QueryWork {
 
   mutable std::mutex mutex_;
   std::condition_variable in_order_;
-  std::map<std::uint64_t, Chunk> ahead_;  // by first triangle: done before some that come before them
+  std::map<std::uint64_t, Chunk> ahead_;  // by first triangle: chunks that are done before earlier ones
   Found found_;
   bool stopped_ = false;
   std::uint64_t listed_ = 0;
-  double said_ = 0;  // when progress was last told, in seconds
+  double said_ = 0;  // when progress was last reported, in seconds
 };
 
 }  // namespace graze::query

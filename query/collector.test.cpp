@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is found is put together in the order of the triangles, whoever comes first, and whoever never comes.
+// Results are combined in the order of the triangles, whichever comes first and even if one never comes.
 #include "query/collector.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(Collector, CountsInOrder) {
   EXPECT_EQ(found.first, 5u);
 }
 
-// Somebody failed on the first range: nothing behind it is certain.
+// A worker failed on the first range, so nothing after it is certain.
 TEST(Collector, KnowsHowFarItIsCertain) {
   Collector collector({192}, {-1}, 1, false, {}, {});
   QueryRange ranges[2], more;
@@ -46,7 +46,7 @@ TEST(Collector, AnyIsTheFirstOfWhatWasBegun) {
   QueryRange ranges[3], more;
   for (QueryRange& range : ranges) ASSERT_TRUE(collector.next(-1, 64, range));
   collector.take(ranges[2], kFifth, kNone, 1);
-  EXPECT_FALSE(collector.next(-1, 64, more));  // a hit ends it for all
+  EXPECT_FALSE(collector.next(-1, 64, more));  // a hit ends the search for all workers
   collector.take(ranges[1], kFifth, kNone, 1);
   collector.take(ranges[0], kNone, kFifth, 1);
   const Collector::Found found = collector.found();
@@ -72,7 +72,7 @@ TEST(Collector, DevicesTakeTheirOwnParts) {
   EXPECT_FALSE(collector.next(-1, 64, range));
 }
 
-// Who waits for a range that never comes is told to stop.
+// A worker that waits for a range that never comes is told to stop.
 TEST(Collector, ListsDoNotWaitForThoseWhoFailed) {
   std::uint64_t list[2];
   Collector collector({192}, {-1}, 1, false, {nullptr, nullptr, list, 2}, {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks a query, chooses who works on it, and answers it.
+// Checks a query, chooses an executor, and answers the query.
 #pragma once
 
 #include <map>
@@ -10,16 +10,16 @@
 #include "cuda/query/device_query.h"
 #include "query/include/graze/query_c.h"
 
-// The name that the C header gives it.
+// The name is that of the C header.
 struct graze_context {
  public:
-  // Returns: an answer in any case, with what is wrong as its status.
+  // Fills in the answer in any case; its status tells whether something is wrong.
   void run(const graze_query& query, graze_answer& answer) noexcept;
 
  private:
   struct Device {
     std::mutex turn;
-    std::unique_ptr<graze::cuda::QueryDevice> open;  // null before it is used, and after it failed
+    std::unique_ptr<graze::cuda::QueryDevice> open;  // null until it is first used, and after it failed
   };
   void answer(const graze_query& query, graze_answer& answer);
   Device& device(int number);

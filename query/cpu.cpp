@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks of 64 triangles: turned into columns, looked past by the slabs of each reference four at a time. What is left
-// open gathers until there are enough to decide side by side. Other lanes get all pairs.
+// Works on blocks of 64 triangles. A block is transposed into columns, and each reference's slabs test four triangles
+// at a time. Undecided pairs are gathered until there are enough to decide side by side. Lanes other than exact get all
+// pairs.
 #include "query/cpu.h"
 
 #include <tbb/parallel_for.h>
@@ -49,7 +50,7 @@ Four load(const float* at) {
 
 void store(float* at, Four four) { std::memcpy(at, &four, sizeof four); }
 
-// Up to 64 triangles: as rows where the array has them so, and as columns.
+// Up to 64 triangles: as rows, which point into the array if it has rows, and as columns.
 struct Block {
   alignas(16) float columns[9][kBlock];
   float copy[kBlock][9];
@@ -72,7 +73,7 @@ struct Block {
     }
   }
 
-  // Rows i to i + 3 and coordinates k to k + 3.
+  // Transposes rows i to i + 3, coordinates k to k + 3.
   void transpose(std::size_t i, std::size_t k) {
     const Four a = load(rows[i] + k), b = load(rows[i + 1] + k), c = load(rows[i + 2] + k), d = load(rows[i + 3] + k);
     const Four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5), cd = __builtin_shufflevector(c, d, 0, 4, 1, 5),
@@ -86,7 +87,7 @@ struct Block {
   std::uint64_t not_finite() const {
     std::uint64_t result = 0;
     for (std::size_t i = 0; i < kBlock; i += 4) {
-      Four all = {};  // not a number, from the first coordinate that is not finite on
+      Four all = {};  // becomes NaN at the first coordinate that is not finite
       for (std::size_t k = 0; k < 9; ++k) all += load(columns[k] + i) * 0.0f;
       result |= std::uint64_t{mask_of(all != all)} << i;
     }
@@ -94,10 +95,10 @@ struct Block {
   }
 
   struct Sights {
-    std::uint64_t beyond = 0, large = 0;  // large: the sum of the magnitudes is no finite number
+    std::uint64_t beyond = 0, large = 0;  // large: the sum of the magnitudes is not finite
   };
 
-  // exact::is_beyond, four at a time.
+  // exact::is_beyond for four triangles at a time.
   Sights look_past(const exact::PreparedTriangle& reference) const {
     Sights sights;
     for (std::size_t i = 0; i < kBlock; i += 4) {
@@ -133,7 +134,7 @@ class Worker {
     }
   }
 
-  // Decides the range and hands it in.
+  // Decides the range and passes the result to `work`.
   void operator()(const cuda::QueryRange& range, cuda::QueryWork& work) {
     const std::size_t words = (range.count + kBlock - 1) / kBlock;
     hits_.resize(words * references_.size());
@@ -167,7 +168,7 @@ class Worker {
 
   static constexpr std::size_t kTogether = 256;
 
-  // What the slabs leave open; the bits are set when they are decided.
+  // Adds the pairs that the slabs leave open. Their bits are set when they are decided.
   void gather(std::size_t r, std::uint64_t open, std::uint64_t& hits) {
     for (std::uint64_t left = open; left != 0; left &= left - 1) {
       float* pair = coordinates(pairs_[open_.size()]);
@@ -187,7 +188,7 @@ class Worker {
     open_.clear();
   }
 
-  // By another lane, of the wanted triangles.
+  // Decides the wanted triangles by another lane.
   void decide(std::size_t r, std::uint64_t wanted, std::uint64_t& hits, std::uint64_t& declined) {
     const exact::PreparedTriangle& reference = references_[r];
     for (std::size_t i = 0; i < kBlock; ++i) {
@@ -205,7 +206,7 @@ class Worker {
   Block block_;
   std::vector<Pair> pairs_;
   struct Open {
-    std::uint64_t *word, bit;  // its place in hits_
+    std::uint64_t *word, bit;  // where its hit belongs in hits_
   };
   std::vector<Open> open_;
   std::vector<std::uint64_t> hits_, declined_;
@@ -231,7 +232,7 @@ void run_on_cpu(const CpuQuestion& question, int threads, cuda::QueryWork& work)
     Worker worker(question);
     run(worker);
   };
-  // One task for each thread; those that find no thread free find no range left, later.
+  // One task for each thread. A task that finds no free thread starts later and finds no range left.
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(

@@ -12,12 +12,12 @@ namespace graze::query {
 struct CpuQuestion {
   std::span<const float> references;  // nine each
   std::span<const cuda::TriangleArray> parts;
-  const Lane* lane = nullptr;  // of the host
+  const Lane* lane = nullptr;  // a host lane
   bool any = false;
 };
 
-// Works until there is no range left, on so many threads; the first ranges on this one alone, since threads take longer
-// to start than a hit among the first triangles takes to find.
+// Runs on `threads` threads until no range is left. This thread takes the first ranges alone, because starting threads
+// takes longer than finding a hit among the first triangles.
 // Throws: std::bad_alloc, and what the progress callback throws.
 void run_on_cpu(const CpuQuestion& question, int threads, cuda::QueryWork& work);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library: every layout, output and executor of the cores tells the same; wrong arguments, lacking memory and
-// cancelling end in a value that says so.
+// The library: every layout, output and executor on the cores gives the same answer. Wrong arguments, lack of memory
+// and cancellation give an error status.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -16,7 +16,7 @@
 
 namespace {
 
-std::atomic<long> allocations_left = -1;  // the one that brings it to 0 fails, and all after it; -1: none does
+std::atomic<long> allocations_left = -1;  // the allocation that makes it 0 fails, and all later ones; -1: none fails
 
 bool allocation_fails() {
   long left = allocations_left;
@@ -138,7 +138,7 @@ TEST(Query, LayoutsTellTheSame) {
   EXPECT_EQ(beside.bytes[9], 2);
   EXPECT_EQ(beside.answer.declined, 1u);
 
-  // The array in several parts, of which one is empty.
+  // The array in several parts, one of which is empty.
   std::vector<graze_triangles> parts(3, part_of(triangles));
   parts[0].count = 64 * 100;
   parts[1].count = 0;
@@ -301,7 +301,7 @@ TEST(Query, StridesThatNoArrayHasAreRefusedInEveryLayout) {
            {std::size_t{1}, size - 1, size + 1, SIZE_MAX, SIZE_MAX - 35, SIZE_MAX - 3, SIZE_MAX / 2 + 1}) {
         for (const std::uint64_t count : {1, 2, 10}) EXPECT_EQ(status(count, stride), GRAZE_BAD_ARGUMENT) << stride;
       }
-      // The product overflows: to 0, to little, to a little less than all; or the array ends behind the address space.
+      // The product overflows to 0, to little, or to almost all; or the array ends beyond the address space.
       for (const std::size_t stride :
            {std::size_t{1} << 62, std::size_t{1} << 60, (SIZE_MAX / 9 + 1) / 4 * 4, SIZE_MAX / 2 / 9 / 4 * 4 + 4})
         EXPECT_EQ(status(10, stride), GRAZE_BAD_ARGUMENT) << stride;
@@ -401,7 +401,7 @@ TEST(Query, ThreadsShareAContext) {
   EXPECT_EQ(right, 8);
 }
 
-// Each allocation fails in turn, and all after it: an error value, or the right answer where it was not needed.
+// Each allocation fails in turn, with all later ones: the result is an error status, or the right answer if not needed.
 TEST(Query, LackOfMemoryIsAValueWhereverItBegins) {
   std::vector<Triangle> triangles = thesis_triangles(100'000);
   const graze_triangles part = part_of(triangles);
@@ -416,7 +416,7 @@ TEST(Query, LackOfMemoryIsAValueWhereverItBegins) {
       query.list = list.data();
       query.list_room = hits;
       int failures = 0, done = 0;
-      for (long n = 1; done < 3; ++n) {  // how many there are depends on the threads
+      for (long n = 1; done < 3; ++n) {  // the number of allocations depends on the threads
         ASSERT_LT(n, 2000);
         allocations_left = n;
         const Answer answer = context.run(query);
@@ -440,8 +440,8 @@ TEST(Query, LackOfMemoryIsAValueWhereverItBegins) {
   EXPECT_EQ(none, nullptr);
 }
 
-// One core finds a hit among the first hundred in less than a tenth of the time that it takes to reach the last; the
-// best of ten tries each, as other programs may run beside it.
+// One core finds a hit among the first hundred in less than a tenth of the time that it takes to reach the last
+// triangle. Each time is the best of ten, because other programs may run at the same time.
 TEST(Query, AHitAmongTheFirstIsFoundAtOnce) {
   const Triangle far = {100, 100, 100, 101, 100, 100, 100, 101, 100};
   const Context context;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The C ABI. No exception leaves it.
+// The C ABI. No exception passes through it.
 #include "query/include/graze/query_c.h"
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices tell what the cores tell: every layout, streamed and resident, every output, some lanes, all strata. Part of
-// graze_device_test; skipped without a device.
+// Devices give the same answers as the cores: every layout, streamed and resident, every output, some lanes, all
+// strata. Part of graze_device_test; skipped without a device.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,7 +52,7 @@ class QueryDevice : public testing::Test {
     EXPECT_EQ(left.answer.position, right.answer.position);
   }
 
-  // The same triangles in the memory of device 0.
+  // The same triangles in device 0's memory.
   std::unique_ptr<cuda::DeviceMemory> resident(const std::vector<Triangle>& triangles, graze_triangles& part) {
     auto memory = cuda::device_memory(0, std::max<std::size_t>(1, triangles.size()) * sizeof(Triangle));
     memory->fill(triangles.data(), triangles.size() * sizeof(Triangle));
@@ -92,7 +92,7 @@ TEST_F(QueryDevice, StreamedAndResidentAreTheCores) {
       EXPECT_EQ(counted.declined, cores.answer.declined);
       EXPECT_EQ(counted.first, cores.answer.first);
     }
-    // Outputs on the device, on the caller's stream; 2 is the handle of CUDA's stream of this thread.
+    // Outputs on the device, on the caller's stream; 2 is CUDA's handle of the per-thread default stream.
     auto bytes = cuda::device_memory(0, count * 3 + 1), bits = cuda::device_memory(0, (count + 7) / 8 * 3 + 1);
     query.outputs_on_device = 1;
     query.stream = reinterpret_cast<void*>(2);
@@ -106,7 +106,7 @@ TEST_F(QueryDevice, StreamedAndResidentAreTheCores) {
   }
 }
 
-// The second triangle of each pair of a stratum against a few of the first ones.
+// The second triangles of a stratum's pairs against a few of its first triangles.
 TEST_F(QueryDevice, AllStrataAreTheCores) {
   for (const strata::StratumInfo& row : strata::kStrata) {
     std::vector<Triangle> references, triangles;
@@ -132,7 +132,7 @@ TEST_F(QueryDevice, AllStrataAreTheCores) {
   }
 }
 
-// Each first triangle of a stratum's pairs as the reference of its own second one.
+// The first triangle of each of a stratum's pairs as a reference for the second one.
 TEST_F(QueryDevice, ManyReferencesAreTheCores) {
   for (const strata::StratumInfo& row : strata::kStrata) {
     std::vector<Triangle> references, triangles;
@@ -185,7 +185,7 @@ TEST_F(QueryDevice, LayoutsAreTheCores) {
   device[1].vertices = static_cast<const float*>(of_vertices->data);
   device[1].faces = static_cast<const std::uint32_t*>(of_faces->data);
   device[2].rows = static_cast<const float*>(of_wide->data);
-  device[3].rows = static_cast<const float*>(of_rows->data) + 9;  // not where vectors may be read
+  device[3].rows = static_cast<const float*>(of_rows->data) + 9;  // not aligned for vector loads
   device[3].count = host[3].count -= 1;
   host[3].rows += 9;
   for (int k = 0; k < 4; ++k) {
@@ -245,7 +245,7 @@ TEST_F(QueryDevice, AnyFindsTheFirst) {
   }
 }
 
-// Parts on every device, and at once in one query.
+// Parts on each device in turn, and on all devices in one query.
 TEST_F(QueryDevice, PartsOnAllDevices) {
   const std::vector<Triangle> triangles = broken(thesis_triangles(500'032));
   const graze_triangles part = part_of(triangles);
@@ -272,8 +272,8 @@ TEST_F(QueryDevice, PartsOnAllDevices) {
   expect_same(all_of(query, all.size()), cores);
 }
 
-// Short launches make many chunks; the answer does not change, and none takes longer but the first ones, which are
-// small and teach how long one takes.
+// Short launches make many chunks. The answer does not change, and no launch exceeds the limit. The first launches are
+// small and measure how long one takes.
 TEST_F(QueryDevice, LaunchesAreSplit) {
   const std::vector<Triangle> some = thesis_triangles(1 << 20);
   auto memory = cuda::device_memory(0, std::size_t{36} << 26);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every exact verdict is that of the oracle, of both its decisions; every other lane's that of the lane.
+// Every exact verdict is that of both decisions of the oracle; every other lane's verdict is that of the lane.
 #include <gtest/gtest.h>
 
 #include "core/exact/prepared_triangle.h"
@@ -10,7 +10,7 @@
 namespace graze::query {
 namespace {
 
-constexpr std::size_t kPairs = 6'000;  // of each stratum
+constexpr std::size_t kPairs = 6'000;  // in each stratum
 
 std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
   std::vector<std::uint8_t> bytes(count, 9);
@@ -20,11 +20,11 @@ std::vector<std::uint8_t> bytes_of(graze_query query, std::size_t count) {
   return bytes;
 }
 
-// The first triangle of each pair as one of many references, against its second one and its neighbours': the slabs
-// must not lose a hit, on whatever side of whatever triangle it is.
+// The first triangles of pairs as many references, against their second triangles and the neighbours'. The slabs must
+// not lose a hit, whichever side of whichever triangle it is on.
 TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   constexpr std::size_t kTogether = 8;
-  std::size_t looked_past = 0, screened = 0, hits = 0;
+  std::size_t looked_past = 0, filtered = 0, hits = 0;
   for (const strata::StratumInfo& row : strata::kStrata) {
     for (std::size_t begin = 0; begin < kPairs; begin += kTogether) {
       std::vector<Triangle> references, triangles;
@@ -50,10 +50,10 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
           ASSERT_EQ(bytes[r * kTogether + t], meets) << row.id << " 7 " << begin + r << ' ' << begin + t;
           const bool beyond = exact::is_beyond(prepared, triangles[t].data());
           ASSERT_FALSE(meets && beyond) << row.id << " 7 " << begin + r << ' ' << begin + t;
-          const exact::detail::Finding found = exact::detail::screen_in_floats(prepared, triangles[t].data());
+          const exact::detail::Finding found = exact::detail::filter_in_floats(prepared, triangles[t].data());
           ASSERT_FALSE(found == exact::detail::Finding::disjoint && meets) << row.id << " 7 " << begin + r;
           ASSERT_FALSE(found == exact::detail::Finding::crosses && !meets) << row.id << " 7 " << begin + r;
-          screened += found != exact::detail::Finding::unsure;
+          filtered += found != exact::detail::Finding::unsure;
           looked_past += beyond;
           hits += meets;
         }
@@ -62,7 +62,7 @@ TEST(QueryVerdicts, AreTheOraclesOverAllStrata) {
   }
   EXPECT_GT(hits, 100'000u);
   EXPECT_GT(looked_past, 300'000u);
-  EXPECT_GT(screened, 300'000u);
+  EXPECT_GT(filtered, 300'000u);
 }
 
 TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
@@ -81,10 +81,10 @@ TEST(QueryVerdicts, AreTheOraclesOnTheThesissTriangles) {
     const bool parted = exact::is_beyond(prepared, triangles[i].data());
     beyond += parted;
     unsure +=
-        !parted && exact::detail::screen_in_floats(prepared, triangles[i].data()) == exact::detail::Finding::unsure;
+        !parted && exact::detail::filter_in_floats(prepared, triangles[i].data()) == exact::detail::Finding::unsure;
   }
-  EXPECT_GT(beyond, triangles.size() * 4 / 5);  // or else the slabs are not worth their time
-  EXPECT_LT(unsure, triangles.size() / 50);     // nor the screen
+  EXPECT_GT(beyond, triangles.size() * 4 / 5);  // otherwise the slabs are not worth their time
+  EXPECT_LT(unsure, triangles.size() / 50);     // nor is the filter
 }
 
 TEST(QueryVerdicts, AreThoseOfTheLane) {
@@ -108,7 +108,7 @@ TEST(QueryVerdicts, AreThoseOfTheLane) {
   }
 }
 
-// Where a slab must not say more than it knows: magnitudes at both ends of the floats, and a hair beyond the reference.
+// Where a slab must not overclaim: magnitudes at both ends of the floats, and triangles just beyond the reference.
 TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   for (const float unit : {0x1p-149f, 0x1p-126f, 0x1p-60f, 1.0f, 0x1p60f, 0x1p126f}) {
     const Triangle reference = {0, 0, 0, unit, 0, 0, 0, unit, 0};
@@ -123,7 +123,7 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
         for (const auto& [r, t] : {std::pair(reference, broken), std::pair(broken, touching)}) {
           const exact::PreparedTriangle either = exact::prepare(r.data());
           EXPECT_FALSE(exact::is_beyond(either, t.data()));
-          EXPECT_EQ(exact::detail::screen_in_floats(either, t.data()), exact::detail::Finding::unsure);
+          EXPECT_EQ(exact::detail::filter_in_floats(either, t.data()), exact::detail::Finding::unsure);
         }
       }
     }
@@ -133,7 +133,7 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
                  far = {-most, -most, -most, -most, -most, most, most, -most, -most};
   const exact::PreparedTriangle prepared = exact::prepare(corners.data());
   for (const Triangle& t : {corners, far}) EXPECT_FALSE(exact::is_beyond(prepared, t.data()));
-  // The sum of its magnitudes overflows, but it is finite.
+  // A finite triangle whose sum of magnitudes overflows.
   const std::vector<Triangle> triangles = {corners, far, {most, NAN, 0, 0, 0, 0, 0, 0, most}};
   const graze_triangles part = part_of(triangles);
   const std::vector<std::uint8_t> bytes = bytes_of(query_of(corners, part), triangles.size());
@@ -142,8 +142,8 @@ TEST(QueryVerdicts, HoldAtTheEndsOfTheFloats) {
   EXPECT_EQ(bytes[2], 2);
 }
 
-// The slabs are the thinnest ones: square to the normal and to the longest edge, whichever that is. A worse one loses
-// no hit, and time.
+// The slabs are the thinnest ones: perpendicular to the normal and to the longest edge, whichever edge that is. A worse
+// slab loses no hits, but time.
 TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
   const Vec3<double> corners[3] = {{1, 2, 3}, {9, -6, 5}, {4, 1, 2.5}};
   const Vec3<double> longest = corners[1] - corners[0];
@@ -169,7 +169,7 @@ TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
       EXPECT_NEAR(half, other, 1e-6);
     }
   }
-  // A segment or a point has no normal: along the axes.
+  // A segment or a point has no normal, so its slabs are along the axes.
   const Triangle segment = {1, 1, 1, 2, 2, 2, 3, 3, 3}, point = {5, 6, 7, 5, 6, 7, 5, 6, 7};
   for (const Triangle& t : {segment, point}) {
     const exact::PreparedTriangle r = exact::prepare(t.data());
@@ -180,7 +180,7 @@ TEST(PreparedTriangle, SlabsAreSquareToTheNormalAndTheLongestEdge) {
 
 TEST(PreparedTriangle, LooksAtNineNumbersAndDecidesWithinItsExtents) {
   const Triangle reference = {0, 0, 0, 4, 0, 0, 0, 4, 0};
-  std::vector<float> behind = {0, 0, 9, 1, 0, 9, 0, 1, 9, 3e38f};  // a triangle, and what may lie behind it
+  std::vector<float> behind = {0, 0, 9, 1, 0, 9, 0, 1, 9, 3e38f};  // a triangle, and what may follow it in memory
   EXPECT_TRUE(exact::is_beyond(exact::prepare(reference.data()), behind.data()));
   using exact::detail::Finding;
   for (const auto& [extent, decided] :
@@ -188,7 +188,7 @@ TEST(PreparedTriangle, LooksAtNineNumbersAndDecidesWithinItsExtents) {
     Triangle a = {0, 0, 0.5f, 1, 0, 0.5f, 0, 1, 0.5f}, b = {0.25f, 0.25f, 0, 0.25f, 0.25f, 1, 0.5f, 0.25f, 1};
     for (float& x : a) x *= extent;
     for (float& x : b) x *= extent;
-    EXPECT_EQ(exact::detail::screen_in_floats(exact::prepare(a.data()), b.data()),
+    EXPECT_EQ(exact::detail::filter_in_floats(exact::prepare(a.data()), b.data()),
               decided ? Finding::crosses : Finding::unsure)
         << extent;
   }

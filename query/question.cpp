@@ -19,8 +19,8 @@ namespace {
 constexpr std::uint64_t kMostTriangles = GRAZE_MOST_TRIANGLES, kMostReferences = 1 << 16, kMostParts = 1 << 16,
                         kMostPairs = std::uint64_t{1} << 62;
 
-// Nanoseconds for a triangle and a reference on one core, and for a triangle's way to a device, measured on an H200 and
-// its host (docs/measurements.md); and until CUDA has started, taken, not measured. They matter for GRAZE_AUTO alone.
+// Nanoseconds, for GRAZE_AUTO only: for a triangle and a reference on one core and for a triangle's transfer to a
+// device, measured on an H200 and its host (docs/measurements.md), and until CUDA has started (assumed, not measured).
 constexpr double kOnCore = 11, kToDevice = 0.7, kStart = 3e8;
 constexpr std::uint64_t kWorthThreads = 1 << 14;
 
@@ -36,8 +36,8 @@ void expect_aligned(const void* at, const std::string& name, std::size_t alignme
          name + ": expected a pointer that is a multiple of " + std::to_string(alignment));
 }
 
-// Whether `count` elements of `size` bytes, `stride` bytes apart, fit into an object at this address: into PTRDIFF_MAX
-// bytes, and before the end of the address space.
+// Whether `count` elements of `size` bytes, `stride` bytes apart, fit into an object at this address: within
+// PTRDIFF_MAX bytes and before the end of the address space.
 bool fits(const void* at, std::uint64_t count, std::size_t stride, std::size_t size) {
   const std::uintptr_t room = std::min<std::uintptr_t>(PTRDIFF_MAX, UINTPTR_MAX - reinterpret_cast<std::uintptr_t>(at));
   return count == 0 || (size <= room && (count - 1) <= (room - size) / stride);
@@ -96,7 +96,7 @@ cuda::TriangleArray array_of(const graze_triangles& part, const std::string& nam
   }
 }
 
-// The exact lane of the host stands for both.
+// The exact host lane stands for the exact lane of both host and device.
 Lane lane_of(const char* id) {
   const std::string name = id ? id : "exact";
   if (name == "exact") return *find_lane("exact/f32/cpu");
@@ -136,7 +136,7 @@ int device_count(const std::string& wanted) {
   return count;
 }
 
-// Whether a device answers sooner, with the time that it takes to start.
+// Whether a device would answer sooner, including its start-up time.
 bool device_is_faster(const Question& question, int threads) {
   const double triangles = static_cast<double>(question.triangles);
   const double on_cores = triangles * static_cast<double>(question.references.size() / 9) * kOnCore / threads;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A query as it is meant: checked, with its arrays, its lane and its executor.
+// A query after validation, with its arrays, its lane and its executor.
 #pragma once
 
 #include <span>
@@ -21,16 +21,16 @@ struct QueryError : std::runtime_error {
 struct Question {
   std::span<const float> references;
   std::vector<cuda::TriangleArray> parts;
-  std::vector<std::uint64_t> counts;  // of the parts
-  std::vector<int> places;            // of the parts: a device, or -1
+  std::vector<std::uint64_t> counts;  // of triangles in each part
+  std::vector<int> places;            // of each part: a device, or -1
   std::uint64_t triangles = 0;
   graze_executor executor = GRAZE_ONE_CORE;
-  int threads = 1;           // where cores work
-  std::vector<int> devices;  // where they do
+  int threads = 1;           // if cores do the work
+  std::vector<int> devices;  // if devices do the work
   Lane lane;
 };
 
-// Throws: QueryError of an argument that cannot be meant, or without a device that is needed.
+// Throws: QueryError if an argument is invalid or a required device is missing.
 Question question_of(const graze_query& query);
 
 }  // namespace graze::query

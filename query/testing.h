@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: arrays of triangles, and queries of them.
+// For tests: arrays of triangles, and queries on them.
 #pragma once
 
 #include <cstring>
@@ -18,7 +18,7 @@ inline Triangle triangle(const Vec3<float>* v) {
   return t;
 }
 
-// The thesis's reference, and so many of its random triangles.
+// The thesis's reference triangle, and `count` of its random triangles.
 inline const Triangle kThesisReference = {2, -2, 4, 1, 5, -2, 1, -3, -3};
 inline std::vector<Triangle> thesis_triangles(std::size_t count, std::uint64_t seed = 1) {
   std::vector<Triangle> triangles;

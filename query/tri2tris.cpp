@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions of 2012 on the library of today.
+// The functions of the 2012 thesis, implemented with this library.
 #include <atomic>
 #include <cstdio>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A caller of 2012: its special cases, its random triangles and its four flags, through both old functions.
+// A 2012 caller: its special cases, its random triangles and its four flags, through both old functions.
 #include <detect-tri2tris-intersection.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr triangle_t kReference = {{0, -2, 6}, {0, 5, 0}, {0, -3, 0}};
 triangle_t special_cases[] = {
-    // one for each place of the vertices to the line of both planes; all intersect
+    // one for each position of the vertices relative to the line of both planes; all intersect
     {{-2, -2, 0}, {2, -3, 0}, {3, -1, 0}},
     {{2, -1, 0}, {-2, -1.5f, 0}, {-3, 0, 0}},
     {{0, 0, 0}, {-2, 0.5f, 0}, {-3, 2, 0}},
@@ -28,7 +28,7 @@ triangle_t special_cases[] = {
 };
 constexpr int kCases = sizeof special_cases / sizeof special_cases[0];
 
-// Its random triangles, drawn as its listing draws them.
+// The caller's random triangles, drawn as in the thesis's listing.
 std::vector<triangle_t> random_triangles(int count) {
   std::srand(2012);
   std::vector<triangle_t> triangles(static_cast<std::size_t>(count));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign as the command that runs it, with the ids of its lanes and strata.
+// The command that runs a campaign, with the ids of its lanes and strata.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,14 +13,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// As a shell reads it back.
+// Quotes the word for a shell.
 std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
 
-// The lanes that ran; where others were asked for as well, the patterns that asked. Empty for all that run here.
+// The option for the lanes that ran. If some requested lanes were left out, their patterns instead. Empty for all lanes
+// of this build.
 std::string lane_option(const Json& spec, const std::vector<std::string>& ids) {
   if (spec.contains("lanes_left_out"))
     return fmt::format(" --lanes '{}'",
@@ -28,7 +29,7 @@ std::string lane_option(const Json& spec, const std::vector<std::string>& ids) {
   return ids.size() == lanes().size() ? "" : fmt::format(" --lanes '{}'", fmt::join(ids, ","));
 }
 
-// What the hunt draws from stands for its one source.
+// A hunt's command names the strata that it draws from, not its single source.
 std::string hunt_command(const Json& spec, const std::vector<std::string>& ids) {
   const std::vector<std::string> strata = spec.at("hunt").at("strata");
   std::string command = fmt::format("graze hunt --runs {} --seed {}", spec.at("pairs").dump(), spec.at("seed").dump());

@@ -18,9 +18,9 @@ namespace graze::reports {
 using Json = nlohmann::ordered_json;
 namespace {
 
-using Name = std::pair<std::string, std::string>;  // of a lane and a stratum
+using Name = std::pair<std::string, std::string>;  // lane and stratum
 
-// A report's shares of wrong verdicts by names, in its order.
+// A report's shares of wrong verdicts by lane and stratum, in its order.
 std::vector<std::pair<Name, Json>> wrong_by_name(const Json& report) {
   std::vector<std::pair<Name, Json>> rates;
   for (const Json& row : report.at("rates")) {
@@ -32,8 +32,9 @@ std::vector<std::pair<Name, Json>> wrong_by_name(const Json& report) {
   return rates;
 }
 
-// Of all errors of both, or of all right verdicts where these are fewer, each is the first campaign's with a chance of
-// its share of the pairs, if the rates are the same: a binomial distribution, a little wider than the true one.
+// Tests whether two rates differ. If they are equal, each error of either campaign belongs to the first one with a
+// probability equal to its share of the pairs. This gives a binomial distribution, slightly wider than the true one. If
+// right verdicts are fewer than errors, they are counted instead.
 // Reference: Przyborowski and Wilenski 1940, the conditional test of two rates.
 bool apart(const Json& l, const Json& r) {
   double count[2], of[2];
@@ -51,7 +52,7 @@ bool apart(const Json& l, const Json& r) {
   return 2 * std::min(most, least) < kLeastChance;
 }
 
-// Kinds that the others lack, though so many of their signatures were to be expected there.
+// Kinds that are missing in `others` although enough of their signatures were to be expected there.
 Json only_in(const Json& kinds, const Json& others, double pairs, double pairs_of_others) {
   std::set<std::string> known;
   for (const Json& kind : others) known.insert(kind.at("key"));
@@ -77,7 +78,7 @@ std::string list(const std::set<std::string>& l, const std::set<std::string>& r)
   return only.empty() ? "none" : fmt::format("{}", fmt::join(only, ", "));
 }
 
-// How the campaigns differ, one sentence for each thing.
+// Describes how the campaigns differ, one sentence for each difference.
 Json differences_of(const Json& after, const Json& before) {
   Json rows = Json::array();
   const Json &now = after.at("run"), &then = before.at("run");

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A report of so many rates, each of n pairs, wrong with a chance of its own; the numbers drawn by the seed.
+// A report of `rates` rates, each of n pairs, with different error probabilities; the seed determines the counts.
 Json report_of(std::uint64_t seed, std::uint64_t n, int rates = 1000) {
   Json report{{"run", {{"seed", seed}, {"pairs", n * 19}, {"build", {{"commit", "c"}}}}},
               {"lanes", Json::array()},
@@ -64,7 +64,7 @@ TEST(Comparison, AKindThatWasToBeExpectedHasGone) {
   EXPECT_EQ(after["compare"]["lost"][0]["key"], "b");
   add_comparison(after, before, many, some);
   EXPECT_EQ(after["compare"]["gained"].size(), 1u);
-  // In a tenth of the pairs ten of its signatures were to be expected: too few to say that it has gone.
+  // In a tenth of the pairs, ten of its signatures were to be expected: too few to call it lost.
   Json smaller = report_of(2, 5'000);
   add_comparison(smaller, before, some, many);
   EXPECT_TRUE(smaller["compare"]["lost"].empty());

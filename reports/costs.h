@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lanes cost, from a campaign's timings.json (fuzz/campaign/lane_costs.h). Kept apart from the report's data,
-// which is the same whoever ran the campaign.
+// Lane costs from a campaign's timings.json (fuzz/campaign/lane_costs.h). They are kept apart from the report's data,
+// which does not depend on who ran the campaign.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace graze::reports {
 
-// Nanoseconds a pair on one core: the median of the passes, and the quartiles as its spread.
+// Nanoseconds a pair on one core: the median of the passes, and the quartiles as their spread.
 struct Cost {
   std::uint64_t pairs = 0;
   double low = 0, middle = 0, high = 0;
-  bool below(const Cost& other) const { return high < other.low; }  // cheaper, whatever the spread
+  bool below(const Cost& other) const { return high < other.low; }  // cheaper beyond the spread
 };
 
 struct Costs {
@@ -22,18 +22,18 @@ struct Costs {
   int passes = 0;
   std::vector<std::vector<std::optional<Cost>>> of_stratum;  // [lane][stratum]
 
-  // Of a lane on some strata, each counted by its pairs; nothing unless it was timed on all of them.
+  // The cost of a lane on some strata, weighted by their pairs; nothing unless the lane was timed on all of them.
   std::optional<Cost> of(std::size_t lane, const std::vector<std::size_t>& strata) const;
 };
 
-// Nothing where the campaign has no timings of its lanes.   Throws: as costs_of.
+// Returns nothing if the campaign has no timings of its lanes.   Throws: as costs_of.
 std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts);
 
-// Throws: std::runtime_error for costs that cannot be; Json::exception for another shape.
+// Throws: std::runtime_error for impossible costs; Json::exception for another shape.
 std::optional<Costs> costs_of(const nlohmann::ordered_json& runs, const CampaignCounts& counts);
 
-// What costs.json holds: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],
-// "answer"}, as reports/web/src/report.ts describes it; group null: all strata together.
+// The contents of costs.json: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],
+// "answer"}, as reports/web/src/report.ts describes it. A null group means all strata together.
 nlohmann::ordered_json to_json(const Costs& costs, const CampaignCounts& counts);
 
 }  // namespace graze::reports

@@ -37,7 +37,7 @@ void add(StratumCounts& counts, const Json& row, const std::map<std::string, std
   counts.pairs += row.at("pairs").get<std::uint64_t>();
   counts.intersects += row.at("intersects").get<std::uint64_t>();
   for (const auto& [lane, found] : row.at("lanes").items()) {
-    const Json& differs = found.at("differs_from_cpu");  // null where nothing was compared
+    const Json& differs = found.at("differs_from_cpu");  // null if nothing was compared
     counts.lanes[place.at(lane)] += {fuzz::counts_of(found), differs.is_null() ? 0 : differs.get<std::uint64_t>()};
   }
   for (const auto& [bucket, found] : row.at("margins").items()) add(counts.margins[buckets.at(bucket)], found, place);

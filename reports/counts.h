@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What summary.json counts, by stratum and over all of them: where a report's numbers come from.
+// The counts of summary.json, by stratum and in total. A report's rates, margins and findings come from them.
 #pragma once
 
 #include <map>
@@ -16,14 +16,14 @@ namespace graze::reports {
 struct ReportLane {
   std::string id;
   LaneName name;
-  const Lane* row = nullptr;  // in this build's table; null where it has no such lane
+  const Lane* row = nullptr;  // in this build's table; null if the build has no such lane
   bool exact = false;
-  int cpu = -1;  // place of the cpu lane of the same algorithm and scalar, if that is another one
+  int cpu = -1;  // index of the cpu lane of the same algorithm and scalar; -1 if there is none or it is this lane
 };
 
 struct WrongCounts {
   std::uint64_t pairs = 0;
-  std::vector<std::uint64_t> wrong;  // of each lane: verdicts that are not the truth's
+  std::vector<std::uint64_t> wrong;  // by lane: verdicts that are wrong
 };
 
 struct StratumCounts {
@@ -36,30 +36,30 @@ struct StratumCounts {
   std::uint64_t wrong(std::size_t lane) const { return lanes[lane].wrong(); }
 };
 
-// Strata that are asked after together (strata/groups.h).
+// Strata that are reported together (strata/groups.h).
 struct GroupCounts {
   std::string id, describes;
-  std::vector<std::size_t> strata;  // their places, of those that have pairs
-  StratumCounts counts;             // of all of them; id empty
+  std::vector<std::size_t> strata;  // indices of its strata that have pairs
+  StratumCounts counts;             // sum over the strata; id empty
 };
 
 struct CampaignCounts {
-  std::uint64_t seed = 0, pairs = 0;  // pairs as asked for
+  std::uint64_t seed = 0, pairs = 0;  // pairs as requested
   bool complete = false;
   std::vector<ReportLane> lanes;
   std::vector<StratumCounts> strata;
-  std::vector<GroupCounts> groups;  // those that have pairs
+  std::vector<GroupCounts> groups;  // groups that have pairs
   StratumCounts total;              // id empty
 
-  // Place of a lane; -1 for none. counterpart: of the same lane in another variant.
+  // Index of a lane; -1 if absent. counterpart: the same lane in another variant.
   int find(const LaneName& name) const;
   int counterpart(std::size_t lane, std::string_view variant) const;
   const StratumCounts* stratum(std::string_view id) const;
   const GroupCounts* group(std::string_view id) const;
-  std::vector<std::size_t> drawn() const;  // places of the strata that have pairs
+  std::vector<std::size_t> drawn() const;  // indices of the strata that have pairs
 };
 
-// Requires: what summary.json holds.   Throws: Json::exception otherwise.
+// Requires: the contents of summary.json.   Throws: Json::exception otherwise.
 CampaignCounts counts_of(const nlohmann::ordered_json& summary);
 
 }  // namespace graze::reports

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A cell of each: a number or a text as it is, nothing for null.
+// Formats a value as a cell: numbers and text as they are, null as an empty cell.
 std::string cell(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
@@ -40,7 +40,7 @@ void append(std::vector<Json>& cells, const Json& share) {
 Json lane_id(const Json& report, const Json& row) { return report["lanes"][row["lane"].get<std::size_t>()]["id"]; }
 
 std::string rates_csv(const Json& report) {
-  Table table("lane,stratum,kind,count,of,share,low,high");  // stratum empty: all of them together
+  Table table("lane,stratum,kind,count,of,share,low,high");  // empty stratum: all strata together
   for (const Json& row : report["rates"]) {
     const Json stratum = row["stratum"].is_null() ? Json() : report["strata"][row["stratum"].get<std::size_t>()]["id"];
     for (const char* kind : {"false_positive", "false_negative", "wrong", "differs_from_cpu"}) {
@@ -70,7 +70,7 @@ std::string margins_csv(const CampaignCounts& counts) {
 }
 
 std::string thresholds_csv(const Json& report) {
-  Table table("lane,group,stratum,side,exponent,above,bound");  // group and stratum empty: all of them together
+  Table table("lane,group,stratum,side,exponent,above,bound");  // empty group and stratum: all strata together
   const auto id_in = [&](const char* list, const Json& place) {
     return place.is_null() ? place : report[list][place.get<std::size_t>()]["id"];
   };

@@ -9,11 +9,11 @@
 namespace graze::reports {
 
 struct CsvTable {
-  std::string name, text;  // "rates.csv"; a header row, then rows as RFC 4180 has them
+  std::string name, text;  // "rates.csv"; a header row, then rows as in RFC 4180
 };
 
-// rates, margins (of the strata one by one, from the campaign's directory), thresholds, extremes, signatures; and
-// compare, if the report has it.   Requires: a report of this campaign.
+// Returns the tables rates, margins (by stratum, from the campaign's directory), thresholds, extremes and signatures,
+// and compare if the report has it.   Requires: a report of this campaign.
 std::vector<CsvTable> csv_tables(const std::filesystem::path& directory, const nlohmann::ordered_json& report);
 
 }  // namespace graze::reports

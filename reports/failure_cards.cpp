@@ -65,7 +65,7 @@ double number_in(const std::filesystem::path& file, const corpus::Entry& entry, 
 
 Verdict verdict_of(std::string_view word) { return verdict_named(word).value_or(Verdict::declined); }
 
-// Of the lanes that the minimiser ran on the pair.
+// The verdicts of the lanes that the minimiser ran on the pair.
 Json verdicts_of(const CampaignCounts& counts, Verdict truth, const Json& stored) {
   Json rows = Json::array();
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
@@ -96,7 +96,7 @@ Json commands_of(const corpus::Entry& entry, const std::string& subject, const s
   return rows;
 }
 
-// Programs that show the first lane of the kind on the host and on the device; and the truth, by a few lines.
+// Programs that show the kind's first lane on the host and on the device, and short programs for the truth.
 Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const Json& kind, Verdict truth,
                  const Json& verdicts, const std::string& from) {
   Json rows = Json::array();
@@ -132,16 +132,16 @@ Json snippets_of(const CampaignCounts& counts, const corpus::Entry& entry, const
   return rows;
 }
 
-// Cards that lack something.
+// The number of cards that lack something.
 struct Lacking {
   std::size_t minimised = 0, mapped = 0, room = 0;
 };
 
-// The maps stored with a case, as far as there is room for them; null without.
+// The maps stored with a case if there is room for them; otherwise null.
 Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size_t& room, Lacking& lacking) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
   const std::string directory = case_file.parent_path().parent_path().string();
-  Json maps = fuzz::read_sealed(file, "remove it, then run: graze minimize " + shell_word(directory));
+  Json maps = fuzz::read_sealed(file, "remove it, then run: graze minimize " + path_word(directory));
   if (!is_map_of(maps, pair)) {
     ++lacking.mapped;
     return nullptr;
@@ -156,7 +156,7 @@ Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size
   return maps;
 }
 
-// The names of the pairs that the campaign kept of a signature: "near_edge_edge:1:42".
+// The names of the pairs that the campaign kept for a signature, such as "near_edge_edge:1:42".
 Json kept_pairs(const std::filesystem::path& directory, const Json& found) {
   Json names = Json::array();
   for (const corpus::Entry& entry : fuzz::read_cases(directory, found)) {
@@ -252,7 +252,7 @@ void add_signatures(Json& report, const std::filesystem::path& directory, const 
   Json rows = Json::array(), cards = Json::array();
   std::size_t room = kMostMapBytes;
   Lacking lacking;
-  std::map<std::size_t, std::vector<std::size_t>> cards_of;  // of each signature, the commonest kind first
+  std::map<std::size_t, std::vector<std::size_t>> cards_of;  // cards of each signature, the most frequent kind first
   for (const Json& kind : kinds) {
     if (cards.size() == fuzz::kMostShown) break;
     for (const Json& place : kind.at("places")) cards_of[place.get<std::size_t>()].push_back(cards.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cards of a small campaign: what one says of its kind, of its pair and of the lanes is one story, and true.
+// The cards of a small campaign: statements about kind, pair and lanes agree with each other and are true.
 #include "reports/failure_cards.h"
 
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ class FailureCards : public CampaignTest {
     kinds_ = fuzz::read_kinds(root_ / "one");
   }
 
-  // Of the lanes of the kind, those that are wrong on the pair.
+  // The lanes of the kind that are wrong on the pair.
   static std::set<std::string> wrong_of_kind(const Json& kind, const Pair& pair) {
     const fuzz::SelectedLanes under_test = lanes();
     const std::string subject = kind["subject"];
@@ -113,7 +113,7 @@ TEST_F(FailureCards, DoNotContradictThemselves) {
 }
 
 TEST_F(FailureCards, TheirNumbersAddUp) {
-  std::map<std::size_t, std::size_t> rows;  // of each card
+  std::map<std::size_t, std::size_t> rows;  // by card
   for (const Json& row : report_["signatures"]) {
     EXPECT_TRUE(std::is_sorted(row["cards"].begin(), row["cards"].end()));
     for (const Json& place : row["cards"]) {
@@ -185,7 +185,7 @@ TEST_F(FailureCards, HaveTheirProgramsAndTheStoredMaps) {
       EXPECT_EQ(card["maps"], Json({{"title", "t"}}));
     }
     EXPECT_TRUE(contains(card["snippets"][0]["text"], "g++") || contains(card["snippets"][0]["text"], "nvcc"));
-    // The algorithm's source is in the report once.
+    // The report contains the algorithm's source once.
     const std::string subject = card["kind"]["subject"];
     EXPECT_TRUE(contains(card["snippets"][0]["text"], std::string(kSourceMark)));
     EXPECT_EQ(report["sources"][subject], amalgamated_source(subject));
@@ -200,7 +200,7 @@ TEST_F(FailureCards, WithoutTheMinimiserAReportSaysWhatItLacks) {
   EXPECT_EQ(bare["missing"][1],
             "The kinds of failure are not known yet: `graze minimize DIR` finds and explains them.");
   for (const Json& row : bare["signatures"]) EXPECT_TRUE(row["cards"].empty());
-  // Of kinds that were found but no case minimised or mapped.
+  // The kinds were found, but no case was minimised or mapped.
   const std::size_t cards = report_["cards"].size();
   const std::string missing = report_["missing"].dump();
   EXPECT_TRUE(contains(missing, fmt::format("{0} of {0} cards show a pair as it was found", cards))) << missing;

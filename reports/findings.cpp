@@ -15,7 +15,7 @@
 namespace graze::reports {
 namespace {
 
-// A lane with contraction, and the same without.
+// A lane with contraction, and the same lane without.
 struct Contracted {
   std::size_t without, with;
   std::optional<std::uint64_t> differs;
@@ -134,9 +134,10 @@ std::string dangerous(const CampaignCounts& counts, const LaneIndices& lanes) {
     all.push_back({&stratum, wrong / static_cast<double>(stratum.pairs) / static_cast<double>(lanes.size()), best});
   }
   std::stable_sort(all.begin(), all.end(), [](const Danger& l, const Danger& r) { return l.share > r.share; });
+  const char* whose = lanes.size() < counts.lanes.size() ? "the published lanes' verdicts" : "all verdicts";
   const auto described = [&](const Danger& d) {
     const double best = share_of(d.stratum->wrong(d.best), d.stratum->pairs).share;
-    return fmt::format("{} ({} of all verdicts wrong{})", d.stratum->id, rate_words(d.share),
+    return fmt::format("{} ({} of {} wrong{})", d.stratum->id, rate_words(d.share), whose,
                        lanes.size() == 1 ? ""
                                          : fmt::format(", {} of those of its best lane, {}",
                                                        best == 0 ? "none" : rate_words(best), counts.lanes[d.best].id));
@@ -165,7 +166,7 @@ std::string rate_words(double rate, Bound bound) {
     const bool up = (bound == Bound::upper) == in_percent;
     const auto outward = [&](double value) { return up ? rounded_up(value, 3) : rounded_down(value, 3); };
     text = outward(shown);
-    // The product and the inverse above are rounded as well.
+    // The product and the inverse above are rounded too.
     const double read = in_percent ? std::stod(text) / 100 : 1 / std::stod(text);
     if (bound == Bound::upper ? read < rate : read > rate)
       text = outward(std::nextafter(std::stod(text), up ? HUGE_VAL : 0.0));
@@ -186,7 +187,7 @@ std::vector<std::string> answer(const CampaignCounts& counts, const Costs* costs
   std::vector<std::string> said, not_known;
   const bool ours = all_published(counts);
   const auto add = [&](Sentence sentence) {
-    // A person's own code is as inexact as a published algorithm, but not published.
+    // A user's own code is as inexact as a published algorithm, but it is not published.
     constexpr std::string_view kOurs = "published lane";
     for (std::size_t at; !ours && (at = sentence.text.find(kOurs)) != std::string::npos;)
       sentence.text.replace(at, kOurs.size(), "inexact lane");

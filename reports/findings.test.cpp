@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answer's sentences, of made-up summaries.
+// The answer's sentences for artificial summaries.
 #include "reports/findings.h"
 
 #include "reports/test_campaign.h"
@@ -22,6 +22,16 @@ TEST(Answer, OfOneLaneComparesNothing) {
             "Of the published lanes only those of moller_1997/f32 ran, so the campaign does not say which to avoid.");
   EXPECT_TRUE(contains(said[4], "No lane with contraction ran"));
   EXPECT_TRUE(contains(said[5], "were not drawn"));
+}
+
+// An exact lane is never wrong: it is not among the verdicts whose share is named.
+TEST(Answer, NamesTheLanesOfAStratumsShare) {
+  Json summary = summary_of({"moller_1997/f32/cpu", "exact/f32/cpu"}, {"uniform"}, {});
+  summary["strata"]["uniform"]["lanes"]["moller_1997/f32/cpu"]["false_positive"] = 5;
+  bool named = false;
+  for (const std::string& sentence : answer_of(summary))
+    named = named || contains(sentence, "uniform (0.5 % of the published lanes' verdicts wrong");
+  EXPECT_TRUE(named);
 }
 
 TEST(Answer, CallsAPersonsOwnCodeNotPublished) {

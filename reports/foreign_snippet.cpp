@@ -29,7 +29,7 @@ std::string cpp_string(std::string_view text) {
   return result + '"';
 }
 
-// By the description `subject`, a pointer, of which either one function or that of blocks is there.
+// Calls the description behind the pointer `subject`, which has either a function for one pair or one for blocks.
 std::string by_description(std::string_view real, std::string_view scalar, std::string_view subject) {
   return fmt::format(R"(static int decide(const {0}* a, const {0}* b) {{
   const struct graze_subject* subject = {2};
@@ -72,7 +72,7 @@ std::string calling(std::string_view real, std::string_view function) {
                      function);
 }
 
-// Whether the C function returns bool, of which a caller must know.
+// Whether the C function returns bool; its caller must declare it so.
 bool returns_bool(const std::filesystem::path& source, const std::string& function) {
   std::ifstream in(source);
   std::ostringstream text;
@@ -84,7 +84,7 @@ std::string function_of(const subjects::Opened& opened) {
   return opened.function.empty() ? "intersects" : opened.function;
 }
 
-// Each with a space before it: of the lane's variant, and of the user.
+// The flags of the lane's variant and the user's flags, each with a leading space.
 std::string flags_of(const Lane& lane, const subjects::Opened& opened) {
   std::string text;
   if (const std::string_view own = info_of(lane.variant).flags; !own.empty()) text += ' ' + std::string(own);
@@ -98,7 +98,7 @@ std::string hex_line(const Pair& pair) {
   return line;
 }
 
-// A CUDA lane in a test that runs without a device too: only Graze has the replay.
+// For a CUDA lane in a test that also runs without a device. Only Graze can replay the lane there.
 std::string by_graze(const Lane& lane, const Pair& pair, const subjects::Opened& opened, std::string_view real) {
   std::string command =
       fmt::format("echo '{}' | graze check - --json --subject {} --lanes {} --subject-timeout {}", hex_line(pair),
@@ -153,7 +153,7 @@ ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view co
                     end = fmt::format("{} -o case && ./case", libraries);
   if (lane.is_cuda()) {
     call.command = plain + end;
-    call.seconds += 100;  // in which it is built
+    call.seconds += 100;  // for building the source
     call.decide = by_graze(lane, pair, opened, real);
     return call;
   }

@@ -36,7 +36,7 @@ Json case_json(const analysis::InvariantSpec& spec, const std::optional<Invarian
           {"says_of_image", name(found->of_image)}};
 }
 
-// The two entries of a case; the first is a pair on which the verdict is not the truth.
+// The two entries of a case; a pair on which the verdict is wrong comes first.
 std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const Lane& lane,
                                       const InvariantInfo& invariant, const InvariantCase& found) {
   const auto entry = [&](const Pair& pair, Verdict says, const std::string& from) {
@@ -55,8 +55,7 @@ std::vector<corpus::Entry> entries_of(const analysis::InvariantSpec& spec, const
   return entries;
 }
 
-// How much of the column "scale, in range" each power of two makes alone; empty where nothing is known, or nothing is
-// changed.
+// The contribution of each power of two to the column "scale, in range". Empty if it is unknown, or if nothing changes.
 std::string scales_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
                          const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Invariants for people: a table, sentences, invariants.json and the simplest cases as files of pairs.
+// Presents invariants: a table, sentences, invariants.json, and the simplest cases as files of pairs.
 #pragma once
 
 #include <map>
@@ -12,11 +12,11 @@
 
 namespace graze::reports {
 
-// A row for each lane: the share of pairs, in per cent, on which each invariant is broken.
+// Returns a row for each lane: the percentage of pairs on which each invariant is broken.
 std::string invariants_table(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants,
                              const Screen& screen);
 
-// What the lanes claim, and on how much the exact decision and the oracle keep all invariants.
+// Says what the lanes claim, and on how many pairs the exact decision and the oracle keep all invariants.
 std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spec,
                                               const analysis::Invariants& invariants);
 
@@ -24,8 +24,8 @@ std::vector<std::string> invariants_sentences(const analysis::InvariantSpec& spe
 // "case"}}}]}
 nlohmann::ordered_json invariants_json(const analysis::InvariantSpec& spec, const analysis::Invariants& invariants);
 
-// Of each invariant that a lane breaks the name of a file and its text: of each lane the simplest pair on which it does
-// and the pair's image, the one on which the lane is wrong first.
+// For each invariant that a lane breaks, a file name and its text. For each lane, the file has the simplest pair on
+// which the lane breaks the invariant, and the pair's image. The one on which the lane is wrong comes first.
 std::map<std::string, std::string> invariants_cases(const analysis::InvariantSpec& spec,
                                                     const analysis::Invariants& invariants);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lanes and their rates in words, as the sentences of a report's answer share them.
+// Words for lanes and their rates, shared by the sentences of a report's answer.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace graze::reports {
 
 using LaneIndices = std::vector<std::size_t>;
 
-// Lanes that are not exact.
+// Indices of the lanes that are not exact.
 inline LaneIndices published(const CampaignCounts& counts) {
   LaneIndices places;
   for (std::size_t l = 0; l < counts.lanes.size(); ++l) {
@@ -25,7 +25,7 @@ inline LaneIndices published(const CampaignCounts& counts) {
   return places;
 }
 
-// Whether all of them are of published algorithms, and none of a person's own code.
+// Whether all of them belong to published algorithms, and none to a user's own code.
 inline bool all_published(const CampaignCounts& counts) {
   const auto of_ours = [](const std::string& subject) {
     return std::any_of(graze::published_lanes().begin(), graze::published_lanes().end(),
@@ -41,7 +41,7 @@ inline std::string with_interval(const Share& s, const char* what = "") {
                      rate_words(s.low, Bound::lower), rate_words(s.high, Bound::upper));
 }
 
-// "a, b and c"; of more than four the first three and how many more.
+// "a, b and c"; if there are more than four, the first three and the number of others.
 inline std::string list_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMost = 3;
   const std::size_t named = names.size() <= kMost + 1 ? names.size() : kMost;

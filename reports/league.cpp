@@ -81,7 +81,7 @@ Json subject_json(const AlgorithmInfo& info, const Lane& lane, const std::vector
   return row;
 }
 
-// A number that reads as these bits: short decimals where they are exact.
+// Writes a number that reads back to the same bits, as a short decimal if that is exact.
 std::string written(float value) {
   const double scaled = std::fabs(static_cast<double>(value)) * 64;
   if (scaled < 1e7 && scaled == std::floor(scaled)) return fmt::format("{}", value);
@@ -116,7 +116,7 @@ Json failure_json(const fuzz::LeagueFailure& failure, const std::vector<LeagueSu
           {"drawing", drawing_of(failure.pair)}};
 }
 
-// Leaves the files of as many drawings as there may be.
+// Keeps only the allowed number of drawings.
 void choose_drawings(Json& failures, const Json& rows) {
   std::set<std::string> foreign, files;
   for (const Json& row : rows) {
@@ -155,7 +155,7 @@ std::string count_of_sample(const Json& share) {
   return share.at("of") == 0 ? "-" : count_text(share.at("count")) + " of " + count_text(share.at("of"));
 }
 
-// The columns behind the groups, and what each row has there.
+// The columns after the groups, and their cell for each row.
 struct Extra {
   const char* title;
   std::string (*text)(const Json& league, const Json& row);
@@ -287,7 +287,7 @@ Json league_json(const fuzz::League& league, const std::vector<LeagueSubject>& s
                  const std::string& date) {
   Json groups = Json::object(), rows = Json::array(), failures = Json::array(), own = Json::array();
   for (std::size_t g = 0; g < fuzz::kLeagueGroupCount; ++g) {
-    std::uint64_t pairs = 0;  // of a row that took all
+    std::uint64_t pairs = 0;  // pairs of a row that ran them all
     for (const fuzz::LeagueRow& row : league.rows) pairs = std::max(pairs, row.groups[g].pairs + row.groups[g].outside);
     if (pairs > 0) groups[std::string(fuzz::kLeagueGroups[g])] = pairs;
   }
@@ -324,7 +324,7 @@ std::map<std::string, std::string> league_drawings(const Json& league) {
   for (const Json& failure : league.at("failures")) {
     if (failure.at("file").is_null()) continue;
     std::string svg = pair_drawing(failure);
-    // A file of its own, on any background.
+    // As a separate file, the drawing needs a background.
     svg.insert(svg.find('>') + 1, "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>");
     svg.insert(4, " xmlns=\"http://www.w3.org/2000/svg\"");
     drawings[failure.at("file")] = svg + "\n";
@@ -335,7 +335,7 @@ std::map<std::string, std::string> league_drawings(const Json& league) {
 std::string league_table(const Json& league, const Screen& screen) {
   std::vector<Column> columns{{"lane", Align::left}};
   for (const auto& [group, pairs] : league.at("groups").items()) columns.push_back({group});
-  std::vector<const Extra*> extras;  // without those that are nothing everywhere
+  std::vector<const Extra*> extras;  // only columns with some value
   for (const Extra& extra : kExtras) {
     const bool any = std::any_of(league.at("rows").begin(), league.at("rows").end(), [&](const Json& row) {
       const std::string text = extra.text(league, row);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/league.md takes hours to make, so that no test makes it; it must have the form that the generator gives it now.
+// docs/league.md takes hours to make, so no test makes it. It must have the form that the generator produces now.
 #include "reports/league.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::string first_match(const std::string& text, const char* pattern) {
   return std::regex_search(text, found, std::regex(pattern)) ? found[1].str() : "";
 }
 
-// The lines that say something, with # for each number.
+// The lines with text, with # for each number.
 std::vector<std::string> form_of(const std::string& page) {
   std::vector<std::string> lines;
   std::istringstream in(std::regex_replace(page, std::regex("[0-9][0-9,]*"), "#"));
@@ -30,7 +30,7 @@ std::vector<std::string> form_of(const std::string& page) {
   return lines;
 }
 
-// The page of a league without lanes: its words and the heads of its tables.
+// The page of a league without lanes: its words and table headers.
 std::string empty_page(const std::string& command, const std::string& machine, const std::string& date) {
   Json groups;
   for (const std::string_view group : fuzz::kLeagueGroups) groups[std::string(group)] = 1;
@@ -46,7 +46,7 @@ std::string empty_page(const std::string& command, const std::string& machine, c
                      command);
 }
 
-// The first line of the generator's form that the page does not have in its place, or "".
+// The first line of the generator's form that is missing at its place in the page, or "".
 std::string first_line_missing(const std::string& page) {
   const std::string measured = first_match(page, "own process; ([^\n]*), [0-9]{4}-[0-9]{2}-[0-9]{2}\\.\n");
   const std::vector<std::string> form = form_of(empty_page(first_match(page, "Made by `([^`]*)`"), measured,

@@ -15,8 +15,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kWidth = 900, kHeight = 420, kLeft = 64, kRight = 20, kTop = 64, kBottom = 66;
-constexpr int kSpan = 26;                   // buckets from 2^-kSpan to 2^kSpan ulps are drawn, on both sides of zero
-constexpr std::uint64_t kFewestPairs = 30;  // a share of fewer pairs than this is no share
+constexpr int kSpan = 26;                   // buckets from 2^(-kSpan/2) to 2^kSpan ulps are drawn, on both sides of 0
+constexpr std::uint64_t kFewestPairs = 30;  // a share of fewer pairs is not drawn
 constexpr std::array<const char*, 6> kColours = {"#d55e00", "#0072b2", "#009e73",
                                                  "#cc79a7", "#e69f00", "#56b4e9"};  // Okabe and Ito 2008
 
@@ -25,7 +25,7 @@ struct Bar {
   std::map<std::string, std::uint64_t> wrong;
 };
 
-// Position along the axis of a bucket: negative exponents and zero in the middle, -2^26 far left, +2^26 far right.
+// The position of a bucket on the axis: small margins in the middle, -2^26 at the left end, +2^26 at the right end.
 int place(int bucket) {
   if (bucket == 0) return 0;
   const int k = (bucket < 0 ? -bucket : bucket) + kBucketLowest - 1;

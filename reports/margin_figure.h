@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of a campaign: how often each f32/cpu lane is wrong, against how close the call was.
+// A campaign's picture: how often each f32/cpu lane is wrong, against the size of the margin.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,9 @@
 
 namespace graze::reports {
 
-// An SVG of 900 x 420: share of wrong verdicts over all strata, one line for each lane, by margin bucket; readable on
-// light and dark ground. Requires: what summary.json holds.
+// Returns an SVG of 900 x 420: the share of wrong verdicts over all strata by margin bucket, one line for each lane;
+// readable on light and dark backgrounds.
+// Requires: the contents of summary.json.
 std::string margin_figure(const nlohmann::ordered_json& summary);
 
 }  // namespace graze::reports

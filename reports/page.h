@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of a report: one HTML file that needs nothing else.
+// The page of a report: one self-contained HTML file.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,24 +7,24 @@
 
 namespace graze::reports {
 
-// Whether this build has the page of reports/web, which takes Node to build.
+// Whether this build has the page of reports/web, which is built with Node.
 bool has_interactive_page();
 
-// The report in the page of reports/web if this build has that, else in a plain one; with what the viewer takes. costs:
-// what make_costs returns. choices: what make_choices returns.
+// Returns the report in the page of reports/web if this build has it, otherwise in a plain page; includes the viewer's
+// data. costs: the result of make_costs. choices: the result of make_choices.
 std::string page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                  const nlohmann::ordered_json& choices);
 
-// Tables and drawings without any script; says what it lacks.
+// Tables and drawings without scripts; says what the page lacks.
 std::string plain_page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& costs,
                        const nlohmann::ordered_json& choices);
 
-// The template's text with data in place of what stands in its element <script type="application/json" id="…">.
-// Throws: std::logic_error for a text without that element.
+// Returns the template with `data` as the contents of its element <script type="application/json" id="…">.
+// Throws: std::logic_error if the text has no such element.
 std::string with_data(std::string_view page_template, const char* id, const nlohmann::ordered_json& data);
 
-// All inside a template, in its elements <script type="application/json" id="report">, id="costs" and id="choices".
-// Throws: std::logic_error for a text without them.
+// Fills the template's elements <script type="application/json"> with the ids "report", "costs" and "choices".
+// Throws: std::logic_error if the text lacks one of them.
 std::string filled(std::string_view page_template, const nlohmann::ordered_json& report,
                    const nlohmann::ordered_json& costs, const nlohmann::ordered_json& choices);
 

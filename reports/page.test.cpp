@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pages, the interactive one and the plain one.
+// The interactive page and the plain page.
 #include "reports/page.h"
 
 #include <fmt/format.h>
@@ -46,7 +46,7 @@ TEST(Page, HoldsTheReportInItsElement) {
   EXPECT_THROW(filled("<p>", report, nullptr, kNone), std::logic_error);
 }
 
-// A report comes from anywhere (`graze report --from`): one that lacks something is refused, whatever it lacks.
+// `graze report --from` accepts any file, so a report without some part must be refused, whichever part it is.
 TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
   const Json report = make_report(root_ / "one");
   std::vector<std::string> places;
@@ -71,7 +71,7 @@ TEST_F(PageTest, APlainPageOfARestOfAReportIsRefused) {
   EXPECT_GT(refused, 100u);
 }
 
-// Elements that are opened are closed, in order; enough for what plain_page writes.
+// Checks that opened elements are closed, in order; sufficient for the output of plain_page.
 void expect_well_formed(const std::string& text) {
   const std::set<std::string> empty{"meta", "!DOCTYPE"};
   std::vector<std::string> open;

@@ -44,7 +44,7 @@ std::string begin(const std::string& title, double right = kRight) {
   return svg + svg_text(kLeft, 18, "start", title);
 }
 
-// As `graze check` takes it.
+// The pair as input of `graze check`.
 std::string numbers(const Pair& pair) {
   std::string text;
   for (int c = 0; c < kCoordinates; ++c) text += (c > 0 ? " " : "") + corpus::hex_float(coordinates(pair)[c]);

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Point2 = std::array<double, 2>;
 
-// Points of the report seen along the diagonal of space, x to the lower right, y to the lower left, z up.
+// Projects the report's points along the space diagonal: x to the lower right, y to the lower left, z up.
 class Isometric {
  public:
   Isometric(const std::vector<std::array<double, 3>>& points, double size) : size_(size) {
@@ -33,7 +33,7 @@ class Isometric {
   }
 
   Point2 operator()(const std::array<double, 3>& p) const {
-    std::array<double, 3> q{};  // in [-1/2, 1/2], with one scale for all three
+    std::array<double, 3> q{};  // in [-1/2, 1/2], with the same scale on all axes
     for (std::size_t i = 0; i < 3; ++i)
       q[i] = extent_ > 0 ? ((p[i] - low_[i]) - (high_[i] - low_[i]) / 2) / extent_ : 0;
     const double scale = size_ * 0.55;
@@ -102,7 +102,7 @@ Json drawing_of(const Pair& pair) {
 
 std::string margin_chart(const Json& row) {
   constexpr double kWidth = 320, kHeight = 110, kBase = 90, kTop = 8;
-  constexpr int kMost = 1 - kBucketLowest;  // exponents, away from zero on both sides
+  constexpr int kMost = 1 - kBucketLowest;  // exponents on each side of zero
   static_assert(kBucketHighest < kMost);
   const auto x_of = [](const Json& point) {
     if (point.at("side") == "zero") return kWidth / 2;

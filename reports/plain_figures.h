@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of the plain page as inline SVG, in the colours of their surroundings.
+// Figures of the plain page as inline SVG that inherits the page's colours.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,18 +9,18 @@
 
 namespace graze::reports {
 
-// A text with the characters escaped that HTML gives a meaning to.
+// Escapes the characters that have a meaning in HTML.
 std::string html(const std::string& text);
 
-// A card's "pair": its coordinates in decimals, hex floats and values; and its "drawing": where the triangles meet, and
-// the line in both planes.   Requires: finite coordinates.
+// A card's "pair" has its coordinates in decimals, hex floats and values. Its "drawing" has the contact and the line of
+// both planes.   Requires: finite coordinates.
 nlohmann::ordered_json coordinates_of(const Pair& pair);
 nlohmann::ordered_json drawing_of(const Pair& pair);
 
-// Share wrong against the margin, of one row of the report's `margins`.
+// The share of wrong verdicts against the margin, for one row of the report's `margins`.
 std::string margin_chart(const nlohmann::ordered_json& row);
 
-// Both triangles, the contact and the line of both planes, in isometric view, of one of the report's cards.
+// An isometric drawing of one of the report's cards: both triangles, the contact and the line of both planes.
 std::string pair_drawing(const nlohmann::ordered_json& card);
 
 }  // namespace graze::reports

@@ -38,7 +38,7 @@ figure { display: inline-block; vertical-align: top; width: 20rem; margin: 0.5re
 
 std::string paragraph(const std::string& text) { return "<p>" + html(text) + "</p>\n"; }
 
-// A cell whose ground is the darker the larger the share; readable on light and dark.
+// A cell that is darker for larger shares; readable on light and dark backgrounds.
 std::string share_cell(const Json& share) {
   const double value = share.at("share");
   return fmt::format(
@@ -97,7 +97,7 @@ std::string league(const Json& report) {
   return text + "</table></div>\n";
 }
 
-// "general: from 2^3 ulps (rate below 0.1 %)", of each group of strata.
+// "general: from 2^3 ulps (rate below 0.1 %)" for each group of strata.
 std::string threshold_words(const Json& report, std::size_t lane, const char* side) {
   std::string text;
   for (const Json& row : report.at("thresholds")) {
@@ -204,7 +204,7 @@ std::string compare_section(const Json& compare) {
   return text;
 }
 
-// What graze tune and graze pareto say; their pictures are the SVG files beside the report.
+// The results of graze tune and graze pareto. Their pictures are SVG files beside the report.
 std::string choices_section(const Json& choices) {
   std::string text;
   for (const auto& [name, title] : {std::pair{"tuned", "Which tolerance"}, {"pareto", "Errors against cost"}}) {

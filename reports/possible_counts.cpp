@@ -34,7 +34,7 @@ void expect(bool possible, const std::string& what, const Json& part) {
   if (!possible) throw std::runtime_error(fmt::format("expected {}, found {}", what, shown(part.dump())));
 }
 
-// Every share in it is what its counts give.
+// Checks that every share in `part` follows from its counts.
 void expect_shares(const Json& part) {
   if (part.is_object() && part.contains("count") && part.contains("of") && part.contains("share")) {
     const std::uint64_t count = part["count"], of = part["of"];
@@ -44,7 +44,7 @@ void expect_shares(const Json& part) {
   }
 }
 
-// The bound of a rate is above what was seen of it.
+// Checks that the bound of a rate is not below the observed rate.
 void expect_bound(const Json& bound, std::uint64_t count, std::uint64_t of, const Json& part) {
   const double least = of == 0 ? 1 : std::max(static_cast<double>(count) / static_cast<double>(of), bound_of_none(of));
   expect(bound >= (1 - 1e-9) * least && bound <= 1, fmt::format("a bound of {} of {} pairs", count, of), part);
@@ -54,7 +54,7 @@ struct Drawn {
   std::uint64_t pairs = 0, intersects = 0;
 };
 
-// The pairs of a stratum or a group, by place, or of all.
+// The pairs of a stratum, of a group, or of all strata if both are null.
 Drawn drawn_of(const Json& report, const Json& stratum, const Json& group = {}) {
   if (!stratum.is_null()) {
     const Json& row = report.at("strata").at(stratum.get<std::size_t>());
@@ -103,7 +103,7 @@ void expect_possible_rates(const Json& report) {
   }
 }
 
-// What is counted by margin, scale and offset.
+// Checks the counts by margin, scale and offset.
 void expect_possible_curves(const Json& report) {
   const auto pairs_of = [](const Json& cells) {
     std::uint64_t pairs = 0;
@@ -169,7 +169,7 @@ void expect_possible_failures(const Json& report) {
   }
 }
 
-// All lanes that it names by place are there.
+// Checks that every lane index in `part` is valid.
 void expect_lanes(const Json& part, std::size_t lanes) {
   for (const auto& [name, inner] : part.items()) {
     if (part.is_object() && (name == "lane" || name == "left" || name == "right") && inner.is_number())
@@ -178,7 +178,7 @@ void expect_lanes(const Json& part, std::size_t lanes) {
   }
 }
 
-// Of `graze tune` and `graze pareto`: no lane errs on more pairs than there were, and quartiles are in order.
+// Checks the results of `graze tune` and `graze pareto`: errors do not exceed the pairs, and quartiles are in order.
 void expect_possible_errors(const Json& part) {
   if (part.is_object() && part.contains("declined") && part.contains("pairs")) {
     const std::uint64_t pairs = part["pairs"];
@@ -199,7 +199,7 @@ void expect_lane(const Json& id) {
   expect(parse_lane_name(id.get<std::string>()).has_value(), "the name of a lane", id);
 }
 
-// The bound is the one that `graze tune` and `graze pareto` compute.
+// Checks that the bound is the one that `graze tune` and `graze pareto` compute.
 void expect_upper_bound(const Json& bound, std::uint64_t count, std::uint64_t of) {
   const double expected = analysis::upper_bound(count, of);
   expect(std::abs(bound.get<double>() - expected) <= 1e-9 * expected,
@@ -216,7 +216,7 @@ analysis::PolicyErrors errors_of(const Json& row) {
   return errors;
 }
 
-// What the policy fixes and breaks makes the difference to the lane without one, on the same pairs.
+// Checks that the fixed and broken pairs account for the difference from the lane without a policy on the same pairs.
 void expect_relocation(const Json& row, const Json& without) {
   const analysis::PolicyErrors errors = errors_of(row), zero = errors_of(without);
   expect(
@@ -256,7 +256,7 @@ Enumeration among(const std::string_view (&names)[kCount], const Json& name) {
   return static_cast<Enumeration>(found - std::begin(names));
 }
 
-// The choice, its result and the dead sites are those that the counts lead to.
+// Checks that the choice, its result and the dead sites follow from the counts.
 void expect_choice(const Json& tuned) {
   const auto forbid = among<analysis::Forbid>(kTuneForbids, tuned.at("forbid"));
   const double max_rate = tuned.at("max_rate");
@@ -290,7 +290,7 @@ void expect_choice(const Json& tuned) {
   expect(result == expected, fmt::format("'{}'", kTuneResults[static_cast<int>(expected)]), tuned["result"]);
 }
 
-// Costs are of the host in all rows, or of a device, which are measured otherwise.
+// Checks that all rows have costs of the host, or all have costs of a device, which have other fields.
 void expect_costs_of_kind(const Json& row, bool on_device) {
   for (const char* field : {"resident", "with_copies", "registers", "local_bytes", "active_threads"})
     expect(row.contains(field) == on_device, fmt::format("{} of all lanes or of none", field), row);
@@ -298,7 +298,7 @@ void expect_costs_of_kind(const Json& row, bool on_device) {
     expect(row.contains(field) != on_device, fmt::format("{} of all lanes or of none", field), row);
 }
 
-// Costs are rounded, which keeps their order but may make them equal.
+// Rounding of costs keeps their order but may make them equal.
 void expect_domination(const Json& row, const Json& lanes) {
   const auto cost = [](const Json& lane) -> double {
     return lane.at(lane.contains("resident") ? "resident" : "in_cache").at("middle");

@@ -18,7 +18,8 @@ LaneIndices those_wrong(const CampaignCounts& counts, const LaneIndices& among, 
   return places;
 }
 
-// Where costs are compared: general pairs if there are any, for on the others an exact decision is known to be slow.
+// The strata on which costs are compared: general pairs if there are any, because exact decisions are known to be slow
+// on others.
 struct Ground {
   std::vector<std::size_t> strata;
   std::string pair;  // "a general pair"
@@ -39,7 +40,7 @@ std::string with_spread(const Cost& cost) {
   return fmt::format("{} ns ({} to {})", nanoseconds(cost.middle), nanoseconds(cost.low), nanoseconds(cost.high));
 }
 
-// The lane of least cost there; -1 where none was timed.
+// The cheapest lane on these strata; -1 if none was timed.
 int cheapest(const Costs* costs, const LaneIndices& among, const std::vector<std::size_t>& strata) {
   int best = -1;
   for (const std::size_t l : among) {
@@ -58,7 +59,7 @@ LaneIndices exact_lanes(const CampaignCounts& counts) {
   return places;
 }
 
-// "; over all strata 210 ns against 61", where that is another comparison.
+// "; over all strata 210 ns against 61", unless the comparison already covers all strata.
 std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, const Ground& ground, std::size_t exact,
                             std::size_t other) {
   const std::vector<std::size_t> all = counts.drawn();
@@ -67,7 +68,7 @@ std::string over_all_strata(const CampaignCounts& counts, const Costs* costs, co
   return fmt::format("; over all strata {} ns against {}", nanoseconds(own->middle), nanoseconds(others->middle));
 }
 
-// What exactness costs, as the end of a sentence.
+// The cost of exactness, as the end of a sentence.
 std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIndices& exact) {
   const Ground ground = ground_of(counts);
   const int own = cheapest(costs, exact, ground.strata);
@@ -96,13 +97,13 @@ std::string price(const CampaignCounts& counts, const Costs* costs, const LaneIn
                      rate_words(wrong_share(counts, other).share));
 }
 
-// Of what a lane is part: variants of one algorithm in one precision are not told apart here.
+// Whether two lanes belong to one family: one algorithm in one precision. Variants do not count here.
 bool same_family(const CampaignCounts& counts, std::size_t l, std::size_t r) {
   return counts.lanes[l].name.subject == counts.lanes[r].name.subject &&
          counts.lanes[l].name.scalar == counts.lanes[r].name.scalar;
 }
 
-// Of the lanes of other families the one that `better` puts first; -1 for none.
+// The best lane, by `better`, of the other families; -1 for none.
 template <class Better>
 int first_of_others(const CampaignCounts& counts, const LaneIndices& lanes, std::size_t than, Better better) {
   int best = -1;
@@ -125,7 +126,7 @@ std::string not_settled(const CampaignCounts& counts, const char* which, std::si
       which, counts.lanes[l].id, interval(l), counts.lanes[r].id, interval(r));
 }
 
-// ", at 82 ns a general pair": of the cheapest of them.
+// ", at 82 ns a general pair": the cost of the cheapest of the lanes.
 std::string at_cost(const CampaignCounts& counts, const Costs* costs, const LaneIndices& lanes) {
   const Ground ground = ground_of(counts);
   const int lane = cheapest(costs, lanes, ground.strata);
@@ -135,7 +136,7 @@ std::string at_cost(const CampaignCounts& counts, const Costs* costs, const Lane
                      nanoseconds(costs->of(place, ground.strata)->middle), ground.pair);
 }
 
-// "; bound declines 1,200 pairs": of those lanes that give no answer on some pairs.
+// "; bound declines 1,200 pairs", for each lane that declines some pairs.
 std::string declining(const CampaignCounts& counts, const LaneIndices& lanes) {
   std::string text;
   for (const std::size_t l : lanes) {

@@ -27,7 +27,7 @@ namespace graze::reports {
 using fuzz::Json;
 namespace {
 
-// The machines that the campaign ran on, as far as their names are known.
+// The machines that the campaign ran on, if their names are known.
 Json machines(const std::filesystem::path& directory) {
   std::set<std::string> names;
   for (const Json& run : fuzz::read_timings(directory)) {
@@ -133,7 +133,7 @@ Json make_report(const std::filesystem::path& directory) {
     return report;
   } catch (const Json::exception&) {
     throw corpus::FormatError(cannot("use", directory / "summary.json", "it is not the summary of a campaign"));
-  } catch (const std::logic_error&) {  // a text that is no number, or no signature
+  } catch (const std::logic_error&) {  // invalid numbers or signatures
     throw corpus::FormatError(cannot("use", directory / "summary.json", "it is not the summary of a campaign"));
   }
 }
@@ -142,7 +142,7 @@ namespace {
 
 constexpr const char* kAgain = "make it again: graze report DIR";
 
-// Checks a file that graze wrote.   Throws: FormatError that names it.
+// Checks a file that Graze wrote.   Throws: FormatError that names it.
 template <class Check>
 void checked(const std::filesystem::path& file, const char* what, Check check) {
   try {

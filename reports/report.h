@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of a campaign: everything that the page shows, as reports/web/src/report.ts describes it, from what the
-// campaign and the minimiser stored. No lane runs here. The same campaign gives the same bytes.
+// The report of a campaign: all data of the page, as reports/web/src/report.ts describes it, from the files of the
+// campaign and the minimiser. No lane runs here. The same campaign gives the same bytes.
 #pragma once
 
 #include <filesystem>
@@ -9,27 +9,27 @@
 
 namespace graze::reports {
 
-// Throws: as fuzz::checked_summary, FormatError too for other damaged files.
+// Throws: as fuzz::checked_summary; FormatError for other damaged files too.
 nlohmann::ordered_json make_report(const std::filesystem::path& directory);
 
-// What the campaign's lanes cost, and the answer with it (costs.h): apart from the report, because it depends on the
-// machine. null where the campaign has no timings of its lanes.   Throws: as make_report.
+// The costs of the campaign's lanes, and the answer that includes them (costs.h). They are not in the report, because
+// they depend on the machine. Returns null if the campaign has no timings of its lanes.   Throws: as make_report.
 nlohmann::ordered_json make_costs(const std::filesystem::path& directory);
 
-// {"tuned", "pareto"}: the tune.json and pareto.json in the directory, null where they are not.
-// Throws: FormatError for one of another shape, or with counts that cannot be.
+// {"tuned", "pareto"}: tune.json and pareto.json of the directory, null if missing.
+// Throws: FormatError for a file of another shape or with impossible counts.
 nlohmann::ordered_json make_choices(const std::filesystem::path& directory);
 
-// The command that runs the whole campaign again.   Requires: what summary.json holds.
+// The command that runs the whole campaign again.   Requires: the contents of summary.json.
 std::string campaign_command(const nlohmann::ordered_json& summary);
 
-// The report as text: each row on a line of its own, so that two can be compared.
+// The report as text with each row on its own line, so that two reports can be compared.
 std::string report_text(const nlohmann::ordered_json& report);
 
-// A report that was written before.   Throws: FormatError, also for counts that cannot be.
+// Reads a stored report.   Throws: FormatError, also for impossible counts.
 nlohmann::ordered_json read_report(const std::filesystem::path& file);
 
-// The costs.json of that report; null where there is none.   Throws: as read_report.
+// Reads the costs.json of that report; null if there is none.   Throws: as read_report.
 nlohmann::ordered_json stored_costs(const std::filesystem::path& file, const nlohmann::ordered_json& report);
 
 }  // namespace graze::reports

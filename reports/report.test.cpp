@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reports of small campaigns, run here, and of damaged ones.
+// Reports of small campaigns that run here, and of damaged ones.
 #include "reports/report.h"
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ TEST_F(ReportTest, SameBytesAgainAndForOtherThreads) {
   EXPECT_EQ(page(one, nullptr, none), page(two, nullptr, none));
   const Json costs = make_costs(root_ / "one");
   EXPECT_EQ(report_text(costs), report_text(make_costs(root_ / "one")));
-  EXPECT_FALSE(contains(report_text(one), " ns "));  // what depends on the machine stays apart
+  EXPECT_FALSE(contains(report_text(one), " ns "));  // machine-dependent data is kept apart
   EXPECT_TRUE(contains(page(one, costs, none), costs["answer"][0].get<std::string>()));
   EXPECT_EQ(report_text(one).find(root_.string()), std::string::npos);
   EXPECT_EQ(Json::parse(report_text(one)), one);
@@ -76,7 +76,7 @@ TEST_F(ReportTest, AgreesWithTheSummary) {
   EXPECT_EQ(kinds, (std::set<std::string>{"cpu-nofma", "f32-f64", "nofma-fma"}));
 }
 
-// Whatever is changed in a campaign's files: an error names the one that is to blame.
+// Whatever is changed in a campaign's files, the error names the file.
 TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
   run("damaged", 2);
   store_kinds("damaged");
@@ -162,7 +162,7 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
   EXPECT_EQ(compare["headline"], fmt::format("Nothing changed: none of {} rates, and no kind of failure came or went.",
                                              report["rates"].size()));
   EXPECT_EQ(compare["differences"], Json::array({"They differ in seed: 3 before, 4 after."}));
-  // An algorithm that errs on everything, and one whose failures are gone.
+  // An algorithm that is wrong on everything, and one whose failures are gone.
   Json worse = before, without = Json::array();
   for (Json& row : worse["rates"]) row["wrong"] = to_json(share_of(row["wrong"]["of"], row["wrong"]["of"]));
   for (const Json& kind : kinds_before) {
@@ -177,7 +177,7 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
     EXPECT_TRUE(lost["key"].get<std::string>().starts_with("moller_1997/")) << lost;
 }
 
-// One place for each name: of the elements of a list the first.
+// One place for each name; for lists, the first element.
 void collect(const Json& value, const Json::json_pointer& at, std::vector<Json::json_pointer>& places) {
   if (!at.empty()) places.push_back(at);
   if (value.is_object()) {
@@ -187,8 +187,8 @@ void collect(const Json& value, const Json::json_pointer& at, std::vector<Json::
   }
 }
 
-// Puts values of another type, and numbers that cannot be, at each place in turn.
-// possible: names of numbers that may be any.
+// Puts values of another type, and impossible numbers, at each place in turn.
+// possible: names of numbers that may have any value.
 void expect_all_refused(const Json& whole, const std::set<std::string>& possible,
                         const std::function<std::string(const Json&)>& error_of) {
   ASSERT_EQ(error_of(whole), "");
@@ -198,7 +198,7 @@ void expect_all_refused(const Json& whole, const std::set<std::string>& possible
   for (const Json::json_pointer& place : places) {
     std::vector<Json> instead = {whole[place].is_array() ? Json::object() : Json::array()};
     if (!whole[place].is_number()) instead.push_back(5);
-    if (!whole[place].is_string() && !whole[place].is_null()) instead.push_back("x");  // null: no text
+    if (!whole[place].is_string() && !whole[place].is_null()) instead.push_back("x");  // null: a text is valid
     if (whole[place].is_number_unsigned() && !possible.contains(place.to_string()) && !possible.contains(place.back()))
       instead.insert(instead.end(), {1'000'000'000'000, -1});
     for (const Json& value : instead) {
@@ -245,7 +245,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
                     json.is_object() ? json.value("costs", Json()) : json);
   });
 
-  // without: the errors of no policy on the same pairs
+  // without: the errors without a policy on the same pairs
   const auto errors = [](std::uint64_t pairs, std::uint64_t false_negatives, const char* policy,
                          std::uint64_t without) {
     analysis::PolicyErrors result;

@@ -28,7 +28,8 @@ TEST(Terminal, SummaryShowsSharesAndCounts) {
   EXPECT_NE(out.str().find("some lane is wrong on 1,246, in 1 signatures"), std::string::npos);
 }
 
-// GMP sees every disagreement and a sample of the other pairs; where the exact lane judges, a sample and what is kept.
+// GMP checks every disagreement and a sample of the other pairs. If the exact lane judges, it checks a sample and the
+// kept cases.
 TEST(Terminal, SummarySaysWhatEachExactDecisionSaw) {
   std::ostringstream cpu, exact;
   print_summary(cpu, example(), {{"cgal", 1234567}, {"gmp", 2451}, {"exact", 0}, {"apart", 0}}, {200, false});
@@ -70,7 +71,7 @@ TEST(Terminal, PairMarksWrongLanes) {
   EXPECT_NE(out.str().find("\n  projected_sat/f32  disjoint  intersects !\n"), std::string::npos) << out.str();
 }
 
-// Each hex float below its decimal, where a row of both is too long.
+// Each hex float is below its decimal if a row of both is too long.
 TEST(Terminal, PairFitsItsScreen) {
   const Pair pair{{{0.1f, -1.23456e-30f, 3}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}};
   const auto first_lines = [&](int columns) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What text is printed on: how many columns it has, and whether it shows colour. The default is what files and pipes
-// get, so that the same command prints the same bytes everywhere.
+// The properties of the output: its columns, and whether it shows colour. The default is for files and pipes, so that
+// the same command prints the same bytes everywhere.
 #pragma once
 
 #include <string>
@@ -16,11 +16,11 @@ struct Screen {
 std::string bold(const Screen& screen, std::string_view text);
 std::string red(const Screen& screen, std::string_view text);
 
-// Columns that the text takes: its code points.   Requires: UTF-8 without colour.
+// The columns that the text takes: the number of its code points.   Requires: UTF-8 without colour codes.
 int width_of(std::string_view text);
 
-// The text in lines of at most `columns`, broken at its spaces; a longer word has a line of its own. The first line is
-// indented by `indent`, the others by `hang`. Every line ends with a newline.
+// Wraps the text at spaces into lines of at most `columns`; a longer word gets its own line. The first line is indented
+// by `indent`, the others by `hang`. Every line ends with a newline.
 std::string wrapped(std::string_view text, int columns, int indent = 0, int hang = 0);
 
 }  // namespace graze::reports

@@ -10,8 +10,9 @@ namespace graze::reports {
 using Json = nlohmann::ordered_json;
 namespace {
 
-// An object has these fields, or at will those with '?' at their end; "*" stands for all of its fields. A list has
-// elements of one shape. "text?" may be null. Other words are shapes of this table. As reports/web/src/report.ts.
+// An object has these fields; a '?' at the end of a name makes the field optional, and "*" stands for all fields. A
+// list has elements of one shape. "text?" may be null. Other words are shapes of this table. It follows
+// reports/web/src/report.ts.
 constexpr const char* kShapes = R"({
 "share": {"count": "count", "of": "count", "share": "number?", "low": "number?", "high": "number?"},
 "threshold": {"exponent": "whole?", "above": "count", "bound": "number", "largest": "whole?"},
@@ -77,7 +78,7 @@ constexpr const char* kShapes = R"({
   "sources": {"*": "text"}, "cards": ["card"], "missing": ["text"], "compare": "compare?"}
 })";
 
-// Throws: std::runtime_error. place: of the value in the file, as a JSON pointer.
+// Throws: std::runtime_error. place: JSON pointer to the value in the file.
 void expect(const Json& shapes, const Json& shape, const Json& value, const std::string& place) {
   const auto refuse = [&](const std::string& expected) {
     throw std::runtime_error(fmt::format("expected {} at {}, found {}", expected, place.empty() ? "/" : place,

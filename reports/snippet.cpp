@@ -30,7 +30,7 @@ std::string_view embedded(std::string_view path) {
   return file->text;
 }
 
-// A header and what it includes, each once, in the order in which a compiler reads them.
+// A header and everything it includes, each file once, in the order in which a compiler reads them.
 struct Amalgamation {
   std::set<std::string> seen, system;
   std::string text;
@@ -55,7 +55,7 @@ struct Amalgamation {
 
 std::string header_of(std::string_view algorithm_id) { return fmt::format("core/algorithms/{}.h", algorithm_id); }
 
-// The name of the algorithm's struct: the one that has kInfo.
+// The name of the algorithm's struct, which is the one with kInfo.
 std::string type_name(std::string_view algorithm_id) {
   const std::string_view text = embedded(header_of(algorithm_id));
   constexpr std::string_view kStruct = "struct ";
@@ -66,7 +66,7 @@ std::string type_name(std::string_view algorithm_id) {
   return std::string(text.substr(first, text.find(' ', first) - first));
 }
 
-// The flags of a variant, each with a space after it; those for x86 only where this is one.
+// The flags of a variant, each with a trailing space; flags for x86 only on x86.
 std::string flags_of(Variant variant) {
   std::string text;
   std::istringstream flags{std::string(info_of(variant).flags)};
@@ -86,7 +86,7 @@ constexpr std::string_view kCompiler = "g++";
 #endif
 constexpr std::string_view kTestLibraries = " -lgtest -lgtest_main -pthread";
 
-// The line that compiles and runs the snippet; its flags are those of the lane's build.
+// The command that compiles and runs the snippet, with the flags of the lane's build.
 std::string command(SnippetKind kind, const Lane* lane) {
   const std::string flags = lane ? flags_of(lane->variant) : "";
   switch (kind) {
@@ -112,13 +112,13 @@ std::string_view file_of(SnippetKind kind) {
   return kFiles[static_cast<std::size_t>(kind)];
 }
 
-// The vertices of one triangle as the kind's language has them; C++ puts a decimal beside the bits.
+// The vertices of one triangle in the kind's language; C++ shows decimals beside the exact values.
 std::string vertices(SnippetKind kind, const Vec3<float> (&triangle)[3], char label) {
   std::string text;
   for (int i = 0; i < 3; ++i) {
     const Vec3<float>& v = triangle[i];
     const std::string x = corpus::hex_float(v.x), y = corpus::hex_float(v.y), z = corpus::hex_float(v.z);
-    // Nine digits are nearer to a float32 than to the middle between it and the next, through a double as well.
+    // Nine digits identify a float32, even if they are read as a double first.
     const std::string decimals = fmt::format("{:.9g} {:.9g} {:.9g}", v.x, v.y, v.z);
     if (kind == SnippetKind::python) {
       text += fmt::format("{}\"{} {} {}\"", i > 0 ? ",\n     " : "", x, y, z);
@@ -131,14 +131,14 @@ std::string vertices(SnippetKind kind, const Vec3<float> (&triangle)[3], char la
   return text;
 }
 
-// Names come from files: nothing in one may end the comment that it stands in.
+// Replaces characters that could end the comment in which the name stands, because names come from files.
 std::string in_comment(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return text;
 }
 
-// The call that decides a and b, and what it needs before.
+// The call that decides a and b, and the text that must precede it.
 struct Call {
   std::string call, before;
 };
@@ -156,7 +156,7 @@ Call call_of(const Lane& lane, std::string_view algorithm) {
               lane.policy)};
 }
 
-// @name@ in the text is a value.
+// Fills in the file's template: replaces each @name@ by its value.
 std::string filled(std::string_view file, const std::vector<std::pair<std::string_view, std::string>>& values) {
   std::string text;
   std::string_view rest = embedded(fmt::format("reports/snippets/{}", file));
@@ -183,7 +183,7 @@ bool shows(SnippetKind kind, const Lane& lane) {
     return shows_foreign(lane) &&
            (kind == SnippetKind::gtest || (lane.is_cuda() ? kind == SnippetKind::cuda : kind == SnippetKind::cpp));
   }
-  if (lane.under && lane.under->kind != Policy::Kind::tolerances) return false;  // it is never wrong
+  if (lane.under && lane.under->kind != Policy::Kind::tolerances) return false;  // such a lane is never wrong
   return shows_lanes(kind) && lane.is_cuda() == (kind == SnippetKind::cuda);
 }
 
@@ -224,7 +224,7 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
                    {"function", std::move(call.function)},
                    {"seconds", std::to_string(call.seconds)},
                    {"code", found.truth == Verdict::intersects ? "1" : "0"},
-                   // Graze itself asks more than once.
+                   // Graze itself also asks several times.
                    {"rounds", found.verdict == Verdict::unstable && !found.lane->is_cuda() ? "1000" : "1"},
                    {"test", "Subject" + name_of_test}});
   } else if (shows_lanes(kind)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snippets of pairs of any bits and of any name: the vertices that stand in the text are the pair's, bit for bit.
+// Makes snippets of pairs with any bits and any name. The vertices in the text must equal the pair's, bit for bit.
 #include "reports/snippet.h"
 
 #include <cstdlib>
@@ -12,7 +12,7 @@
 namespace graze::reports {
 namespace {
 
-// The numbers of a line that begins as this one does, and has nothing else before them.
+// Reads the numbers of a line that starts with `begins`.
 void read_numbers(std::string_view line, std::string_view begins, std::vector<float>& numbers) {
   if (!line.starts_with(begins)) return;
   const std::string text(line.substr(begins.size()));

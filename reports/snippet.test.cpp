@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Snippets as texts, and the Python one run over the whole corpus: its 32 axes against the oracle. The others are
-// compiled and run by cli/emit.test.cpp.
+// Snippets as text; and the Python snippet, run over the whole corpus: its 32 axes against the oracle.
+// cli/emit.test.cpp compiles and runs the others.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ TEST(Snippet, HoldsTheAlgorithmsOwnSource) {
 }
 
 TEST(Snippet, HoldsNothingItDoesNotNeed) {
-  // An AlgorithmInfo begins with the algorithm's id in quotes: its own, and no other's.
+  // An AlgorithmInfo begins with its algorithm's id in quotes. The source contains its own id and no other.
   for (const Lane& lane : published_lanes()) {
     const std::string source = amalgamated_source(lane.info->id);
     for (const Lane& other : published_lanes())
@@ -69,7 +69,7 @@ TEST(Snippet, ObjDecimalsReadAsTheSameBits) {
   }
 }
 
-// Every finite pair of the corpus: all contacts of triangles, segments and points, in one plane, on one line, and not.
+// Every finite pair of the corpus: all contacts of triangles, segments and points, coplanar, collinear, and neither.
 TEST(Snippet, PythonDecidesTheWholeCorpus) {
   if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "graze-python-snippets";
@@ -88,7 +88,7 @@ TEST(Snippet, PythonDecidesTheWholeCorpus) {
   }
   ASSERT_GT(count, 100);
   ASSERT_GT(disjoint, 30);
-  // One interpreter runs them all; each ends with the status 0 when it agrees with the truth given.
+  // One interpreter runs them all; each exits with status 0 if it agrees with the given truth.
   std::ofstream(folder / "all.driver") << "import glob, runpy, sys\n"
                                           "wrong = 0\n"
                                           "for f in glob.glob(sys.argv[1] + '/*.py'):\n"
@@ -102,7 +102,7 @@ TEST(Snippet, PythonDecidesTheWholeCorpus) {
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
-// A truth turned round must show: the program really decides.
+// A false truth must be detected, which shows that the program really decides.
 TEST(Snippet, PythonContradictsAWrongTruth) {
   if (std::system("python3 -c '' 2>/dev/null") != 0) GTEST_SKIP() << "no python3";
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "graze-wrong-truth.py";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pictures that are written as SVG have in common: 900 x 420, readable on light and dark ground.
+// Common parts of the SVG pictures: 900 x 420, readable on light and dark backgrounds.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace graze::reports {
 inline constexpr std::array<const char*, 8> kSvgColours = {"#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00",
                                                            "#56b4e9", "#8c6bb1", "#a6761d"};  // Okabe and Ito 2008
 
-// The picture's beginning; its end is "</svg>\n".
+// The start of the picture; its end is "</svg>\n".
 inline std::string svg_begin(std::string_view title) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 900 420\" width=\"900\" height=\"420\" "
@@ -21,14 +21,14 @@ inline std::string svg_begin(std::string_view title) {
       title);
 }
 
-// A line of the grid.
+// A grid line.
 inline std::string svg_level(double left, double right, double y) {
   return fmt::format(
       "<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" stroke=\"#888\" stroke-opacity=\"0.35\"/>\n", left,
       right, y);
 }
 
-// anchor: start, middle or end. `more`: further attributes, with a space before each.
+// anchor: start, middle or end. `more`: further attributes, each with a leading space.
 inline std::string svg_text(double x, double y, std::string_view anchor, std::string_view what,
                             std::string_view more = "") {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more, what);

@@ -16,7 +16,7 @@ constexpr int kDigits = 5;
 
 double rounded(double value) { return std::stod(fmt::format("{:.{}g}", value, kDigits)); }
 
-// Calls visit(place, stratum) for each stratum that has pairs, and visit(null, total).
+// Calls visit(index, stratum) for each stratum that has pairs, and visit(null, total).
 template <class Visit>
 void for_each_stratum(const CampaignCounts& counts, Visit visit) {
   for (std::size_t s = 0; s < counts.strata.size(); ++s) {
@@ -32,7 +32,7 @@ Json wrong_of(const StratumCounts& stratum, std::size_t lane) {
 }  // namespace
 
 Json to_json(const Share& share) {
-  // Of nothing there is no share.
+  // Without cases there is no share.
   if (share.of == 0) return {{"count", 0}, {"of", 0}, {"share", nullptr}, {"low", nullptr}, {"high", nullptr}};
   return {{"count", share.count},
           {"of", share.of},
@@ -67,7 +67,7 @@ Json rates(const CampaignCounts& counts) {
 std::optional<std::uint64_t> differs(const CampaignCounts& counts, const StratumCounts& stratum, std::size_t left,
                                      std::size_t right) {
   const int left_cpu = counts.lanes[left].cpu, right_cpu = counts.lanes[right].cpu;
-  // A lane that never differs from the cpu lane stands for it.
+  // A lane that never differs from the cpu lane can replace it in the comparison.
   const bool stands_for_cpu = left_cpu >= 0 && left_cpu == right_cpu && stratum.lanes[left].differs_from_cpu == 0;
   if (static_cast<int>(left) != right_cpu && !stands_for_cpu) return std::nullopt;
   return stratum.lanes[right].differs_from_cpu;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of a report, as reports/web/src/report.ts describes them, from a campaign's counts. Lanes and strata are
-// named by their places; stratum null is all of them together.
+// The tables of a report, as reports/web/src/report.ts describes them, made from a campaign's counts. Lanes and strata
+// are given by index; a null stratum means all strata together.
 #pragma once
 
 #include <optional>
@@ -10,41 +10,41 @@
 
 namespace graze::reports {
 
-// {"count", "of", "share", "low", "high"}, rounded to 5 significant digits, low and high outward.
+// {"count", "of", "share", "low", "high"}, rounded to 5 significant digits; low and high are rounded outward.
 nlohmann::ordered_json to_json(const Share& share);
 
 nlohmann::ordered_json rates(const CampaignCounts& counts);
 
-// Lanes of one algorithm of which one thing differs: cpu against cuda-nofma, which must be equal; cuda-nofma against
-// cuda-fma; f32 against f64.
+// Pairs of lanes of one algorithm that differ in one thing: cpu and cuda-nofma, which must be equal; cuda-nofma and
+// cuda-fma; f32 and f64.
 nlohmann::ordered_json side_by_side(const CampaignCounts& counts);
 
-// On how many pairs a lane's verdict is not that of the other one. Nothing where the campaign did not count it.
+// The number of pairs on which two lanes' verdicts differ. Nothing if the campaign did not count it.
 std::optional<std::uint64_t> differs(const CampaignCounts& counts, const StratumCounts& stratum, std::size_t left,
                                      std::size_t right);
 
 nlohmann::ordered_json margins(const CampaignCounts& counts);
 
-// The least power of two of ulps from which on a lane was never wrong, on one side of zero.
+// The least power of two of ulps from which a lane was never wrong, on one side of zero.
 struct Threshold {
-  bool found = false;  // false: wrong at the largest margins seen, or none were seen
+  bool found = false;  // false: wrong at the largest margins seen, or no margins were seen
   int exponent = 0;
-  std::uint64_t above = 0;     // pairs from there on
-  std::optional<int> largest;  // exponent of the largest margins seen; nothing where no pair lies on that side
+  std::uint64_t above = 0;     // pairs with at least this margin
+  std::optional<int> largest;  // exponent of the largest margins seen; nothing if no pair is on that side
 };
 Threshold threshold(const StratumCounts& counts, std::size_t lane, int side);
 
-// Of each group of strata, each stratum, and all of them together: the strata differ too much for one threshold.
+// For each group of strata, each stratum, and all strata together, because strata differ too much for one threshold.
 nlohmann::ordered_json thresholds(const CampaignCounts& counts);
 
 nlohmann::ordered_json groups(const CampaignCounts& counts);
 nlohmann::ordered_json group_rates(const CampaignCounts& counts);
 nlohmann::ordered_json extremes(const CampaignCounts& counts);
 
-// Whether the pairs of a bucket intersect, are disjoint, or have no margin.
+// Whether a bucket's pairs intersect, are disjoint, or have margin zero.
 constexpr const char* side_of(Bucket bucket) { return bucket < 0 ? "intersects" : bucket > 0 ? "disjoint" : "zero"; }
 
-// floor(log2) of the margins of a bucket other than 0, in ulps.
+// floor(log2) of a bucket's margins in ulps.   Requires: a bucket other than 0.
 constexpr int exponent_of(Bucket bucket) { return (bucket < 0 ? -bucket : bucket) + kBucketLowest - 1; }
 
 }  // namespace graze::reports

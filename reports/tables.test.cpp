@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Intervals, and the tables of made-up summaries.
+// Intervals, and the tables of artificial summaries.
 #include "reports/tables.h"
 
 #include <random>
@@ -39,7 +39,7 @@ TEST(Bounds, AreRoundedOutwardWhereverTheyAreWritten) {
   }
 }
 
-// 23 of 1,610 have an upper bound of about 0.0202: not under the 0.02 that was asked for, and not printed as that.
+// For 23 of 1,610 the upper bound is about 0.0202: above the requested 0.02, and not printed as 0.02.
 TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   const TuneQuestion question{"moller_1997/f32/cpu", analysis::Forbid::any, 0.02};
   analysis::Tuned tuned;
@@ -76,7 +76,7 @@ TEST(Wilson, BoundOfNoneIsTheRuleOfThree) {
   EXPECT_NEAR(bound_of_none(1'000'000'000), 2.9957e-9, 1e-12);
 }
 
-// What was not compared is null in a summary and in a report, and of no pairs there is no share.
+// What was not compared is null in a summary and in a report, and without pairs there is no share.
 TEST(Tables, OfNothingThereIsNoShare) {
   Json summary = summary_of({"moller_1997/f32/cuda-fma"}, {"uniform"}, {0, 3, 0, 0});
   summary["strata"]["uniform"]["intersects"] = 1000;  // so that none can be a false positive
@@ -87,7 +87,7 @@ TEST(Tables, OfNothingThereIsNoShare) {
   EXPECT_EQ(row["false_negative"]["share"], 0.003);
 }
 
-// What stands in thresholds for a group or stratum, by id; for all of them for "".
+// The threshold of a group or stratum by id; "" means all of them.
 Json threshold_of(const CampaignCounts& counts, const std::string& group, const std::string& stratum = "") {
   for (const Json& row : thresholds(counts)) {
     const auto is = [&](const char* key, const std::string& id, const auto& list) {
@@ -125,7 +125,7 @@ TEST(Tables, ThresholdIsWhereErrorsEnd) {
   EXPECT_TRUE(other["disjoint"]["exponent"].is_null());
   EXPECT_EQ(other["disjoint"]["largest"], 9);
   EXPECT_TRUE(other["intersects"]["largest"].is_null());  // no such pairs
-  EXPECT_TRUE(all["disjoint"]["exponent"].is_null());     // what pooling makes of it
+  EXPECT_TRUE(all["disjoint"]["exponent"].is_null());     // the result of pooling
 }
 
 TEST(Tables, GroupsHoldEveryStratumOnceAndAddUp) {

@@ -45,7 +45,7 @@ void print_strata(std::ostream& out, const Json& summary, const Screen& screen) 
 void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   const auto lanes = summary["spec"]["lanes"].get<std::vector<std::string>>();
   std::vector<Counts> counts(lanes.size());
-  std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // from cpu; nothing where nothing was compared
+  std::vector<std::optional<std::uint64_t>> differs(lanes.size());  // from cpu; nothing if not compared
   for (const auto& [stratum, row] : summary["strata"].items()) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       const Json& of = row["lanes"][lanes[l]];
@@ -79,7 +79,7 @@ void print_lanes(std::ostream& out, const Json& summary, const Screen& screen) {
   out << '\n' << table.text(screen);
 }
 
-// Which exact decisions stand behind the counts. A campaign that finds two of them apart stops, so they agree here.
+// Says which exact decisions support the counts. A campaign stops if two of them differ, so here they agree.
 std::string decided_by(std::uint64_t disagreements, const Json& oracle) {
   const std::uint64_t exact = oracle["exact"], gmp = oracle["gmp"];
   if (exact > 0) {
@@ -125,8 +125,9 @@ void print_summary(std::ostream& out, const Json& summary, const Json& oracle, c
 
 namespace {
 
-// One row for each subject, scalar and policy, one column for each variant among the lanes; '-' where a lane did not
-// run, '!' where it is wrong. The exact CUDA lane stands in the columns of all device variants: it is the same in each.
+// Prints a row for each subject, scalar and policy, and a column for each variant among the lanes. '-' means that the
+// lane did not run, '!' that it is wrong. The exact CUDA lane appears under all device variants, because it is the same
+// for each.
 void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& true_of_pair,
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
   const Verdict truth = true_of_pair.verdict;
@@ -170,9 +171,9 @@ void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& tr
   out << table.text(screen, 2);
 }
 
-// Decimals and hex floats in one row, or, where the screen is too narrow, each hex float below its decimal.
+// Prints decimals and hex floats in one row, or each hex float below its decimal if the screen is too narrow.
 void print_coordinates(std::ostream& out, const Pair& pair, const Screen& screen) {
-  std::string cells[6][6];  // of each vertex, x, y, z in decimals and the same as hex floats
+  std::string cells[6][6];  // by vertex: x, y, z in decimals, then as hex floats
   int widths[6] = {};
   for (int v = 0; v < 6; ++v) {
     const Vec3<float>& p = v < 3 ? pair.a[v] : pair.b[v - 3];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: made-up summaries, and a small campaign with its kinds of failure.
+// For tests: artificial summaries, and a small campaign with its kinds of failure.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ inline Json summary_of(const std::vector<std::string>& lanes, const std::vector<
   return summary;
 }
 
-// Small campaigns in a directory of their own: `one`, and what a test runs beside it.
+// Small campaigns in a directory of their own: `one`, and those that a test runs in addition.
 class CampaignTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -72,7 +72,7 @@ class CampaignTest : public testing::Test {
 
   static Json summary(const std::string& name) { return Json::parse(fuzz::read_whole(root_ / name / "summary.json")); }
 
-  // As `graze minimize` does, of the pairs as they were found.
+  // Stores kinds like `graze minimize`, but for the pairs as they were found.
   static void store_kinds(const std::string& name) {
     fuzz::write_kinds(root_ / name, lanes(), fuzz::find_kinds(lanes(), root_ / name, summary(name)));
   }

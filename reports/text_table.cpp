@@ -60,7 +60,7 @@ class Printer {
   }
 
  private:
-  // As many columns as fit in each block, at most so many besides the first.
+  // Splits the columns into blocks with as many columns as fit, at most `most` besides the first.
   std::vector<std::vector<std::size_t>> in_blocks(std::size_t most) const {
     std::vector<std::vector<std::size_t>> blocks;
     for (std::size_t next = 1; next < columns_.size(); ++next) {
@@ -74,7 +74,7 @@ class Printer {
     return blocks;
   }
 
-  // Whether the header is a step: it is wider than its cells.
+  // Whether the header is placed as a step, because it is wider than its cells.
   bool is_step(std::size_t c, Headers headers) const {
     return headers == Headers::steps && width_of(columns_[c].header) > cell_widths_[c] && c > 0;
   }
@@ -87,7 +87,7 @@ class Printer {
     return widest;
   }
 
-  // A step's name ends where its column ends, so the columns before it need room for it.
+  // A step's text ends where its column ends, so it needs room in the columns before it.
   int width_of_first(const std::vector<std::size_t>& some, Headers headers) const {
     int first = width(some[0], headers), before = 0;
     for (std::size_t i = 1; i < some.size(); ++i) {
@@ -111,13 +111,13 @@ class Printer {
   std::string line(std::string text) const { return text.substr(0, text.find_last_not_of(' ') + 1) + '\n'; }
 
   std::string block(const std::vector<std::size_t>& some, Headers headers) const {
-    std::vector<int> widths, ends;  // of each column, where it ends
+    std::vector<int> widths, ends;  // ends: the position where each column ends
     for (const std::size_t c : some) {
       widths.push_back(widths.empty() ? width_of_first(some, headers) : width(c, headers));
       ends.push_back((ends.empty() ? indent_ : ends.back() + kBetween) + widths.back());
     }
     std::string result;
-    for (std::size_t i = some.size(); i-- > 0;) {  // steps, the last column's on top
+    for (std::size_t i = some.size(); i-- > 0;) {  // steps, last column on top
       if (!is_step(some[i], headers)) continue;
       std::string text = padded(columns_[some[i]].header, ends[i], Align::right);
       result += stems(text, some, ends, i + 1, headers);
@@ -163,7 +163,7 @@ class Printer {
     return result;
   }
 
-  // The line with the stems of the steps that stand above it.
+  // Adds to a line the stems of the steps above it.
   std::string stems(std::string text, const std::vector<std::size_t>& some, const std::vector<int>& ends,
                     std::size_t from, Headers headers) const {
     for (std::size_t i = from; i < some.size(); ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table for a terminal. Its columns are as wide as their cells; where the headers make it too wide for the screen,
-// they break into lines, or stand above it in steps; where that is not enough, the table comes in several blocks.
+// A table for a terminal. Its columns are as wide as their cells. If the headers make it too wide for the screen, they
+// are broken into lines, or placed above it in steps. If that is not enough, the table is split into blocks.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace graze::reports {
 
-enum class Align { left, right, point };  // point: decimal points stand below each other
+enum class Align { left, right, point };  // point: aligns decimal points
 
 struct Column {
   std::string header;
@@ -25,13 +25,13 @@ struct Cell {
 
 class TextTable {
  public:
-  // The first column names the rows, and is repeated in each block.
+  // The first column names the rows and is repeated in each block.
   explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
 
   // Requires: a cell for each column.
   void add(std::vector<Cell> cells) { rows_.push_back(std::move(cells)); }
 
-  // Each line starts with `indent` spaces and ends with a newline, without spaces before it.
+  // Each line starts with `indent` spaces and ends with a newline, without trailing spaces.
   std::string text(const Screen& screen, int indent = 0) const;
 
  private:

@@ -55,21 +55,21 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
           trust, q.max_rate, grouped(static_cast<std::uint64_t>(std::ceil(std::log(0.05) / std::log1p(-q.max_rate)))));
     case TuneResult::not_confirmed:
       return fmt::format(
-          "Not settled: {}. On the pairs of the choice it keeps {} under {}, and here it does not. "
+          "Not settled: {}. On the pairs of the choice it keeps {} at or under {}, and here it does not. "
           "More pairs to choose on (--pairs) or a stricter --max-rate may find one that does.",
           of, words(q.forbid), q.max_rate);
     case TuneResult::not_satisfiable:
       break;
   }
   return fmt::format(
-      "No policy of {} keeps {} under {} here. None had fewer on the pairs of the choice than {}; the exact "
+      "No policy of {} keeps {} at or under {} here. None had fewer on the pairs of the choice than {}; the exact "
       "lane has none of either.",
       q.lane, words(q.forbid), q.max_rate, of);
 }
 
 std::string power(int k) { return k > 0 ? fmt::format("grow by 2^{}", k) : fmt::format("shrink by 2^{}", -k); }
 
-// Points of a line: x by log2 of the tolerance from low to high, y by log10 of the rate.
+// Maps points to the picture: x by log2 of the tolerance between low and high, y by log10 of the rate.
 struct Frame {
   double left, right, low, high;
   static constexpr double kTop = 64, kBottom = 350, kLeast = -7;

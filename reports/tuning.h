@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `graze tune` found: sentences for a person, tune.json, and the curves as a picture.
+// Presents the results of `graze tune`: sentences, tune.json, and the curves as a picture.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,24 +12,24 @@
 
 namespace graze::reports {
 
-// As tune.json says them, in the order of the enumerations.
+// The words of tune.json, in the order of the enumerations.
 inline constexpr std::string_view kTuneForbids[] = {"false_negative", "false_positive", "any"},
                                   kTuneResults[] = {"satisfied", "too few pairs", "not confirmed", "not satisfiable"};
 
-// What was tuned, and for what.
+// The tuned lane, and the goal of the tuning.
 struct TuneQuestion {
   std::string lane;
   analysis::Forbid forbid = analysis::Forbid::any;
   double max_rate = 0;
 };
 
-// Of each sentence the first words say what it is about. Every number in them is of the pairs that it names.
+// Each sentence starts with its topic. Every number in it belongs to the pairs that the sentence names.
 std::vector<std::string> tuning_sentences(const TuneQuestion& question, const analysis::Tuned& tuned);
 
 nlohmann::ordered_json tuning_json(const TuneQuestion& question, const analysis::Tuned& tuned);
 
-// An SVG of 900 x 420: false negatives and false positives against the tolerance at all sites, relative to the left,
-// absolute to the right; readable on light and dark ground.
+// Returns an SVG of 900 x 420: false negatives and false positives against the tolerance at all sites. Relative
+// tolerances are on the left, absolute ones on the right. Readable on light and dark backgrounds.
 std::string tuning_figure(const TuneQuestion& question, const analysis::Tuned& tuned);
 
 }  // namespace graze::reports

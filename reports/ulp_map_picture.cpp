@@ -15,8 +15,8 @@
 namespace graze::reports {
 namespace {
 
-// One colour for each kind of cell, in its order, but ink and paper before those of foreign code that fails. Right
-// verdicts are greys, wrong ones vermilion and blue of Okabe and Ito's palette, which differ in lightness as well.
+// One colour for each kind of cell, in order; ink and paper come before the colours of failing foreign code. Right
+// verdicts are grey. Wrong ones are vermilion and blue of Okabe and Ito's palette, which also differ in lightness.
 constexpr std::uint8_t kPalette[][3] = {{0xee, 0xee, 0xee}, {0xaa, 0xaa, 0xaa}, {0xd5, 0x5e, 0x00}, {0x00, 0x72, 0xb2},
                                         {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}, {0x00, 0x00, 0x00}, {0xff, 0xff, 0xff},
                                         {0x00, 0x9e, 0x73}, {0x56, 0xb4, 0xe9}, {0xe6, 0x9f, 0x00}};
@@ -26,7 +26,7 @@ constexpr const char* kCellNames[] = {"disjoint",   "intersects", "false positiv
 
 constexpr std::uint8_t colour_of(std::size_t kind) { return static_cast<std::uint8_t>(kind < kInk ? kind : kind + 2); }
 
-constexpr int kZoom = 2;  // of a sheet: its panels' pixels and its letters'
+constexpr int kZoom = 2;  // zoom factor of a sheet's pixels and letters
 constexpr int kMargin = 16;
 constexpr int kLine = 24;  // of text
 constexpr int kSide = kZoom * analysis::kMapSize;
@@ -34,7 +34,7 @@ constexpr int kLanesARow = 4;
 
 struct Image {
   int width, height;
-  std::vector<std::uint8_t> colours;  // places in kPalette
+  std::vector<std::uint8_t> colours;  // indices into kPalette
 
   Image(int w, int h, std::uint8_t colour) : width(w), height(h), colours(static_cast<std::size_t>(w * h), colour) {}
 
@@ -46,7 +46,7 @@ struct Image {
   }
 
   void write(int left, int top, std::string text) {
-    struct Corner {  // as stb_easy_font lays out its quads, four of them each, from the upper left round
+    struct Corner {  // stb_easy_font's layout: four corners for each quad, clockwise from the upper left
       float x, y, z;
       std::uint8_t colour[4];
     };
@@ -67,7 +67,7 @@ struct Image {
     image.width = static_cast<png_uint_32>(width);
     image.height = static_cast<png_uint_32>(height);
     image.format = PNG_FORMAT_RGB_COLORMAP;
-    // Without foreign code that fails, a palette without it.
+    // Without failing foreign code, its colours are left out of the palette.
     const bool fails = std::any_of(colours.begin(), colours.end(), [](std::uint8_t c) { return c > kPaper; });
     image.colormap_entries = fails ? std::size(kPalette) : kPaper + 1;
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
@@ -102,7 +102,7 @@ std::string counts_of(const analysis::UlpPanel& panel) {
   return text.empty() ? "right everywhere" : text;
 }
 
-// For each kind, whether some panel has it.
+// For each kind, whether some panel contains it.
 std::array<bool, analysis::kCellKinds> kinds_in(const analysis::UlpMap& map) {
   std::array<bool, analysis::kCellKinds> found{};
   for (const analysis::UlpPanel& panel : map.panels) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of ulp maps: PNG with a palette that the colour-blind can tell apart. A cell is a pixel; a cross is around
-// the pair itself.
+// Pictures of ulp maps as PNG, with a palette suitable for the colour-blind. A cell is a pixel; a cross surrounds the
+// pair itself.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,18 +10,18 @@
 
 namespace graze::reports {
 
-// One panel, kMapSize pixels on each side. The bytes depend on nothing but the panel and the PNG library.
+// One panel, kMapSize pixels on each side. The bytes depend only on the panel and the PNG library.
 std::string panel_png(const analysis::UlpPanel& panel);
 
-// All panels with their names and counts, at twice that size: the truth and four lanes in the first row, then four
-// lanes in each row; below what the coordinates and colours are.
+// All panels with their names and counts, at twice that size. The first row has the truth and four lanes, the other
+// rows have four lanes each. Coordinates and colours are explained below.
 std::string sheet_png(const analysis::UlpMap& map);
 
-// {"title", "x", "y", "size", "legend": [{"colour", "means"}], "panels": [{"name", "shows", "png"}]} as a report's
-// page wants it, counts in words, PNGs in base64; and "pair", its 18 coordinates in hex.
+// {"title", "x", "y", "size", "legend": [{"colour", "means"}], "panels": [{"name", "shows", "png"}], "pair"} for a
+// report's page: counts in words, PNGs in base64, and the pair's 18 coordinates in hex.
 nlohmann::ordered_json to_json(const analysis::UlpMap& map);
 
-// Whether that is of this pair.
+// Whether the map belongs to this pair.
 bool is_map_of(const nlohmann::ordered_json& json, const Pair& pair);
 
 }  // namespace graze::reports

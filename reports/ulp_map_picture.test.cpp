@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures read back by the PNG library: each pixel has its cell's colour.
+// Reads pictures back with the PNG library: each pixel has its cell's colour.
 #include "reports/ulp_map_picture.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ struct Picture {
 
 const Pair kPair{{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}}, {{0.75f, 0.75f, 0}, {0.75f, 0.75f, 1}, {0.5f, 0.75f, 1}}};
 
-// One row of each kind of cell, over and over.
+// Rows of cells, one kind after the other, repeated.
 analysis::UlpMap striped(int lanes) {
   analysis::UlpMap map{kPair, {9, 10}, {}};
   for (int p = 0; p <= lanes; ++p) {
@@ -66,7 +66,7 @@ TEST(UlpMapPicture, HasAColourAKindAndACrossAroundThePair) {
   }
   EXPECT_EQ(ink, 32);
   EXPECT_EQ(at(analysis::kMapCentre, analysis::kMapCentre),
-            at(0, analysis::kMapCentre % analysis::kCellKinds));  // the pair's own cell shows
+            at(0, analysis::kMapCentre % analysis::kCellKinds));  // the pair's own cell is visible
 }
 
 TEST(UlpMapPicture, SheetsHoldAllPanelsAtTwiceTheSize) {
@@ -78,12 +78,12 @@ TEST(UlpMapPicture, SheetsHoldAllPanelsAtTwiceTheSize) {
   const std::uint32_t declined = Picture(panel_png(map.panels[1])).pixels[4 * analysis::kMapSize];
   int found = 0;
   for (const std::uint32_t pixel : nine.pixels) found += pixel == declined;
-  const int rows = analysis::kMapSize / analysis::kCellKinds;  // that are declined, of each lane
+  const int rows = analysis::kMapSize / analysis::kCellKinds;  // declined rows of each lane
   EXPECT_NEAR(found, 8 * 4 * rows * analysis::kMapSize, 8 * 4 * 32 + 14 * 14);
   EXPECT_EQ(sheet_png(map), sheet_png(striped(8)));
 }
 
-// Without foreign code that fails, pictures are those of before.
+// Without failing foreign code, the pictures have the old palette and legend.
 TEST(UlpMapPicture, FailuresOfForeignCodeHaveColoursAndALegendOnlyWhereTheyAre) {
   analysis::UlpMap map = striped(1);
   for (analysis::Cell& cell : map.panels[1].cells) {

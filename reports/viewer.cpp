@@ -36,7 +36,7 @@ std::string bits_of(const float* numbers, std::size_t count) {
   return text;
 }
 
-// The lanes that WebAssembly has too, each with what decides it here.
+// The lanes that WebAssembly also has, if they run here.
 std::vector<const Lane*> replayed_lanes() {
   std::vector<const Lane*> result;
   for (const Lane& lane : lanes()) {
@@ -75,7 +75,7 @@ Json replay() {
   return {{"lanes", lanes}, {"pairs", pairs}};
 }
 
-// What stands behind the twins, each once.
+// The distinct kinds of evidence for the twins.
 std::string evidence() {
   std::set<std::string> kinds;
   for (const Lane* lane : replayed_lanes()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer: one HTML file in which graze.wasm decides the pairs anew while they are changed.
+// The viewer: one HTML file in which graze.wasm decides pairs again as they change.
 #pragma once
 
 #include <array>
@@ -17,25 +17,25 @@ struct ViewedPair {
 };
 
 struct Viewed {
-  std::string title;              // of the pairs' list
-  std::vector<ViewedPair> pairs;  // none: the special cases of 2012
+  std::string title;              // of the list of pairs
+  std::vector<ViewedPair> pairs;  // empty: the special cases of 2012
   std::vector<std::array<Vec3<float>, 3>>
       triangles;                      // of a mesh or a query, to be seen against the first triangle of a pair
-  bool opens_with_triangles = false;  // all of them at once, rather than a pair
+  bool opens_with_triangles = false;  // show all triangles at once instead of a pair
 };
 
-// What keeps the page small.
+// Limits of the page's size.
 inline constexpr std::size_t kMostViewedPairs = 5000, kMostViewedTriangles = 5000;
 
-// Whether this build has the page of reports/web, which takes Node and a compiler for WebAssembly.
+// Whether this build has the viewer of reports/web, which is built with Node and a compiler for WebAssembly.
 bool has_viewer();
 
-// What the viewer takes beside what it shows: the stored verdicts of some hundred pairs by which it checks itself when
-// it opens, of every stratum and the canaries (cuda/twin/canaries.pairs), and the evidence of the twins. Null without
-// it.
+// The viewer's checks: the evidence of the twins, and stored verdicts by which it checks itself when it opens. Those
+// are for a few hundred pairs: some of every stratum, and the canaries (cuda/twin/canaries.pairs). Null if the build
+// has no viewer.
 nlohmann::ordered_json viewer_checks();
 
-// The page.   Requires: has_viewer(); no more pairs and triangles than the most.
+// The page.   Requires: has_viewer(); at most kMostViewedPairs pairs and kMostViewedTriangles triangles.
 std::string viewer_page(const Viewed& viewed);
 
 }  // namespace graze::reports

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-# Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. Where npm cannot fetch its
-# packages, as offline, that string is empty, and reports are plain pages. The same of the viewer, which holds the module
-# WASM, in VIEWER; empty without one.
+# Builds the page of SOURCE (reports/web) in BUILD, and writes it to OUT as a C++ string. If npm cannot fetch its
+# packages, for example offline, the string is empty, and reports are plain pages. Likewise writes the viewer, which
+# includes the module WASM, to VIEWER; empty without a module.
 file(MAKE_DIRECTORY ${BUILD})
 file(REMOVE_RECURSE ${BUILD}/src)
 foreach(part index.html view.html package.json package-lock.json tsconfig.json vite.config.js src)
   file(COPY ${SOURCE}/${part} DESTINATION ${BUILD})
 endforeach()
 
-file(COPY ${SOURCE}/../wasm/graze.js DESTINATION ${BUILD}/src/viewer)
+file(COPY ${SOURCE}/../../wasm/graze.js DESTINATION ${BUILD}/src/viewer)
 file(WRITE ${VIEWER} "\"\"\n")
 
 file(SHA256 ${BUILD}/package-lock.json lock)

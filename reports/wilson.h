@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shares with what they can be trusted for: confidence bounds of 95 %.
+// Shares with 95 % confidence bounds.
 #pragma once
 
 #include <algorithm>
@@ -10,22 +10,22 @@ namespace graze::reports {
 
 struct Share {
   std::uint64_t count = 0, of = 0;
-  double share = 0;          // 0 of none
-  double low = 0, high = 1;  // the interval in which the rate behind it lies
+  double share = 0;          // 0 if there are no cases
+  double low = 0, high = 1;  // confidence interval of the underlying rate
   bool apart(const Share& other) const { return high < other.low || other.high < low; }
 };
 
 // Reference: Wilson 1927, the score interval.
 inline Share share_of(std::uint64_t count, std::uint64_t of) {
   if (of == 0) return {};
-  constexpr double kZ = 1.959963984540054;  // 97.5 % of a normal distribution lie below
+  constexpr double kZ = 1.959963984540054;  // standard normal distribution: 97.5 % are below
   const double n = static_cast<double>(of), p = static_cast<double>(count) / n, z2 = kZ * kZ;
   const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
   const double half = kZ / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
   return {count, of, p, count == 0 ? 0 : std::max(0.0, middle - half), count == of ? 1 : std::min(1.0, middle + half)};
 }
 
-// Upper bound of a rate of which n trials showed nothing: at it, that happens once in twenty times.
+// Upper 95 % bound of a rate after n trials without an event: at this rate, no event has a 5 % chance.
 inline double bound_of_none(std::uint64_t n) {
   return n == 0 ? 1 : -std::expm1(std::log(0.05) / static_cast<double>(n));
 }

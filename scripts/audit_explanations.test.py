@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Explanations of pairs of every kind stand up to scripts/audit_explanations, and planted false ones do not."""
+"""scripts/audit_explanations accepts explanations of pairs of every kind, and rejects planted false ones."""
 import copy
 import json
 import os
@@ -33,7 +33,8 @@ PAIRS = [
     "degenerate:1:4",
     "shared_edge:1:16",
     "shared_edge:21:21",
-    # numbers of 2^72, of which exact arithmetic needs more bits on the lane's path than on its own; a cause found by its numbers
+    # Numbers of 2^72, for which exact arithmetic needs more bits on the lane's path than on its own path; also a pair
+    # whose cause follows from its numbers.
     "extreme_scale:1:105",
     "mixed_scale:1:57",
     "extreme_scale:1:46",
@@ -61,7 +62,7 @@ class Audit(unittest.TestCase):
         for what, least in {"sentences": 20, "sets of 1": 20, "sets of 2": 2, "numbers": 15, "bits": 5}.items():
             self.assertGreaterEqual(total.get(what, 0), least, what)
 
-    # Each change makes a true explanation false; the audit names it wherever it is made.
+    # Each change makes a true explanation false. The audit must report it in every place.
     def planted(self, change):
         tried = 0
         for one in self.explained:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/campaign builds compiles. It compiles more sources at once than other builds, so that two private names
-of different files clash there alone. Checks the syntax of each such group in a build of its own; compiles no code."""
+"""The sources of scripts/campaign's build compile. It has larger unity groups than other builds, so private names of
+different files may clash only there. Checks the syntax of each group in a separate build; generates no code."""
 import concurrent.futures
 import json
 import os
@@ -20,7 +20,8 @@ def run(*command, **options):
 
 
 def syntax_only(command, build):
-    """The compiler's command without what it writes, optimises or takes precompiled; generated files are another build's."""
+    """The compiler's command without outputs, optimisation and precompiled headers. Generated files come from another
+    build."""
     kept, words = [], iter(shlex.split(command.replace(f"{build}/generated", f"{BUILT}/generated")))
     for word in words:
         if word in ("-o", "-MF", "-MT", "-include"):

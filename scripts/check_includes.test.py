@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""check_includes.py goes red on each kind of violation, planted in a small tree, and on nothing to check."""
+"""check_includes.py fails on each kind of violation, planted in a small tree, and when there is nothing to check."""
 import pathlib
 import subprocess
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/findings passes a page that says what its program prints, and no other; every page of docs/findings has its parts."""
+"""scripts/findings accepts only a page that shows its program's output. Every page of docs/findings has all parts."""
 import pathlib
 import subprocess
 import sys

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of scripts/league, the adapters and their README agree; the four pairs find subjects that are used wrongly."""
+"""The table of scripts/league, the adapters and their README agree. The four pairs detect subjects that are used
+wrongly."""
 import importlib.machinery
 import importlib.util
 import pathlib

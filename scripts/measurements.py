@@ -9,7 +9,7 @@ import tomllib
 
 DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
 RECORDS, PAGE = DOCS / "measurements", DOCS / "measurements.md"
-# One section of the page for each file, in this order.
+# Each file is a section of the page, in this order.
 TOPICS = (
     "agreement",
     "exact",
@@ -28,7 +28,7 @@ TOPICS = (
 )
 
 NUMBER = "a number or [low, high]"
-# What a record has, its own keys and those of its run; and what it may have.
+# The keys of a record and its run: required, then optional.
 RECORD = {"metric": str, "value": NUMBER, "unit": str}
 RECORD |= {"machine": str, "toolkit": str, "date": datetime.date, "command": str}
 RECORD_MAY = {"commit": str, "by": str, "before": str, "baseline": NUMBER, "limit": NUMBER, "run": dict, "grid": dict}
@@ -51,7 +51,7 @@ What was tried and not taken: [measurements/not_taken.md](measurements/not_taken
 
 
 class Malformed(Exception):
-    """A record that is not as docs/measurements/README.md says."""
+    """A record violates the format in docs/measurements/README.md."""
 
 
 def is_a(kind, value):
@@ -87,7 +87,7 @@ def grid_records(where, grid, unit):
 
 
 def records(name, topic, machines):
-    """Returns: one record a measurement, oldest first; its run is under "run". Throws: Malformed."""
+    """Returns: one record for each measurement, oldest first; its run is under "run". Throws: Malformed."""
     found = []
     for i, run in enumerate(topic["run"], 1):
         where = f"{name}.toml, run {i}"
@@ -115,7 +115,7 @@ def records(name, topic, machines):
 
 
 def current(found):
-    """Returns: of each metric and machine the newest record, in the order in which metrics first came."""
+    """Returns: the newest record for each metric and machine, in the order of the metrics' first records."""
     newest = {}
     for record in found:
         key, run = (record["metric"], record["machine"]), record["run"]
@@ -141,7 +141,7 @@ def read(folder=RECORDS):
 
 
 def text(value, unit=""):
-    """A number as it was written, with separators of thousands, and its unit."""
+    """A number as written, with thousands separators, and its unit."""
     if value is None:
         return ""
     number = " to ".join(

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/measurements.md is what scripts/measurements.py makes of the records; each record has its keys, of their types. The
-commits are checked by Docs.CommitsThatTheyNameAreInTheHistory."""
+"""docs/measurements.md is the output of scripts/measurements.py for the records. Each record has its keys with their
+types. Docs.CommitsThatTheyNameAreInTheHistory checks the commits."""
 import pathlib
 import re
 import shutil
@@ -12,7 +12,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 import measurements  # noqa: E402
 
-# A file of records with all that may occur, oldest run first.
+# A file of records with every allowed key, oldest run first.
 SPEED = """title = "Speed"
 about = "How fast."
 

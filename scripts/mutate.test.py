@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/mutate on a small project: a mutant of each kind ends as it must, resuming asks nothing twice, and the list of
-the project itself names mutants that exist."""
+"""scripts/mutate on a small project: a mutant of each kind has the right result, and resuming tests nothing twice. The
+mutants in the project's own list exist."""
 import json
 import pathlib
 import shutil
@@ -127,7 +127,7 @@ class Mutate(unittest.TestCase):
 
     def test_is_not_delayed_by_tests_that_were_timed_before(self):
         first, _ = self.run_script()
-        # Of the header its test is compiled, of the source the build's own object serves.
+        # For the header, its test is compiled again. For the source, the test's existing object is used.
         self.assertRegex(
             first.stdout, r"(?m)^small part/small.test.cpp part/small.test.cpp: pass without a mutant, in \d"
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The preset `odr` finds what it is for: a type that two translation units define differently stops the link."""
+"""With the preset `odr`, a type that two translation units define differently is a link error."""
 import json
 import pathlib
 import subprocess
@@ -14,7 +14,7 @@ COMPILER = sys.argv.pop() if len(sys.argv) > 1 else "g++"
 
 class Odr(unittest.TestCase):
     def link(self, *sources):
-        """Returns: the exit status and what was said, with the preset's own flags."""
+        """Returns: the exit status and the output of a build with the preset's own flags."""
         presets = json.loads((ROOT / "CMakePresets.json").read_text(encoding="utf-8"))["configurePresets"]
         chosen = next(preset["cacheVariables"] for preset in presets if preset["name"] == "odr")
         self.assertEqual(chosen["CMAKE_INTERPROCEDURAL_OPTIMIZATION"], "ON")  # which is -flto

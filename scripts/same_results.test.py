@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What same_results says of two stand-ins for graze, which write what a test tells them to."""
+"""Output of same_results for two stand-ins for graze, which write what a test requests."""
 import pathlib
 import subprocess
 import sys

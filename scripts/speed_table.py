@@ -20,7 +20,7 @@ STAGES = ("bounded", "doubles", "int128", "wide")
 
 
 def read(path):
-    """The file's context, and {decision: {stratum: run}}, each figure of a run being the median of its repetitions."""
+    """The file's context, and {decision: {stratum: run}}. Each value of a run is the median of its repetitions."""
     with open(path, encoding="utf-8") as file:
         document = json.load(file)
     repetitions = {}

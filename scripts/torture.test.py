@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What torture says of stand-ins for graze: nothing of one that does what it must, and of each that misbehaves what it did."""
+"""Output of torture for stand-ins for graze: no violation for a correct one, and the right violation for each wrong
+one."""
 import contextlib
 import io
 import importlib.machinery
@@ -17,7 +18,7 @@ loader = importlib.machinery.SourceFileLoader("torture", str(SCRIPT))
 torture = importlib.util.module_from_spec(importlib.util.spec_from_loader("torture", loader))
 loader.exec_module(torture)
 
-# A campaign of eight rows, 50 ms each. MODE says what it does wrong.
+# A campaign of eight rows, 50 ms each. MODE selects its misbehaviour.
 GRAZE = r"""#!%(python)s -BS
 import fcntl, os, pathlib, shutil, signal, sqlite3, stat, subprocess, sys, time
 MODE = "%(mode)s"
@@ -159,7 +160,7 @@ class Torture(unittest.TestCase):
         return file
 
     def attack(self, mode, kind, rounds=1):
-        """Up to so many rounds, until one finds something. Returns: its counts, and what was said."""
+        """Runs up to `rounds` rounds, until one finds something. Returns: its counts and the output."""
         graze = self.graze(mode)
         bench = torture.Bench(graze, 1, self.folder / f"{mode}-{kind}")
         said = io.StringIO()
@@ -215,7 +216,8 @@ class Torture(unittest.TestCase):
                 self.assertTrue((kept / ".commands").read_text())
 
     def test_what_the_real_one_would_do_wrong_with_results(self):
-        """The real program, but what this makes of each of its runs. It dies with its shell, and the next waits for that."""
+        """Replaces the program by a script around it. The real program dies with its shell, and the next run waits for
+        that."""
         real = SCRIPT.parents[1] / "build/bin/graze"
         if not real.exists():
             self.skipTest("no build/bin/graze")

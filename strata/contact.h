@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs built around a point of contact: a feature (vertex, edge or face) of each triangle passes through it, the
-// rest of each lies on its own side. Real ones are near contacts once rounded; integer ones stay exact.
+// Pairs built around a point of contact. A feature (vertex, edge or face) of each triangle passes through it, and the
+// rest of each triangle lies on its own side. Contacts in real numbers are only near once rounded; integer ones stay
+// exact.
 #pragma once
 
 #include "strata/draws.h"
@@ -8,15 +9,15 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// Where a contact's numbers come from. Integers: nothing that is built of them rounds, in double or in float32,
-// as (place + 2 * weight * step) <= 2^24.
+// The ranges of a contact's numbers. With integers nothing rounds, in double or in float32, because (place + 2 * weight
+// * step) <= 2^24.
 struct Grain {
-  int place;   // the contact lies within ±place; reals: 0 here, and within ±1/2
-  int step;    // vectors whose multiples by weights are used: within ±step; reals: ±1
+  int place;   // the contact lies within ±place; for reals this is 0 and it lies within ±1/2
+  int step;    // steps (vectors that weights multiply) lie within ±step; reals: ±1
   int weight;  // weights are 1 … weight; reals: (0, 1]
 };
 
-// Functions, as device code cannot refer to constants of class type.
+// These are functions, because device code cannot refer to constants of class type.
 GRAZE_INLINE Grain real_grain() { return {0, 0, 0}; }
 GRAZE_INLINE Grain small_grain() { return {4, 2, 3}; }
 
@@ -36,16 +37,16 @@ GRAZE_INLINE double draw_weight(Draws& draws, const Grain& grain) {
   return grain.place > 0 ? 1.0 + draws.below(static_cast<std::uint32_t>(grain.weight)) : draws.positive();
 }
 
-// How flat a triangle is: a sliver's height is a small part of its length, and its third vertex stands beside an
-// end of the longest edge (needle) or anywhere along it (cap).
+// How flat a triangle is. A sliver's height is a small part of its length. Its third vertex stands beside an end of the
+// longest edge (needle) or anywhere along it (cap).
 struct Shape {
   double height = 1;
   bool sliver = false;
   bool needle = false;
 };
 
-// The third vertex, seen from p: anywhere on that side; a sliver's stands beside the edge, which runs from e * low
-// to e * high.
+// The third vertex, relative to p. It lies anywhere on the given side, or for a sliver beside the edge, which runs from
+// e * low to e * high.
 GRAZE_INLINE Vec draw_third(Draws& draws, const Grain& grain, const Shape& shape, const Vec& side, const Vec& e,
                             double low, double high) {
   const Vec arm = toward(side, draw_arm(draws, grain));
@@ -73,7 +74,7 @@ GRAZE_INLINE void put_edge(Draws& draws, const Grain& grain, const Shape& shape,
   triangle[2] = p + draw_third(draws, grain, shape, side, e, -back, forth);
 }
 
-// A triangle in the plane of s and t with p inside: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) is zero.
+// A triangle in the plane of s and t with p inside: w0 * (a0 - p) + w1 * (a1 - p) + w2 * (a2 - p) = 0.
 GRAZE_INLINE void put_face(Draws& draws, const Grain& grain, const Vec& p, const Vec& s, const Vec& t,
                            Vec (&triangle)[3]) {
   const double w0 = draw_weight(draws, grain);
@@ -86,11 +87,11 @@ GRAZE_INLINE void put_face(Draws& draws, const Grain& grain, const Vec& p, const
 
 enum class Touch { vertex_face, edge_edge, vertex_edge, vertex_vertex };
 
-// Two triangles that meet at p only, as long as nothing is rounded. B's touching feature includes b[0].
+// Two triangles that meet only at p if nothing is rounded. B's touching feature includes b[0].
 struct Contact {
   Draft draft;
   Vec p;
-  Vec away;  // the direction that parts B from A, largest component ±1
+  Vec away;  // the direction that separates B from A; its largest component is ±1
 };
 
 // Real coordinates stay within ±5/2.
@@ -104,8 +105,8 @@ GRAZE_INLINE Contact draw_contact(Draws& draws, Touch touch, const Grain& grain,
     const double ratio = shape_a.needle ? -1 : draws.positive();
     v = u * ratio + v * shape_a.height;
   }
-  // u is A's edge and v B's, or both span A's face. A vertex on an edge has a half-plane of directions to leave
-  // in, two vertices a half-space: any does.
+  // u is A's edge and v is B's, or both span A's face. A vertex may leave an edge in any direction of a half-plane, and
+  // another vertex in any direction of a half-space.
   const Vec away = normalised(touch == Touch::vertex_vertex ? v : cross(u, v));
   const Vec back = away * -1.0;
   if (touch == Touch::vertex_face) {
@@ -125,8 +126,8 @@ GRAZE_INLINE Contact draw_contact(Draws& draws, Touch touch, const Grain& grain,
   return contact;
 }
 
-// How B leaves the contact, or enters A. Half of the pushes are gaps: ±2^-1 … ±2^-40 of the triangles' size, before
-// rounding; half move one coordinate of b[0] by 0 … ±8 ulps, after it.
+// How B leaves the contact or enters A. Half of the pushes are gaps of ±2^-1 … ±2^-40 of the triangles' size, applied
+// before rounding. The other half move one coordinate of b[0] by 0 … ±8 ulps, after rounding.
 struct Push {
   double gap;
   int axis;
@@ -159,9 +160,9 @@ GRAZE_INLINE Pair near_contact(Draws& draws, Touch touch, const Shape& shape_a =
 
 GRAZE_INLINE Touch draw_touch(Draws& draws) { return static_cast<Touch>(draws.below(4)); }
 
-// Half touch exactly; a quarter each has one coordinate of b[0] one unit above or below.
+// Half of the pairs touch exactly. In a quarter each, one coordinate of b[0] is one unit more or less.
 GRAZE_INLINE Pair exact_contact(Draws& draws) {
-  const Touch touch = static_cast<Touch>(draws.below(3));  // two equal vertices are for shared_vertex
+  const Touch touch = static_cast<Touch>(draws.below(3));  // two equal vertices are left to shared_vertex
   const Grain grain = wide_grain(draws);
   Contact contact = draw_contact(draws, touch, grain);
   if (draws.coin()) {

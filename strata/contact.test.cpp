@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of near, exact, coplanar and parallel contacts: exact promises in 128-bit integers, others as shares.
+// Tests of near, exact, coplanar and parallel contacts. Exact promises are tested in 128-bit integers, others as
+// shares.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,8 +22,8 @@ TEST(NearContacts, HaveBothVerdicts) {
   }
 }
 
-// The smallest distance of a vertex from the other triangle's plane, over the size; signed: positive if its triangle
-// lies on one side of the plane, negative if not.
+// The smallest distance of a vertex from the other triangle's plane. Positive if its triangle lies on one side of the
+// plane, otherwise negative.
 long double closest_vertex(const Triangle<long double>& plane, const Triangle<long double>& t) {
   const Vec3<long double> n = normal(plane);
   const long double size = std::sqrt(dot(n, n));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coplanar and parallel pairs: two triangles on a square grid, and a chart that lays the grid into space. With an
-// integer chart nothing rounds and coplanar is exact; with a real one it holds until rounding.
+// Coplanar and parallel pairs: two triangles on a square grid, and a chart that maps the grid into space. With an
+// integer chart nothing rounds and the pair is exactly coplanar. With a real chart it is coplanar until rounding.
 #pragma once
 
 #include "strata/draws.h"
@@ -21,15 +21,16 @@ GRAZE_HD inline GridPoint draw_point(Draws& draws, int reach) { return {draws.in
 
 GRAZE_HD inline GridPoint along(GridPoint p, GridPoint d, int times) { return {p.i + d.i * times, p.j + d.j * times}; }
 
-// p + w or p - w, whichever lies to the left of d (side 1) or to its right (side -1); if neither, d turned to there.
+// p + w or p - w, whichever is left of d (side 1) or right of it (side -1). If w is parallel to d, p plus d turned to
+// that side.
 GRAZE_HD inline GridPoint beside(GridPoint p, GridPoint d, int side, GridPoint w) {
   const std::int64_t turn = static_cast<std::int64_t>(d.i) * w.j - static_cast<std::int64_t>(d.j) * w.i;
   if (turn == 0) return along(p, {-d.j, d.i}, side);
   return along(p, w, turn * side < 0 ? -1 : 1);
 }
 
-// Two triangles on the grid, within ±(reach + 1). Half are unrelated; half touch, a vertex of B on an edge of A or
-// one grid step from it.
+// Two triangles on the grid, within ±(reach + 1). Half of the pairs are unrelated. In the other half a vertex of B is
+// on an edge of A or one grid step from it.
 // Requires: reach >= 8.
 GRAZE_HD inline GridPair draw_grid_pair(Draws& draws, int reach) {
   GridPair pair;
@@ -90,8 +91,8 @@ GRAZE_HD inline Pair coplanar_lattice(Draws& draws) {
   return shuffled(draws, rounded(draft));
 }
 
-// An integer chart and a grid pair on it: the 22 bits of each product are split between grid and chart at random.
-// Within ±(place + 2^23).
+// An integer chart and a grid pair on it, within ±(place + 2^23). The 22 bits of each product are split at random
+// between grid and chart.
 GRAZE_HD inline Draft draw_wide_coplanar(Draws& draws, int place) {
   const int grid_bits = draws.between(4, 19);
   const int step = 1 << (22 - grid_bits);
@@ -104,7 +105,7 @@ GRAZE_HD inline Pair coplanar_wide(Draws& draws) {
   return shuffled(draws, rounded(draft));
 }
 
-inline constexpr int kRealReach = 1 << 20;  // grid of a real chart: fine enough to pass for continuous
+inline constexpr int kRealReach = 1 << 20;  // the grid of a real chart, fine enough to be almost continuous
 
 GRAZE_HD inline Draft draw_real_coplanar(Draws& draws, const Chart& chart) {
   return laid(chart, draw_grid_pair(draws, kRealReach));
@@ -120,17 +121,17 @@ GRAZE_HD inline Pair coplanar_rounded(Draws& draws) {
   return shuffled(draws, rounded(draft));
 }
 
-// B's plane is A's, moved.
+// B's plane is A's plane, translated.
 GRAZE_HD inline Pair parallel(Draws& draws) {
   switch (draws.below(3)) {
-    case 0: {  // tilted, parallel until rounding: by 1 … 2^-40 of the size
+    case 0: {  // tilted; parallel until rounding, at a distance of 1 … 2^-40 of the size
       const Chart chart = draw_real_chart(draws);
       Draft draft = draw_real_coplanar(draws, chart);
       const double gap = draws.sign();
       move(draft.b, normalised(cross(chart.u, chart.v)) * (gap * power_of_two(-draws.between(0, 40))));
       return shuffled(draws, rounded(draft));
     }
-    case 1: {  // tilted, exactly parallel: by up to one unit in a coordinate, or by any vector
+    case 1: {  // tilted; exactly parallel, moved by up to one unit in a coordinate or by any vector
       Draft draft = draw_wide_coplanar(draws, 1 << 22);
       Vec by = draws.integers(1 << draws.between(0, 22));
       const double units = draws.integer(1);
@@ -138,7 +139,7 @@ GRAZE_HD inline Pair parallel(Draws& draws) {
       move(draft.b, by);
       return shuffled(draws, rounded(draft));
     }
-    default: {  // axis-aligned, exactly parallel: by up to 4 ulps
+    default: {  // axis-aligned; exactly parallel, moved by up to 4 ulps
       const int normal = draws.between(0, 2);
       const Vec origin = draws.reals();
       Pair pair = rounded(draw_real_coplanar(draws, axis_chart(origin, normal, 1.0 / kRealReach)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the strata draw from: the random words of one pair, numbers and vectors made of them, and drafts, which
-// are pairs before their one rounding to float32. Same bits everywhere: no library function that may round.
+// What the strata draw from: the random words of one pair, and numbers and vectors made of them. A draft is a pair
+// before its one rounding to float32. The bits are the same everywhere, because no library function that may round is
+// used.
 #pragma once
 
 #include <Random123/philox.h>
@@ -10,7 +11,7 @@
 
 #include "core/pair.h"
 
-// Inlined on a device, a pair's draws keep their state in registers, and their number is known to the compiler.
+// Inlined on a device, so that the state of a pair's draws stays in registers and the compiler knows their number.
 #ifdef __CUDACC__
 #define GRAZE_INLINE __host__ __device__ __forceinline__
 #else
@@ -22,9 +23,9 @@ inline namespace GRAZE_FP {
 
 using Vec = Vec3<double>;
 
-// The random words of one pair, in order: Philox4x32-10 with the seed as key, and as counter the index (two
-// words), the stratum and the number of the block. The order of draws is part of a stratum's definition, and
-// C++ leaves the order within an expression open, except in braces: one draw in each expression, or braces.
+// The random words of one pair, in order: Philox4x32-10 with the seed as its key. The counter is the index (two words),
+// the stratum and the number of the block. The order of draws is part of a stratum's definition. C++ does not define
+// the order within an expression, except in braces: use one draw in each expression, or braces.
 struct Draws {
   philox4x32_key_t key;
   philox4x32_ctr_t counter;
@@ -45,7 +46,7 @@ struct Draws {
     return block.v[used++];
   }
 
-  // 0 … n-1. The bias, n / 2^32, is of no consequence here.
+  // 0 … n-1. The bias, n / 2^32, does not matter here.
   GRAZE_INLINE std::uint32_t below(std::uint32_t n) {
     return static_cast<std::uint32_t>(static_cast<std::uint64_t>(word()) * n >> 32);
   }
@@ -89,8 +90,8 @@ GRAZE_INLINE double power_of_two(int exponent) {
   return power;
 }
 
-// The float that many steps above x, or below; through zero and the subnormals.
-// Requires: no step past the largest float.
+// The float that is `ulps` steps above x, or below if negative; steps cross zero and the subnormals.
+// Requires: no step goes past the largest float.
 GRAZE_INLINE float nudged(float x, int ulps) {
   constexpr std::uint32_t kSign = 0x80000000u;
   std::uint32_t bits;
@@ -123,7 +124,7 @@ GRAZE_INLINE void move(Vec (&triangle)[3], const Vec& by) {
   for (Vec& vertex : triangle) vertex = vertex + by;
 }
 
-// Scales each axis by its factor.
+// Scales each axis by its own factor.
 GRAZE_INLINE void scale(Vec (&triangle)[3], const Vec& by) {
   for (Vec& vertex : triangle) vertex = {vertex.x * by.x, vertex.y * by.y, vertex.z * by.z};
 }
@@ -141,13 +142,13 @@ GRAZE_INLINE Pair rounded(const Draft& draft) {
   return pair;
 }
 
-// The pair in one of its 72 orders, so that no algorithm sees a stratum's contacts in one order only.
+// The pair in a random one of its 72 orders, so that no algorithm sees a stratum's contacts in one order only.
 GRAZE_INLINE Pair shuffled(Draws& draws, const Pair& pair) {
   const std::uint32_t order = draws.below(72);
   const bool swap = order % 2 != 0;
   const int turn_a = static_cast<int>(order / 2 % 3), turn_b = static_cast<int>(order / 6 % 3);
   const int step_a = order / 18 % 2 != 0 ? 2 : 1, step_b = order / 36 != 0 ? 2 : 1;
-  // Chosen without indexing, which on a device would move the pair from registers to memory.
+  // Selects without indexing, which on a device would move the pair from registers to memory.
   const auto choose = [](bool first, const Vec3<float>& u, const Vec3<float>& v) -> Vec3<float> {
     return {first ? u.x : v.x, first ? u.y : v.y, first ? u.z : v.z};
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bits every stratum must have: a hash of its first 10,000 pairs at seed 1, for tests on host and device alike.
-// A change here changes what every stored (seed, stratum, index) means.
+// The bits that every stratum must have: a hash of its first 10,000 pairs at seed 1, for tests on host and device. If a
+// value here changes, every stored (seed, stratum, index) has another meaning.
 #pragma once
 
 #include <cstdint>

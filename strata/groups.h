@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Groups of strata that a reader asks after together: how a lane does on general pairs says nothing of coplanar ones.
+// Groups of strata whose results are reported together. A lane's results on general pairs say nothing about coplanar
+// ones.
 #pragma once
 
 #include <optional>
@@ -58,7 +59,7 @@ constexpr Group group_of(Stratum stratum) {
   return Group::general;
 }
 
-// The group of the source of that name: a stratum, or a mesh, as it is or moved. Nothing for a stratum that this build
+// The group of a source, given its name: a stratum, or a mesh as it is or moved. Nothing for a stratum that this build
 // does not know.
 constexpr std::optional<Group> group_of_name(std::string_view id) {
   for (const StratumInfo& row : kStrata) {

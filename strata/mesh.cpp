@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs from real input: files are read to float32 triangles, which are paired by their closed boxes.
+// Pairs from real input: reads files to float32 triangles and pairs triangles whose closed boxes overlap.
 #include "strata/mesh.h"
 
 #include <CGAL/Box_intersection_d/Box_with_info_d.h>
@@ -24,7 +24,7 @@ namespace {
 using Triangle = std::array<Vec3<float>, 3>;
 using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>;  // info: index of the triangle
 
-// So that a soup in which everything overlaps everything is an error, not all of the memory.
+// A limit, so that a soup in which all triangles overlap is an error and does not fill the memory.
 constexpr std::size_t kMostCandidates = std::size_t{1} << 28;  // 2 GiB of indices
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -87,9 +87,9 @@ std::vector<Box> boxes_of(const std::vector<Triangle>& triangles, std::size_t be
 
 using Pose = std::array<double, 12>;
 
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // of all poses together: 2.25 GiB
+constexpr std::size_t kMostTriangles = std::size_t{1} << 26;  // in all poses together: 2.25 GiB
 
-// Adds the file's bytes to the hash.
+// Reads the poses. Adds the file's bytes to the hash.
 std::vector<Pose> read_poses(const std::filesystem::path& file, std::uint64_t& hash) {
   std::string bytes = read_bytes(file);
   hash = fnv1a(bytes, hash);
@@ -122,7 +122,7 @@ Vec3<float> moved(const Pose& m, const Vec3<float>& v) {
   return {to[0], to[1], to[2]};
 }
 
-// A body of each pose in place of the mesh.   Returns: where each ends.
+// Replaces the mesh by one body for each pose.   Returns: where each body ends in the triangles.
 std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path& file,
                                    const std::vector<Pose>& poses) {
   const std::vector<Triangle> mesh = std::move(pairs.triangles);
@@ -146,7 +146,7 @@ std::vector<std::size_t> put_poses(MeshPairs& pairs, const std::filesystem::path
   return ends;
 }
 
-// Finds the candidates: of one body with itself, of several between them.
+// Finds the candidate pairs: within one body, or between several.
 void pair_up(MeshPairs& result, const std::vector<std::size_t>& ends, const std::filesystem::path& file) {
   const auto add = [&](const Box& p, const Box& q) {
     if (result.candidates.size() == kMostCandidates) {
@@ -156,7 +156,7 @@ void pair_up(MeshPairs& result, const std::vector<std::size_t>& ends, const std:
   };
   std::vector<Box> boxes = boxes_of(result.triangles, 0, ends[0]);
   if (ends.size() == 1) CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), add);
-  // Each body with all before it.
+  // Pairs each body with all bodies before it.
   for (std::size_t body = 1; body < ends.size(); ++body) {
     std::vector<Box> others = boxes_of(result.triangles, ends[body - 1], ends[body]);
     CGAL::box_intersection_d(boxes.begin(), boxes.end(), others.begin(), others.end(), add);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs from real input: the triangles of a mesh, or of two, whose closed bounding boxes overlap.
-// Boxes: CGAL's hybrid of streaming and segment trees (Zomorodian and Edelsbrunner 2002).
+// Pairs from real input: triangles of one mesh, or of two, whose closed bounding boxes overlap. The boxes are
+// intersected by CGAL's hybrid of streaming and segment trees (Zomorodian and Edelsbrunner 2002).
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@
 namespace graze::strata {
 
 struct MeshPairs {
-  std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the other, in file order
+  std::vector<std::array<Vec3<float>, 3>> triangles;  // of the first file, then of the second, in file order
   std::vector<std::pair<std::uint32_t, std::uint32_t>> candidates;  // indices into triangles, sorted, first < second
-  std::uint64_t content_hash = 0;  // FNV-1a of the bytes of the file, then of the other
-  std::vector<std::string> notes;  // one line a file of which something was not used, such as its normals
+  std::uint64_t content_hash = 0;  // FNV-1a of the bytes of the first file, then of the second
+  std::vector<std::string> notes;  // one line for each file with unused content, such as normals
 
   std::size_t size() const { return candidates.size(); }
 
@@ -28,20 +28,21 @@ struct MeshPairs {
   Pair pair(std::size_t index) const;
 };
 
-// The candidate pairs of a mesh against itself, or against the other. Faces of more than three vertices are cut
-// into a fan from their first vertex. Coordinates are rounded once to float32, and
-// triangles that are degenerate then stay in; the boxes are those of the rounded triangles, so no pair that
-// touches is missed. Files: OFF, OBJ, STL and PLY, told apart by their extension.
-// Throws: std::runtime_error of one line that names file, line or byte, what was expected and what was found.
+// The candidate pairs of a mesh against itself, or against the other mesh. A face of more than three vertices is cut
+// into a fan from its first vertex. Coordinates are rounded once to float32; triangles that become degenerate stay in.
+// The boxes are those of the rounded triangles, so no touching pair is missed. The extension tells the format: OFF,
+// OBJ, STL or PLY.
+// Throws: std::runtime_error of one line that names the file, the line or byte, and what was expected and found.
 MeshPairs read_mesh_pairs(const std::filesystem::path& file,
                           const std::optional<std::filesystem::path>& other = std::nullopt);
 
-// The same of bodies: of one its own pairs, of several the pairs between them. Poses, a CSV file with a row of twelve
-// numbers for each, the three rows of a matrix (R | t), make a body of each pose of the one mesh.
-// Requires: at least one file, and one alone where there are poses.
+// The candidate pairs of bodies: one body against itself, or several against each other. `poses` makes one body of each
+// pose of a single mesh. It is a CSV file with a row of twelve numbers for each pose: the three rows of a matrix (R |
+// t).
+// Requires: at least one file; exactly one if there are poses.
 MeshPairs read_bodies(const std::vector<std::filesystem::path>& files, const std::filesystem::path& poses = {});
 
-// The triangles of a mesh alone; and with the candidate pairs of the mesh against itself, which may be none.
+// The triangles of a mesh without pairs; and with its candidate pairs against itself, of which there may be none.
 MeshPairs read_triangles(const std::filesystem::path& file);
 MeshPairs read_self_pairs(const std::filesystem::path& file);
 

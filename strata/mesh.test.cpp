@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes as input: every format reads to the same triangles, candidates equal a brute-force search, errors say why.
+// Meshes as input: every format gives the same triangles, candidates equal a brute-force search, errors give the
+// reason.
 #include "strata/mesh.h"
 #include "core/message_testing.h"
 
@@ -21,7 +22,7 @@ namespace {
 using Index = std::pair<std::uint32_t, std::uint32_t>;
 using Triangle = std::array<Vec3<float>, 3>;
 
-// A tetrahedron of the corner at the origin; its faces in this order.
+// The faces of a tetrahedron at the origin's corner, in this order.
 const std::string kTetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 3\n";
 
 class MeshFile : public testing::Test {
@@ -34,7 +35,7 @@ class MeshFile : public testing::Test {
     return folder_ / name;
   }
 
-  // Returns: the message without the folder.
+  // Returns: the error message without the folder.
   std::string error_of(const std::string& name) const {
     std::string message = "none";
     try {
@@ -124,7 +125,7 @@ TEST_F(MeshFile, AMeshAgainstItselfPairsEachTwoOnce) {
 }
 
 TEST_F(MeshFile, TwoMeshesPairAcrossOnly) {
-  const std::string touching = "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box meets those at a point only
+  const std::string touching = "OFF\n3 1 0\n1 1 1\n2 1 1\n1 2 1\n3 0 1 2\n";  // its box touches theirs only in a point
   const MeshPairs pairs = read_mesh_pairs(write("t.off", kTetrahedron), write("u.off", touching));
   EXPECT_EQ(pairs.triangles.size(), 5u);
   EXPECT_EQ(pairs.candidates, (std::vector<Index>{{3, 4}}));
@@ -136,7 +137,7 @@ TEST_F(MeshFile, TwoMeshesPairAcrossOnly) {
 
 TEST_F(MeshFile, CandidatesEqualABruteForceSearch) {
   std::mt19937 random(2012);
-  // Coordinates in 0..9 make many boxes that only touch, and some degenerate triangles.
+  // Coordinates in a small range make many boxes that only touch, and some degenerate triangles.
   const auto soup = [&random](std::size_t count, unsigned extent) {
     const auto coordinate = [&] { return static_cast<float>(random() % extent + random() % 3); };
     std::vector<Triangle> triangles(count);
@@ -211,7 +212,7 @@ TEST_F(MeshFile, ErrorsNameTheFileAndSayWhy) {
   EXPECT_TRUE(names(error_of("index.obj"), {"index.obj:4", "3 vertices", "vertex 4"}));
 }
 
-// Nothing is left out in silence.
+// Content that is left out is always reported.
 TEST_F(MeshFile, SaysWhatItDoesNotUse) {
   EXPECT_TRUE(read_mesh_pairs(write("t.off", kTetrahedron)).notes.empty());
   const auto file = write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nl 1 2\nvn 0 0 1\nl 3 4\nf 1 2 3\nf 1 2 4\n");

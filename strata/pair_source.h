@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a campaign's pairs come from: a stratum, or a mesh's candidate pairs; each a pure function of an index.
+// Where a campaign's pairs come from: a stratum, or a mesh's candidate pairs. Each is a pure function of an index.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,17 @@ struct Scene;
 
 struct PairSource {
   std::string id;
-  std::uint64_t pairs = 0;  // how many of them the campaign takes: indices [0, pairs)
+  std::uint64_t pairs = 0;  // the campaign takes the indices [0, pairs)
   std::function<Pair(std::uint64_t index)> pair;
-  // What draws the same pairs on a device: a stratum's place in kStrata; -1: only `pair` draws them.
+  // What a device needs to draw the same pairs: a stratum's index in kStrata; -1 if only `pair` can draw them.
   int stratum = -1;
   Axis axis = Axis::none;  // the stratum's
   std::uint64_t seed = 0;
-  std::shared_ptr<const Scene> scene = nullptr;  // that the stratum is drawn in; null: in none
+  std::shared_ptr<const Scene> scene = nullptr;  // the scene in which the stratum is drawn; null: none
 };
 
-// The strata whose names match (all of them for an empty list), `pairs` shared evenly, the first ones taking the rest.
-// Throws: UsageError when a pattern matches none.
+// The strata whose names match (all for an empty list). They share `pairs` evenly; the first ones take the remainder.
+// Throws: UsageError if a pattern matches no stratum.
 std::vector<PairSource> stratum_sources(std::uint64_t seed, std::uint64_t pairs, const std::vector<std::string>& globs);
 
 }  // namespace graze::strata

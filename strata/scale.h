@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts at scales that strain float32: far from the origin, next to overflow and underflow, and very different
-// scales within one pair. Each transforms a contact before its one rounding.
+// Contacts at scales that strain float32: far from the origin, near overflow and underflow, and very different scales
+// within one pair. Each function transforms a contact before its one rounding.
 #pragma once
 
 #include "strata/contact.h"
@@ -21,7 +21,7 @@ GRAZE_HD inline Pair far_from_origin(Draws& draws) {
   return finished(draws, contact.draft, push);
 }
 
-// Half near, half exact while it does not round into the subnormals.
+// Half of the pairs are near contacts. The other half are exact, unless they round into the subnormals.
 GRAZE_HD inline Pair extreme_scale(Draws& draws) {
   const bool exact = draws.coin();
   const Grain grain = exact ? wide_grain(draws) : real_grain();
@@ -40,14 +40,14 @@ GRAZE_HD inline Pair mixed_scale(Draws& draws) {
   Contact contact = draw_contact(draws, draw_touch(draws), real_grain());
   Push push = draw_push(draws);
   Draft& draft = contact.draft;
-  if (draws.coin()) {  // each axis has a scale of its own; contact survives that
+  if (draws.coin()) {  // each axis has its own scale; the contact remains one
     const Vec size{power_of_two(draws.integer(20)), power_of_two(draws.integer(20)), power_of_two(draws.integer(20))};
     move(draft.b, contact.away * push.gap);
     scale(draft.a, size);
     scale(draft.b, size);
     return finished(draws, draft, push);
   }
-  // One triangle shrinks towards the contact, and the gap with it.
+  // One triangle and the gap shrink towards the contact.
   const double size = power_of_two(-draws.between(1, 40));
   const bool shrink_a = draws.coin();
   const Vec to_origin = contact.p * -1.0;
@@ -55,7 +55,8 @@ GRAZE_HD inline Pair mixed_scale(Draws& draws) {
   move(draft.b, to_origin);
   scale(shrink_a ? draft.a : draft.b, {size, size, size});
   move(draft.b, contact.away * (push.gap * size));
-  // A contact at the origin keeps the small triangle's digits; elsewhere it rounds to the large one's grid.
+  // A contact at the origin keeps the small triangle's digits. Elsewhere the small triangle rounds to the large one's
+  // grid.
   if (draws.below(4) == 0) {
     move(draft.a, contact.p);
     move(draft.b, contact.p);

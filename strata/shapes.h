@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs made special by their triangles: slivers, degenerate ones, and mesh neighbours that share stored vertices.
+// Pairs of special triangles: slivers, degenerate triangles, and mesh neighbours that share stored vertices.
 #pragma once
 
 #include "strata/contact.h"
@@ -7,7 +7,7 @@
 namespace graze::strata {
 inline namespace GRAZE_FP {
 
-// Length over height 2^10 … 2^23, log-uniform.
+// Length divided by height is 2^10 … 2^23, log-uniform.
 GRAZE_HD inline Shape draw_sliver_shape(Draws& draws) {
   const double fraction = 0.5 + 0.5 * draws.positive();
   return {fraction * power_of_two(-draws.between(10, 22)), true, draws.coin()};
@@ -20,7 +20,7 @@ GRAZE_HD inline Pair sliver(Draws& draws) {
   return near_contact(draws, touch, which != 1 ? shape : Shape{}, which != 0 ? shape : Shape{});
 }
 
-// A segment through or from p along e; its third vertex is an end, or lies exactly on the same line.
+// A segment along e that contains p or starts there. The third vertex is an end, or lies exactly on the same line.
 GRAZE_HD inline void put_segment(Draws& draws, const Grain& grain, const Vec& p, const Vec& e, Vec (&triangle)[3]) {
   const double back = draws.coin() ? draw_weight(draws, grain) : 0;
   const double forth = draw_weight(draws, grain);
@@ -32,8 +32,9 @@ GRAZE_HD inline void put_segment(Draws& draws, const Grain& grain, const Vec& p,
 
 GRAZE_HD inline void put_point(const Vec& p, Vec (&triangle)[3]) { triangle[0] = triangle[1] = triangle[2] = p; }
 
-// B is a segment or a point, A anything; both at one point p, then half of the time B is one unit off. Integers
-// throughout, small or wide, so that collinear is exact; then scaled by a power of two.
+// B is a segment or a point, and A is anything. Both contain a point p; then B is moved by one unit in half of the
+// pairs. Coordinates are integers, small or wide, so that collinear points are exactly so. A power of two then scales
+// the pair.
 GRAZE_HD inline Pair degenerate(Draws& draws) {
   const Grain grain = draws.coin() ? small_grain() : wide_grain(draws);
   const Vec p = draw_place(draws, grain);
@@ -74,8 +75,8 @@ GRAZE_HD inline Pair degenerate(Draws& draws) {
   return shuffled(draws, rounded(draft));
 }
 
-// How the neighbour's free vertices leave the first triangle's plane. Exact: integers, in the plane, or one unit off
-// it in one coordinate. Otherwise real: in the plane, or a dihedral angle of about 2^-1 … 2^-30, or any.
+// How the neighbour's free vertices leave the first triangle's plane. Exact: integers, in the plane or one unit off it
+// in one coordinate. Otherwise real: in the plane, or at a dihedral angle of about 2^-1 … 2^-30, or at any angle.
 struct Fold {
   bool exact;
   Vec p, u, v;  // A is p, p + u, p + v
@@ -94,7 +95,8 @@ GRAZE_HD inline Fold draw_fold(Draws& draws) {
   return fold;
 }
 
-// Anywhere around p in A's plane: beyond an edge the triangles lie flat side by side, over it folded together.
+// A point around p in A's plane, then lifted. Beyond the common edge the triangles lie side by side; within it they
+// fold onto each other.
 GRAZE_HD inline Vec draw_free_vertex(Draws& draws, const Fold& fold) {
   const double i = fold.exact ? draws.integer(8) : draws.real();
   const double j = fold.exact ? draws.integer(8) : draws.real();

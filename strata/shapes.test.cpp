@@ -13,7 +13,7 @@
 namespace graze::strata::testing {
 namespace {
 
-// Length over height.
+// Length divided by height.
 double aspect(const Vec3<float> (&v)[3]) {
   const Triangle<double> t = converted<double>(v);
   const double longest = std::max({length(edge(t, 0)), length(edge(t, 1)), length(edge(t, 2))});
@@ -40,7 +40,7 @@ int shared_vertices(const Pair& pair) {
 TEST(Degenerate, OneIsASegmentOrPointExactly) {
   int points = 0, segments = 0, both = 0, share_a_vertex = 0;
   for (const Pair& pair : draw(Stratum::degenerate)) {
-    // Exact: 24-bit integers over one power of two, so differences take 25 bits and the normal 51.
+    // Exact: coordinates are 24-bit integers times one power of two, so differences need 25 bits and the normal 51.
     const auto a = converted<double>(pair.a), b = converted<double>(pair.b);
     const bool a_flat = is_zero(normal(a)), b_flat = is_zero(normal(b));
     ASSERT_TRUE(a_flat || b_flat);
@@ -92,7 +92,7 @@ TEST(FarFromOrigin, OffsetsAreLogUniform) {
 }
 
 TEST(ExtremeScale, CoversAllExponents) {
-  std::array<int, 10> bins{};  // of 2^28 each, from 2^-150 on
+  std::array<int, 10> bins{};  // each spans 2^28, starting at 2^-150
   for (const Pair& pair : draw(Stratum::extreme_scale)) {
     const int exponent = largest(pair) == 0 ? -150 : std::ilogb(largest(pair));
     ++bins[static_cast<std::size_t>((exponent + 150) / 28)];

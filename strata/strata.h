@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Strata: named generators of pairs, each a pure function of (seed, stratum, index) with the same bits on host
-// and device. Random bits: Random123's Philox4x32-10 (Salmon et al. 2011); our own integer-to-float maps.
+// Strata: named generators of pairs. Each is a pure function of (seed, stratum, index) with the same bits on host and
+// device. Random bits come from Random123's Philox4x32-10 (Salmon et al. 2011); the integer-to-float maps are ours.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ enum class Stratum : std::uint8_t {
 struct StratumInfo {
   Stratum stratum;
   std::string_view id;
-  std::string_view what;   // one line: what it draws, and what it is for
-  Axis axis = Axis::none;  // what it varies besides the margin; campaigns count by that too
+  std::string_view what;   // one line: what it draws, and its purpose
+  Axis axis = Axis::none;  // what varies besides the margin; campaigns count by it too
 };
 
 // One row for each stratum, in the order of the enumeration.
@@ -73,7 +73,7 @@ inline constexpr int kStrataCount = sizeof kStrata / sizeof kStrata[0];
 
 inline namespace GRAZE_FP {
 
-// The pair with this index. Finite in every stratum.
+// The pair with this index. It is finite in every stratum.
 // Requires: compiled without contraction, on host and device alike.
 GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t index);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests of the strata's bits: golden hashes, purity, finiteness, and the strata that are plain draws of numbers.
-// What the others promise of their geometry is in contact.test.cpp and shapes.test.cpp.
+// The geometric promises of the others are tested in contact.test.cpp and shapes.test.cpp.
 #include "strata/strata.h"
 
 #include <gtest/gtest.h>
@@ -21,9 +21,9 @@ TEST(Strata, RowsAreInTheOrderOfTheEnumeration) {
   for (int s = 0; s < kStrataCount; ++s) EXPECT_EQ(static_cast<int>(kStrata[s].stratum), s) << kStrata[s].id;
 }
 
-// What the group says of itself: its strata are of usual triangles, and some of their pairs are not.
+// What the group's description says: its triangles are of usual shape, but some pairs are coplanar or degenerate.
 TEST(Groups, GeneralHasSomeCoplanarAndSomeDegeneratePairs) {
-  constexpr std::uint64_t kPairs = 3000;  // of each stratum
+  constexpr std::uint64_t kPairs = 3000;  // in each stratum
   std::uint64_t pairs = 0, coplanar = 0, degenerate = 0;
   for (const StratumInfo& row : kStrata) {
     if (group_of(row.stratum) != Group::general) continue;
@@ -140,7 +140,7 @@ TEST(Lattice, TakesThreeValues) {
   EXPECT_EQ(values, (std::set<float>{-1, 0, 1}));
 }
 
-// Whether the listing can give these three coordinates on one axis.
+// Whether the thesis's listing can produce these three coordinates on one axis.
 bool is_of_the_listing(float x, float y, float z) {
   for (int k = 0; k < 80; ++k) {
     const float base = static_cast<float>(k - 40) / 10.0f;

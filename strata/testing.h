@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of the strata's geometry share: triangles over any scalar, exact in 128-bit integers, and shares of
-// many pairs.
+// Shared by the tests of the strata's geometry: triangles over any scalar, exact in 128-bit integers, and the share of
+// pairs that have a property.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ bool separated_along(const Vec3<Real>& axis, const Triangle<Real>& a, const Tria
   return a_high < b_low || b_high < a_low;
 }
 
-// By the separating axes of two proper triangles, coplanar ones included.
+// Uses the separating axes of two proper triangles, which may be coplanar.
 template <class Real>
 bool disjoint(const Triangle<Real>& a, const Triangle<Real>& b) {
   const Vec3<Real> n = normal(a), m = normal(b);
@@ -97,7 +97,7 @@ inline double extent_along(const Pair& pair, int axis) {
   return double{high} - double{low};
 }
 
-// Whether Int takes the coordinates as they are.
+// Whether Int can hold the coordinates without rounding.
 inline bool is_24_bit_integer(const Pair& pair) {
   const float* x = coordinates(pair);
   return largest(pair) <= 0x1p24 && std::all_of(x, x + kCoordinates, [](float c) { return c == std::trunc(c); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What passes between graze, the supervisor of a subject, and the worker in which foreign code runs. Whatever the
-// worker sends or writes may be forged: the supervisor reads it once, copies it and checks it.
+// Messages between graze, a subject's supervisor, and the worker in which foreign code runs. Anything that the worker
+// sends or writes may be forged. So the supervisor reads it once, copies it and checks the copy.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace graze::subjects {
 
 inline constexpr std::size_t kMostAsked = 1024;  // pairs in a block
 
-// A pair's answer; those after kIntersects are not for the worker to give.
+// The answer for a pair. A worker may not give the ones after kIntersects.
 enum Answer : signed char {
   kDeclined = -1,
   kDisjoint = 0,
@@ -25,28 +25,28 @@ using Chosen = std::array<std::uint64_t, kMostAsked / 64>;  // a bit for each pa
 
 inline bool is_chosen(const Chosen& chosen, std::size_t pair) { return chosen[pair / 64] >> pair % 64 & 1; }
 
-// graze to the supervisor: the pairs lie in memory that only graze can write.
+// From graze to the supervisor. The pairs lie in memory that only graze can write.
 struct Block {
   std::uint32_t count;
 };
 
-// The supervisor to graze.
+// From the supervisor to graze.
 struct Answers {
-  std::uint64_t nanoseconds;  // processor time of the worker's first pass over all pairs; 0: not known
+  std::uint64_t nanoseconds;  // processor time of the worker's first pass over all pairs; 0: unknown
   std::uint32_t count;
   signed char answers[kMostAsked];
 };
 
-// The supervisor to the worker: the pairs to ask about, forward, and those to ask about again after that, backward.
+// From the supervisor to the worker: pairs to ask in a forward pass, and pairs to ask again in a later backward pass.
 struct Question {
   std::uint64_t nonce;
-  std::int32_t worker;   // process id of the worker that is meant: the question may outlive it
+  std::int32_t worker;   // process id of the worker meant, because the question may outlive it
   std::uint32_t count;   // pairs in the block
-  std::uint32_t singly;  // one pair at a time, also of a subject that takes blocks
+  std::uint32_t singly;  // ask one pair at a time even if the subject takes blocks
   Chosen first, second;
 };
 
-// The worker to the supervisor; the sender's process id comes with a message, from the system.
+// From the worker to the supervisor. The system adds the sender's process id to each message.
 enum class Says : std::uint32_t { loaded, refused, ready, answered };
 
 struct Answered {
@@ -57,29 +57,28 @@ struct Answered {
 };
 
 struct Loaded {
-  Says says;  // loaded, or refused: `text` says why
+  Says says;  // loaded; or refused, and `text` has the reason
   std::uint32_t outside;
   std::uint32_t has_f32, has_f64, of_blocks;
-  std::uint32_t describes_itself;  // by a struct graze_subject
+  std::uint32_t describes_itself;  // has a struct graze_subject
   char version[256], source[512], convention[512];
-  char symbol[512];  // of the library, that was taken
-  char text[8192];   // of a program: its first line in answer to `describe`
+  char symbol[512];  // the library's symbol that was loaded
+  char text[8192];   // of a program: the first line of its answer to `describe`
 };
 
-// An answer as it stands in shared memory: the pair, the pass, the answer and a check, which only the question's nonce
-// explains.
+// An answer in shared memory: pair, pass, answer, and a check value that depends on the question's nonce.
 inline std::uint64_t word_of(std::uint64_t nonce, bool second, std::size_t pair, signed char answer) {
   const std::uint64_t content = pair << 3 | std::uint64_t{second} << 2 | static_cast<std::uint64_t>(answer + 2);
-  std::uint64_t check = (nonce ^ content) * 0x9e3779b97f4a7c15;  // the finaliser of SplitMix64
+  std::uint64_t check = (nonce ^ content) * 0x9e3779b97f4a7c15;  // finaliser of SplitMix64
   check = (check ^ check >> 30) * 0xbf58476d1ce4e5b9;
   check = (check ^ check >> 27) * 0x94d049bb133111eb;
   return (check ^ check >> 31) << 16 | content;
 }
 static_assert(kMostAsked << 3 <= 1 << 16);
 
-inline constexpr std::size_t kWords = 2 * kMostAsked;  // of both passes
+inline constexpr std::size_t kWords = 2 * kMostAsked;  // for both passes
 
-// In the worker: writes an answer to the question where the supervisor looks for it.
+// In the worker: writes an answer to the place where the supervisor reads it.
 inline void put_answer(std::uint64_t* words, const Question& question, bool second, std::size_t pair,
                        signed char answer) {
   __atomic_store_n(&words[(second ? kMostAsked : 0) + pair], word_of(question.nonce, second, pair, answer),
@@ -88,7 +87,7 @@ inline void put_answer(std::uint64_t* words, const Question& question, bool seco
 
 inline constexpr std::size_t kPairsBytes = kMostAsked * 18 * sizeof(double);
 
-// Descriptors: of the supervisor, and of the worker.
+// File descriptors, of the supervisor and of the worker.
 inline constexpr int kControlFd = 3, kSupervisorPairsFd = 4;
 inline constexpr int kPairsFd = 3, kWordsFd = 4, kTalkFd = 5;
 

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The command's words as a shell splits them; what it would put in for variables and patterns is not known here.
+// Splits the command into words as a shell does, without expanding variables and patterns.
 std::vector<std::string> words_of(const std::string& command) {
   std::vector<std::string> words;
   std::string word;
@@ -52,7 +52,7 @@ bool is_file(const fs::path& file) {
   return fs::is_regular_file(file, none);
 }
 
-// Where a shell finds the program; empty where it does not.
+// The program's file on the PATH; empty when there is none.
 fs::path on_path(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream folders(path ? path : "");
@@ -62,7 +62,7 @@ fs::path on_path(const std::string& program) {
   return {};
 }
 
-// What stands between these characters.
+// The parts of the text between these characters.
 std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
   std::set<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -83,7 +83,7 @@ std::uint64_t hash_of_file(const fs::path& file) {
   std::error_code why;
   const bool regular = fs::is_regular_file(file, why);
   std::ifstream in;
-  if (regular) in.open(file, std::ios::binary);  // a pipe without a writer would wait
+  if (regular) in.open(file, std::ios::binary);  // opening a pipe without a writer would block
   std::ostringstream text;
   if (!regular || !(text << in.rdbuf())) {
     throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
@@ -107,7 +107,7 @@ CodeHash hash_of_command(const std::string& command) {
   if (program != words.end() && program->find('/') == program->npos) {
     if (const fs::path file = on_path(*program); !file.empty()) code.hash = add_number(hash_of_file(file), code.hash);
   }
-  // Also within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
+  // Also files named within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
   std::set<std::string> files = parts_of(command, " \t\n;|&<>()'\"`=:,{}[]$\\");
   files.insert(words.begin(), words.end());
   for (const std::string& file : files) {
@@ -119,7 +119,7 @@ CodeHash hash_of_command(const std::string& command) {
 std::uint64_t hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash) {
   for (const std::string& flag : flags) {
     hash = fnv1a(flag + '\n', hash);
-    // Also within words: -Wl,FILE and -Wl,--script=FILE, @FILE.
+    // Also files named within words: -Wl,FILE and -Wl,--script=FILE, @FILE.
     std::set<std::string> files = parts_of(flag, ",=@");
     files.insert(flag);
     for (const std::string& file : files) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a subject's code is, as a number: what is compiled or run, and not the name of a file.
+// A hash of a subject's code: of what is compiled or run, not of a file's name.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +12,30 @@ namespace graze::subjects {
 
 struct CodeHash {
   std::uint64_t hash = 0;
-  std::string not_covered;  // what the code depends on beside it, in words; empty where that is nothing
+  std::string not_covered;  // what else the code depends on, in words; empty when nothing
 };
 
-// Of the file's bytes.   Throws: std::runtime_error where there is no such file.
+// Hash of the file's bytes.   Throws: std::runtime_error when the file does not exist.
 std::uint64_t hash_of_file(const std::filesystem::path& file);
 
 CodeHash hash_of_library(const std::filesystem::path& file);
 
-// Of the command's text, the program that it starts, and the files that it names as they stand there: what a shell
-// would put in for variables and patterns is not known.
+// Hash of the command's text, the program that it starts, and the files that it names literally. Files that the shell
+// would find by expanding variables and patterns are not included.
 CodeHash hash_of_command(const std::string& command);
 
-// Of a compiler's flags, and of the files that they name.
+// Hash of a compiler's flags and of the files that they name.
 std::uint64_t hash_of_flags(const std::vector<std::string>& flags, std::uint64_t hash);
 
-// What was built of a C or C++ source in a variant.
+// The build of a C or C++ source in a variant.
 struct Built {
-  std::filesystem::path file;  // named by the hash of what it was made of
-  std::string not_covered;     // what else it was made of, in words
+  std::filesystem::path file;  // named by the hash of its inputs
+  std::string not_covered;     // inputs that the hash leaves out, in words
 };
 
 CodeHash hash_of_builds(const std::vector<Built>& built);
 
-// Of the PTX of each variant, without the places of its lines in files.
+// Hash of the PTX of each variant, without its line information.
 CodeHash hash_of_ptx(const std::vector<std::string_view>& variants);
 
 }  // namespace graze::subjects

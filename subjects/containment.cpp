@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A user without rights becomes one with rights in a namespace of users, under the same name.
+// In a new user namespace, gives an unprivileged user privileges under the same user id.
 bool map_user(uid_t user, gid_t group) {
   const auto write_to = [](const char* file, const std::string& text) {
     const int fd = open(file, O_WRONLY | O_CLOEXEC);
@@ -55,14 +55,14 @@ bool has_terminals() {
   return statfs("/dev/pts", &at) == 0 && at.f_type == DEVPTS_SUPER_MAGIC;
 }
 
-// In the new namespace: what is mounted there is not seen outside. In a chroot, "/" is no mount point, but these are.
+// In the new namespace: hides its mounts from outside. In a chroot, "/" is not a mount point, but the others are.
 bool keep_mounts_private() {
   const auto keep = [](const char* place) { return mount("none", place, nullptr, MS_REC | MS_PRIVATE, nullptr) == 0; };
   return keep("/") ||
          (keep("/proc") && (keep("/dev/shm") || errno == ENOENT) && (!has_terminals() || keep("/dev/pts")));
 }
 
-// The terminals of the process that started this one, which lie where no other file system hides them: a console.
+// The terminals of the parent process that are not below /dev/pts, such as a console. Hiding /dev/pts leaves them.
 std::vector<std::string> terminals_of_parent() {
   std::vector<std::string> found;
   for (const char* name : {"0", "1", "2"}) {
@@ -76,18 +76,18 @@ std::vector<std::string> terminals_of_parent() {
   return found;
 }
 
-// In the new namespace: a terminal that its output was stopped on, or its keys taken from, would stop graze.
+// In the new namespace: hides the terminals. Code that stops a terminal's output or takes its input would stop graze.
 bool hide_terminals(const std::vector<std::string>& others) {
   if (has_terminals() &&
       mount("tmpfs", "/dev/pts", "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k") != 0)
     return false;
   return std::all_of(others.begin(), others.end(), [](const std::string& file) {
-    const bool is_private = mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;  // not so in a chroot
+    const bool is_private = mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;  // fails in a chroot
     return is_private && mount("/dev/null", file.c_str(), nullptr, MS_BIND, nullptr) == 0;
   });
 }
 
-// Where control groups are mounted, as the system's list of mounts has it: with spaces and the like as \040.
+// The mount points of control groups, from the system's list of mounts, which writes spaces and similar as \040.
 std::vector<std::string> control_groups() {
   std::vector<std::string> found;
   std::ifstream in("/proc/self/mountinfo");
@@ -107,63 +107,63 @@ std::vector<std::string> control_groups() {
   return found;
 }
 
-// In the new namespace: root, or a user whom a part of the groups belongs to, could freeze the supervisor there, or
-// take its memory and processor.
+// In the new namespace: root, or a user who owns some of the groups, could use them to freeze the supervisor or take
+// its memory and processor.
 bool hide_control_groups() {
   for (const std::string& place : control_groups()) {
-    // What is mounted on a mount that others share, as in a chroot, would be seen by them.
+    // A mount on top of a shared mount, as in a chroot, would be visible outside.
     if (mount("none", place.c_str(), nullptr, MS_PRIVATE, nullptr) != 0 &&
         (errno == ENOENT || errno == EINVAL || errno == EACCES))
-      continue;  // it lies below another mount, or cannot be reached
+      continue;  // it is hidden by another mount, or not accessible
     if (mount("tmpfs", place.c_str(), "tmpfs", MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, "size=4k") != 0)
       return false;
   }
   return true;
 }
 
-// In the new namespace, where that can be. In a chroot it cannot: what is mounted there would be seen outside.
+// In the new namespace, where possible. In a chroot it is not: mounts made there would be visible outside.
 void make_read_only(const std::string& folder) {
   const char* at = folder.c_str();
   struct statvfs now {};
   if (folder.empty() || statvfs(at, &now) != 0 || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0)
     return;
-  unsigned long flags = MS_BIND | MS_REMOUNT | MS_RDONLY;  // and those of the mount, which a user may not take away
+  unsigned long flags = MS_BIND | MS_REMOUNT | MS_RDONLY;  // plus the mount's flags, which a user may not remove
   if (now.f_flag & ST_NOSUID) flags |= MS_NOSUID;
   if (now.f_flag & ST_NODEV) flags |= MS_NODEV;
   if (now.f_flag & ST_NOEXEC) flags |= MS_NOEXEC;
   if (mount(at, at, nullptr, MS_BIND, nullptr) == 0) mount("none", at, nullptr, flags, nullptr);
 }
 
-// In the new namespace: its own /proc, without which nobody there could be found.
+// In the new namespace: mounts its own /proc, without which its processes could not be found.
 bool mount_proc() {
   return mount("proc", "/proc", "proc", MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr) == 0 &&
          fs::exists("/proc/thread-self/children");
 }
 
-// In the new namespace: memory that is shared by name, of System V and of POSIX, ends with it and has a limit.
+// In the new namespace: named shared memory, of System V and of POSIX, gets a limit and ends with the namespace.
 bool limit_shared_memory(std::uint64_t bytes) {
   std::ofstream("/proc/sys/kernel/shmall") << bytes / static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
   return mount("tmpfs", "/dev/shm", "tmpfs", MS_NOSUID | MS_NODEV, ("size=" + std::to_string(bytes)).c_str()) == 0 ||
          errno == ENOENT;
 }
 
-// Tasks, threads among them: for what starts more of them between two looks than the machine has room for.
+// Most tasks, threads included. Stops code that starts more tasks between two checks than the machine can hold.
 constexpr int kMostTasks = 1024;
 
-// Since Linux 6.14 a namespace of processes has a largest number of its own; before, this is the whole machine's. Root
-// has no other limit. A user has one for all tasks in a namespace of users.
+// Since Linux 6.14 a process namespace has its own pid_max; before, it applied to the whole machine. Root has no other
+// limit. A user has a limit for all tasks in a user namespace.
 void limit_tasks() {
   utsname system{};
   int major = 0, minor = 0;
   if (uname(&system) == 0 && std::sscanf(system.release, "%d.%d", &major, &minor) == 2 &&
       (major > 6 || (major == 6 && minor >= 14)))
-    std::ofstream("/proc/sys/kernel/pid_max") << 300 + kMostTasks;  // the first 300 numbers are given only once
+    std::ofstream("/proc/sys/kernel/pid_max") << 300 + kMostTasks;  // the first 300 ids are used only once
   const rlimit most{kMostTasks, kMostTasks};
   if (geteuid() != 0) setrlimit(RLIMIT_NPROC, &most);
 }
 
 [[noreturn]] void guard(pid_t supervisor) {
-  close_range(0, ~0u, 0);  // the socket's end shows to graze when the supervisor ends, and the other way round
+  close_range(0, ~0u, 0);  // closes the socket, so that graze sees when the supervisor ends, and the converse
   while (waitpid(supervisor, nullptr, 0) < 0 && errno == EINTR) {
   }
   _exit(0);
@@ -178,7 +178,7 @@ std::vector<pid_t> read_children(const std::string& file) {
 
 std::vector<pid_t> own_children() { return read_children("/proc/thread-self/children"); }
 
-// Whichever of its threads started them.
+// The children of all threads of the process.
 std::vector<pid_t> children_of(pid_t process) {
   std::vector<pid_t> found;
   std::error_code error;
@@ -197,7 +197,7 @@ std::uint64_t field_kib(const fs::path& file, const std::string& name) {
   return 0;
 }
 
-// Whole pages of the process first, which is quick to read; those that it shares in parts where that may matter.
+// Memory of a process. Counts whole pages first, which is fast; if that exceeds `most`, counts shares of shared pages.
 std::uint64_t bytes_of(pid_t process, std::uint64_t most) {
   const fs::path folder = "/proc/" + std::to_string(process);
   const std::uint64_t resident = field_kib(folder / "status", "VmRSS:") << 10;
@@ -244,7 +244,7 @@ bool is_descendant(pid_t process) {
     std::getline(in, line);
     const std::size_t name_end = line.rfind(") ");
     if (name_end == line.npos || line.size() < name_end + 5) return false;
-    process = static_cast<pid_t>(std::strtol(line.c_str() + name_end + 4, nullptr, 10));  // behind ") S "
+    process = static_cast<pid_t>(std::strtol(line.c_str() + name_end + 4, nullptr, 10));  // after ") S "
     if (process == getpid()) return true;
   }
   return false;
@@ -256,7 +256,7 @@ Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processe
     const pid_t process = left.back();
     left.pop_back();
     ++usage.processes;
-    // Shared pages in parts from the moment when whole ones would be too much.
+    // Counts shares of shared pages once whole pages would exceed the limit.
     usage.bytes += bytes_of(process, most_bytes > usage.bytes ? (most_bytes - usage.bytes) / 2 : 0);
     if (usage.processes > most_processes || usage.bytes > most_bytes) break;
     for (const pid_t child : children_of(process)) left.push_back(child);
@@ -268,12 +268,12 @@ bool end_children(pid_t except) {
   using Clock = std::chrono::steady_clock;
   const auto deadline = Clock::now() + std::chrono::seconds(5);
   for (;;) {
-    if (except < 0 && getpid() == 1) kill(-1, SIGKILL);  // all of the namespace at once, whatever they start meanwhile
+    if (except < 0 && getpid() == 1) kill(-1, SIGKILL);  // all processes at once, even those started meanwhile
     bool left = false;
     for (const pid_t child : own_children()) {
       if (child == except) continue;
       left = true;
-      kill(child, SIGKILL);  // it stays this process until it is waited for, which only we can do
+      kill(child, SIGKILL);  // its id stays valid until we wait for it, which only we can do
     }
     if (!left) return true;
     if (Clock::now() > deadline) return false;
@@ -285,8 +285,8 @@ bool end_children(pid_t except) {
 }
 
 void forbid_calls() {
-  // prlimit64 with a process id, and memfd_create, in each of the processor's tables of system calls: i386 has them
-  // under other numbers, and x32 with another bit.
+  // prlimit64 with a process id, and memfd_create, for each system call table of the processor. i386 has other numbers
+  // for them, and x32 sets an additional bit.
   constexpr std::uint32_t kI386Prlimit = 340, kI386MemfdCreate = 356, kX32 = 0x40000000;
   constexpr std::uint32_t kArch = offsetof(seccomp_data, arch), kNumber = offsetof(seccomp_data, nr);
   constexpr std::uint32_t kProcess = offsetof(seccomp_data, args);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds the processes of foreign code together, so that none outlives its supervisor: a process namespace of their
-// own where the system allows one, else the supervisor as the subreaper of its descendants.
+// Contains the processes of foreign code, so that none outlives its supervisor. They run in a process namespace of
+// their own where the system allows one; otherwise the supervisor is the subreaper of its descendants.
 #pragma once
 
 #include <sys/types.h>
@@ -10,34 +10,35 @@
 
 namespace graze::subjects {
 
-// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Returns
-// in the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own
-// processes, has only shared memory of its own and no control groups, and which the system ends with it. Where no
-// namespace can be had, returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of
-// memory that is shared by name. read_only: a folder that cannot be written to in the namespace; empty for none.
-// Requires: one thread.
+// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, then ends too. The
+// function returns in the supervisor, which is process 1 of a new namespace. In it, foreign code sees and signals only
+// its own processes, has separate shared memory and no control groups. The namespace ends with the supervisor. If no
+// namespace is available, the function returns in the calling process, now a subreaper.
+// namespaces: whether to try. shared_bytes: limit of named shared memory. read_only: a folder that becomes read-only in
+// the namespace, or empty.
+// Requires: a single thread.
 void enter_containment(bool namespaces, std::uint64_t shared_bytes, const std::string& read_only = "");
 
-// The descriptor that becomes readable when the process ends; -1 where there is no such process.
+// A descriptor that becomes readable when the process ends; -1 when there is no such process.
 int open_process(pid_t process);
 
-// Whether the process descends from the calling one. Not certain of a process that may end; see open_process.
+// Whether the process descends from the calling one. Unreliable for a process that may end; see open_process.
 bool is_descendant(pid_t process);
 
 struct Usage {
-  std::uint64_t processes, bytes;  // bytes of memory, shared pages counted in parts
+  std::uint64_t processes, bytes;  // bytes of memory; each process counts its share of shared pages
 };
-// What all descendants take at this moment; counts up to `most_bytes` and `most_processes`, and a little beyond.
+// Current usage of all descendants. Stops counting a little beyond `most_bytes` or `most_processes`.
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
 
-// Kills all children but one, and what they leave behind.   Returns: whether none is left.
+// Kills all children except one, and their descendants.   Returns: whether none is left.
 bool end_children(pid_t except);
 
-// From here on neither this process nor what it starts can change the limits of other processes, as those of its
-// supervisor, which has the same user, or take memory that no limit counts (memfd_create).
+// From now on this process and its descendants cannot change the limits of other processes. (The supervisor runs as
+// the same user.) They also cannot allocate memory that no limit counts (memfd_create).
 void forbid_calls();
 
-// Gives up the rights of root that would reach beyond the limits: tracing, mounting, lifting limits, rebooting.
+// Drops the root capabilities that bypass the limits: tracing, mounting, raising limits, rebooting.
 void drop_rights();
 
 }  // namespace graze::subjects

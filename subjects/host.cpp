@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze-subject-host: what foreign code runs in. Started by graze, not by a person, as the supervisor of
+// graze-subject-host runs foreign code. Graze starts it, not a person. As the supervisor of foreign code:
 //   graze-subject-host KIND WHAT NAME SCALAR MEMORY SECONDS DESCRIBE NAMESPACES CACHE
-// which starts itself again as the process that loads the code and forks workers from it:
+// The supervisor starts this program again as the process that loads the code and forks workers:
 //   graze-subject-host --worker KIND WHAT NAME SCALAR MEMORY DESCRIBE
-// or as the supervisor of a program that builds something, and whose temporary files are in the folder SCRATCH:
+// As the supervisor of a build tool whose temporary files are in the folder SCRATCH:
 //   graze-subject-host --run SECONDS SCRATCH NAMESPACES WORD...
-// KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object, and what it exports; see graze/subject.h
+// KIND WHAT NAME SCALAR:  library FILE NAME f32|f64|any   a shared object and its export; see graze/subject.h
 //                         command TEXT "" f32             a program; see subjects/README.md
-//                         device FILE "" f32|f64          PTX of cuda/subject; by graze-subject-device, with CUDA
-// MEMORY: MiB that the code may take; a device's driver takes what it wants. SECONDS: for a pair or a block. DESCRIBE:
-// 1 asks a program to describe itself. NAMESPACES: 0 does without a process namespace. CACHE: a folder that the code
-// cannot write to; empty for none.
+//                         device FILE "" f32|f64          PTX of cuda/subject; run by graze-subject-device with CUDA
+// MEMORY: MiB that the code may use; a device's driver has no limit. SECONDS: for a pair or a block. DESCRIBE: 1 asks a
+// program to describe itself. NAMESPACES: 0 uses no process namespace. CACHE: a folder that the code cannot write to;
+// may be empty.
 #include <dlfcn.h>
 #include <elf.h>
 #include <fcntl.h>
@@ -53,7 +53,7 @@ namespace {
 std::uint64_t* words;
 const void* pairs;
 
-// Whoever is there no more needs no answer.
+// Exits when the receiver is gone, because nobody needs the answer.
 void send_message(const void* message, std::size_t size) {
   if (send(kTalkFd, message, size, MSG_NOSIGNAL) != static_cast<ssize_t>(size)) _exit(0);
 }
@@ -71,7 +71,7 @@ void put(char (&to)[size], const char* text) {
   std::exit(1);
 }
 
-// The names that a shared object exports, for a message.
+// The names that a shared object exports, for an error message.
 std::string exported(void* library) {
   link_map* map = nullptr;
   if (dlinfo(library, RTLD_DI_LINKMAP, &map) != 0) return "nothing known";
@@ -85,7 +85,7 @@ std::string exported(void* library) {
   }
   std::string names;
   int count = 0;
-  // The table of symbols ends where that of strings begins, as linkers write them.
+  // Linkers place the string table directly after the symbol table.
   for (const ElfW(Sym)* s = symbols; s && strings && reinterpret_cast<const char*>(s) < strings; ++s) {
     const int type = ELF64_ST_TYPE(s->st_info);
     if (s->st_shndx == SHN_UNDEF || (type != STT_FUNC && type != STT_OBJECT) || s->st_name >= string_bytes) continue;
@@ -104,7 +104,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   for (const std::string& candidate :
        name.empty() ? std::vector<std::string>{"graze_subject", "intersects"} : std::vector<std::string>{name}) {
     if (!found && (found = dlsym(library, candidate.c_str()))) put(loaded.symbol, candidate.c_str());
-    for (const char* type : {"f", "d"}) {  // a C++ function of two pointers
+    for (const char* type : {"f", "d"}) {  // a C++ function with two pointer parameters
       const std::string mangled = fmt::format("_Z{}{}PK{}{}", candidate.size(), candidate, type, "S0_");
       if (!found && (found = dlsym(library, mangled.c_str()))) {
         graze_subject subject{GRAZE_SUBJECT_ABI, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr};
@@ -142,7 +142,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   return subject;
 }
 
-// Whether this process is a copy that foreign code made of the worker, which lets both return.
+// Whether this process is a copy of the worker that foreign code forked, and in which the call returned too.
 bool is_copy = false;
 
 signed char answer_of(int said) {
@@ -150,14 +150,14 @@ signed char answer_of(int said) {
   return said < 0 ? kDeclined : said > 0 ? kIntersects : kDisjoint;
 }
 
-// Of this thread, so that it does not depend on what else the machine does.
+// Processor time of this thread, which does not depend on other load of the machine.
 std::uint64_t processor_nanoseconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<std::uint64_t>(now.tv_sec) * 1'000'000'000 + static_cast<std::uint64_t>(now.tv_nsec);
 }
 
-// Asks about the pairs of a question: forward, then backward.
+// Asks about a question's pairs, forward and then backward.
 template <class Number>
 class Asking {
  public:
@@ -166,12 +166,12 @@ class Asking {
 
   Asking(Single single, Block block) : single_(single), block_(std::move(block)) {}
 
-  // Returns: processor time of the forward pass.
+  // Returns: the processor time of the forward pass.
   std::uint64_t ask(const Question& question) const {
     const std::uint64_t start = processor_nanoseconds();
     for (std::size_t i = 0; i < question.count; ++i) {
       if (!is_chosen(question.first, i)) continue;
-      if (block_ && !question.singly) {  // then all pairs are
+      if (block_ && !question.singly) {  // then the question has all pairs
         ask_block(question, false, 0, question.count);
         break;
       }
@@ -211,13 +211,13 @@ class Asking {
   Block block_;
 };
 
-// In the worker: answers questions for ever.   ask: of a question; returns its processor time.
+// In the worker: answers questions forever.   ask: answers a question and returns its processor time.
 template <class Ask>
 [[noreturn]] void serve(Ask ask) {
   const Says ready = Says::ready;
   send_message(&ready, sizeof ready);
   for (Question question; recv(kTalkFd, &question, sizeof question, 0) == sizeof question;) {
-    if (question.worker != getpid()) continue;  // of one that died before it read it
+    if (question.worker != getpid()) continue;  // meant for a worker that died before reading it
     Answered answered{Says::answered, 0, question.nonce, 0};
     try {
       answered.nanoseconds = ask(question);
@@ -230,7 +230,7 @@ template <class Ask>
 }
 
 #ifdef GRAZE_SUBJECT_DEVICE
-// The worker's own device: what a process had before it forked is of no use afterwards.
+// The worker's own device, opened after the fork: a forked process cannot use its parent's.
 class OnDevice {
  public:
   OnDevice(const std::string& file, const std::string& scalar) {
@@ -242,7 +242,7 @@ class OnDevice {
     device_ = cuda::open_on_device(build);
   }
 
-  // Pairs are float32 here, whatever the scalar.
+  // Pairs are float32 here, even if the scalar is double.
   void operator()(const float* from, std::size_t count, signed char* answers) const {
     device_->decide({reinterpret_cast<const Pair*>(from), count}, answers);
   }
@@ -257,16 +257,15 @@ void set_limit(int resource, rlim_t most) {
   setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
-// Those that the system keeps for each process; the supervisor looks at all of them together.
+// Limits that the system keeps for each process. The supervisor checks the sum over all processes.
 void set_limits(const char* mib) {
   set_limit(RLIMIT_DATA, std::strtoull(mib, nullptr, 10) << 20);
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_FSIZE, rlim_t{1} << 30);
-  set_limit(RLIMIT_NOFILE, 1024);  // each of a socket holds memory of the system, which is not the process's
+  set_limit(RLIMIT_NOFILE, 1024);  // a socket's buffers are system memory, which is not charged to the process
 }
 
-// Addresses are the same in every process, where that may be had: code whose answers depend on them says the same
-// again.
+// Turns off address randomisation where possible, so that code whose answers depend on addresses repeats them.
 void fix_addresses(char** argv) {
   const int now = personality(0xffffffff);
   if (now < 0 || now & ADDR_NO_RANDOMIZE || personality(static_cast<unsigned long>(now) | ADDR_NO_RANDOMIZE) < 0)
@@ -274,9 +273,9 @@ void fix_addresses(char** argv) {
   if (personality(0xffffffff) & ADDR_NO_RANDOMIZE) execv("/proc/self/exe", argv);
 }
 
-constexpr int kNotReady = 99;  // exit status of a worker without its program or device
+constexpr int kNotReady = 99;  // exit status of a worker that cannot start its program or open its device
 
-// Becomes a worker.   subject: of a library.   Throws: std::exception where it cannot.
+// Becomes a worker.   subject: the library's description.   Throws: std::exception if it cannot.
 [[noreturn]] void work(const std::string& kind, const std::string& what, const std::string& scalar,
                        const graze_subject& subject) {
   if (kind == "command") {
@@ -301,7 +300,7 @@ constexpr int kNotReady = 99;  // exit status of a worker without its program or
   serve([&](const Question& question) { return asking.ask(question); });
 }
 
-// Loads the code, then forks a worker, and another whenever one ends.
+// Loads the code and forks a worker. Forks another whenever a worker ends.
 int load_and_fork(const std::string& kind, const std::string& what, const std::string& name, const std::string& scalar,
                   const char* memory, bool describe) {
   words = static_cast<std::uint64_t*>(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What foreign code may do to the processes around it, and that each of it is a verdict of its own pair.
+// Foreign code that attacks the processes around it. Each attack is a verdict on its own pair only.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -60,7 +60,7 @@ struct Hostile : testing::Test {
     if (bystander == 0) execlp("sleep", "sleep", "1000", nullptr);
   }
   static void TearDownTestSuite() {
-    for (const char* name : {"GRAZE_HOSTILE_TEST", "XDG_CACHE_HOME"}) unsetenv(name);  // not of what other suites start
+    for (const char* name : {"GRAZE_HOSTILE_TEST", "XDG_CACHE_HOME"}) unsetenv(name);  // not for later suites
     kill(bystander, SIGKILL);
     waitpid(bystander, nullptr, 0);
     if (terminal >= 0) close(terminal);
@@ -92,7 +92,7 @@ struct Hostile : testing::Test {
     return result;  // crashed stands for every failure
   }
 
-  // Processes that were started here and are there still, but the bystander.
+  // Processes started here that still exist, except the bystander.
   static std::set<pid_t> left_over() {
     std::set<pid_t> found;
     for (const auto& entry : fs::directory_iterator("/proc")) {
@@ -110,7 +110,7 @@ struct Hostile : testing::Test {
   }
 };
 
-// Whether this system allows a process namespace.
+// Whether this system allows process namespaces.
 bool has_namespaces() {
   int answer[2];
   EXPECT_EQ(pipe2(answer, O_CLOEXEC), 0);
@@ -131,7 +131,7 @@ bool has_namespaces() {
 
 struct Attack {
   const char* name;
-  bool without_namespaces = true;  // also tried without a process namespace
+  bool without_namespaces = true;  // also test without a process namespace
   bool on_others = false;          // other pairs may fail as well
 };
 
@@ -166,7 +166,7 @@ TEST_P(EveryAttack, IsAVerdictOfItsPairs) {
   }
   expect_nothing_left();
   EXPECT_TRUE(attack.without_namespaces || !fs::exists("/dev/shm/graze-hostile"));
-  EXPECT_LE(count_in("/proc/self/map_files"), maps + 2);  // what the allocator keeps
+  EXPECT_LE(count_in("/proc/self/map_files"), maps + 2);  // the allocator may keep some
   EXPECT_EQ(count_in("/proc/self/fd"), files);
 }
 
@@ -253,7 +253,7 @@ TEST_F(Hostile, ConstructorsThatAttackAreOneLine) {
       code.namespaces = namespaces;
       try {
         const Description description = describe(code);
-        EXPECT_FALSE(description.f32 || description.f64);  // it said so itself
+        EXPECT_FALSE(description.f32 || description.f64);  // the code said so itself
       } catch (const std::runtime_error& error) {
         EXPECT_NE(std::string(error.what()).find(c.name), std::string::npos) << error.what();
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
@@ -272,7 +272,7 @@ TEST_F(Hostile, CodeThatIsGoneAfterItWasLoadedIsAVerdict) {
                                        "\"); kill(getppid(), SIGKILL); _exit(1); }\n  return a[0] < b[0]; }");
   ForeignProcesses subject({"library", file.string(), "intersects", "f32"}, Scalar::f32);
   const std::vector<Verdict> found = verdicts(subject);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {  // asked the second time, the others have no code any more
+  for (std::size_t i = 0; i < pairs.size(); ++i) {  // in the second pass the other pairs have no code left
     if (is_bad(pairs[i]) || found[i] != left_of(pairs[i])) {
       EXPECT_EQ(found[i], Verdict::crashed) << i;
     }
@@ -314,7 +314,7 @@ TEST_F(Hostile, DescriptionsOfProgramsAreBounded) {
   expect_nothing_left();
 }
 
-// The request comes while the subject hangs; without it the wait would be an hour for each pair.
+// Requests the stop while the subject hangs. Otherwise each pair would take an hour.
 TEST_F(Hostile, ARequestToStopEndsEveryWait) {
   const fs::path file = built_from("hangs", "int intersects(const float a[9], const float b[9]) { for (;;) ; }");
   for (const bool namespaces : {true, false}) {
@@ -340,7 +340,7 @@ TEST_F(Hostile, ARequestToStopEndsEveryWait) {
   expect_nothing_left();
 }
 
-// A group of processes that can be frozen; empty where this user has none.
+// A control group that can freeze processes; empty if this user has none.
 fs::path freezing_group(const std::string& name) {
   for (const fs::path root : {"/sys/fs/cgroup/freezer", "/sys/fs/cgroup/unified", "/sys/fs/cgroup"}) {
     const fs::path group = root / ("graze-hostile-" + name);
@@ -353,7 +353,7 @@ fs::path freezing_group(const std::string& name) {
   return {};
 }
 
-// Without a mount namespace, root can freeze the supervisor, which then says nothing and cannot be ended either.
+// Without a mount namespace, root can freeze the supervisor. A frozen supervisor sends nothing and cannot be ended.
 TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   const fs::path group = freezing_group(std::to_string(getpid()));
   if (group.empty()) GTEST_SKIP() << "no control groups for this user";
@@ -365,7 +365,7 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
     Code code{"library", (folder / "libhostile.so").string(), "freezes_supervisor", "f32", 0.1, 256};
     code.namespaces = false;
     ForeignProcesses subject(code, Scalar::f32);
-    EXPECT_EQ(verdicts(subject), std::vector<Verdict>{Verdict::crashed});  // of some kind
+    EXPECT_EQ(verdicts(subject), std::vector<Verdict>{Verdict::crashed});  // crashed stands for every failure
     EXPECT_EQ(subject.failure(pairs[0]), Verdict::timed_out);
     std::jthread request([] {
       usleep(500'000);
@@ -376,7 +376,7 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   }
   pairs = all;
   EXPECT_FALSE(left_over().empty());
-  // Once more where one of them, thawed, freezes all again.
+  // Repeats this in case a thawed process freezes all of them again.
   for (int times = 0; times < 1000 && rmdir(group.c_str()) != 0; ++times) {
     const bool second = fs::exists(group / "cgroup.freeze");
     std::ofstream(group / (second ? "cgroup.freeze" : "freezer.state")) << (second ? "0" : "THAWED") << std::flush;
@@ -386,7 +386,7 @@ TEST_F(Hostile, AFrozenSupervisorIsAVerdictAndIsLeft) {
   expect_nothing_left();
 }
 
-// A compiler waits for ever for a header that is a pipe, and as for data that is one.
+// The compiler waits forever for a header or for data that is a pipe.
 TEST_F(Hostile, WhatBuildsASubjectEndsWithARequestToStopAndWithGraze) {
   for (const char* name : {"pipe.h", "pipe.bin"}) ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
   std::ofstream(folder / "header.c") << "#include \"pipe.h\"\nint intersects(const float*, const float*);";
@@ -472,7 +472,7 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
   }
 }
 
-// What a fork leaves is one process for each pair, and no worker beside the worker.
+// Forking leaves one process for each pair, and no second worker.
 TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   const fs::path file = built_from("forks_twice",
                                    "#include <signal.h>\n#include <unistd.h>\n"
@@ -486,7 +486,7 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   expect_nothing_left();
 }
 
-// What it writes beyond its answers shifts all later ones; which pair it was on shows when pairs are asked alone.
+// An unexpected line shifts all later answers. Asking about single pairs shows which pair caused it.
 TEST_F(Hostile, LinesThatWereNotAskedForAreVerdictsOfTheirPairs) {
   std::ofstream(folder / "extra.c") << R"(#include <stdio.h>
 #include <stdlib.h>
@@ -524,7 +524,7 @@ int main(int count, char** words) {
   expect_nothing_left();
 }
 
-// Always the same verdict, also of a program that ends before it is written to.
+// The verdict is always the same, even if the program ends before it gets its input.
 TEST_F(Hostile, ProgramsThatEndAtOnceCrashOnEveryPair) {
   for (int times = 0; times < 5; ++times) {
     ForeignProcesses subject({"command", "exit 1", "", "f32", 3600}, Scalar::f32);
@@ -532,7 +532,7 @@ TEST_F(Hostile, ProgramsThatEndAtOnceCrashOnEveryPair) {
   }
 }
 
-// Whoever asks may be ended at any time: all others end with it.
+// The asking process may be killed at any time; all others end with it.
 TEST_F(Hostile, NothingOutlivesTheProcessThatAsks) {
   for (const char* name : {"leaves_children_silently", "forks_without_end", "stops_itself"}) {
     for (const bool namespaces : {true, false}) {

@@ -18,7 +18,7 @@
 namespace graze::subjects {
 namespace {
 
-constexpr double kDescribeSeconds = 10;  // to start, and to answer
+constexpr double kDescribeSeconds = 10;  // to start and answer
 constexpr int kSilence = 2;              // milliseconds after the last answer
 
 std::string line_of(const float* pair) {
@@ -87,7 +87,7 @@ void LineProtocol::read_some() {
   if (count > 0) lines_.add(bytes, static_cast<std::size_t>(count));
 }
 
-// Writes while it reads, so that neither side waits for the other with a full pipe.
+// Writes and reads at the same time, so that no full pipe makes both sides wait for each other.
 void LineProtocol::send(const std::string& lines) {
   expect_silence(0);
   std::size_t sent = 0;
@@ -95,7 +95,7 @@ void LineProtocol::send(const std::string& lines) {
     pollfd ready[] = {{to_, POLLOUT, 0}, {from_, POLLIN, 0}};
     poll(ready, 2, -1);
     if (ready[1].revents & POLLIN) read_some();
-    if (ready[0].revents & (POLLERR | POLLHUP)) return;  // it reads no more; what it has answered still counts
+    if (ready[0].revents & (POLLERR | POLLHUP)) return;  // it reads no more; answers that it has given still count
     if (!(ready[0].revents & POLLOUT)) continue;
     const ssize_t count = write(to_, lines.data() + sent, lines.size() - sent);
     if (count > 0) sent += static_cast<std::size_t>(count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program that answers on its standard output: one line for each line on its standard input, which holds the 18
+// A program that answers on its standard output. It writes one line for each line of input, which has the 18
 // coordinates of a pair as hexadecimal floats (0x1.8p+1). Answers: 0 disjoint, 1 intersects, ? declined.
 #pragma once
 
@@ -12,14 +12,14 @@
 
 namespace graze::subjects {
 
-// The lines of what a program writes, which may be anything and without end.
+// Splits a program's output into lines. The output may be anything and may be endless.
 class Lines {
  public:
-  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // not yet taken
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 20;  // most bytes not yet taken
 
-  // Throws: std::runtime_error beyond kMostBytes.
+  // Throws: std::runtime_error when more than kMostBytes are waiting.
   void add(const char* bytes, std::size_t count);
-  // Returns: whether a whole line was there; without its end.
+  // Takes a line without its end-of-line.   Returns: whether there was a whole line.
   bool take(std::string& line);
   bool empty() const { return taken_ == bytes_.size(); }
 
@@ -28,35 +28,35 @@ class Lines {
   std::size_t taken_ = 0;
 };
 
-// Throws: std::runtime_error for a line that is no answer.
+// Throws: std::runtime_error for a line that is not an answer.
 signed char answer_of_line(const std::string& line);
 
 class LineProtocol {
  public:
-  // Starts the program, by a shell.
+  // Starts the program in a shell.
   explicit LineProtocol(const std::string& command);
 
-  // Asks about the question's pairs, forward and then backward, and writes each answer into memory when it comes.
-  // Then waits 2 ms, whether more comes.
-  // Throws: std::runtime_error where the program ends, answers something else, or writes what was not asked for.
+  // Asks about the question's pairs, forward and then backward. Writes each answer into memory as it arrives. Then
+  // waits 2 ms for unexpected output.
+  // Throws: std::runtime_error when the program ends, gives an invalid answer, or writes unexpected output.
   void ask(const Question& question, const float* pairs, std::uint64_t* words);
 
-  // Returns: the first line that it writes in answer to this line, after which its input ends; empty where it ends
-  // without one, writes more than fits in Loaded, or takes longer.
+  // Sends a line, closes the program's input, and returns the first line of its answer. Empty when the program ends
+  // without one, writes more than Loaded can hold, or takes longer than `seconds`.
   std::string first_line(const std::string& in_answer_to, double seconds);
 
  private:
   void send(const std::string& lines);
   void read_some();
-  std::string line();  // waits for it
-  // Throws: std::runtime_error where there is output that was not asked for, or comes in this time.
+  std::string line();  // waits for a line
+  // Throws: std::runtime_error when there is unexpected output, now or within this time.
   void expect_silence(int milliseconds);
 
   int to_ = -1, from_ = -1;
   Lines lines_;
 };
 
-// What a program says in answer to `describe`.
+// The program's answer to `describe`.
 std::string described_by(const std::string& command);
 
 }  // namespace graze::subjects

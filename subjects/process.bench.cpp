@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the process around foreign code costs: a function that does nearly nothing, asked twice about each pair.
+// The cost of the process around foreign code: a function that does nearly nothing, asked twice about each pair.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>

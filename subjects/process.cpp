@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kMostFailuresKept = std::size_t{1} << 20;
 
-// Memory that this process alone can write.
+// Memory that only this process can write.
 int pairs_memory(void*& at) {
   const int fd = memfd_create("graze-pairs", MFD_CLOEXEC | MFD_ALLOW_SEALING);
   at = MAP_FAILED;
@@ -52,13 +52,13 @@ Verdict verdict_of(signed char answer) {
   }
 }
 
-// What a subject says of itself, as valid UTF-8, which results are.
+// A subject's text as valid UTF-8, which results must be.
 std::string fit(const char* text) {
   using Json = nlohmann::json;
   return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-// What graze and the supervisor share of the pairs.
+// The pairs in memory shared with the supervisor.
 class SharedPairs {
  public:
   SharedPairs() : fd_(pairs_memory(at_)) {}
@@ -104,7 +104,7 @@ class HostProcess {
     } else {
       return;
     }
-    // Of a library, what the system says names the file.
+    // For a library, the message must name the file.
     throw CannotLoad(code.kind == "library" && why.find(code.what) == why.npos ? code.what + ": " + why : why);
   }
 
@@ -114,7 +114,7 @@ class HostProcess {
 
   const Loaded& loaded() const { return loaded_; }
 
-  // Returns: the answers; nothing where the supervisor cannot go on, and this object is of no use any more.
+  // Returns: the answers; nullopt when the supervisor cannot continue. Then this object must not be used any more.
   std::optional<Answers> ask(const Pair* pairs, std::size_t count, bool in_double) {
     if (in_double) {
       std::copy_n(&pairs[0].a[0].x, count * 18, static_cast<double*>(pairs_.at()));
@@ -163,20 +163,20 @@ std::unique_ptr<HostProcess> ForeignProcesses::idle_or_new() {
   try {
     return std::make_unique<HostProcess>(code_, false);
   } catch (const HostProcess::CannotLoad&) {
-    return nullptr;  // it could be loaded once: that it cannot now is what the code does
+    return nullptr;  // it could be loaded before, so this failure is the code's
   }
 }
 
 void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects,
                               std::uint64_t* declined) {
-  // Processes that share a device wait for each other: one is as fast.
+  // Processes on one device wait for each other, so one of them is as fast.
   std::unique_lock alone(alone_, std::defer_lock);
   if (code_.kind == "device") alone.lock();
   const bool in_double = scalar_ == Scalar::f64 && code_.kind != "device";
   std::unique_ptr<HostProcess> process = idle_or_new();
   bool loads = process != nullptr;
-  signed char how = kCrashed;  // where there is no answer about a pair
-  // Answers about pairs; nothing where the supervisor ended, or the code can be loaded no more.
+  signed char how = kCrashed;  // for pairs without an answer
+  // Asks about pairs. Nullopt when the supervisor ended or the code can no longer be loaded.
   const auto ask = [&](const Pair* of, std::size_t size) {
     std::optional<Answers> answers;
     if (!process && loads) loads = (process = idle_or_new()) != nullptr;
@@ -191,7 +191,7 @@ void ForeignProcesses::decide(const Pair* pairs, std::size_t count, std::uint64_
   for (std::size_t begin = 0; begin < count; begin += kMostAsked) {
     const std::size_t size = std::min(count - begin, kMostAsked);
     std::optional<Answers> answers = ask(pairs + begin, size);
-    if (!answers) {  // which pair it was shows when they are asked one at a time
+    if (!answers) {  // asks about single pairs to find the one at fault
       answers.emplace();
       for (std::size_t i = 0; i < size; ++i) {
         const std::optional<Answers> of_pair = ask(pairs + begin + i, 1);
@@ -237,7 +237,7 @@ Verdict ForeignProcesses::failure(const Pair& pair) {
   if (const std::optional<Verdict> verdict = kept()) return *verdict;
   std::uint64_t intersects, declined;
   decide(&pair, 1, &intersects, &declined);
-  return kept().value_or(Verdict::unstable);  // it failed before, and does not now
+  return kept().value_or(Verdict::unstable);  // it failed before and does not fail now
 }
 
 }  // namespace graze::subjects

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foreign code in processes of its own, as a lane's block function. It may crash, hang, scribble, lie or attack: each
-// is a verdict on the pair on which it happens, and the next pair is asked in a new process. What this process believes
-// comes from a supervisor (supervisor.h) over a socket that foreign code does not have.
+// A block function that runs foreign code in separate processes. The code may crash, hang, corrupt memory, lie or
+// attack. Each of these is a verdict on the pair on which it happens; the next pair is asked in a new process. This
+// process trusts only the supervisor (supervisor.h), over a socket that foreign code does not have.
 #pragma once
 
 #include <map>
@@ -15,44 +15,44 @@
 
 namespace graze::subjects {
 
-// What graze-subject-host loads; see its first lines.
+// The code that graze-subject-host loads; see its first lines.
 struct Code {
   std::string kind;             // "library", "command" or "device"
-  std::string what, name;       // file and export, or the command, or a file of PTX
-  std::string scalar = "any";   // of a function without description
+  std::string what, name;       // a file and its export, a command, or a file of PTX
+  std::string scalar = "any";   // for a function without a description
   double timeout = 1;           // seconds for a pair, or for a block of a subject that takes blocks
-  std::uint64_t memory = 1024;  // MiB, of all its processes together
-  bool namespaces = true;       // in a process namespace of its own, where the system allows one
+  std::uint64_t memory = 1024;  // MiB, for all its processes together
+  bool namespaces = true;       // run in a process namespace if the system allows one
 };
 
-// What a subject says of itself.
+// A subject's description of itself.
 struct Description {
   bool f32 = false, f64 = false;
   unsigned outside = 0;  // a sum of Outside
   std::string version, source, convention;
-  bool describes_itself = false;  // by a struct graze_subject
-  std::string symbol;             // of a library, that was taken
-  std::string said;               // by a program, in answer to `describe`: its first line
+  bool describes_itself = false;  // has a struct graze_subject
+  std::string symbol;             // of a library: the symbol that was loaded
+  std::string said;               // of a program: the first line of its answer to `describe`
 };
 
-// Throws: std::runtime_error, in one line, where the code cannot be loaded; Stopped.
+// Throws: std::runtime_error with one line when the code cannot be loaded; Stopped.
 Description describe(const Code& code);
 
 class HostProcess;
 
-// One process for each thread that asks at once. Thread-safe.
+// Uses one process for each thread that calls at the same time. Thread-safe.
 class ForeignProcesses : public ForeignCode {
  public:
   ForeignProcesses(Code code, Scalar scalar);
   ~ForeignProcesses() override;
-  // Throws: Stopped, within a tenth of a second of the request, whatever the code does.
+  // Throws: Stopped, within 0.1 s of the request, whatever the code does.
   void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) override;
   Verdict failure(const Pair& pair) override;
 
-  // What the code itself took for the pairs of the last decide, asked once: processor time in its own process, without
-  // what the processes say to each other. Nothing where it failed on one of them, and of a command.
+  // Processor time of the code for the pairs of the last decide, asked once. It is measured in the code's own process,
+  // without communication. Nothing for a command, or if the code failed on a pair.
   std::optional<std::uint64_t> nanoseconds() const;
-  // The same code, in processes that have seen no pair yet.
+  // The same code in new processes that have seen no pair.
   std::unique_ptr<ForeignProcesses> anew() const;
 
  private:
@@ -64,7 +64,7 @@ class ForeignProcesses : public ForeignCode {
   std::mutex alone_;
   std::optional<std::uint64_t> nanoseconds_;
   std::vector<std::unique_ptr<HostProcess>> idle_;
-  std::map<std::string, Verdict> failures_;  // by the pair's bytes; some of them, the others are asked again
+  std::map<std::string, Verdict> failures_;  // by the pair's bytes; incomplete, other failures are asked again
 };
 
 }  // namespace graze::subjects

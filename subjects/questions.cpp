@@ -28,7 +28,7 @@ Question Questions::next(std::uint64_t nonce) {
   return question;
 }
 
-// Past pairs that need no second answer.
+// Skips pairs that failed and need no second answer.
 void Questions::skip_failed() {
   while (second_ && at_ > 0 && answers_[at_ - 1] > kIntersects) --at_;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subject's side of the protocol: forged, early, late and destroyed answers in shared memory, messages of any
-// bytes, and lines of any program. Whatever comes, the questions come to an end, and what counts once counts for good.
+// The subject's side of the protocol: forged, early, late and destroyed answers in shared memory, arbitrary messages,
+// and arbitrary lines of a program. In every case the questions end, and an answer that has counted stays.
 #include "subjects/questions.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace graze::subjects {
 namespace {
 
-// Whether what the supervisor believes after a step may follow from what it believed before.
+// Whether the supervisor's state after a step is allowed after its earlier state.
 void must_follow(std::span<const signed char> before, std::span<const signed char> now) {
   for (std::size_t i = 0; i < now.size(); ++i) {
     must_hold(now[i] >= kDeclined && now[i] <= kUnstable, "an answer is one that there is");
@@ -55,7 +55,7 @@ void ask_hostile(std::string_view bytes) {
     const auto answer = static_cast<signed char>(static_cast<int>(what >> 4) % 3 - 1);
     switch (what % 8) {
       case 0:
-      case 1: {  // as an honest worker would: all of a pass
+      case 1: {  // as an honest worker does: all answers of a pass
         for (std::size_t i = 0; i < count; ++i)
           words[(second ? kMostAsked : 0) + i] = word_of(nonce, second, i, answer);
         break;

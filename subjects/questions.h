@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which pairs of a block still need an answer, and which answers there are: the supervisor's side of the questions.
+// The supervisor's side of the questions: which pairs of a block still need an answer, and the answers so far.
 #pragma once
 
 #include <span>
@@ -8,34 +8,36 @@
 
 namespace graze::subjects {
 
-// Each pair is asked twice, forward and then backward, so that what one call leaves behind shows in another. Answers
-// count in this order and once each: a word that is forged, early, late or of another question changes nothing.
-// Answers of a program carry no number: one line too many gives each later pair another pair's answer. So those of a
-// question count all or not at all, and a pair fails only when it is asked alone.
+// Each pair is asked twice, forward and then backward, so that state left behind by one call shows in another. Answers
+// count in this order and once each. A word that is forged, early, late or of another question changes nothing. Answers
+// of a program have no number: one extra line would give each later pair the answer of another pair. So a question's
+// answers count all or not at all, and a pair fails only when it is asked alone.
 class Questions {
  public:
-  // of_blocks: the subject takes many pairs at once. program: it answers by lines.
+  // of_blocks: the subject takes blocks of pairs. program: it answers by lines.
   // Requires: 0 < count <= kMostAsked.
   Questions(std::size_t count, bool of_blocks, bool program) : count_(count), singly_(!of_blocks), program_(program) {}
 
-  // What to ask now.   Requires: a nonce that was not used before; !done().
+  // The next question.   Requires: a nonce that was not used before; !done().
   Question next(std::uint64_t nonce);
 
-  // Takes the answers to the last question that are in memory, kWords words, each read once.   Returns: how many.
+  // Takes the last question's answers from memory (kWords words, each read once).   Returns: how many.
   std::size_t take(const std::uint64_t* words);
 
-  // Whether the last question has all its answers.
+  // Whether all answers to the last question are there.
   bool answered() const { return asked_ == taken_; }
 
-  // The worker ended, or was ended, before that. Of a block it is asked again, one pair at a time. Otherwise the first
-  // pair without an answer has this one, kCrashed or kTimedOut; but where no pair of the question has an answer, that
-  // pair is asked alone first: code that destroys its own answers is at fault on a later pair. Of a program, no answer
-  // to the question counts, and fewer pairs are asked.   Requires: !answered(), but of a program.
+  // The worker ended, or was ended, before the question was answered. What happens depends on the subject:
+  // - blocks: asks the block again, one pair at a time.
+  // - single pairs: the first pair without an answer gets `how`, kCrashed or kTimedOut. If no pair has an answer, it
+  //   first asks that pair alone, because code that destroys its own answers fails on a later pair.
+  // - a program: no answer to the question counts, and the next question has fewer pairs.
+  // Requires: !answered(), except for a program.
   void failed(signed char how);
 
   bool done() const { return second_ && at_ == 0; }
 
-  // Every pair that has no final answer gets this one.
+  // Gives `how` to every pair without a final answer.
   void give_up(signed char how);
 
   std::span<const signed char> answers() const { return {answers_.data(), count_}; }
@@ -46,20 +48,20 @@ class Questions {
 
   std::size_t count_;
   bool singly_, program_;
-  std::size_t most_ = 2 * kMostAsked;  // answers that the next question asks for
-  std::size_t asked_ = 0, taken_ = 0;  // answers, of the last question
+  std::size_t most_ = 2 * kMostAsked;  // most answers that the next question asks for
+  std::size_t asked_ = 0, taken_ = 0;  // numbers of answers, for the last question
   bool second_ = false;
-  std::size_t at_ = 0;  // forward: the pair without an answer; backward: the one after it
+  std::size_t at_ = 0;  // forward: the first pair without an answer; backward: the one after it
   std::array<signed char, kMostAsked> answers_{};
   std::uint64_t nonce_ = 0;
-  // What these were before the last question.
+  // The same, before the last question.
   bool second_before_ = false;
   std::size_t at_before_ = 0;
   std::array<signed char, kMostAsked> answers_before_{};
 };
 
-// Makes what a worker sent of its code fit to use: texts end and are printable, flags are 0 or 1.
-// Returns: whether these bytes are such a message.
+// Sanitises a worker's message about its code: terminates texts, makes them printable, and sets flags to 0 or 1.
+// Returns: whether the bytes are such a message.
 bool read_loaded(std::span<const char> bytes, Loaded& loaded);
 
 }  // namespace graze::subjects

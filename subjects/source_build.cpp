@@ -29,7 +29,7 @@ constexpr unsigned char kHeaderBytes[] = {
 };
 const std::string kHeader(std::begin(kHeaderBytes), std::end(kHeaderBytes));
 
-// What is compiled in place of the source: it includes the source, and describes the function.
+// The file that is compiled: it includes the source and describes the function.
 constexpr std::string_view kCpp = R"(#include SOURCE
 #include <graze/subject.h>
 namespace {
@@ -73,7 +73,7 @@ void write(const fs::path& file, std::string_view text) {
   if (!(out << text << std::flush)) throw std::runtime_error(cannot("write", file, errno));
 }
 
-// Returns: what the shell's command wrote; its exit status in `status`.
+// Returns: the command's output; its exit status in `status`.
 std::string output_of(const std::string& command, const Scratch& scratch, int& status) {
   std::string text;
   status = run_program({{"/bin/sh", "-c", command}}, scratch.path(), text);
@@ -96,14 +96,14 @@ bool links_libraries(const std::vector<std::string>& flags) {
   });
 }
 
-// Whether assembler code in the preprocessed source may include files, as far as its text shows.
+// Whether the preprocessed source may contain assembler code that includes files, judging by its text.
 bool may_include_by_assembler(std::string preprocessed) {
   for (char& c : preprocessed) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return preprocessed.find("incbin") != preprocessed.npos || preprocessed.find(".include") != preprocessed.npos;
 }
 
-// GNU as writes a list of the files that it read; clang's own assembler does not. What is compiled when it is linked
-// (-flto) passes an assembler at other times.
+// GNU as can list the files that it has read; clang's own assembler cannot. With -flto code is assembled at link time,
+// without such a list.
 bool assembler_lists_files(const std::string& compiler, const std::vector<std::string>& flags, const Scratch& scratch) {
   if (std::any_of(flags.begin(), flags.end(), [](const std::string& flag) { return flag.starts_with("-flto"); }))
     return false;
@@ -118,7 +118,8 @@ bool assembler_lists_files(const std::string& compiler, const std::vector<std::s
   return known[compiler] = status == 0 && fs::exists(list);
 }
 
-// The files in the assembler's list, one a line, but those of the build's own folder, and names that are no file's.
+// The files in the assembler's list, one on each line. Omits files in the build's own folder and names that are no
+// file.
 std::string listed_files(const fs::path& list, const fs::path& own) {
   std::string text = text_of(list), file, files;
   text = text.substr(std::min(text.find(": "), text.size())) + ' ';
@@ -137,7 +138,7 @@ std::string listed_files(const fs::path& list, const fs::path& own) {
   return files;
 }
 
-// The hash, continued by the names and contents of the files that an assembler read.   Throws: std::runtime_error.
+// Continues the hash with the names and contents of files that an assembler has read.   Throws: std::runtime_error.
 std::uint64_t hash_of_listed(const std::string& files, std::uint64_t hash) {
   std::istringstream lines(files);
   for (std::string file; std::getline(lines, file);)
@@ -172,7 +173,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
                    const std::vector<std::string>& flags) {
   const bool c = source.extension() == ".c";
   const std::string text = text_of(source);
-  // In the folder of the source its own includes are found.
+  // An absolute path, so that the source finds includes in its own folder.
   const std::string name = fs::absolute(source).string();
   const bool describes_itself = source_describes_itself(source);
   const char* chosen = std::getenv(c ? "CC" : "CXX");
@@ -181,11 +182,11 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   const Scratch scratch(folder);
   int status = 0;
   const std::string version = output_of(compiler + " --version", scratch, status);
-  const std::string identity = version.substr(0, version.find('\n'));  // below it are paths
+  const std::string identity = version.substr(0, version.find('\n'));  // the lines below contain paths
   if (status != 0)
     throw std::runtime_error(
         cannot("compile", name,
-               status == 127  // as a shell has it
+               status == 127  // as a shell reports it
                    ? fmt::format("there is no compiler '{}'; install one, or name it in {}", compiler, c ? "CC" : "CXX")
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
   std::string command =
@@ -199,7 +200,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
       function);
   const std::string defines =
       fmt::format("#define SOURCE \"{}\"\n#define FUNCTION {}\n#define EXPECTED \"{}\"\n", name, function, expected);
-  // All that is included could change too: the preprocessor's output is what the result depends on.
+  // Included files may change too, so the hash is of the preprocessor's output.
   const fs::path header = folder / "include/graze/subject.h";
   if (!fs::exists(header) || text_of(header) != kHeader) write_atomically(header, kHeader);
   const fs::path whole = scratch.path() / (c ? "whole.c" : "whole.cpp"), object = scratch.path() / "whole.so",
@@ -209,7 +210,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   const std::string preprocessed = output_of(command + " -E -P 2>/dev/null", scratch, status);
   const std::uint64_t of_flags = hash_of_flags(flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
   const std::uint64_t hash = fnv1a(preprocessed, of_flags);
-  // Which files its assembler code includes is known once it was built: their list is kept.
+  // The files that assembler code includes are known only after a build, so their list is kept.
   const fs::path kept_list = folder / fmt::format("{:016x}.files", hash);
   const auto named = [&](std::uint64_t of_all) { return folder / fmt::format("{:016x}.so", of_all); };
   Built built;
@@ -221,7 +222,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
     try {
       built.file = named(hash_of_listed(kept_content(kept_list).value_or(""), hash));
       if (kept_content(built.file)) return built;
-    } catch (const std::runtime_error&) {  // a file of the list is not there any more
+    } catch (const std::runtime_error&) {  // a file of the list no longer exists
     }
   }
   const bool lists = assembler_lists_files(compiler, flags, scratch);
@@ -231,7 +232,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   if (status != 0) {
     std::string error = first_error(said);
     if (error.find(expected) != error.npos) error = name + ": " + expected;
-    // A linker, or a disk that is full, names no source.
+    // Errors of the linker or of a full disk name no source.
     if (error.find(source.filename().string()) == error.npos) error = cannot("compile", name, error);
     throw std::runtime_error(error);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared objects from a user's C or C++ source, one for each host variant, kept by the hash of all that they are made
-// of.
+// Builds a user's C or C++ source as shared objects, one for each host variant. They are cached by the hash of all
+// their inputs.
 #pragma once
 
 #include <filesystem>
@@ -13,20 +13,21 @@
 
 namespace graze::subjects {
 
-// Where what was built is kept: $XDG_CACHE_HOME/graze, or ~/.cache/graze, or a folder for temporary files.
+// The cache folder: $XDG_CACHE_HOME/graze, ~/.cache/graze, or a folder for temporary files.
 std::filesystem::path cache_folder();
 
-// Writes the file in one step: nobody sees a part of it.   Throws: std::runtime_error.
+// Writes the file atomically: no reader sees an incomplete file.   Throws: std::runtime_error.
 void write_atomically(const std::filesystem::path& file, std::string_view text);
 
-// Whether the source has a struct graze_subject of its own.
+// Whether the source defines a struct graze_subject.
 bool source_describes_itself(const std::filesystem::path& source);
 
-// Returns: the shared object's file, named by the hash of the preprocessed source, the flags, the files that they name,
-// those that the assembler says it read, and the compiler's first line of --version. It is built if it is not there as
-// it was built before, and always where that hash does not cover all that it is made of. It has `function` of the
-// source, or the descriptions that the source makes itself (see graze/subject.h), with the variant's flags and then
-// `flags`. Throws: std::runtime_error with the compiler's first error; Stopped.
+// Builds a shared object with `function` of the source, or with the source's own descriptions (see graze/subject.h).
+// Compiles with the variant's flags, then `flags`. The file name is a hash of the preprocessed source, the flags, the
+// files that they name, the files that the assembler reports as read, and the first line of the compiler's --version. A
+// cached object is used if it is unchanged and the hash covers all its inputs.
+// Returns: the shared object.
+// Throws: std::runtime_error with the compiler's first error; Stopped.
 Built build_source(const std::filesystem::path& source, const std::string& function, const VariantInfo& variant,
                    const std::vector<std::string>& flags);
 

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// What the lane table points to, for good.
+// The lane table points to entries, so they are never freed.
 struct Entry {
   Opened opened;
   std::string source, coplanar, degenerate, order;
@@ -35,7 +35,7 @@ struct Entry {
     std::unique_ptr<ForeignProcesses> processes;
   };
   std::vector<Running> running;
-  std::vector<cuda::CudaBuild> builds;  // of CUDA code: of each lane
+  std::vector<cuda::CudaBuild> builds;  // for CUDA code: the build of each lane
 };
 
 std::deque<Entry>& entries() {
@@ -45,7 +45,7 @@ std::deque<Entry>& entries() {
 
 constexpr std::string_view kCommand = "cmd:";
 
-// "library", "cuda" or "source" by the file's ending; empty for any other.
+// "library", "cuda" or "source", by the file's extension; empty for others.
 std::string kind_of(std::string_view file) {
   const std::size_t version = file.find_last_not_of("0123456789.") + 1;  // libx.so.1.2
   if (file.substr(0, version).ends_with(".so") || file.ends_with(".dylib")) return "library";
@@ -65,7 +65,7 @@ Opened parsed(const Wanted& wanted) {
     return result;
   }
   const std::string_view what = wanted.what;
-  std::size_t end = what.size();  // of the file; a colon and a function may follow
+  std::size_t end = what.size();  // end of the file name; a colon and a function may follow
   while (end != what.npos && kind_of(what.substr(0, end)).empty())
     end = end == 0 ? what.npos : what.rfind(':', end - 1);
   if (end == what.npos || end + 1 == what.size()) {
@@ -75,12 +75,12 @@ Opened parsed(const Wanted& wanted) {
   result.file = what.substr(0, end);
   if (end < what.size()) result.function = what.substr(end + 1);
   result.kind = kind_of(what.substr(0, end));
-  result.code = hash_of_library(result.file);  // of a source, until it is built
+  result.code = hash_of_library(result.file);  // for a source: until it is built
   result.hash = result.code.hash;
   return result;
 }
 
-// What its convention says of pairs of a sort.
+// What the subject's convention says of a kind of pairs.
 std::string says(const Description& description, unsigned outside, std::string_view otherwise) {
   if (!(description.outside & outside)) return std::string(otherwise);
   return "not in its contract" + (description.convention.empty() ? "" : ": " + description.convention);
@@ -96,9 +96,9 @@ void describe_info(Entry& entry, const Description& description) {
   entry.info = {entry.opened.wanted.name, entry.source, entry.coplanar, entry.degenerate, entry.order, false};
 }
 
-// What a program says of itself when its first line is `describe`: a JSON object, {"version": "1.2", "source": "…",
-// "convention": "…", "outside": ["touching", …]}, all of it optional. Of anything else, and of nothing, nothing is
-// taken: a program need not know the question.
+// Reads a program's answer to the line `describe`: a JSON object {"version": "1.2", "source": "…", "convention": "…",
+// "outside": ["touching", …]}, in which every field is optional. Ignores any other answer, because a program need not
+// support `describe`.
 void add_description(Description& description, const std::string& subject) {
   const std::string& said = description.said;
   const Json json = Json::parse(said, nullptr, false);
@@ -139,7 +139,8 @@ LaneName lane_name(const std::string& subject, const cuda::CudaBuild& build) {
   return {subject, std::string(name(build.scalar)), std::string(name(build.variant)), ""};
 }
 
-// What a record of `graze prove-twin` beside the source says of this very build, else what is known without it.
+// The evidence for this build in the proof record beside the source. Without such a record, what the build itself
+// shows.
 std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
   std::ifstream in(proof_file(source));
   const Json record = Json::parse(in, nullptr, false);
@@ -153,12 +154,12 @@ std::string evidence_of(const fs::path& source, const cuda::CudaBuild& build) {
           record.at("device").get_ref<const std::string&>(), record.at("toolkit").get_ref<const std::string&>(),
           static_cast<double>(count("pairs")), static_cast<double>(count("twin_pairs"))});
     }
-  } catch (const Json::exception&) {  // no record, or a damaged one, verifies nothing
+  } catch (const Json::exception&) {  // a missing or damaged record verifies nothing
   }
   return cuda::evidence(build);
 }
 
-// recorded: the hash of the code that a campaign ran; empty where any will do.
+// recorded: the hash of the code that a campaign ran; empty accepts any code.
 void expect_code(const Opened& subject, const std::string& recorded) {
   if (const std::string found = fmt::format("{:016x}", subject.code.hash); !recorded.empty() && found != recorded)
     throw std::runtime_error(fmt::format(
@@ -166,7 +167,7 @@ void expect_code(const Opened& subject, const std::string& recorded) {
         subject.wanted.what, found, recorded, subject.wanted.name));
 }
 
-// The device's build where there is a device, else its twin. A build with neither is a lane that says why.
+// Runs the build on the device if there is one, else on its twin. Without both, the lane only reports the reason.
 void add_cuda_lanes(Entry& entry, bool on_device, const std::string& recorded) {
   const Opened& o = entry.opened;
   const fs::path cache = cache_folder();
@@ -253,7 +254,7 @@ void open_as(const Wanted& wanted, bool on_device, const std::string& recorded) 
                                      printable(wish.function)));
     }
     if (wish.kind == "cuda") return add_cuda_lanes(entry, on_device, recorded);
-    const StopSignals stops;  // not while NVRTC compiles, which cannot be stopped
+    const StopSignals stops;  // not active while NVRTC compiles, which cannot be stopped
     std::vector<std::pair<Variant, Code>> builds;
     std::vector<Built> built_files;
     if (wish.kind == "source") {

@@ -26,7 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// One of each misbehaviour, on the pairs that `bad` picks; on the others they say whether a is left of b.
+// One subject for each misbehaviour, on the pairs that `bad` selects. On other pairs they answer whether a is left of
+// b.
 constexpr const char* kMisbehaving = R"(
 #include <stdlib.h>
 #include <unistd.h>
@@ -96,7 +97,7 @@ struct Subjects : testing::Test {
   }
 
   static std::vector<Verdict> verdicts(const DecideBlock& block) { return verdicts_of(block, pairs); }
-  // Of the bad pairs this, of the others what `good` says.
+  // Expects `of_bad` on the bad pairs, and the answer of `good` on the others.
   static void expect(ForeignProcesses& subject, Verdict of_bad) {
     const std::vector<Verdict> found = verdicts(subject);
     std::size_t bad = 0;
@@ -134,9 +135,9 @@ TEST_F(Subjects, WhatTheCodeItselfTakesIsKnown) {
   const auto quick = nanoseconds("libbad.so", "good"), slow = nanoseconds("libslow.so", "slow");
   ASSERT_TRUE(quick && slow);
   EXPECT_GT(*quick, 0u);
-  EXPECT_GT(*slow, 3000u * 2000);  // at least 2 us a pair: 20,000 steps
+  EXPECT_GT(*slow, 3000u * 2000);  // at least 2 µs per pair: 20,000 steps
   EXPECT_GT(*slow, 20 * *quick);
-  EXPECT_FALSE(nanoseconds("libbad.so", "aborts"));  // it failed on some
+  EXPECT_FALSE(nanoseconds("libbad.so", "aborts"));  // it failed on some pairs
 }
 
 TEST_F(Subjects, WhatMisbehavesIsAVerdictOfThePairsOnWhichItDoes) {
@@ -172,7 +173,7 @@ TEST_F(Subjects, EndlessLoopsAndMemoryEnd) {
   pairs = all;
 }
 
-// A process that is ended just when it comes to answer leaves no answer of another pair behind.
+// A process that is ended just as it is about to answer leaves no answer for another pair.
 TEST_F(Subjects, TimesAtTheLimitAreVerdictsOrTooLate) {
   const std::vector<Pair> all = pairs;
   pairs.assign(all.begin(), all.begin() + 300);
@@ -234,7 +235,7 @@ for line in sys.stdin:
   pairs = all;
 }
 
-// What a program says of itself, when it is asked; one that does not know the question is taken as it is.
+// A program may describe itself when asked. A program that does not know the question is used as it is.
 TEST_F(Subjects, AProgramMayDescribeItself) {
   const std::string answers = "; while read line; do echo 1; done";
   const auto open_program = [&](const std::string& name, const std::string& describes) {
@@ -266,7 +267,7 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
             std::string::npos);
 }
 
-// The published algorithms, pushed through a source as a stranger's code: exactly their lanes' verdicts.
+// The published algorithms, opened as foreign sources, give exactly the verdicts of their lanes.
 class OurOwn : public Subjects, public testing::WithParamInterface<int> {};
 
 TEST_P(OurOwn, AsForeignCodeAreTheirLanes) {
@@ -296,7 +297,7 @@ int decide(const Real a[9], const Real b[9]) {
   open(wanted);
   std::size_t compared = 0;
   for (const char* scalar : {"f32", "f64"}) {
-    {  // what cpu-fma fuses is the compiler's choice, and another in another function
+    {  // the compiler decides what cpu-fma fuses, and may decide otherwise in another function
       const std::string lane = std::string("/") + scalar + "/cpu";
       const Lane *foreign = find_lane(name + lane), *ours = find_lane(id + lane);
       ASSERT_TRUE(ours);
@@ -335,14 +336,14 @@ TEST_F(Subjects, SourcesInCAndCppFindTheirFunctionAndScalar) {
   }
   EXPECT_FALSE(find_lane("in_double/f32/cpu"));
   EXPECT_FALSE(find_lane("by_name/f32/cpu"));
-  // What is included counts: another header is another build.
+  // Included files count: another header makes another build.
   write("part.h", "#define LESS(a, b) (a)[0] >= (b)[0]");
   open_one("changed=" + (folder / "both.cpp").string() + ":geo::meets");
   EXPECT_EQ(verdicts(find_lane("changed/f32/cpu")->decide)[0],
             left_of(pairs[0]) == Verdict::disjoint ? Verdict::intersects : Verdict::disjoint);
 }
 
-// Without a device a CUDA source is replayed by its twin; where a product is fused into a sum that shows.
+// Without a device, the twin replays a CUDA source. Fusing a product into a sum has a visible effect.
 TEST_F(Subjects, ACudaSourceIsReplayedByItsTwin) {
   const fs::path source = write("mine.cu", R"(
 #include <math.h>
@@ -365,7 +366,7 @@ __device__ bool intersects(const float a[9], const float b[9]) { return area(a) 
     ASSERT_EQ(found[i] == Verdict::intersects, area(pairs[i].a) > area(pairs[i].b)) << i;
   EXPECT_TRUE(cuda::contraction_sites(*rounded).empty());
   EXPECT_FALSE(cuda::contraction_sites(*fused).empty());
-  // Triangles whose area's two products are nearly equal.
+  // Triangles for which the two products of the area are nearly equal.
   const std::vector<Pair> before = pairs;
   pairs.clear();
   for (std::uint64_t i = 0; i < 1000; ++i) {
@@ -386,7 +387,7 @@ __device__ bool intersects(const float a[9], const float b[9]) { return area(a) 
   EXPECT_GT(differ, 0u);
   pairs = before;
 
-  // A record counts for the very build that it names.
+  // A record counts only for the exact build that it names.
   const std::vector<cuda::NamedBuild> builds = cuda_builds();
   const auto build =
       std::find_if(builds.begin(), builds.end(), [](const auto& b) { return b.lane == "gpu/f32/cuda-fma"; });
@@ -455,7 +456,7 @@ TEST_F(Subjects, ACampaignsRecordOpensThemAgainUnlessTheyChanged) {
   EXPECT_TRUE(record({"moller_1997/f32/cpu", "recorded2/f32/cpu"}).is_null());
   nlohmann::ordered_json spec{{"subjects", record({"moller_1997/f32/cpu", "recorded/f32/cpu"})}};
   ASSERT_EQ(spec["subjects"].size(), 1u);
-  open_recorded(spec);                      // open already
+  open_recorded(spec);                      // already open
   open_one("recorded=" + source.string());  // the same again
   spec["subjects"][0]["name"] = "again";
   open_recorded(spec);
@@ -491,12 +492,12 @@ TEST_F(Subjects, CodeIsKnownByWhatIsCompiledOrRun) {
     EXPECT_TRUE(
         names(error, {"changed", spec["subjects"][0]["hash"].get<std::string>(), "--subject " + name + "_changed"}));
     EXPECT_FALSE(opened(name + "_changed"));
-    open_one(name + "_changed=" + what);  // as a person asks for it
+    open_one(name + "_changed=" + what);  // as a person requests it
     EXPECT_EQ(open_recorded(spec).size(), 1u);
   }
 }
 
-// Whether the cached build may be run: never one of other files.
+// Whether the cached build may be used. It must never be one of other files.
 TEST_F(Subjects, WhatIsBuiltInBesideTheSourceIsKnownOrBuiltAnew) {
   const fs::path object = folder / "helper.o", data = folder / "some $data.bin";
   const auto build = [&](bool less) {
@@ -533,7 +534,7 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
                           Case{"for_linker", calls, {"-Wl," + object.string()}, false},
                           Case{"by_name", calls, {"-L" + folder.string(), "-Wl,-u,helper", "-lhelper"}, false},
                           Case{"incbin", reads(0), {}, lists}, Case{"incbin_when_linked", reads(0), {"-flto"}, false}};
-  if (lists) {  // by an assembler that does not list what it reads, only the plain spelling is found
+  if (lists) {  // if the assembler does not list the files it reads, only the plain spelling is found
     cases.push_back({"incbin_in_parts", reads(1), {}, true});
     cases.push_back({"incbin_in_numbers", reads(2), {}, true});
   }
@@ -584,7 +585,7 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
   }
 }
 
-// The files that a shell puts in are not known, and it says so.
+// Files from shell expansions are unknown, and `not_covered` says so.
 TEST_F(Subjects, ACommandThatAShellExpandsIsNotCovered) {
   for (const std::string command : {"python3 $PWD/s.py", "python3 s.p?", "python3 *.py", "python3 ~+/s.py",
                                     "python3 $(cat list)", "python3 `cat list`", "python3 [s].py", "python3 {s,}.py"})

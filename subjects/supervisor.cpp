@@ -33,20 +33,20 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Time = Clock::time_point;
 
-constexpr auto kLookEvery = std::chrono::milliseconds(100);  // at what the processes take
-constexpr int kMostLoads = 3;                                // in vain, for one block
+constexpr auto kLookEvery = std::chrono::milliseconds(100);  // between checks of what the processes use
+constexpr int kMostLoads = 3;                                // failed ones, for one block
 
 Time after(double seconds) {
   return Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
-// graze takes a supervisor that says nothing for one that cannot go on.
+// graze assumes that a silent supervisor cannot continue.
 void tell_alive() { send(kControlFd, &kAlive, sizeof kAlive, MSG_NOSIGNAL | MSG_DONTWAIT); }
 
 class Supervisor {
  public:
   Supervisor(const Limits& limits, char* const* arguments) : limits_(limits), arguments_(arguments) {
-    prctl(PR_SET_DUMPABLE, 0);  // nobody of the same user looks into this process
+    prctl(PR_SET_DUMPABLE, 0);  // other processes of the same user cannot inspect this one
     const int fd = memfd_create("graze-answers", MFD_CLOEXEC | MFD_ALLOW_SEALING);
     if (fd < 0 || ftruncate(fd, kWords * sizeof(std::uint64_t)) != 0 ||
         fcntl(fd, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0)
@@ -76,15 +76,15 @@ class Supervisor {
     _exit(0);
   }
 
-  // Without the system's help there is no supervision: graze starts another supervisor.
+  // If the system call fails, supervision is impossible: leaves, and graze starts another supervisor.
   int wait_for(pollfd* of, nfds_t count, int milliseconds) {
     const int found = poll(of, count, milliseconds);
     if (found < 0 && errno != EINTR) leave();
     return found;
   }
 
-  // Waits for what graze asks next, and meanwhile for what the processes take.   Returns: whether there is more to
-  // come.
+  // Waits for graze's next block and checks the processes' usage meanwhile.   Returns: false when there is no further
+  // block.
   bool next_block(Block& block) {
     for (;;) {
       pollfd control{kControlFd, POLLIN, 0};
@@ -99,7 +99,7 @@ class Supervisor {
   void answer(std::size_t count) {
     Questions questions(count, of_blocks_, limits_.program);
     Answers answers{0, static_cast<std::uint32_t>(count), {}};
-    int loads = 0;  // since a worker was ready
+    int loads = 0;  // since a worker was last ready
     for (bool first = true; !questions.done(); first = false) {
       if (worker_ < 0 && !(loader_ >= 0 && await_worker())) {
         end_all();
@@ -121,14 +121,14 @@ class Supervisor {
         continue;
       }
       end_worker();
-      questions.take(words_);  // what it answered in the last moment
+      questions.take(words_);  // answers of the last moment
       if (!questions.answered() || limits_.program) questions.failed(how);
     }
     std::copy(questions.answers().begin(), questions.answers().end(), answers.answers);
     if (send(kControlFd, &answers, sizeof answers, MSG_NOSIGNAL) != sizeof answers) leave();
   }
 
-  // Until the worker has answered all (kDeclined), or has to be ended (kCrashed, kTimedOut).
+  // Waits until the worker has given all answers (kDeclined) or has to be ended (kCrashed, kTimedOut).
   signed char watch(Questions& questions) {
     double before = worker_seconds();
     int times = 0;
@@ -140,20 +140,21 @@ class Supervisor {
         times = 0;
         until = after(limits_.seconds);
       }
-      if (told) return questions.answered() ? kDeclined : kCrashed;  // it says that it has answered all
+      if (told) return questions.answered() ? kDeclined : kCrashed;  // it claims to have given all answers
       if (over_limits_) return kCrashed;
       if (has_ended(worker_fd_)) {
         questions.take(words_);
         return kCrashed;
       }
       if (Clock::now() < until) continue;
-      // Late is who had the time: a busy machine makes no verdicts.
+      // It timed out only if it had the processor time; load on the machine gives no verdicts.
       if (++times >= most_times() || worker_seconds() - before >= 0.9 * limits_.seconds) return kTimedOut;
       until = after(limits_.seconds);
     }
   }
 
-  // Waits for any news, at most until then.   Returns: whether the worker says that it has answered the last question.
+  // Waits for an event, at most until `until`.   Returns: whether the worker says that it has answered the last
+  // question.
   bool wait(Time until) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::min(until, next_look_) - Clock::now()).count();
     pollfd news[] = {{talk_, POLLIN, 0}, {worker_fd_, POLLIN, 0}, {kControlFd, POLLIN, 0}};
@@ -164,18 +165,19 @@ class Supervisor {
       reap();
       over_limits_ = !within_limits();
     }
-    // Behind a worker's end, the next message may be that the next one is ready.
+    // When a worker has ended, the next message may already be that a new worker is ready.
     if (news[1].revents || !(news[0].revents & POLLIN)) return false;
     Answered said{};
     pid_t sender = 0;
     const ssize_t received = receive(&said, sizeof said, sender);
-    if (received == 0) return true;  // nobody has the socket any more
+    if (received == 0) return true;  // nobody holds the socket any more
     if (received != sizeof said || said.says != Says::answered || said.nonce != nonce_) return false;
     nanoseconds_ = said.nanoseconds;
     return true;
   }
 
-  // One message, and the process that sent it as the system says.   Returns: its bytes; -1 for none.
+  // Receives a message and the sender's process id, as the system reports it.   Returns: its size in bytes; -1 for
+  // none.
   ssize_t receive(void* to, std::size_t size, pid_t& sender) {
     iovec part{to, size};
     alignas(cmsghdr) char more[CMSG_SPACE(sizeof(ucred))];
@@ -190,7 +192,7 @@ class Supervisor {
     return received;
   }
 
-  // Starts the process that loads the code, and waits until it has.   Returns: whether it could; why_ says why not.
+  // Starts the process that loads the code and waits for it.   Returns: whether it loaded; if not, why_ has the reason.
   bool load(Loaded& loaded) {
     int talk[2];
     const int yes = 1;
@@ -212,7 +214,7 @@ class Supervisor {
       pid_t sender = 0;
       char bytes[sizeof(Loaded)];
       const ssize_t received = receive(bytes, sizeof bytes, sender);
-      if (received == 0) break;  // nobody has the socket any more
+      if (received == 0) break;  // nobody holds the socket any more
       if (received != sizeof bytes || !read_loaded(bytes, loaded)) continue;
       if (loaded.says == Says::refused) why_ = loaded.text;
       return loaded.says == Says::loaded;
@@ -227,7 +229,7 @@ class Supervisor {
     const int to[] = {kPairsFd, kWordsFd, kTalkFd};
     for (int i = 0; i < 3; ++i) dup2(from[i], to[i]);
     close_range(kTalkFd + 1, ~0u, 0);
-    if (limits_.bytes > 0) {  // foreign code, and not a device's driver
+    if (limits_.bytes > 0) {  // limits apply to foreign code, but not to a device's driver
       drop_rights();
       forbid_calls();
     }
@@ -235,7 +237,8 @@ class Supervisor {
     _exit(127);
   }
 
-  // Returns: whether there is a message; otherwise the process ended, time is up, or it takes too much: why_ says so.
+  // Returns: whether there is a message. If not, the process ended, the time is up or a limit is exceeded; why_ says
+  // which.
   bool wait_for_message(Time until, int process_fd) {
     while (Clock::now() < until) {
       const auto left =
@@ -259,16 +262,16 @@ class Supervisor {
     return false;
   }
 
-  // Waits until the loader's next worker is ready.   Returns: whether it is.
+  // Waits for the loader's next worker.   Returns: whether it is ready.
   bool await_worker() {
     const Time until = after(limits_.load_seconds);
     while (wait_for_message(until, loader_fd_)) {
       Says said{};
       pid_t sender = 0;
       const ssize_t received = receive(&said, sizeof said, sender);
-      if (received == 0) return false;  // nobody has the socket any more
+      if (received == 0) return false;  // nobody holds the socket any more
       if (received != sizeof said || said != Says::ready || sender <= 1) continue;
-      const int fd = open_process(sender);  // first, so that the number stays this process's while it is looked at
+      const int fd = open_process(sender);  // first, so that the id stays this process's during the checks
       if (fd >= 0 && is_descendant(sender) && !has_ended(fd)) {
         worker_ = sender;
         worker_fd_ = fd;
@@ -279,7 +282,8 @@ class Supervisor {
     return false;
   }
 
-  // Of the worker, and of what it started; the process that loaded the code stays, and forks the next.
+  // Ends the worker and the processes that it started. The process that loaded the code stays, and forks the next
+  // worker.
   void end_worker() {
     if (over_limits_) return end_all();
     syscall(SYS_pidfd_send_signal, worker_fd_, SIGKILL, nullptr, 0);
@@ -293,7 +297,7 @@ class Supervisor {
 
   void end_all() {
     tell_alive();
-    if (!end_children(-1)) _exit(1);  // it starts processes faster than they end: the namespace ends with this one
+    if (!end_children(-1)) _exit(1);  // it starts processes faster than they end; the namespace ends with this process
     for (int* fd : {&talk_, &loader_fd_, &worker_fd_}) {
       if (*fd >= 0) close(*fd);
       *fd = -1;
@@ -302,7 +306,7 @@ class Supervisor {
     over_limits_ = false;
   }
 
-  // Orphans that ended.
+  // Collects orphans that have ended.
   void reap() {
     while (waitpid(-1, nullptr, WNOHANG) > 0) {
     }
@@ -320,7 +324,7 @@ class Supervisor {
     return process_fd < 0 || poll(&ended, 1, 0) > 0;
   }
 
-  // Processor seconds that the worker took so far.
+  // The processor time that the worker has used, in seconds.
   double worker_seconds() const {
     clockid_t clock;
     timespec taken{};
@@ -328,8 +332,8 @@ class Supervisor {
     return static_cast<double>(taken.tv_sec) + 1e-9 * static_cast<double>(taken.tv_nsec);
   }
 
-  // How many times its time the worker may take: many where it waits for a processor, a few where it waits for a disk,
-  // which it can also pretend (vfork); once where it waits for anything else.
+  // How many times its time limit the worker may wait: 100 times if it waits for a processor, 3 times for a disk (a
+  // state that it can also fake by vfork), otherwise once.
   int most_times() const {
     const char state = process_state(worker_);
     return state == 'R' ? 100 : state == 'D' ? 3 : 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every algorithm says of itself. An algorithm is a struct with `kInfo` and a static template `decide`.
+// What an algorithm states about itself. An algorithm is a struct with `kInfo` and a static template `decide`.
 #pragma once
 
 #include <string_view>
@@ -13,11 +13,11 @@ namespace graze {
 struct AlgorithmInfo {
   std::string_view id;
   std::string_view paper;
-  std::string_view coplanar;           // what its paper says of coplanar triangles
-  std::string_view degenerate;         // what its paper says of segments and points
+  std::string_view coplanar;           // what its paper says about coplanar triangles
+  std::string_view degenerate;         // what its paper says about segments and points
   std::string_view order;              // whether the verdict can depend on the order of triangles and vertices
   bool rounding_free_on_lattice;       // neither divides nor takes roots
-  bool right_without_rounding = true;  // on all pairs of proper triangles, were every operation exact
+  bool right_without_rounding = true;  // on all pairs of proper triangles, if every operation were exact
 };
 
 inline namespace GRAZE_FP {

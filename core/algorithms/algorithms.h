@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The list of algorithms. A new subject is one header and one entry here; the lane table, the device lanes,
-// tests, campaigns, benchmarks and `graze lanes` iterate it.
+// The list of algorithms. A new subject is one header and one entry here. The lane table, the device lanes, tests,
+// campaigns, benchmarks and `graze lanes` iterate over this list.
 #pragma once
 
 #include <tuple>
@@ -18,7 +18,7 @@ inline namespace GRAZE_FP {
 using Algorithms = std::tuple<ProjectedSat, IntervalOverlap, Moller1997, GuigueDevillers2003, SeparatingAxes>;
 inline constexpr int kAlgorithmCount = std::tuple_size_v<Algorithms>;
 
-// The pair's stored bits, widened, decided by decide(a, b).
+// Widens the pair's stored bits to Real and decides them with decide(a, b).
 template <class Real, class Decide>
 GRAZE_HD Verdict decide_widened(const Pair& pair, const Decide& decide) {
   Vec3<Real> a[3], b[3];
@@ -29,7 +29,7 @@ GRAZE_HD Verdict decide_widened(const Pair& pair, const Decide& decide) {
   return decide(a, b);
 }
 
-// A decision by one algorithm in one scalar.
+// The decision of one algorithm in one scalar type.
 template <class Algorithm, class Real>
 GRAZE_HD Verdict decide_widened(const Pair& pair) {
   return decide_widened<Real>(pair, [](const auto& a, const auto& b) { return Algorithm::decide(a, b); });

@@ -10,8 +10,8 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace guigue_devillers_2003 {
 
-// Order of a triangle's vertices in which the first is alone on its side of the other's plane (or the others are
-// in it), and whether the other triangle must be turned over to see that vertex on the positive side.
+// The order of a triangle's vertices in which the first is alone on its side of the other's plane, or the others are in
+// the plane. flip: whether to turn the other triangle over, so that the first vertex is on its positive side.
 struct Canonical {
   int first;  // 0, 1, 2; -1 when all three vertices lie in the plane
   bool flip;
@@ -114,7 +114,7 @@ struct GuigueDevillers2003 {
     for (int i = 0; i < 3; ++i) db[i] = policy.snap(Site::plane_distance, dot(b[i] - a[2], n1));
     if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;
 
-    // Turning b over exchanges its last two vertices, and with them their distances' places; likewise a.
+    // Turning b over exchanges its last two vertices and therefore their distances. The same holds for a.
     const Canonical ca = canonical(da);
     if (ca.first < 0) return verdict_of(coplanar_intersect(n1, a, b, policy));
     const int swap = ca.flip ? 1 : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thesis's final algorithm (Maffina 2012, section 3.2): Moller and Haines' interval overlap as told in
+// The thesis's final algorithm (Maffina 2012, section 3.2): Moller and Haines' interval overlap as presented in
 // Schneider and Eberly, Geometric Tools for Computer Graphics (2002), pages 539 to 542.
 #pragma once
 
@@ -17,7 +17,7 @@ struct Line {
   Vec3<Real> direction;  // normalised
 };
 
-// The line common to two planes whose normals' cross product is `direction`.
+// The common line of two planes; `direction` is the cross product of their normals.
 // Reference: Geometric Tools for Computer Graphics, section 11.5.1.
 template <class Real>
 GRAZE_HD Line<Real> common_line(const Plane<Real>& p, const Plane<Real>& q, const Vec3<Real>& direction) {
@@ -34,8 +34,8 @@ GRAZE_HD Line<Real> common_line(const Plane<Real>& p, const Plane<Real>& q, cons
   return {{-sum.x, -sum.y, -sum.z}, normalised(direction)};
 }
 
-// Which vertex the interval formula needs last: the one alone on its side; with vertices on the line, one of
-// those, except that between opposite sides the vertex on the line must not be last.
+// The vertex that the interval formula needs last. It is the vertex that is alone on its side, or a vertex on the line.
+// Exception: if the other two are on opposite sides, the vertex on the line must not be last.
 // Reference: Maffina 2012, section 3.2.3 and figure 3.5.
 template <class Real>
 GRAZE_HD int vertex_to_put_last(const Real (&distance)[3]) {
@@ -58,7 +58,7 @@ GRAZE_HD int vertex_to_put_last(const Real (&distance)[3]) {
   return on_line == 3 ? 2 : first_zero;
 }
 
-// The section of the line by a triangle whose vertices have these signed distances to the other plane.
+// The part of the line within a triangle whose vertices have these signed distances to the other plane.
 template <class Real>
 GRAZE_HD Range<Real> section(const Line<Real>& line, const Vec3<Real> (&v)[3], const Real (&distance)[3]) {
   const int last = vertex_to_put_last(distance);

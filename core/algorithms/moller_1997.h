@@ -10,7 +10,7 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace moller_1997 {
 
-// Whether segments pq and rs share a point; parallel ones never do (others' edges then meet instead).
+// Whether segments pq and rs share a point. Parallel segments never do; edges that cross them are found instead.
 template <class Real>
 GRAZE_HD bool segments_cross(Vec2<Real> p, Vec2<Real> q, Vec2<Real> r, Vec2<Real> s) {
   const Real zero(0);
@@ -51,7 +51,7 @@ GRAZE_HD bool coplanar_intersect(const Vec3<Real>& normal, const Vec3<Real> (&a)
   return strictly_inside(u[0], v) || strictly_inside(v[0], u);
 }
 
-// A triangle's section of the common line, scaled: its ends are at + p / x0 and at + q / x1.
+// A triangle's section of the common line, scaled: it ends at `at + p / x0` and at `at + q / x1`.
 template <class Real>
 struct Section {
   Real at, p, q, x0, x1;
@@ -107,7 +107,7 @@ struct Moller1997 {
     const int alone_a = alone_vertex(dv), alone_b = alone_vertex(du);
     if (alone_a < 0 || alone_b < 0) return verdict_of(coplanar_intersect(n1, a, b));
 
-    // Both sections times x0 x1 of each: no division.
+    // Scales both sections by x0 x1 of each, which avoids division.
     const Section<Real> s = section_from(ta, dv, alone_a), t = section_from(tb, du, alone_b);
     const Real xx = s.x0 * s.x1, yy = t.x0 * t.x1, xxyy = xx * yy;
     const Real s_at = s.at * xxyy, t_at = t.at * xxyy;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plane of a triangle, and on which sides of it points lie.
+// The plane of a triangle, and the sides on which points lie.
 #pragma once
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct Plane {
   GRAZE_HD explicit Plane(const Vec3<Real> (&v)[3])
       : normal(cross(v[1] - v[0], v[2] - v[0])), point(v[0]), d(distance({Real(0), Real(0), Real(0)})) {}
 
-  // Signed distance of v times |normal|.
+  // Signed distance of v to the plane, times |normal|.
   GRAZE_HD Real distance(const Vec3<Real>& v) const { return dot(normal, v - point); }
 };
 
@@ -37,7 +37,7 @@ GRAZE_HD bool strictly_one_side(const Real (&distance)[3]) {
          (distance[0] < zero && distance[1] < zero && distance[2] < zero);
 }
 
-// Signed distances of the vertices v to the plane, each through the policy.
+// Signed distances of the vertices v to the plane, times |normal|, each after the policy's snap.
 template <class Real, class Policy>
 GRAZE_HD void plane_distances(const Plane<Real>& plane, const Vec3<Real> (&v)[3], const Policy& policy,
                               Real (&distance)[3]) {

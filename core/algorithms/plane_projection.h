@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two triangles projected onto a plane: separating axes in two dimensions, as both algorithms of the thesis use them.
+// Projects two triangles onto a plane and tests separating axes in 2D. Both algorithms of the thesis use it.
 #pragma once
 
 #include "core/algorithms/plane.h"

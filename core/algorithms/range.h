@@ -20,7 +20,7 @@ GRAZE_HD Range<Real> project(const Vec3<Real>& direction, const Vec3<Real> (&v)[
   Range<Real> range{first, first};
   for (int i = 1; i < 3; ++i) {
     const Real t = dot(direction, v[i]);
-    range.lo = t < range.lo ? t : range.lo;  // selections: branches could not be predicted
+    range.lo = t < range.lo ? t : range.lo;  // selections, because branches would be mispredicted
     range.hi = t > range.hi ? t : range.hi;
   }
   return range;

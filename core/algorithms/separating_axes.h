@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Separating axes: Gottschalk, Lin, Manocha 1996 (OBBTree) for the theorem, Schneider and Eberly 2002, section 7.7,
-// for triangles: both face normals, the nine cross products of edges, and the six in-plane edge normals.
+// Separating axes. Theorem: Gottschalk, Lin, Manocha 1996 (OBBTree). Triangles: Schneider and Eberly 2002, section 7.7.
+// Axes: both face normals, the nine cross products of edges, and the six in-plane edge normals.
 #pragma once
 
 #include "core/algorithms/algorithm.h"
@@ -43,7 +43,7 @@ struct SeparatingAxes {
   }
 
  public:
-  // No other comparison matters to a verdict of disjoint than those of the axis that separates.
+  // A verdict of disjoint depends only on the comparisons along the axis that separates.
   static constexpr bool kDisjointByOneAxis = true;
 };
 

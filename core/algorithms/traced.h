@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and a policy that write down what an algorithm does with them: every comparison and every value asked of the
-// policy, with its source line. They can also lead it down a given path, whatever the values say.
+// Numbers and a policy that record an algorithm's comparisons and the values that it passes to the policy, each with
+// its source line. They can also force the outcomes of comparisons and so lead the algorithm down a given path.
 #pragma once
 
 #include <cmath>
@@ -35,17 +35,17 @@ constexpr bool holds(Comparison comparison, std::partial_ordering order) {
   }
 }
 
-// A comparison, or a value handed to the policy's snap (left, alone).
+// A comparison, or a value passed to the policy's snap (as `left`; `right` is zero).
 template <class Number>
 struct Seen {
   std::source_location where;
-  std::optional<Site> site;  // what the policy was asked about; none for a comparison of the algorithm's own
+  std::optional<Site> site;  // where the policy was asked; none for the algorithm's own comparison
   bool compared;
   Comparison comparison;
   Number left, right;
-  int left_result, right_result;  // which results of the run they are, counted from 0; -1: a coordinate or a constant
-  bool held;                      // by the values
-  bool taken;                     // what the algorithm was told: the same, unless it was led
+  int left_result, right_result;  // indices of the run's results, from 0; -1: a coordinate or a constant
+  bool held;                      // the outcome by the values
+  bool taken;                     // the outcome that the algorithm got: `held`, unless a path led it
 };
 
 // Outcomes of a run's comparisons, in order.
@@ -66,21 +66,21 @@ Path path_of(const Trace<Number>& run) {
   return path;
 }
 
-// A run being written down. Floats are kept as doubles, so that runs of all lanes are of one type.
+// A run in progress. Floats are stored as doubles, so that runs of all lanes have one type.
 template <class Number>
 struct Recorder {
   using Kept = std::conditional_t<std::is_same_v<Number, float>, double, Number>;
 
   Trace<Kept> run;
-  Path lead;  // what to say of the first comparisons; those beyond go by their values
+  Path lead;  // outcomes of the first comparisons; later ones go by their values
   std::size_t comparisons = 0;
   int results = 0;
-  std::vector<int> uses;        // of each product, by additions
+  std::vector<int> uses;        // how many additions use each product
   std::vector<int> known_uses;  // the same, from an earlier run
 
   static inline thread_local Recorder* current = nullptr;
 
-  template <class Operand>  // a value and which result it is
+  template <class Operand>  // a value and its result's index
   bool compare(Comparison comparison, const Operand& l, const Operand& r, std::optional<Site> site,
                const std::source_location& where) {
     const bool held = holds(comparison, order(l.value, r.value));
@@ -103,10 +103,10 @@ struct Recorder {
   }
 };
 
-// none: every operation rounds. The others: a product that is added or subtracted is not rounded. left: of two products
-// the left one, as g++ does where it contracts them at all. nvcc: the one with fewer uses, or else the left, as
-// cuda/twin/generator/contraction.cpp has it; but neither of two that scale by a quotient, for in interval_overlap's
-// common_line, the only such place, nvcc moves the addition into another block. A rule guesses: compare with the lane.
+// none: every operation rounds. Otherwise a product that is added or subtracted is not rounded. Of two products, left
+// fuses the left one, like g++ if it contracts them at all. nvcc fuses the one with fewer uses, else the left one, like
+// cuda/twin/generator/contraction.cpp. It fuses neither of two that scale by a quotient: in interval_overlap's
+// common_line, the only such place, nvcc moves the addition into another block. Rules guess: compare with the lane.
 enum class Contraction { none, left, nvcc };
 
 inline namespace GRAZE_FP {
@@ -114,10 +114,10 @@ inline namespace GRAZE_FP {
 template <class Number, Contraction contraction = Contraction::none>
 struct Traced {
   Number value;
-  int result = -1;                        // which of the run's results it is
-  Number x{0}, y{0};                      // the factors, of a product
-  int product = -1;                       // its place among the run's products
-  bool quotient = false, scaled = false;  // it is a quotient or a constant; a product whose right factor is
+  int result = -1;                        // index among the run's results
+  Number x{0}, y{0};                      // the factors, if it is a product
+  int product = -1;                       // index among the run's products
+  bool quotient = false, scaled = false;  // a quotient or a constant; a product by a quotient
 
   Traced() : value(0) {}
   explicit Traced(Number v) : value(std::move(v)) {}
@@ -125,7 +125,7 @@ struct Traced {
   requires(std::is_arithmetic_v<Other> && !std::is_same_v<Other, Number>) explicit Traced(Other v)
       : value(static_cast<Number>(v)), quotient(std::is_integral_v<Other>) {}
 
-  // An operand of a comparison, and where in the source it stands.
+  // An operand of a comparison, and its place in the source.
   struct Operand {
     const Traced& number;
     std::source_location where;
@@ -184,7 +184,7 @@ struct Traced {
     number.result = Recorder<Number>::current->results++;
     return number;
   }
-  // Which operand of an addition is contracted: -1 the left, 1 the right, 0 neither.
+  // Which operand of an addition is fused: -1 the left, 1 the right, 0 neither.
   static int choose(const Traced& l, const Traced& r) {
     Recorder<Number>& recorder = *Recorder<Number>::current;
     const auto uses = [&recorder](const Traced& n) {
@@ -203,7 +203,7 @@ struct Traced {
   }
 };
 
-// Compares exactly, as ExactZero does.
+// A policy that records and compares exactly, like ExactZero.
 struct TracingPolicy {
   template <class Number, Contraction contraction>
   Traced<Number, contraction> snap(Site site, const Traced<Number, contraction>& n,
@@ -225,7 +225,7 @@ struct TracingPolicy {
   }
 };
 
-// The algorithm (its place in Algorithms) on the pair in these numbers, led down the path.
+// Runs the algorithm (an index into Algorithms) on the pair with these numbers, led down the path.
 template <class Number, Contraction contraction = Contraction::none>
 Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const Pair& pair, const Path& lead = {}) {
   using Real = Traced<Number, contraction>;
@@ -246,7 +246,7 @@ Trace<typename Recorder<Number>::Kept> run_traced(int algorithm, const Pair& pai
   };
   Recorder<Number> recorder;
   run(recorder, std::make_index_sequence<kAlgorithmCount>());
-  if constexpr (contraction != Contraction::none) {  // only the whole run tells how often a product is used
+  if constexpr (contraction != Contraction::none) {  // how often a product is used is known only after a whole run
     Recorder<Number> again;
     again.known_uses = std::move(recorder.uses);
     run(again, std::make_index_sequence<kAlgorithmCount>());

@@ -12,7 +12,7 @@ struct Vec2 {
   Real x, y;
 };
 
-// v without the component along the axis.
+// v without its component along the axis.
 template <class Real>
 GRAZE_HD Vec2<Real> drop(const Vec3<Real>& v, int axis) {
   return axis == 0 ? Vec2<Real>{v.y, v.z} : axis == 1 ? Vec2<Real>{v.x, v.z} : Vec2<Real>{v.x, v.y};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What projections on axes show of the Minkowski difference D = { x - y : x in a, y in b }, which holds the origin
-// exactly when a and b meet.
+// What projections on axes show about the Minkowski difference D = { x - y : x in a, y in b }. D contains the origin
+// exactly when a and b intersect.
 #pragma once
 
 #include "core/exact/triangles.h"
@@ -8,15 +8,15 @@
 
 namespace graze::exact::detail {
 
-// What the axes looked at so far have shown.
+// What the axes examined so far have shown.
 struct AxisEvidence {
   bool separated = false;
   bool touching = false;            // the origin lies on a face of D that is not all of D
   bool flat = true;                 // D has no volume
-  bool coplanar = true;             // nor has the hull of all six points
+  bool coplanar = true;             // and the hull of all six points has no volume
   unsigned face_a = 7, face_b = 7;  // the vertices that may belong to the common set
 
-  // The projections of the vertices on an axis.
+  // Examines an axis, given the projections of the vertices on it.
   template <class T>
   GRAZE_HD void look(const T (&a)[3], const T (&b)[3]) {
     const T least_a = least(a), most_a = most(a), least_b = least(b), most_b = most(b);
@@ -49,7 +49,7 @@ GRAZE_HD void look_along(const Triangles<Numbers>& t, const Vec<typename Numbers
   seen.look(a, b);
 }
 
-// Square to each edge, in the projection on a coordinate plane.
+// Examines the axes perpendicular to each edge, in the projection on a coordinate plane.
 template <class Numbers>
 GRAZE_HD void look_in_plane(const Triangles<Numbers>& t, typename Numbers::D VecOf<Numbers>::*x,
                             typename Numbers::D VecOf<Numbers>::*y, AxisEvidence& seen) {
@@ -68,9 +68,9 @@ GRAZE_HD void look_in_plane(const Triangles<Numbers>& t, typename Numbers::D Vec
   }
 }
 
-// The axes that decide when D lies in a plane through the origin, n being its normal: the projection along a
-// coordinate axis that is not square to n keeps it in shape, and its edges are edges of a and b. Without a normal D is
-// a segment or a point: then some projection shows it beside the origin, or else some coordinate.
+// The axes that decide if D lies in a plane through the origin, with normal n. Dropping a coordinate whose axis is not
+// perpendicular to n keeps D's shape, and its edges are edges of a and b. If n is zero, D is a segment or a point. Then
+// some projection or some coordinate shows whether the origin is outside D.
 template <class Numbers>
 GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, AxisEvidence& seen) {
   using D = typename Numbers::D;
@@ -88,8 +88,8 @@ GRAZE_HD void look_flat(const Triangles<Numbers>& t, const NormalOf<Numbers>& n,
   }
 }
 
-// The axes that decide. When D has a volume, its faces are square to 11 axes: the normals of a and b, and the products
-// of their edges. When it has none, they show whether its plane holds the origin. An axis too many does no harm.
+// The axes that decide. If D has a volume, its faces are perpendicular to 11 axes: both normals and the edges' cross
+// products. If not, they show whether D's plane contains the origin. Extra axes do no harm.
 template <class Numbers>
 GRAZE_HD AxisEvidence look(const Triangles<Numbers>& t) {
   AxisEvidence seen;

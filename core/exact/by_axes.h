@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The decision by axes: separating axes of the Minkowski difference of a and b. Proper, coplanar and degenerate pairs
-// alike, with contact, margin's sign and shape.
+// The decision by axes: separating axes of the Minkowski difference of a and b. It handles proper, coplanar and
+// degenerate pairs alike, and also finds the contact, the margin's sign and the hulls.
 // Reference: the theorem is that of Gottschalk, Lin and Manocha 1996 (OBBTree).
 #pragma once
 
@@ -31,7 +31,7 @@ GRAZE_HD int rank(const VecOf<Numbers> (&v)[4]) {
   return most_so_far;
 }
 
-// The directions that the vertices in the mask span; zero vectors for the rest.
+// Two directions that span the hull of the vertices in the mask; those not needed are zero.
 template <class D>
 GRAZE_HD void directions(const Vec<D> (&v)[3], unsigned mask, Vec<D>& first, Vec<D>& second) {
   const int from = mask & 1 ? 0 : mask & 2 ? 1 : 2;
@@ -39,8 +39,8 @@ GRAZE_HD void directions(const Vec<D> (&v)[3], unsigned mask, Vec<D>& first, Vec
   second = mask & 4 ? v[2] - v[from] : v[0] - v[0];
 }
 
-// When a and b meet, the origin lies inside one face F of D, which is the difference of a face A of a and a face B of
-// b; their insides meet, so the common set, which is that of A and B, has dimension dim A + dim B - dim F.
+// If a and b intersect, the origin lies inside one face F of D. F is the difference of a face A of a and a face B of b,
+// whose interiors meet. The common set is that of A and B and has dimension dim A + dim B - dim F.
 template <class Numbers>
 GRAZE_HD Relation by_axes(const Triangles<Numbers>& t) {
   const AxisEvidence seen = look<Numbers>(t);

@@ -8,7 +8,7 @@
 
 namespace graze::exact::detail {
 
-// Sides of q's vertices to the plane of p, whose normal is n.
+// The sides of q's vertices relative to the plane of p, whose normal is n.
 template <class Numbers>
 GRAZE_HD Sides sides(const VecOf<Numbers> (&p)[3], const NormalOf<Numbers>& n, const VecOf<Numbers> (&q)[3],
                      const Numbers& numbers) {
@@ -29,8 +29,8 @@ GRAZE_HD typename Numbers::T determinant(const VecOf<Numbers>& o, const VecOf<Nu
   return dot<typename Numbers::T>(cross<typename Numbers::M>(q - o, r - o), s - o);
 }
 
-// Whether the line of a segment p, of whose ends and the vertices between some are on different sides of the plane of a
-// proper triangle, or in it and beside it, goes through the triangle q: whether no two edges are on different sides.
+// Whether the line of a segment p crosses triangle q, which is proper. p has vertices on both sides of q's plane, or in
+// it and on one side. The line crosses q if no two of q's edges lie on different sides of it.
 template <class Numbers>
 GRAZE_HD Finding by_line(const VecOf<Numbers> (&p)[3], const Sides& of_p, const VecOf<Numbers> (&q)[3],
                          const Numbers& numbers) {
@@ -50,7 +50,7 @@ GRAZE_HD Finding by_line(const VecOf<Numbers> (&p)[3], const Sides& of_p, const 
   return left && right ? Finding::disjoint : Finding::intersects;
 }
 
-// Unsure of coplanar pairs in numbers that round, and of pairs without a plane.
+// Returns unsure for coplanar pairs in numbers that round, and for pairs without a plane.
 template <class Numbers>
 GRAZE_HD Finding by_planes(const Triangles<Numbers>& t, const Numbers& numbers = {}) {
   const NormalOf<Numbers> normal_a = normal<Numbers>(t.a);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of the exact decision: the screen, a shared vertex, and the smallest kind of numbers that holds the pair.
+// Steps of the exact decision: the filter, a shared vertex, and the smallest kind of numbers that holds the pair.
 #pragma once
 
 #include "core/exact/by_planes.h"
+#include "core/exact/filter.h"
 #include "core/exact/numbers.h"
 #include "core/exact/relation.h"
-#include "core/exact/screen.h"
 #include "core/exact/shared_vertex.h"
 #include "core/exact/triangles.h"
 
 namespace graze::exact::detail {
 
-// Along which axis a plane's triangles are projected and stay in shape: one that is not square to its normal.
+// The axis along which triangles of a plane can be projected without losing area: not perpendicular to its normal.
 template <class M>
 GRAZE_HD unsigned axis_to_drop(const Vec<M>& n) {
   return !(n.z == M(0)) ? 2 : !(n.x == M(0)) ? 0 : 1;
@@ -22,7 +22,7 @@ GRAZE_HD T component(const Vec<T>& v, unsigned axis) {
   return pick(v.x, v.y, v.z, axis);
 }
 
-// A vertex without its component along an axis. A triangle turns left where that component of its normal is positive.
+// A vertex without its component along an axis. If the normal's component is positive, the triangle turns left.
 template <class D>
 struct Flat {
   D x, y;
@@ -33,8 +33,8 @@ GRAZE_HD Flat<D> flatten(const Vec<D>& v, unsigned axis) {
   return {component(v, axis == 2 ? 0 : axis + 1), component(v, axis == 0 ? 2 : axis - 1)};
 }
 
-// Whether an edge of p, which turns left or right, has all of q strictly on its other side. The edges of a segment run
-// both ways, so of them either will do.
+// Whether some edge of p has all of q strictly on its outer side. `left` tells which way p turns. The edges of a
+// segment run both ways, so either value will do.
 template <class Numbers, class D>
 GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]) {
   bool parts = false;
@@ -52,7 +52,7 @@ GRAZE_HD bool edge_parts(const Flat<D> (&p)[3], bool left, const Flat<D> (&q)[3]
 }
 
 // Requires: all vertices lie in a plane with normal n; two segments are not parallel. of_a and of_b are the normals of
-// a and b, of a segment any.
+// a and b; for a segment they may be anything.
 template <class Numbers>
 GRAZE_HD bool meet_in_plane(const Triangles<Numbers>& t, const NormalOf<Numbers>& n, const NormalOf<Numbers>& of_a,
                             const NormalOf<Numbers>& of_b) {
@@ -67,7 +67,7 @@ GRAZE_HD bool meet_in_plane(const Triangles<Numbers>& t, const NormalOf<Numbers>
          !edge_parts<Numbers>(b, component(of_b, axis) > zero, a);
 }
 
-// Requires: two segments or points.
+// Requires: both triangles are segments or points.
 template <class Numbers>
 GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   using M = typename Numbers::M;
@@ -76,11 +76,11 @@ GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   };
   const auto along = [&](const VecOf<Numbers>(&v)[3]) {
     return same(v[1], v[0]) ? v[2] - v[0] : v[1] - v[0];
-  };  // zero of a point
+  };  // zero for a point
   const VecOf<Numbers> of_a = along(t.a), of_b = along(t.b), between = t.b[0] - t.a[0];
   const NormalOf<Numbers> n = cross<M>(of_a, of_b);
   if (!is_zero(n)) return dot<typename Numbers::T>(n, between) == typename Numbers::T(0) && meet_in_plane(t, n, n, n);
-  // Parallel, or one is a point: on one line they meet where they do in each coordinate.
+  // Parallel segments, or a point. If they lie on one line, they intersect if their coordinates' ranges overlap.
   const bool a_is_point = same(t.a[1], t.a[0]) && same(t.a[2], t.a[0]);
   if (!is_zero(cross<M>(a_is_point ? of_b : of_a, between))) return false;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -91,7 +91,7 @@ GRAZE_HD bool segments_meet(const Triangles<Numbers>& t) {
   return true;
 }
 
-// Requires: the numbers hold the pair's grid, which has this exponent.
+// Requires: the numbers hold the pair's grid, whose exponent is given.
 template <class Numbers>
 GRAZE_HD bool decide(const float* a, const float* b, int exponent) {
   const Triangles<Numbers> t = triangles<Numbers>(a, b, exponent);
@@ -102,9 +102,9 @@ GRAZE_HD bool decide(const float* a, const float* b, int exponent) {
   return meet_in_plane(t, is_zero(n) ? m : n, n, m);
 }
 
-// The decision by planes for pairs that no machine number holds: each determinant in near numbers with a bound of its
-// own, and those that this leaves open, most of them zeros, one by one in the exact numbers.
-// Returns: unsure where all vertices of one lie in the plane of the other.
+// The decision by planes for pairs that no machine number holds. Each determinant is first computed in `Near` numbers
+// with a bound of its own. Those that remain unknown, mostly zeros, are computed one by one in exact numbers. Returns:
+// unsure if all vertices of one triangle lie in the plane of the other.
 template <class Near, class Numbers>
 GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int exponent, Stage& stage) {
   const Near bounded;
@@ -146,7 +146,7 @@ GRAZE_HD Finding by_planes_one_by_one(const float* a, const float* b, int expone
   return Finding::intersects;
 }
 
-// The decision of pairs of which the screen is unsure.
+// Decides the pairs of which the filter is unsure.
 GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage) {
   stage = Stage::bounded;
   if (shared_vertex(a, b) >= 0) return true;
@@ -163,18 +163,18 @@ GRAZE_HD inline bool decide_unsure(const float* a, const float* b, Stage& stage)
   return found == Finding::unsure ? MultiwordNumbers::visit(grid, decide_in) : found != Finding::disjoint;
 }
 
-// The relation of a pair in general position of which a decision by planes found so much.
-// Returns: false when that does not tell it.
+// The relation of a pair in general position, given the finding of a decision by planes.
+// Returns: false if the finding does not determine it.
 GRAZE_HD inline bool relation_of(Finding found, const float* a, const float* b, Relation& r) {
   r = found == Finding::crosses ? Relation{Verdict::intersects, Contact::segment, -1, {}} : Relation{};
-  // A determinant that is certainly not zero parts them: they are not coplanar.
+  // A nonzero determinant separates the triangles, so they are not coplanar.
   return found == Finding::crosses || (found == Finding::disjoint && both_proper(a, b));
 }
 
-// The relation of pairs in general position: they cross, a plane or an edge of both parts them, or they share a vertex.
-// Returns: false when that is not beyond doubt.
+// The relation of pairs in general position: they cross, a plane or an edge of each separates them, or they share
+// a vertex.   Returns: false if rounding leaves that in doubt.
 GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r) {
-  const Finding found = screen(a, b);
+  const Finding found = filter(a, b);
   if (found == Finding::unsure) {
     const int shared = shared_vertex(a, b);
     return shared >= 0 && relate_at_vertex(a, b, shared, r);
@@ -182,7 +182,7 @@ GRAZE_HD inline bool relate_quickly(const float* a, const float* b, Relation& r)
   return relation_of(found, a, b, r);
 }
 
-// The same where each determinant has a bound of its own: less is in doubt.
+// Like relate_quickly without shared vertices, but each determinant has its own bound, so fewer are in doubt.
 GRAZE_HD inline bool relate_by_bounds(const float* a, const float* b, Relation& r) {
   return relation_of(by_planes(triangles<BoundedNumbers>(a, b)), a, b, r);
 }

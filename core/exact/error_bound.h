@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far rounding to doubles can move a determinant of three differences of floats: bounds for each determinant, and
-// one bound for all determinants of a pair.
-// Each difference is rounded once, so a determinant is off by at most (7 + 56 e) e sum |products|, e = 2^-53
-// (Shewchuk 1997, orient3d stage A); contraction only removes roundings. Nothing over- or underflows: differences of
-// floats lie between 2^-149 and 2^129, or are zero.
+// How far rounding to doubles can move a determinant of three differences of floats: a bound for each
+// determinant, and one bound for all determinants of a pair. Each difference is rounded once, so a determinant
+// is off by at most (7 + 56 e) e sum |products|, e = 2^-53 (Shewchuk 1997, orient3d stage A). Contraction only
+// removes roundings. Nothing over- or underflows: differences of floats are zero or lie between 2^-149 and
+// 2^129.
 #pragma once
 
 #ifdef __FAST_MATH__
@@ -14,10 +14,10 @@
 
 namespace graze::exact::detail {
 
-// Relative to the sum of the products' magnitudes: (7 + 56 e) e < 8 e.
+// Error bound relative to the sum of the products' magnitudes: (7 + 56 e) e < 8 e.
 inline constexpr double kDeterminantError = 8 * 0x1p-53;
 
-// A sum of products, and the sum of the products' magnitudes.
+// A sum of products, and the sum of their magnitudes.
 struct Bounded {
   double value, size;
   GRAZE_HD explicit Bounded(double x) : value(x), size(x < 0 ? -x : x) {}
@@ -27,7 +27,7 @@ struct Bounded {
   GRAZE_HD friend Bounded operator-(const Bounded& l, const Bounded& r) { return {l.value - r.value, l.size + r.size}; }
 };
 
-// The extent of the pair in each axis, each rounded once.
+// The extent of the pair along each axis, each with one rounding.
 GRAZE_HD inline Vec<double> extent_of(const float* a, const float* b) {
   double extent[3];
   for (int axis = 0; axis < 3; ++axis) {
@@ -43,13 +43,13 @@ GRAZE_HD inline Vec<double> extent_of(const float* a, const float* b) {
   return {extent[0], extent[1], extent[2]};
 }
 
-// A bound of the error of every determinant of the pair: each is a sum of six products of a difference in x, one in y
-// and one in z, none of them larger than the extent of the pair.
+// Error bound of every determinant of the pair. A determinant is a sum of six products of a difference in x, one in y
+// and one in z. No difference is larger than the pair's extent in that axis.
 GRAZE_HD inline double determinant_error(const Vec<double>& extent) {
   return 6 * kDeterminantError * extent.x * extent.y * extent.z;
 }
 
-// Whether both are triangles beyond doubt: a component of a normal is the difference of two products of differences.
+// Whether both are certainly proper: a normal's component is the difference of two products of differences.
 GRAZE_HD inline bool both_proper(const float* a, const float* b) {
   const Vec<double> extent = extent_of(a, b);
   const double error_x = 2 * kDeterminantError * extent.y * extent.z,

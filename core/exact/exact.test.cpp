@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hand examples and invariants of the exact decision. analysis/truth_over_strata.test.cpp compares it with the oracle
-// in every stratum.
+// Hand-made examples and invariants of the exact decision. analysis/truth_over_strata.test.cpp compares it with the
+// oracle in every stratum.
 #include "core/exact/exact.h"
 
 #include <gtest/gtest.h>
@@ -105,7 +105,7 @@ const Example kExamples[] = {
      {0, 0, true}},
 };
 
-// The example, moved and scaled so that each kind of number has to decide it.
+// The example, moved and scaled so that the given kind of numbers must decide it.
 void expect_relation(const Example& example, float scale, float offset, const char* numbers) {
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   for (int order = 0; order < 72; ++order) {
@@ -135,7 +135,7 @@ TEST(Exact, KnowsContactsInAllOrdersAndScales) {
   }
 }
 
-// A far vertex, of which the contact does not depend, brings 250 bits into play.
+// A far vertex, which does not affect the contact, widens the grid to 250 bits.
 TEST(Exact, DecidesWhereNoMachineNumberReaches) {
   const float tiny = 0x1p-149f, huge = 0x1p127f;
   const float a[9] = {0, 0, 0, huge, 0, huge, 0, huge, huge};  // in z = x + y
@@ -151,7 +151,7 @@ TEST(Exact, DecidesWhereNoMachineNumberReaches) {
   }
 }
 
-// The same pair by every kind of number that can hold it.
+// Every kind of numbers that can hold a pair must give the same result.
 TEST(Exact, KindsOfNumbersAgree) {
   std::mt19937 random(5);
   const auto coordinate = [&] { return static_cast<float>(static_cast<int>(random() % 7) - 3); };
@@ -169,7 +169,7 @@ TEST(Exact, KindsOfNumbersAgree) {
     ASSERT_EQ(by_axes(triangles<WideNumbers>(a, b)), r) << i;
     ASSERT_EQ(decide<DoubleNumbers>(a, b, 0), r.intersects()) << i;
     ASSERT_EQ(decide<WideNumbers>(a, b, 0), r.intersects()) << i;
-    // By planes a pair crosses where no vertex lies in the other's plane; it is then more than a touch.
+    // by_planes finds `crosses` exactly if no vertex lies in the other's plane and the pair is more than a touch.
     const Triangles<DoubleNumbers> t = triangles<DoubleNumbers>(a, b);
     const Finding found = by_planes(t);
     const bool apart_from_planes = (sides(t.a, normal<DoubleNumbers>(t.a), t.b, DoubleNumbers()).in |
@@ -182,8 +182,8 @@ TEST(Exact, KindsOfNumbersAgree) {
   for (const int count : contacts) EXPECT_GT(count, 0);
 }
 
-// Up to the widest grid that they hold: coordinates of 24 bits, some moved by up to 10 bits, in planes that they share
-// or nearly share, so that determinants are zero, small beside their products, or of 108 bits.
+// Up to the widest grid that they hold. Coordinates have 24 bits, some moved by up to 10 bits. Triangles lie in each
+// other's planes or nearly so. Determinants are therefore zero, small compared with their products, or of 108 bits.
 TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   std::mt19937_64 random(9);
   long by_contact[4] = {}, widest = 0, pairs = 0;
@@ -194,9 +194,9 @@ TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
     for (float& x : c) x = static_cast<float>(static_cast<std::int64_t>(random() & 0x1ffffff) - 0x1000000);
     if (kind == 1)  // vertices in each other's planes
       for (int k = 2; k < 18; k += 3) c[k] = 2 * c[k - 1] - (i % 3 == 0 && k == 17 ? 1.0f : 0.0f);
-    if (kind == 2)  // a vertex on an edge, or beside it
+    if (kind == 2)  // a vertex on an edge, or near it
       for (int k = 0; k < 3; ++k) c[9 + k] = (c[k] + c[3 + k]) / 2;
-    if (kind == 3)  // small ones and large ones
+    if (kind == 3)  // mixes small and large coordinates
       for (float& x : c) x = std::floor(std::ldexp(x, -static_cast<int>(random() % 25)));
     for (int k = 0; k < 18; k += 1 + static_cast<int>(random() % 3)) c[k] = std::ldexp(c[k], kind == 1 ? 0 : shift);
     if (kind == 2 && (i & 4)) c[9] = std::nextafter(c[9], INFINITY);
@@ -214,7 +214,7 @@ TEST(Exact, ResiduesDecideAsIntegersOf128Bits) {
   for (const long count : by_contact) EXPECT_GT(count, 100);
 }
 
-// Segments and points in space, in one plane and on one line, and beside triangles in whose plane they lie.
+// Segments and points in space, in one plane and on one line, also with triangles in whose plane they lie.
 TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
   std::mt19937_64 random(11);
   const auto small = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most; };
@@ -253,7 +253,7 @@ TEST(Exact, SegmentsAndPointsMeetAsTheAxesSay) {
   for (int contact = 0; contact < 3; ++contact) EXPECT_GT(by_contact[contact], 1'000) << contact;
 }
 
-// Of coordinates whose sizes differ by up to 2^200, so that nothing but wide integers holds a pair.
+// Coordinates whose sizes differ by up to 2^200, so that only wide integers hold a pair.
 TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   std::mt19937_64 random(13);
   const auto coordinate = [&] {
@@ -264,13 +264,13 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   for (int i = 0; i < 20'000; ++i) {
     float c[18];
     for (float& x : c) x = coordinate();
-    if (i % 3 == 0) {  // on one plane's coordinate, so that they meet more often
+    if (i % 3 == 0) {  // in one coordinate plane, so that they meet more often
       for (int k = i % 2; k < 18; k += 3) c[k] = 0;
     }
     if (i % 2 == 0) std::copy_n(c + 3 * (i / 2 % 2), 3, c + 6);  // a is a segment
-    if (i % 5 == 0) std::copy_n(c + 9, 3, c + 15);               // b is one
+    if (i % 5 == 0) std::copy_n(c + 9, 3, c + 15);               // b is a segment
     for (int k = 0; i % 7 == 0 && k < 3; ++k)
-      c[9 + k] = 2 * c[k];  // and begins on the line through a's first and the origin
+      c[9 + k] = 2 * c[k];  // and begins on the line through a's first vertex and the origin
     if (random() & 1) std::swap_ranges(c, c + 9, c + 9);
     Stage stage;
     const Relation r = detail::by_axes(detail::triangles<detail::WideNumbers>(c, c + 9));
@@ -283,7 +283,7 @@ TEST(Exact, SegmentsOfAnySizeMeetTrianglesAsTheAxesSay) {
   EXPECT_GT(by_contact[1], 100);
 }
 
-// Products of differences of 35 bits that are equal, or differ by as little as they can, or by what doubles see.
+// Products of 35-bit differences that are equal, that differ as little as possible, or that differ visibly in doubles.
 TEST(Exact, ResiduesKnowTheSignsOfMinors) {
   using detail::Whole;
   std::mt19937_64 random(12);
@@ -304,13 +304,13 @@ TEST(Exact, ResiduesKnowTheSignsOfMinors) {
   EXPECT_GT(small, 100);
 }
 
-// At the ends of what they hold: the largest determinant, one of 2^62 and its neighbours, zero.
+// At the limits of what residues hold: the largest determinant, 2^62 and its neighbours, zero.
 TEST(Exact, ResiduesKnowTheirSigns) {
   using detail::Residue, detail::Whole;
   const double most = 0x1p35 - 1;
   for (const double edge : {1.0, 3.0, 0x1p25 - 1, 0x1p25, most}) {
     for (const double other : {1.0, 0x1p26 + 1, most}) {
-      // x y z - u v w in every order of size: with 128 bits beside it.
+      // x y z - u v w in every order of size, compared with 128-bit integers.
       const double of[6] = {edge, other, most, most, edge, other};
       for (int less = -2; less <= 2; ++less) {
         const auto product = [](double x, double y, double z) { return Residue(Whole{x}) * Whole{y} * Whole{z}; };
@@ -326,7 +326,7 @@ TEST(Exact, ResiduesKnowTheirSigns) {
   }
 }
 
-// What the comments of error_bound.h derive: no test on pairs comes near to the bounds.
+// The bounds that error_bound.h derives. No test on pairs comes near them.
 TEST(ErrorBound, IsShewchuksAndNoMoreThanAFewPercentAbove) {
   const double e = 0x1p-53, stage_a = (7 + 56 * e) * e;
   EXPECT_GE(detail::kDeterminantError, stage_a);
@@ -357,7 +357,7 @@ TEST(Exact, WideIntegersMultiplyAndCompare) {
   }
 }
 
-// GCC 12 compiles a comparison of an array's element that is shifted wrongly with -fsanitize=shift,bounds.
+// With -fsanitize=shift,bounds, GCC 12 miscompiles the shifted comparison of an array element.
 [[gnu::noinline]] unsigned shifted_comparisons(const double (&of)[4]) {
   const double heights[4] = {of[0], of[1], of[2], of[3]};
   unsigned above = 0;

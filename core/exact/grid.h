@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid of a pair: its coordinates are integers of so many bits, times one power of two.
+// The grid of a pair: its coordinates are integers of a certain number of bits, times one power of two.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace graze::exact::detail {
 
-// The coordinates are integers of so many bits times 2^exponent.
+// The coordinates are integers of `bits` bits times 2^exponent.
 struct Grid {
   int exponent, bits;
 };

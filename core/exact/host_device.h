@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// GRAZE_HD marks functions that nvcc compiles for host and device; other compilers see nothing.
+// GRAZE_HD marks functions that nvcc compiles for host and device. For other compilers it is empty.
 #pragma once
 
 #ifndef GRAZE_HD
@@ -10,7 +10,7 @@
 #endif
 #endif
 
-// A function that device code calls: in each place anew it would be half of the time that nvcc takes.
+// A function that device code calls and does not inline: inlining it would double nvcc's time.
 #ifdef __CUDACC__
 #define GRAZE_CALLED __noinline__
 #else

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kinds of numbers that decide, each exact or saying that it is not, and the choice of the smallest exact kind that
-// holds a pair. On the pair's grid coordinates have so many bits, differences one more, and a determinant is less than
-// 6 times the product of three differences:
+// The kinds of numbers that decide, each exact or able to report that it is not, and the choice of the smallest exact
+// kind that holds a pair. If coordinates on the pair's grid have B bits, differences have B + 1, and a determinant is
+// less than 6 times the product of three differences. Bits below are those of coordinates:
 //   bounded    doubles with an error bound; see core/exact/error_bound.h
-//   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; in floats so up to 6 bits:
+//   doubles    up to 15 bits: less than 6 * 2^(3 * 16) < 2^53, so nothing rounds; floats likewise up to 6 bits:
 //              6 * 2^(3 * 7) < 2^24
-//   residue    up to 34 bits, on devices: a double, and an integer modulo 2^64 for where the double is small
+//   residue    up to 34 bits, on devices: a double, and an integer modulo 2^64 for use when the double is small
 //   int128     up to 30 bits: minors fit in 64 bits; up to 40 bits: less than 6 * 2^(3 * 41) < 2^127
 //   wide       up to 90 bits: a minor is less than 2 * 2^(2 * 91) < 2^191, a determinant than 6 * 2^(3 * 91) < 2^319;
 //              else multiples of 2^-149: a float has 277 bits, a difference 278, a determinant less than 840
-// Integers do not round: what is exact here does not depend on rounding modes, contraction or optimisation.
+// Integers do not round, so exact results do not depend on rounding mode, contraction or optimisation.
 #pragma once
 
 #include <cstdint>
@@ -23,14 +23,14 @@
 
 namespace graze::exact {
 
-// Which numbers decided; bounded also where the triangles share a vertex.
+// Which kind of numbers decided. It is `bounded` also if the triangles share a vertex.
 enum class Stage : std::uint8_t { bounded, doubles, int128, wide };
 inline constexpr int kStages = 4;
 
 namespace detail {
 
-// In each kind, D are coordinates and their differences, M minors, T determinants.
-// Of a determinant, positive, negative and zero say what is beyond doubt.
+// In each kind, D are coordinates and their differences, M minors, T determinants. positive, negative and zero are true
+// only if the determinant's sign is certain.
 struct BoundedNumbers {
   using D = double;
   using M = Bounded;
@@ -64,7 +64,7 @@ using IntNumbers = ExactNumbers<std::int64_t, Int128, Int128, kIntBits, Stage::i
 using LongNumbers = ExactNumbers<Wide<2>, Wide<3>, Wide<5>, kLongBits, Stage::wide>;
 using WideNumbers = ExactNumbers<Wide<5>, Wide<9>, Wide<14>, kFloatBits, Stage::wide>;
 
-// For devices. Coordinates are not scaled: determinants must not leave the range of a float.
+// For devices. Coordinates are not scaled, so the exponent is limited to keep determinants in the range of a float.
 struct SingleNumbers : ExactNumbers<float, float, float, kSingleBits, Stage::doubles> {
   GRAZE_HD static bool holds(const Grid& grid) {
     return grid.bits <= kSingleBits && grid.exponent >= -30 && grid.exponent <= 30;
@@ -76,12 +76,12 @@ using ResidueNumbers = ExactNumbers<Whole, Residue, Residue, kResidueBits, Stage
 // Kinds of numbers, the smallest first.
 template <class Kind, class... Larger>
 struct NumberKinds {
-  // How many of the kinds are too small for the grid: the place of the first one that holds it.
+  // How many of the kinds are too small for the grid, which is the index of the first kind that holds it.
   GRAZE_HD static int place(const Grid& grid) { return (int{!Kind::holds(grid)} + ... + int{!Larger::holds(grid)}); }
 
   GRAZE_HD static bool hold(const Grid& grid) { return (Kind::holds(grid) || ... || Larger::holds(grid)); }
 
-  // Calls visit(kind) with the first kind that holds the grid, the last one unasked.
+  // Calls visit(kind) with the first kind that holds the grid. The last kind is not asked whether it does.
   // Requires: hold(grid).   Returns: what the call returned.
   template <class Visit>
   GRAZE_HD static auto visit(const Grid& grid, const Visit& visit) {

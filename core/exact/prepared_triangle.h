@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// One triangle prepared against many: two slabs that hold it, each between two parallel planes, and its box. A triangle
-// beyond a slab is disjoint, which they show of most triangles in floats, certified; what they leave open goes to a
-// screen, in floats as well, then to that of core/exact/screen.h.
+// One triangle (the reference) prepared for tests against many: its box, and two slabs that contain it, each between
+// two parallel planes. A triangle beyond a slab is disjoint; this certifies most disjoint triangles in floats. The
+// others go to a filter, also in floats, and then to the filter of core/exact/filter.h.
 //
-// The slabs are square to the triangle's normal and, within its plane, to its longest edge: its thinnest ones. Their
-// directions may be off by any rounding, for what counts is where the reference lies along the direction as it is
-// stored. With d its direction and |d| the sum of its magnitudes, at most 1/4, a height d . v - middle is off by less
-// than 4.001 2^-23 (|d| m + |middle|) whatever the rounding mode, m being the triangle's largest magnitude, and by
-// 2^-146 where something underflows; nothing overflows.
+// The slabs are the thinnest ones: perpendicular to the triangle's normal and, within its plane, to its longest edge.
+// Their directions may be rounded in any way, because the reference's extent is computed along the direction as stored.
+// Let d be the direction, |d| <= 1/4 the sum of its magnitudes, and m the triangle's largest magnitude. A height d . v
+// - middle is off by less than 4.001 2^-23 (|d| m + |middle|) in any rounding mode, and by 2^-146 if something
+// underflows; nothing overflows.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 
 namespace graze::exact {
 
-// Heights of the reference, x v.x + y v.y + z v.z - middle, are at most `half` either way. `error` times the sum of a
-// triangle's magnitudes bounds the rounding of its heights, and of the comparison itself.
+// Heights of the reference, x v.x + y v.y + z v.z - middle, are within `half` of zero. For another triangle, `error`
+// times the sum of its magnitudes bounds the rounding of its heights and of the comparison itself.
 struct Slab {
   float x, y, z, middle, half, error;
 };
@@ -42,7 +42,7 @@ GRAZE_HD inline float magnitude(float x) {
 #endif
 }
 
-// Of two finite numbers; on a device by one instruction each.
+// For two finite numbers. On a device each is one instruction.
 GRAZE_HD inline float lesser(float x, float y) {
 #ifdef __CUDA_ARCH__
   return fminf(x, y);
@@ -78,8 +78,8 @@ inline Slab slab_along(const Vec<double>& direction, const float* v) {
   const auto [low, high] = std::minmax({heights[0], heights[1], heights[2]});
   s.middle = static_cast<float>(low / 2 + high / 2);
   const double half = std::max(high - s.middle, s.middle - low);
-  // The sums in doubles, the rounding to float, and what `middle` adds to the error of a height; and the addition of
-  // the triangle's error to it in float.
+  // Covers the sums in doubles, the rounding to float, the part of `middle` in a height's error, and the addition of
+  // the triangle's error in float.
   const double slack = terms * 0x1p-50 + size_of(s.middle) * 0x1p-20 + 0x1p-140;
   s.half = static_cast<float>(half + half * 0x1p-20 + slack);
   s.error = static_cast<float>(12 * 0x1p-24 * (size_of(s.x) + size_of(s.y) + size_of(s.z)));
@@ -88,7 +88,7 @@ inline Slab slab_along(const Vec<double>& direction, const float* v) {
 
 }  // namespace detail
 
-// Of a reference that is not finite no slab shows anything, and the screen in floats is unsure.
+// If the reference is not finite, no slab shows anything and the filter in floats is unsure.
 inline PreparedTriangle prepare(const float* v) {
   using Direction = detail::Vec<double>;
   PreparedTriangle r;
@@ -120,15 +120,15 @@ inline PreparedTriangle prepare(const float* v) {
   return r;
 }
 
-// The sum of its nine magnitudes: not finite where one of them is not, or it overflows.
+// The sum of the triangle's nine magnitudes. It is not finite if one of them is not, or if it overflows.
 GRAZE_HD inline float size_of(const float* t) {
   float sum = detail::magnitude(t[0]);
   for (int i = 1; i < 9; ++i) sum += detail::magnitude(t[i]);
   return sum;
 }
 
-// Returns: true: the triangle is beyond one of the slabs, so disjoint, for certain; never where it is not finite.
-// Exact: whatever the rounding mode, with contraction and without.
+// Returns: true if the triangle is certainly beyond one of the slabs, so disjoint; false if it is not finite.
+// Exact: in any rounding mode, with contraction and without.
 GRAZE_HD inline bool is_beyond(const PreparedTriangle& r, const float* t) {
   using detail::bits_of, detail::lesser, detail::magnitude;
   const float size = size_of(t);
@@ -147,7 +147,7 @@ GRAZE_HD inline bool is_beyond(const PreparedTriangle& r, const float* t) {
 
 namespace detail {
 
-// Floats with one bound of the error of all determinants of a pair.
+// Floats with one error bound for all determinants of a pair.
 struct FloatNumbers {
   using D = float;
   using M = float;
@@ -159,11 +159,11 @@ struct FloatNumbers {
   GRAZE_HD bool is_proper(const Vec<float>&) const { return false; }
 };
 
-// The screen in floats. As in core/exact/error_bound.h, with e = 2^-24, a determinant is off by less than 8 e times the
-// sum of its six products, none of them larger than that of the extents. These lie within 2^-24 and 2^40: nothing
-// overflows, and what underflows is off by less than 6 * 2^40 * 2^-150, a small part of the least bound, 48 * 2^-96.
-// Returns: disjoint, crosses, or unsure, as of all other extents and of what is not finite.
-GRAZE_HD inline Finding screen_in_floats(const PreparedTriangle& r, const float* t) {
+// The filter in floats. As in core/exact/error_bound.h, with e = 2^-24, a determinant is off by less than 8 e times the
+// sum of its six products, none larger than the product of the extents. Extents must lie within 2^-24 and 2^40. Then
+// nothing overflows, and underflow adds less than 6 * 2^40 * 2^-150, a small part of the least bound, 48 * 2^-96.
+// Returns: disjoint, crosses or unsure; unsure also for other extents and for coordinates that are not finite.
+GRAZE_HD inline Finding filter_in_floats(const PreparedTriangle& r, const float* t) {
   float extent[3];
   for (int i = 0; i < 3; ++i) {
     extent[i] = greater(greater(r.high[i], t[i]), greater(t[i + 3], t[i + 6])) -

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact relation of a pair: the one record of a truth, for the exact decision, the oracle, engines and reports.
+// The exact relation of a pair: the one record of truth that the exact decision, oracle, engines and reports use.
 #pragma once
 
 #include <compare>
@@ -9,15 +9,15 @@
 
 namespace graze {
 
-// declined: a non-finite coordinate (oracle), or a lane that cannot decide; never silently one of the others.
-// crashed, timed_out, unstable: foreign code that ended its process, did not return, or answered otherwise when it was
+// declined: a coordinate is not finite (oracle), or the lane cannot decide; it is never reported as another verdict.
+// crashed, timed_out, unstable: foreign code ended its process, did not return, or answered differently when it was
 // asked again.
 enum class Verdict : std::uint8_t { disjoint, intersects, declined, crashed, timed_out, unstable };
 
-// Dimension of the common set of two closed convex hulls; unknown where the oracle declined.
+// Dimension of the common set of two closed convex hulls; unknown if the oracle declined.
 enum class Contact : std::uint8_t { none, point, segment, area, unknown };
 
-// Of a common set of this dimension: 0 point, 1 segment, 2 area.
+// The contact of a common set of this dimension: 0 point, 1 segment, 2 area.
 GRAZE_HD constexpr Contact contact_of(int dimension) { return static_cast<Contact>(dimension + 1); }
 
 // The convex hulls of a pair's triangles.
@@ -31,7 +31,7 @@ struct Hulls {
 struct Relation {
   Verdict verdict = Verdict::disjoint;
   Contact contact = Contact::none;
-  int margin_sign = 1;  // 1: disjoint; -1: they intersect, and a translation small enough does not part them; else 0
+  int margin_sign = 1;  // 1: disjoint; -1: they intersect and no tiny translation separates them; else 0
   Hulls hulls;
 
   GRAZE_HD constexpr bool intersects() const { return verdict == Verdict::intersects; }
@@ -39,13 +39,13 @@ struct Relation {
   friend bool operator==(const Relation&, const Relation&) = default;
 };
 
-// Contact and hulls in seven bits.   Requires: a known contact.
+// Packs contact and hulls into seven bits.   Requires: a known contact.
 GRAZE_HD constexpr std::uint8_t packed(const Relation& r) {
   return static_cast<std::uint8_t>(r.hulls.dimension_a | r.hulls.dimension_b << 2 | int{r.hulls.coplanar} << 4 |
                                    static_cast<int>(r.contact) << 5);
 }
 
-// The inverse, with the margin's sign from elsewhere.
+// The inverse of packed; the margin's sign must be supplied.
 constexpr Relation unpacked_relation(std::uint8_t bits, int margin_sign) {
   const auto contact = static_cast<Contact>(bits >> 5 & 3);
   return {contact == Contact::none ? Verdict::disjoint : Verdict::intersects,

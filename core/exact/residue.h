@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Integers of up to 108 bits in a double, and modulo 2^64 beside it. The double tells the sign unless it is small, and
-// then the rest is all of the integer: exact like 128 bits, at half their price where doubles are fast.
+// Integers of up to 108 bits as a double and a remainder modulo 2^64. The double gives the sign unless it is small;
+// then the remainder is the whole integer. Exact like 128-bit integers, at half their cost where doubles are fast.
 //
-// Of coordinates of 34 bits, differences have 35; a minor is less than 2^71 and its double off by less than 2^20; a
-// determinant is less than 2^108, its double off by less than 2^59, and so is the difference of two of them: 2^60,
-// whatever the rounding mode, with contraction and without. Where a double is at most 2^61 its integer is below 2^62.
+// Coordinates have 34 bits and differences 35. A minor is less than 2^71 and its double is off by less than 2^20. A
+// determinant is less than 2^108 and its double is off by less than 2^59; the difference of two is off by less than
+// 2^60, in any rounding mode, with contraction and without. If a double is at most 2^61, its integer is below 2^62.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct Whole {
   GRAZE_HD friend bool operator>(Whole l, Whole r) { return l.value > r.value; }
   GRAZE_HD friend bool operator==(Whole l, Whole r) { return l.value == r.value; }
 
-  // Of x + 3 2^51 the last bits are those of x.
+  // The last bits of x + 3 2^51 are those of x.
   GRAZE_HD std::uint64_t modulo() const {
     const double moved = value + 0x1.8p52, zero = 0x1.8p52;
     std::uint64_t bits, bits_of_zero;
@@ -56,7 +56,7 @@ struct Residue {
   GRAZE_HD friend bool operator==(Residue l, Residue r) { return (l - r).sign() == 0; }
 };
 
-// The sign of p q - r s, all differences: a minor, whose rest matters only where its double is small.
+// The sign of p q - r s, for differences. The remainder of this minor matters only if its double is small.
 GRAZE_HD inline int sign_of_difference(Whole p, Whole q, Whole r, Whole s) {
   constexpr double kSmall = 0x1p21;
   const double near = p.value * q.value - r.value * s.value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles that share a vertex, as neighbours in a mesh do: they intersect, whatever else is in doubt.
+// Triangles that share a vertex, like neighbours in a mesh. They always intersect; no rounding can put that in doubt.
 #pragma once
 
 #include "core/exact/error_bound.h"
@@ -8,7 +8,7 @@
 
 namespace graze::exact::detail {
 
-// A vertex of a that is a vertex of b, as 3 * its place in a + that in b; -1 without one.
+// A vertex that a and b share, as 3 * its index in a + its index in b; -1 if there is none.
 GRAZE_HD inline int shared_vertex(const float* a, const float* b) {
   int found = -1;
   for (int i = 0; i < 3; ++i) {
@@ -20,11 +20,11 @@ GRAZE_HD inline int shared_vertex(const float* a, const float* b) {
   return found;
 }
 
-// The relation of two triangles with one vertex in common, seen from it. Let p and q be the signs of the heights of b's
-// other vertices over a's plane and of a's over b's. Some plane through the vertex leaves a on one side and b on the
-// other if that of a does (p is the same twice), or that of b, or one spanned by an edge of each; the determinants of
-// these are the same four numbers. Then the triangles meet in the vertex alone; else in a segment that ends there.
-// Returns: false when a sign is in doubt.
+// The relation of two triangles with a common vertex. Let p be the signs of the heights of b's other vertices over a's
+// plane, and q those of a's over b's. If some plane through the vertex separates the triangles, they meet only in the
+// vertex; otherwise they meet in a segment that ends there. Candidates are a's plane (p1 == p2), b's plane (q1 == q2),
+// and planes through an edge of each, whose determinants are the same four numbers.
+// Returns: false if a sign is in doubt.
 GRAZE_HD inline bool relate_at_vertex(const float* a, const float* b, int shared, Relation& r) {
   const double error = determinant_error(extent_of(a, b));
   const unsigned i = static_cast<unsigned>(shared) / 3, j = static_cast<unsigned>(shared) % 3;
@@ -41,7 +41,7 @@ GRAZE_HD inline bool relate_at_vertex(const float* a, const float* b, int shared
   unsigned above = 0;
   for (unsigned k = 0; k < 4; ++k) {
     if (!(heights[k] > error || heights[k] < -error)) return false;
-    if (heights[k] > 0) above |= 1u << k;  // `(heights[k] > 0) << k` GCC 12 compiles wrongly with sanitizers
+    if (heights[k] > 0) above |= 1u << k;  // GCC 12 miscompiles `(heights[k] > 0) << k` with sanitizers
   }
   const bool p1 = above & 1, p2 = above >> 1 & 1, q1 = above >> 2 & 1, q2 = above >> 3 & 1;
   const bool parted = p1 == p2 || q1 == q2 || p1 == q1;

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// On which sides of the other triangle's plane the vertices lie, and the one that is alone on its side.
+// The sides of the other triangle's plane on which vertices lie, and the vertex that is alone on its side.
 #pragma once
 
 #include "core/exact/host_device.h"
 
 namespace graze::exact::detail {
 
-// What the sides and two orientations tell of a pair. crosses: the triangles intersect, in general position.
-// coplanar: all vertices lie in the plane of a proper triangle. unsure: everything that is not beyond doubt.
+// The result of the sides and two orientations. crosses: the triangles intersect, in general position. coplanar: all
+// vertices lie in the plane of a proper triangle. unsure: none of these is certain.
 enum class Finding { disjoint, intersects, crosses, coplanar, unsure };
 
-// A triangle's vertices above and below a plane, and in it: bit i for vertex i. Those in none are not known.
+// A triangle's vertices above, below and in a plane: bit i is vertex i. A vertex in none of them is unknown.
 struct Sides {
   unsigned above = 0, below = 0, in = 0;
 
   GRAZE_HD bool one_side() const { return above == 7 || below == 7; }
   GRAZE_HD bool known() const { return (above | below | in) == 7; }
 
-  // The vertex that is alone on its side, the others being on the other side or in the plane; without branches, which
-  // would be mispredicted.
-  // Requires: known, neither on one side nor in the plane.   Returns: its place; in `over` whether its side is below.
+  // The vertex that is alone on its side; the others are on the other side or in the plane. Tables of bits replace
+  // branches, which would be mispredicted.
+  // Requires: known; not one_side; not all in the plane.   Returns: its index; `over` is 1 if its side is below.
   GRAZE_HD constexpr unsigned alone(unsigned& over) const {
     if (in == 0) {  // two bits, or one, for each of the eight values of `above`
       over = 0x68u >> above & 1;
@@ -32,7 +32,7 @@ struct Sides {
   }
 };
 
-// The order of vertices in which each triangle has its lone vertex first, and it lies above the other triangle.
+// The order of vertices that puts each triangle's lone vertex first, and that vertex above the other triangle.
 struct Turn {
   unsigned a[3], b[3];
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair in the numbers of one kind.
+// A pair in one kind of numbers.
 #pragma once
 
 #include <type_traits>
@@ -21,8 +21,8 @@ struct Triangles {
   VecOf<Numbers> a[3], b[3];
 };
 
-// A coordinate on its grid: integers are multiples of 1 / scale, and the widest of 2^-149; floating point is not
-// scaled.
+// A coordinate on its grid. Integers are multiples of 1 / scale, and the widest ones multiples of 2^-149. Floating
+// point is not scaled.
 GRAZE_HD inline void convert(float x, double, float& out) { out = x; }
 GRAZE_HD inline void convert(float x, double, double& out) { out = static_cast<double>(x); }
 GRAZE_HD inline void convert(float x, double scale, std::int64_t& out) { out = static_cast<std::int64_t>(x * scale); }
@@ -71,7 +71,7 @@ GRAZE_HD NormalOf<Numbers> normal(const VecOf<Numbers> (&v)[3]) {
   return cross<typename Numbers::M>(v[1] - v[0], v[2] - v[0]);
 }
 
-// The sign of p q - r s, all differences.
+// The sign of p q - r s; all four are differences.
 template <class Numbers>
 GRAZE_HD int sign_of_minor(const typename Numbers::D& p, const typename Numbers::D& q, const typename Numbers::D& r,
                            const typename Numbers::D& s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors over any number, and choices among three that use no index on a device.
+// Vectors over any number type, and selection among three without indexing on a device.
 #pragma once
 
 #include "core/exact/host_device.h"
@@ -16,7 +16,7 @@ GRAZE_HD Vec<T> operator-(const Vec<T>& u, const Vec<T>& v) {
   return {u.x - v.x, u.y - v.y, u.z - v.z};
 }
 
-// Minors and determinants in a type M or T that holds them.
+// Minors and determinants, computed in a type M or T that holds them.
 template <class M, class D>
 GRAZE_HD Vec<M> cross(const Vec<D>& u, const Vec<D>& v) {
   return {M(u.y) * v.z - M(u.z) * v.y, M(u.z) * v.x - M(u.x) * v.z, M(u.x) * v.y - M(u.y) * v.x};
@@ -32,7 +32,7 @@ GRAZE_HD bool is_zero(const Vec<T>& v) {
   return v.x == T(0) && v.y == T(0) && v.z == T(0);
 }
 
-// Number i of three. On a device without indexing, which would move all three from registers to memory.
+// Element i of three. On a device it does not index, which would move all three from registers to memory.
 template <class T>
 GRAZE_HD T pick(const T& x, const T& y, const T& z, unsigned i) {
   return i == 0 ? x : i == 1 ? y : z;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Integers of a fixed number of 64-bit limbs, for host and device; and the compiler's 128-bit integer.
+// Integers of a fixed number of 64-bit limbs, for host and device, and the compiler's 128-bit integer.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace graze::exact::detail {
 
 using Int128 = __int128;
 
-// Two's complement integers of N 64-bit limbs, lowest first; enough limbs are at hand wherever they are used.
+// Two's complement integers of N 64-bit limbs, lowest first. Each user picks N large enough, so nothing overflows.
 template <int N>
 struct Wide {
   std::uint64_t limb[N];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// By Google Highway: compiled for each instruction set, of which the best is taken when the program runs. Roundings may
-// differ from one set to another, as some contract; what is beyond the error bound does not, and all else is exact.
+// Uses Google Highway: compiled for each instruction set; the best one is chosen at run time. Sets may round
+// differently, as some contract. Decisions beyond the error bound do not depend on that; all others are exact.
 #ifdef __wasm__
 #include "core/exact_blocks/one_by_one.h"
 
@@ -34,11 +34,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_MAX_BYTES >= 32 && !HWY_HAVE_SCALABLE
 #include "core/exact_blocks/vectors-inl.h"
 
-constexpr std::size_t kChunk = 512;  // pairs whose rest is gathered: 36 KB
+constexpr std::size_t kChunk = 512;  // pairs of which the undecided ones are gathered: 36 KB
 constexpr unsigned kAll = (1u << kAtOnce) - 1;
 constexpr int kBitsOfDoubles = detail::kDoubleBits;
 
-// Numbers of pairs that wait for the next step.
+// Indices of pairs that wait for the next step.
 struct Waiting {
   std::uint16_t pair[kChunk + kAtOnce];
   std::size_t count = 0;
@@ -47,7 +47,7 @@ struct Waiting {
     for (; which != 0; which &= which - 1) pair[count++] = pairs[std::countr_zero(which)];
   }
 
-  // Calls step(numbers, which) with kAtOnce of them at a time, the last one repeated; `which` has a bit for each one.
+  // Calls step(numbers, which) with kAtOnce of them at a time, repeating the last one. `which` marks the real ones.
   template <class Step>
   void take(const Step& step) {
     for (std::size_t i = 0; i < kAtOnce && count > 0; ++i) pair[count + i] = pair[count - 1];
@@ -59,7 +59,7 @@ struct Chunk {
   const float* pairs;
   std::uint64_t *intersects, *declined;  // words of zeros
 
-  // number(i): that of the i-th of them.
+  // number(i): the index of the i-th pair.
   template <class Number>
   HWY_INLINE Coordinates side_by_side(const Number& number) const {
     const float* where[kAtOnce];
@@ -85,7 +85,7 @@ HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
   Waiting last, open, small, middle, rest;
   const std::size_t side_by_side = count / kAtOnce * kAtOnce;
   for (std::size_t i = 0; i < side_by_side; i += kAtOnce) {
-    const Screened found = screen_all(chunk.from(i));
+    const Filtered found = filter_all(chunk.from(i));
     chunk.intersects[i / 64] |= std::uint64_t{found.intersects} << i % 64;
     chunk.declined[i / 64] |= std::uint64_t{found.declined} << i % 64;
     for (unsigned left = kAll & ~(found.intersects | found.disjoint | found.declined); left != 0; left &= left - 1)
@@ -93,7 +93,7 @@ HWY_ATTR void decide_chunk(const Chunk& chunk, std::size_t count) {
   }
   for (std::size_t i = side_by_side; i < count; ++i) last.pair[last.count++] = static_cast<std::uint16_t>(i);
   last.take([&](const std::uint16_t* numbers, unsigned which) HWY_ATTR {
-    const Screened found = screen_all(chunk.at(numbers));
+    const Filtered found = filter_all(chunk.at(numbers));
     chunk.set(chunk.intersects, which & found.intersects, numbers);
     chunk.set(chunk.declined, which & found.declined, numbers);
     open.add(which & ~(found.intersects | found.disjoint | found.declined), numbers);

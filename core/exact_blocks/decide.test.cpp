@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs side by side are decided as each alone, by every instruction set of this processor.
-// analysis/truth_over_strata.test.cpp compares with the oracle in every stratum.
+// Pairs in blocks are decided as each alone, with every instruction set of this processor.
+// analysis/truth_over_strata.test.cpp compares the decision with the oracle in every stratum.
 #include "core/exact_blocks/decide.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class ExactBlocks : public testing::Test {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   }
 
-  // Calls check with the name of each way of computing that this processor has.   Returns: them.
+  // Calls check with the name of each instruction set that this processor supports.   Returns: the names.
   template <class Check>
   static std::set<std::string> on_every_target(const Check& check) {
     hwy::SetSupportedTargetsForTest(0);
@@ -43,7 +43,7 @@ class ExactBlocks : public testing::Test {
     return names;
   }
 
-  // Both bits of every pair, and zeros behind the last.
+  // Checks both bits of every pair, and zeros after the last pair.
   static void expect_as_each_alone(const std::vector<float>& pairs, const std::string& what) {
     const std::size_t count = pairs.size() / 18, words = (count + 63) / 64;
     std::vector<std::uint64_t> yes(words + 1, ~0ull), declined(words + 1, ~0ull);
@@ -65,8 +65,8 @@ std::vector<float> drawn(std::size_t pairs, auto coordinate) {
   return all;
 }
 
-// A vertex over a face, an edge over an edge and triangles in one plane, by less and less, by nothing, and below: on
-// grids of all sizes, the next contact at less than what a coarser one shows.
+// Near contacts of a vertex and a face, of two edges, and of coplanar triangles: with ever smaller gaps, none, and the
+// same depths. The grids have all sizes, and each contact is closer than a coarser grid can show.
 std::vector<float> near_contacts() {
   std::vector<float> all;
   for (int exponent = 0; exponent >= -90; --exponent) {
@@ -81,7 +81,8 @@ std::vector<float> near_contacts() {
   return all;
 }
 
-// A thousand times a vertex on a face, with a coordinate of that size: all of a chunk wait for the same step.
+// 1,024 pairs with a vertex on a face and one coordinate of the given size: all pairs of a chunk wait for the same
+// step.
 std::vector<float> contacts(int exponent) {
   const float pair[18] = {-1, -1, 0, 1, -1, 0, 0, 1, 0, 0, 0, 0, 1, 0, std::ldexp(1.0f, exponent), 0, 1, 1};
   std::size_t next = 0;
@@ -93,13 +94,13 @@ TEST_F(ExactBlocks, AreDecidedAsEachPairAloneOnEveryTarget) {
   const auto whole = [&](int bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() >> (63 - bits)) - (std::int64_t{1} << bits));
   };
-  const auto vertices_again = [&](std::vector<float> all) {  // of b, some are a's: contacts and coplanar pairs
+  const auto vertices_again = [&](std::vector<float> all) {  // some of b's are a's: contacts and coplanar pairs
     for (std::size_t pair = 0; pair < all.size(); pair += 18) {
       for (std::size_t v = 9; v < 18; v += 3) {
         if (random() % 3 == 0) std::copy_n(&all[pair + random() % 3 * 3], 3, &all[pair + v]);
       }
       if (random() % 4 == 0) {
-        for (std::size_t v = 2; v < 18; v += 3) all[pair + v] = all[pair + 2];  // in one plane
+        for (std::size_t v = 2; v < 18; v += 3) all[pair + v] = all[pair + 2];  // both triangles in one plane
       }
       if (random() % 8 == 0) std::copy_n(&all[pair + 3], 3, &all[pair + 6]);  // a segment
     }

@@ -6,7 +6,7 @@
 
 namespace graze::exact {
 
-// As decide (decide.h), one pair after the other.
+// Like decide (decide.h), but one pair after the other.
 inline void one_by_one(const float* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) {
   decide_each(reinterpret_cast<const Pair*>(pairs), count, intersects, declined, [](const Pair& pair) {
     return !is_finite(pair)                                ? Verdict::declined

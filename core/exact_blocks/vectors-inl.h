@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What decide.cpp computes with: pairs side by side, one in each lane of a vector of doubles. Included once for each
-// instruction set, within its namespace, so there is no guard.
+// What decide.cpp computes with: vectors of doubles with one pair in each vector lane. Included once for each
+// instruction set, within its namespace, so there is no include guard.
 //
-//   screen_all    the decision by planes with one error bound for each pair, as core/exact/screen.h
-//   share_vertex  as core/exact/shared_vertex.h
-//   separated     the decision by axes, as core/exact/by_axes.h, on numbers of which signs are exact:
-//                 Doubles where nothing rounds, and DoublesAndIntegers, each number as a double, which is near, and as
-//                 a 64-bit integer, which is the number modulo 2^64: where the double is small the integer is the
-//                 number.
+//   filter_all    the decision by planes with one error bound for each pair, like core/exact/filter.h
+//   share_vertex  like core/exact/shared_vertex.h
+//   separated     the decision by axes, like core/exact/by_axes.h, on numbers whose signs are exact. These are Double
+//                 where nothing rounds, and else DoubleAndInteger. The latter stores each number as a double, which is
+//                 close, and as a 64-bit integer, which is the number modulo 2^64. If the double is small, the integer
+//                 is the number.
 
 constexpr std::size_t kFloats = 18;
 using Tag = hn::CappedTag<double, 8>;
@@ -21,7 +21,7 @@ constexpr Tag d;
 constexpr FloatTag df;
 constexpr IntegerTag di;
 constexpr std::size_t kAtOnce = HWY_MAX_BYTES >= 64 ? 8 : 4;
-constexpr int kBitsOfBoth = 34;  // of DoubleAndInteger
+constexpr int kBitsOfBoth = 34;  // that DoubleAndInteger holds
 
 HWY_INLINE unsigned bits(M mask) {
   std::uint8_t bytes[8] = {};
@@ -38,7 +38,7 @@ HWY_INLINE Three<T> operator-(const Three<T>& l, const Three<T>& r) {
   return {l.x - r.x, l.y - r.y, l.z - r.z};
 }
 
-// What a number is in each kind.
+// The kinds of numbers.
 struct Double {
   V v;
   static HWY_INLINE Double of_integer(V x) { return {x}; }
@@ -53,15 +53,15 @@ struct Double {
   }
 };
 
-// Of integers of up to 34 bits: a difference has 35, a determinant is less than 6 * 2^105, and its double is off by at
-// most 2^-50 of that (error_bound.h), less than 2^58: beyond 2^60 its sign is right, and so is that of a difference of
-// two. Up to 2^60, and what it may be off, the number is within 64 bits.
+// For integers of up to 34 bits. A difference has 35 bits, a determinant is less than 6 * 2^105, and its double is off
+// by at most 2^-50 of that (error_bound.h), less than 2^58. Beyond 2^60 the double's sign is right, also for a
+// difference of two determinants. Otherwise the number fits in 64 bits, even with the error.
 static_assert(2 * 6 * (std::int64_t{1} << (3 * (kBitsOfBoth + 1) - 50)) < std::int64_t{1} << 60);
 struct DoubleAndInteger {
   V v;
   VI i;
   static HWY_INLINE DoubleAndInteger of_integer(V x) { return {x, hn::ConvertTo(di, x)}; }
-  // A double of the number's sign.
+  // A double that has the number's sign.
   HWY_INLINE V sign() const { return hn::IfThenElse(hn::Gt(hn::Abs(v), hn::Set(d, 0x1p60)), v, hn::ConvertTo(d, i)); }
   friend HWY_INLINE DoubleAndInteger operator-(DoubleAndInteger l, DoubleAndInteger r) {
     return {hn::Sub(l.v, r.v), hn::Sub(l.i, r.i)};
@@ -87,7 +87,7 @@ HWY_INLINE Three<Double> chosen(M mask, const Three<Double>& yes, const Three<Do
           {hn::IfThenElse(mask, yes.z.v, no.z.v)}};
 }
 
-// The coordinates of kAtOnce pairs, which may lie anywhere.
+// The coordinates of kAtOnce pairs, which need not be adjacent in memory.
 struct Coordinates {
   VF x[kFloats];
 
@@ -98,7 +98,7 @@ struct Coordinates {
   }
 
  private:
-  // Four floats of one pair in every 128 bits.
+  // Four floats of one pair in each 128 bits.
   static HWY_INLINE VF row(const float* const (&pairs)[kAtOnce], std::size_t k, std::size_t c) {
     constexpr hn::FixedTag<float, 4> four;
 #if HWY_MAX_BYTES >= 64
@@ -122,17 +122,17 @@ struct Coordinates {
   }
 };
 
-// Bit i for pair i: what is beyond doubt.
-struct Screened {
+// Bit i is set if the result of pair i is certain.
+struct Filtered {
   unsigned intersects, disjoint, declined;
 };
 
-// One triangle's vertices, the one that is alone on its side first, in the order of lone_vertices (core/exact/sides.h).
+// One triangle's vertices: first the one alone on its side, in the order of lone_vertices (core/exact/sides.h).
 struct Turned {
   Three<Double> first, second, third;
 };
 
-// below: of the vertices, which are below the other triangle's plane; not all three alike.
+// below: which vertices are below the other triangle's plane; not all or none of the three.
 HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M other_is_below) {
   const M apart_01 = hn::Xor(below[0], below[1]), apart_02 = hn::Xor(below[0], below[2]);
   const M is_1 = hn::AndNot(apart_02, apart_01), is_2 = hn::AndNot(apart_01, apart_02);
@@ -142,11 +142,11 @@ HWY_INLINE Turned turned(const Three<Double> (&v)[3], const M (&below)[3], M oth
           chosen(other_is_below, next, last)};
 }
 
-// Of three that are not alike, whether the one that is alone is below: the other two are alike, and cancel.
+// Whether the lone vertex of three is below. The other two are equal and cancel.   Requires: not all three are equal.
 HWY_INLINE M alone_is_below(const M (&below)[3]) { return hn::Xor(hn::Xor(below[0], below[1]), below[2]); }
 
-HWY_INLINE Screened screen_all(const Coordinates& pairs) {
-  VF zeros = hn::Zero(df);  // but for what is not finite
+HWY_INLINE Filtered filter_all(const Coordinates& pairs) {
+  VF zeros = hn::Zero(df);  // NaN instead if a coordinate is not finite
   for (const VF& x : pairs.x) zeros = hn::MulAdd(x, hn::Zero(df), zeros);
   const unsigned declined = bits(hn::IsNaN(hn::PromoteTo(d, zeros)));
 
@@ -207,16 +207,16 @@ HWY_INLINE unsigned share_vertex(const Coordinates& pairs) {
   return bytes[0];
 }
 
-// The coordinates as integers, where so many bits hold them all.
+// The coordinates as integers, if the given number of bits holds them all.
 struct OnGrid {
   V x[kFloats];
-  unsigned within;  // bit i for pair i: they are integers
+  unsigned within;  // bit i is set if the coordinates of pair i are integers
 
   HWY_INLINE OnGrid(const Coordinates& pairs, int bits_of_grid) {
-    VF largest = hn::Set(df, 0x1p-126f);  // grids of subnormals alone are taken for finer ones
+    VF largest = hn::Set(df, 0x1p-126f);  // a grid of subnormals only is treated as a finer one
     for (const VF& c : pairs.x) largest = hn::Max(largest, hn::Abs(c));
-    // Below 2^bits_of_grid, and no more is needed than that the largest is at least half of it: 2^(bits_of_grid - 1 -
-    // e).
+    // Values stay below 2^bits_of_grid. It is enough that the largest is at least half of that, so the scale is
+    // 2^(bits_of_grid - 1 - e).
     const VI exponent = hn::And(hn::BitCast(di, hn::PromoteTo(d, largest)), hn::Set(di, std::int64_t{0x7ff} << 52));
     const V scale = hn::BitCast(d, hn::Sub(hn::Set(di, std::int64_t{2 * 1023 + bits_of_grid - 1} << 52), exponent));
     M whole = hn::Eq(scale, scale);
@@ -228,7 +228,7 @@ struct OnGrid {
   }
 };
 
-// Between what the signs of these numbers lie.
+// The range of the numbers' signs.
 struct Ends {
   V low = hn::Set(d, 0x1p1000), high = hn::Set(d, -0x1p1000);
 
@@ -238,10 +238,10 @@ struct Ends {
   }
 };
 
-// Whether an axis separates: the origin lies on one side of all these differences.
+// Whether an axis separates: the origin lies on one side of all its differences.
 struct Axes {
   M separated;
-  V least, most;  // of all of them
+  V least, most;  // least and greatest difference of all axes
 
   HWY_INLINE Axes() : separated(hn::Gt(hn::Zero(d), hn::Zero(d))), least(hn::Zero(d)), most(hn::Zero(d)) {}
   HWY_INLINE void look(V low, V high) {
@@ -256,7 +256,7 @@ struct Axes {
   }
 };
 
-// p are a's vertices and q are b's, seen from a's first; of_a and of_b their edges.
+// p are a's vertices and q are b's, relative to a's first vertex. of_a and of_b are their edges.
 template <class T>
 struct FromFirst {
   Three<T> p[3], q[3], of_a[3], of_b[3];
@@ -275,8 +275,8 @@ struct FromFirst {
     of_b[2] = q[0] - q[2];
   }
 
-  // Calls visit(axis, difference…) for the normals and the products of edges. Along each axis the differences of a
-  // vertex of b and one of a count, equal ones once.
+  // Calls visit(axis, difference…) for the normals and the cross products of edges. The differences are those of b's
+  // and a's vertices along the axis; equal ones are passed once.
   template <class Visit>
   HWY_INLINE void for_each_axis(const Visit& visit) const {
     const Three<T> normal_a = cross(p[1], p[2]), normal_b = cross(of_b[0], of_b[1]);
@@ -292,7 +292,7 @@ struct FromFirst {
   }
 };
 
-// The axes that decide, as look and look_flat of core/exact/axes.h have them.
+// The axes that decide, as in look and look_flat of core/exact/axes.h.
 template <class T>
 HWY_INLINE unsigned separated(const OnGrid& pair) {
   const FromFirst<T> seen(pair);
@@ -304,7 +304,7 @@ HWY_INLINE unsigned separated(const OnGrid& pair) {
   };
   if (hn::AllFalse(d, all_zero())) return bits(axes.separated);
 
-  // Those that lie in a plane with the origin: the difference of a and b is flat.
+  // The axes for a flat difference of a and b, in a plane that contains the origin.
   using Part = T Three<T>::*;
   constexpr Part kPlanes[3][2] = {
       {&Three<T>::x, &Three<T>::y}, {&Three<T>::y, &Three<T>::z}, {&Three<T>::z, &Three<T>::x}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two triangles decided by an algorithm under a policy other than zero, on host and device alike.
+// Decides two triangles with an algorithm under a policy other than zero, on host and device alike.
 #pragma once
 
 #include "core/lanes/tolerances.h"
@@ -9,7 +9,7 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Number is Real, or WithMagnitude<Real> where tolerances are relative.
+// Number is Real, or WithMagnitude<Real> if tolerances are relative.
 template <class Algorithm, class Number, class Real>
 GRAZE_HD Verdict decide_within(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Tolerances<Real>& tolerances) {
   Vec3<Number> p[3], q[3];
@@ -20,15 +20,15 @@ GRAZE_HD Verdict decide_within(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3
   return Algorithm::decide(p, q, tolerances);
 }
 
-// Whether the triangle certainly has an area: published algorithms promise nothing of others.
+// Whether the triangle certainly has an area. Published algorithms promise nothing for other triangles.
 template <class Real>
 GRAZE_HD bool certainly_proper(const Vec3<WithErrorBound<Real>> (&v)[3]) {
   const Vec3<WithErrorBound<Real>> normal = cross(v[1] - v[0], v[2] - v[0]);
   return normal.x.is_nonzero() || normal.y.is_nonzero() || normal.z.is_nonzero();
 }
 
-// The exact verdict, or declined. A certain axis that separates is enough, whatever is in doubt elsewhere.
-// Exact: of algorithms that are right without rounding.
+// The exact verdict, or declined. One axis that certainly separates is enough, whatever else is in doubt.
+// Exact: for algorithms that are right without rounding.
 template <class Algorithm, class Real>
 GRAZE_HD Verdict decide_bounded(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
   using Number = WithErrorBound<Real>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The block functions of the host lanes. Compiled once per variant, each in its own namespace GRAZE_FP and with its
-// own contraction flags; nothing else may be defined here, or the linker would mix the variants.
+// The block functions of the host lanes, compiled once per variant, each in its own namespace GRAZE_FP and with its own
+// contraction flags. Define nothing else here, or the linker would mix the variants.
 #include "core/lanes/host_blocks.h"
 #include "core/algorithms/algorithms.h"
 #include "core/decide_each.h"
@@ -41,7 +41,7 @@ template <class Algorithm, class Real>
 constexpr PolicyBlocks policy_blocks() {
   PolicyBlocks result{decide_within_block<Algorithm, Real, Real>,
                       decide_within_block<Algorithm, Real, WithMagnitude<Real>>};
-#ifndef __FAST_MATH__  // which forgets what bounds rest on
+#ifndef __FAST_MATH__  // fast math invalidates the bounds
   if constexpr (Algorithm::kInfo.right_without_rounding) result.bound = decide_bounded_block<Algorithm, Real>;
 #endif
   return result;

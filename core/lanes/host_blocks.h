@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The host lanes' block functions, tables for each host variant, in that variant's namespace: [algorithm][scalar].
+// Tables of the host lanes' block functions: [algorithm][scalar], for each host variant in its own namespace.
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@ template <class Block>
 using BlockTable = std::array<std::array<Block, 2>, kAlgorithmCount>;
 using HostBlocks = BlockTable<DecideBlock::Function>;
 
-// Of each kind of policy; null where the algorithm or the variant does not have it.
+// The block functions of each kind of policy; null if the algorithm or the variant does not have it.
 struct PolicyBlocks {
-  DecideBlock::Within absolute = nullptr, relative = nullptr;  // by tolerances, with relative ones or without
+  DecideBlock::Within absolute = nullptr, relative = nullptr;  // under absolute tolerances only; with relative ones
   DecideBlock::Function bound = nullptr;
 };
 using HostPolicyBlocks = BlockTable<PolicyBlocks>;

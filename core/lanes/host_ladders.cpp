@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled as the host lanes of the variant cpu, in their namespace and with their flags.
+// Compiled like the host lanes of the variant cpu: in their namespace and with their flags.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -11,8 +11,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Decides as rung `at` does, and finds the next one under which some comparison of this decision comes out otherwise.
-// Until there the verdict is the same: whatever was compared, and how, is the same.
+// Decides like rung `at`, and finds the next rung for which some comparison of this decision has another outcome. For
+// all rungs before that one the verdict is the same, because all comparisons are.
 template <class Real>
 class Climb {
  public:
@@ -23,7 +23,7 @@ class Climb {
   template <class Number>
   bool near_zero(Site site, const Number& x) const {
     if (rungs_[at_].near_zero(site, x)) return true;
-    // Tolerances do not fall: of the rungs from at_ + 1 to next_ - 1, those that hold x for zero are the last ones.
+    // Tolerances do not decrease. So among rungs at_ + 1 to next_ - 1, those that treat x as zero are the last ones.
     if (next_ - at_ > 1 && rungs_[next_ - 1].near_zero(site, x)) {
       std::size_t far = at_;
       while (next_ - far > 1) {
@@ -34,7 +34,7 @@ class Climb {
     return false;
   }
 
-  // As Tolerances has them.
+  // Like those of Tolerances.
   template <class Number>
   Number snap(Site site, const Number& x) const {
     return near_zero(site, x) ? Number(0) : x;
@@ -72,7 +72,7 @@ void decide_ladder(std::span<const Epsilons> epsilons, const Pair* pairs, std::s
     for (std::size_t at = 0; at < rungs.size();) {
       const Climb<Real> climb(rungs, at);
       const Verdict verdict = Algorithm::decide(p, q, climb);
-      // Where a row begins to differ from the one before; summed up below.
+      // Marks where a rung's bit differs from that of the rung before; the loop below sums these up.
       std::uint64_t& yes = intersects[at * words + i / 64];
       std::uint64_t& no_answer = declined[at * words + i / 64];
       if ((verdict == Verdict::intersects) != (before == Verdict::intersects)) yes |= bit;
@@ -87,7 +87,7 @@ void decide_ladder(std::span<const Epsilons> epsilons, const Pair* pairs, std::s
   }
 }
 
-// Of each algorithm: f32 absolute and relative, f64 absolute and relative.
+// For each algorithm: f32 absolute and relative, f64 absolute and relative.
 template <class... Algorithm>
 constexpr auto ladders(const std::tuple<Algorithm...>*) {
   return std::array{std::array<DecideLadder, 4>{

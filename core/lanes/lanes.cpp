@@ -16,7 +16,7 @@
 namespace graze {
 namespace {
 
-constexpr std::size_t kMostLanes = 1024;  // lanes stay where they are, so there must be room from the beginning
+constexpr std::size_t kMostLanes = 1024;  // reserved at the start, because lanes must not move
 
 constexpr AlgorithmInfo kExactInfo{"exact",
                                    "Guigue and Devillers 2003, and separating axes, on exact numbers",
@@ -35,7 +35,7 @@ std::vector<const AlgorithmInfo*> infos(const std::tuple<Algorithm...>*) {
   return {&Algorithm::kInfo...};
 }
 
-// The block functions of a variant; null for a device's.
+// The block functions of a variant; null for a device variant.
 struct Tables {
   const HostBlocks* blocks = nullptr;
   const HostPolicyBlocks* policies = nullptr;
@@ -56,7 +56,7 @@ const Tables& tables_of(Variant variant) {
   return kTables[static_cast<int>(variant)];
 }
 
-// Block functions of the algorithm and scalar of a lane.
+// The block functions of a lane's algorithm and scalar.
 template <class Table>
 const auto& of_lane(const Table& table, const Lane& lane) {
   return table.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));
@@ -169,8 +169,8 @@ Lane lane_under(const Lane& lane, std::string_view policy) {
 
 namespace {
 
-// A pattern's parts: of the lanes without a policy, and the policy. It is the fourth part and what follows, or, where a
-// star stands for several parts ("*/cpu/rel:8"), the last one if it is the name of a policy.
+// A pattern's parts: for the lanes without a policy, and for the policy. The policy is the fourth part and what
+// follows. If a star stands for several parts ("*/cpu/rel:8"), it is the last part, provided that names a policy.
 struct PolicyPattern {
   std::string zero, policy;
 };

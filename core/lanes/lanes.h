@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lane table: one row for each way to decide a pair, `subject/scalar/variant`, then `/policy` unless that is zero.
-// A row says what the lane is and what it can do; nothing follows from its place in the table.
+// The lane table: one row for each way to decide a pair. A name is `subject/scalar/variant`, plus `/policy` unless
+// zero. A row states what the lane is and can do; its position in the table has no meaning.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ namespace graze {
 enum class Scalar : std::uint8_t { f32, f64 };
 std::string_view name(Scalar scalar);
 
-// The parts of a lane's name. A lane of another build or machine has a name too: the parts need not be known here.
+// The parts of a lane's name. They may be unknown here: lanes of other builds or machines have names too.
 struct LaneName {
   std::string subject, scalar, variant, policy;  // policy empty: zero
 
@@ -32,20 +32,20 @@ struct LaneName {
 // "moller_1997/f32/cpu"; the inverse of parse_lane_name.
 std::string id_of(const LaneName& name);
 
-// Returns: nothing unless there are three parts, none of them empty, or four; the fourth may hold more slashes.
+// Returns: nothing unless there are three nonempty parts, or four. The fourth may contain slashes.
 std::optional<LaneName> parse_lane_name(std::string_view id);
 
-// Code that is not ours (subjects/). It may fail on a pair, which both bits together say.
+// Code that is not ours (subjects/). It may fail on a pair: then both bits of the pair are set.
 class ForeignCode {
  public:
   virtual ~ForeignCode() = default;
   virtual void decide(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined) = 0;
-  // How it failed on a pair on which it did: crashed, timed_out or unstable.
+  // How it failed on a pair: crashed, timed_out or unstable.   Requires: it failed on the pair.
   virtual Verdict failure(const Pair& pair) = 0;
 };
 
-// Decides pairs[0..count): bit i % 64 of word i / 64 says intersects, or declined. Unused bits become zero.
-// Requires: room for (count + 63) / 64 words in both.
+// Decides pairs[0..count). Bit i % 64 of word i / 64: intersects, or declined. Unused bits become zero.
+// Requires: room for (count + 63) / 64 words in each of the two arrays.
 class DecideBlock {
  public:
   using Function = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* intersects, std::uint64_t* declined);
@@ -54,7 +54,7 @@ class DecideBlock {
 
   constexpr DecideBlock(Function function = nullptr) : function_(function) {}
   DecideBlock(Within within, const Epsilons& epsilons) : within_(within), epsilons_(epsilons) {}
-  // What the bound leaves open, the other decides.
+  // `otherwise` decides the pairs that `bound` declines.
   DecideBlock(Function bound, Function otherwise) : function_(bound), otherwise_(otherwise) {}
   DecideBlock(ForeignCode& foreign) : foreign_(&foreign) {}
 
@@ -63,7 +63,7 @@ class DecideBlock {
   bool operator==(const DecideBlock&) const = default;
   constexpr bool operator==(std::nullptr_t) const { return !*this; }
 
-  // What a pair's two bits say.
+  // The verdict that a pair's two bits encode.
   Verdict verdict_of(bool intersects, bool declined, const Pair& pair) const {
     if (foreign_ && intersects && declined) return foreign_->failure(pair);
     return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
@@ -76,7 +76,7 @@ class DecideBlock {
   ForeignCode* foreign_ = nullptr;
 };
 
-// What a pair's two bits say, of a lane of ours.
+// The verdict that two bits encode for a lane of ours.
 constexpr Verdict verdict_of_bits(bool intersects, bool declined) {
   return declined ? Verdict::declined : intersects ? Verdict::intersects : Verdict::disjoint;
 }
@@ -93,46 +93,46 @@ struct Lane {
   Scalar scalar;
   Variant variant;
   std::string policy;           // empty: zero
-  std::optional<Policy> under;  // what it says, unless that is zero
-  // Of a published algorithm its place in Algorithms, by which code that is compiled for each of them is found; else
-  // -1.
+  std::optional<Policy> under;  // the parsed policy; nothing for zero
+  // Published algorithms: the index in Algorithms, which selects the code that is compiled for the algorithm.
+  // Others: -1.
   int algorithm;
   DecideBlock decide;  // on this processor; null for lanes of a device, see cuda/lanes/device.h
-  bool exact;          // right on every finite pair, and declines the others; see core/exact/exact.h
-  bool explainable;    // runs on numbers that write down every step; see core/algorithms/traced.h
-  // Of foreign code alone:
+  bool exact;          // right on every finite pair, declines the others; see core/exact/exact.h
+  bool explainable;    // runs on numbers that record every step; see core/algorithms/traced.h
+  // Foreign code only:
   bool foreign = false;
-  unsigned outside = 0;  // what its convention leaves open: a sum of Outside
-  std::string evidence;  // what runs a CUDA lane: "device", "twin, not yet verified"; or why nothing does
+  unsigned outside = 0;  // the kinds of pairs that its convention excludes: a sum of Outside
+  std::string evidence;  // what runs a CUDA lane: "device", "twin, not yet verified"; or why none can
 
   bool is_cuda() const { return info_of(variant).runs_on == RunsOn::device; }
   LaneName lane_name() const;
 };
 
-// All lanes: subject by subject, and of each f32 before f64, in the order of the variants; of ours the exact ones last,
-// then those of foreign code.
+// All lanes, subject by subject: f32 before f64, then in the order of the variants. Of our lanes the exact ones come
+// last; lanes of foreign code follow them.
 std::span<const Lane> lanes();
 
-// Adds the lanes of a foreign subject, for good.   Requires: no other thread is at work with lanes.
-// Throws: std::runtime_error where there are too many.
+// Adds the lanes of a foreign subject permanently.   Requires: no other thread uses lanes meanwhile.
+// Throws: std::runtime_error if there are too many.
 void add_lanes(std::vector<Lane> foreign);
 
-// The published lane under another policy, which no table holds.
-// Throws: UsageError where it cannot have the policy.
+// The published lane under another policy. It is not added to the table.
+// Throws: UsageError if the lane cannot have the policy.
 Lane lane_under(const Lane& lane, std::string_view policy);
 
-// Adds a lane under the policy for each published lane that the pattern's parts before the policy match: of
-// "*/f32/cpu/rel:8" for all f32/cpu lanes. Nothing where the pattern has no policy; a lane that is there stays.
-// Requires: as add_lanes.   Throws: UsageError, unless some lane that matches can have the policy.
+// Adds a lane under the pattern's policy for each published lane that the rest of the pattern matches. Example:
+// "*/f32/cpu/rel:8" for all f32/cpu lanes. Existing lanes stay. It does nothing if the pattern has no policy.
+// Requires: as add_lanes.   Throws: UsageError if no matching lane can have the policy.
 void add_policy_lanes(std::string_view pattern);
 
-// Those of published algorithms, without a policy.
+// The lanes of published algorithms, without a policy.
 std::span<const Lane> published_lanes();
 
-// The lane of that name; null for none.
+// The lane of that name; null if there is none.
 const Lane* find_lane(std::string_view id);
 
-// The same subject, scalar and policy in another variant; null for none.
+// The same subject, scalar and policy in another variant; null if there is none.
 const Lane* counterpart(const Lane& lane, Variant variant);
 
 // Whether this processor can run the host lane (cpu-fma needs FMA instructions).

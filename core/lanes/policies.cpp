@@ -18,7 +18,7 @@ constexpr std::string_view kForms = "zero, abs:E, rel:K, SITE=abs:E,…, paper, 
   throw UsageError("expected a policy (" + std::string(kForms) + "), found " + shown(text) + why);
 }
 
-// Published codes that ship an epsilon.
+// Epsilons of published codes.
 struct Shipped {
   std::string_view algorithm;
   Site site;
@@ -26,7 +26,7 @@ struct Shipped {
 };
 constexpr Shipped kShipped[] = {
     // T. Moller's code beside the paper (opttritri.txt and tritri_isectline.txt): #define EPSILON 0.000001, and
-    // if(FABS(du0)<EPSILON) du0=0.0; of each plane distance, not normalised.
+    // if(FABS(du0)<EPSILON) du0=0.0; for each plane distance, which is not normalised.
     {"moller_1997", Site::plane_distance, 1e-6},
 };
 
@@ -43,7 +43,7 @@ std::string site_names() {
   return names;
 }
 
-// Sets the sites' numbers by "abs:E" or "rel:K"; of all sites without a site.
+// Sets the site's number from "abs:E" or "rel:K"; without a site, the numbers of all sites.
 void set(std::string_view whole, std::string_view text, std::optional<Site> site, Epsilons& epsilons) {
   const bool relative = text.starts_with("rel:");
   if (!relative && !text.starts_with("abs:")) refuse(whole);

@@ -30,14 +30,14 @@ std::string refusal(const std::string& id) {
   return "accepted";
 }
 
-// Two parallel triangles half their size apart, scaled.
+// Two parallel triangles at half their size from each other, scaled.
 Pair apart(float scale) {
   Pair pair{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0.5f}, {0, 1, 0.5f}}};
   for (int c = 0; c < kCoordinates; ++c) coordinates(pair)[c] *= scale;
   return pair;
 }
 
-// A vertex of b 2^-k of the size away from the inside of a; else b is upright on it.
+// A vertex of b at 2^-k of the size from the inside of a; b stands upright on it.
 Pair above(int k, float scale) {
   const float gap = std::ldexp(1.0f, -k);
   Pair pair{{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}};
@@ -47,7 +47,7 @@ Pair above(int k, float scale) {
 
 TEST(Policies, OfMollersPaperBreakBelowTheScaleItWasMadeFor) {
   const Lane& paper = lane("moller_1997/f32/cpu/paper");
-  // Distances are half the size, times the normal's length, which is the size squared: s^3 / 2 < 1e-6 below 0.0126.
+  // Plane distances are half the size times the normal's length (size squared): s^3 / 2 < 1e-6 for s below 0.0126.
   EXPECT_EQ(decide_one(paper.decide, apart(0.0127f)), Verdict::disjoint);
   EXPECT_EQ(decide_one(paper.decide, apart(0.0125f)), Verdict::intersects);
   EXPECT_EQ(decide_one(find_lane("moller_1997/f32/cpu")->decide, apart(0.0125f)), Verdict::disjoint);
@@ -98,7 +98,7 @@ TEST(Policies, AddLanesOnceForEachThatMatches) {
   add_policy_lanes("*/f32/cpu/rel:7");
   EXPECT_EQ(lanes().size(), before + kAlgorithmCount);
   const std::size_t without_stars = lanes().size();
-  add_policy_lanes("*/cpu/rel:7");  // a star may stand for several parts: the f64 ones as well
+  add_policy_lanes("*/cpu/rel:7");  // a star may stand for several parts, so this includes the f64 lanes
   EXPECT_EQ(lanes().size(), without_stars + kAlgorithmCount);
   add_policy_lanes("*/cpu");
   add_policy_lanes("*/nothing");
@@ -107,7 +107,7 @@ TEST(Policies, AddLanesOnceForEachThatMatches) {
   EXPECT_EQ(added.policy, "rel:7");
   EXPECT_EQ(added.under->epsilons.relative[static_cast<int>(Site::separation)], 7);
   EXPECT_FALSE(added.exact);
-  // Of five algorithms four have it.
+  // Four of the five algorithms have this policy.
   add_policy_lanes("*/f64/cpu-fma/bound");
   EXPECT_NE(find_lane("moller_1997/f64/cpu-fma/bound"), nullptr);
   EXPECT_EQ(find_lane("projected_sat/f64/cpu-fma/bound"), nullptr);
@@ -115,7 +115,7 @@ TEST(Policies, AddLanesOnceForEachThatMatches) {
 
 TEST(Policies, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(refusal("moller_1997/f32/cpu"), "accepted");
-  EXPECT_EQ(refusal("nothing/f32/cpu/rel:1"), "accepted");  // no lane; whoever selects lanes says so
+  EXPECT_EQ(refusal("nothing/f32/cpu/rel:1"), "accepted");  // no such lane; the code that selects lanes reports it
   const std::string forms = "expected a policy (zero, abs:E, rel:K, SITE=abs:E,…, paper, bound or filtered), found ";
   EXPECT_EQ(refusal("moller_1997/f32/cpu/eps"), forms + "\"eps\"");
   EXPECT_EQ(refusal("moller_1997/f32/cpu/abs:-1"), forms + "\"abs:-1\": \"-1\" is no number of at least 0");
@@ -147,14 +147,14 @@ TEST(WithErrorBound, KnowsWhatIsExact) {
   doubt = false;
   const B tiny(0x1p-149f, &doubt), large(0x1p127f, &doubt);
   EXPECT_EQ((tiny * tiny).value, 0);
-  EXPECT_FALSE(tiny * tiny > B(0));  // it is, and underflowed
+  EXPECT_FALSE(tiny * tiny > B(0));  // the exact product is, but it underflowed
   EXPECT_TRUE(doubt);
   doubt = false;
   EXPECT_TRUE(large * large > B(0));
-  EXPECT_TRUE(doubt);  // infinity says nothing
+  EXPECT_TRUE(doubt);  // infinity decides nothing
 }
 
-// Random expressions against the same in long double, which is exact enough for these.
+// Random expressions, compared with the same in long double, which is precise enough for them.
 TEST(WithErrorBound, HoldsTheExactQuantity) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<float> mantissa(-2, 2);
@@ -190,7 +190,7 @@ TEST(WithErrorBound, HoldsTheExactQuantity) {
     tight += off > x.error / 64;
   }
   EXPECT_GT(held, 200000);
-  EXPECT_GT(tight, held / 4);  // a bound that holds anything would hold this
+  EXPECT_GT(tight, held / 4);  // a bound that is always huge would fail this
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The policies abs, rel and paper: at each site a number is held for zero when it is smaller than a tolerance.
+// The policies abs, rel and paper: at each site, a number smaller than a tolerance counts as zero.
 #pragma once
 
 #include "core/epsilon_sites.h"
@@ -7,7 +7,7 @@
 
 namespace graze {
 
-// At each site absolute, in the quantity's own unit, plus relative times machine epsilon times the quantity's size.
+// A site's tolerance: absolute, in the quantity's own unit, plus relative times machine epsilon times its size.
 struct Epsilons {
   double absolute[kSiteCount] = {};
   double relative[kSiteCount] = {};
@@ -23,7 +23,7 @@ struct Epsilons {
 
 inline namespace GRAZE_FP {
 
-// Of plain numbers the absolute tolerance counts alone. Tolerances of zero are ExactZero, value by value.
+// For plain numbers only the absolute tolerance counts. Tolerances of zero give the same values as ExactZero.
 template <class Real>
 struct Tolerances {
   Real absolute[kSiteCount];
@@ -37,7 +37,7 @@ struct Tolerances {
     }
   }
 
-  // Strictly: |x| < epsilon, as published codes have it. False for NaN.
+  // Strict, like published codes: |x| < epsilon. False for NaN.
   GRAZE_HD bool near_zero(Site site, const Real& x) const { return magnitude(x) < absolute[static_cast<int>(site)]; }
   GRAZE_HD bool near_zero(Site site, const WithMagnitude<Real>& x) const {
     const int s = static_cast<int>(site);

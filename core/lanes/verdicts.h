@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdicts of a lane's code on pairs, one by one: where bits are read that are not counted as words.
+// A lane's verdicts on pairs as a list, for code that reads single verdicts instead of counting bits.
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace graze {
 
-// Of each pair; none are asked where there are none.
+// The verdict on each pair. The block is not called if there are no pairs.
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs);
 
-// The verdict of that name; nothing for another word.
+// The verdict of that name; nothing if there is none.
 std::optional<Verdict> verdict_named(std::string_view word);
 
 }  // namespace graze

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that certify what is asked of them, the policy `bound`: a value, computed as always, and a bound of its
-// forward error. A comparison that the bounds leave open raises a doubt. Without doubt, every comparison went as it
-// does in exact arithmetic, and so did the algorithm.
+// Numbers that certify comparisons, for the policy `bound`: a value, computed as usual, and a bound of its forward
+// error. A comparison that the bounds do not settle raises a doubt. Without a doubt, every comparison came out as in
+// exact arithmetic, and so did the algorithm's verdict.
 // Derivation: running error analysis, N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition
 // (2002), section 3.3. With u the unit roundoff and t half the smallest number, fl(x op y) = (x op y)(1 + d) + e, where
 // |d| <= u, and |e| <= t for products and quotients, 0 for sums. Let X, Y be the exact quantities that x, y stand for,
@@ -10,10 +10,10 @@
 //   |X Y   - fl(x y)|    <= |x| ey + |y| ex + ex ey + u |fl(x y)| + t
 //   |X / Y - fl(x / y)|  <= (ex + (|q| + u |q| + t) ey) / (|y| - ey) + u |q| + t   for q = fl(x / y), |y| > ey
 //   |sqrt X - fl(sqrt x)|  <= ex / sqrt x + u |fl(sqrt x)|   for x > ex
-// The bounds are themselves computed with roundings: at most eight in a row, each of at most u, so a factor of
-// 1 + 32 u covers them while they are normal numbers; the smallest normal number covers what subnormal steps may lose.
-// Contraction rounds once where these formulas count two roundings, in values as in bounds: both stay below. Overflow
-// makes a bound infinite or not a number, and then every comparison is open.
+// The bounds themselves are rounded: at most eight roundings in a row, each of at most u. A factor of 1 + 32 u covers
+// these roundings of normal numbers; adding the smallest normal number covers the loss of subnormal steps. Contraction
+// rounds once where these formulas count two roundings, in values and in bounds, so both still hold. Overflow makes a
+// bound infinite or NaN; then every comparison is in doubt.
 #pragma once
 
 #include <cmath>
@@ -28,12 +28,12 @@ template <class Real>
 struct WithErrorBound {
   static constexpr bool kIsFloat = sizeof(Real) == sizeof(float);
   static constexpr Real kUnit = kIsFloat ? Real(0x1p-24) : Real(0x1p-53);
-  static constexpr Real kTiny = kIsFloat ? Real(0x1p-126f) : Real(0x1p-1022);  // normal: subnormal ones are slow
+  static constexpr Real kTiny = kIsFloat ? Real(0x1p-126f) : Real(0x1p-1022);  // normal, as subnormals are slow
   static constexpr Real kSlack = Real(1) + 32 * kUnit;
 
   Real value = 0;
   Real error = 0;
-  bool* doubt = nullptr;  // of constants null
+  bool* doubt = nullptr;  // null for constants
 
   WithErrorBound() = default;
   GRAZE_IN_PLACE GRAZE_HD explicit WithErrorBound(Real exact) : value(exact) {}
@@ -77,7 +77,7 @@ struct WithErrorBound {
       if (!x.is_exact_zero())
         result.error = ((x.error + size * y.error + kTiny) / divisor + kUnit * size) * kSlack + kTiny;
     } else {
-      result.error = HUGE_VAL;  // not used where an algorithm guards the division
+      result.error = HUGE_VAL;  // unused where an algorithm guards the division
     }
     return result;
   }
@@ -117,14 +117,14 @@ struct WithErrorBound {
   GRAZE_IN_PLACE GRAZE_HD static WithErrorBound sum(const WithErrorBound& x, const WithErrorBound& y, Real computed) {
     WithErrorBound result = either(x, y);
     result.value = computed;
-    // Of exact numbers a sum that is zero is exact: no two different numbers have a difference that rounds to zero.
+    // A zero sum of exact numbers is exact: two different numbers never have a difference that rounds to zero.
     if (!(computed == Real(0) && x.is_exact() && y.is_exact()))
       result.error = (x.error + y.error + kUnit * magnitude(computed)) * kSlack + kTiny;
     return result;
   }
 
-  // Whether the two exact quantities compare as the values do. Values that are equal do where both are exact; others,
-  // where they are further apart than their bounds and the rounding of these sums.
+  // Whether the two exact quantities compare as their values do. Equal values do if both are exact. Others do if they
+  // are further apart than their bounds and the rounding of these sums.
   GRAZE_IN_PLACE GRAZE_HD static bool is_settled(const WithErrorBound& x, const WithErrorBound& y) {
     const Real gap = magnitude(x.value - y.value), errors = (x.error + y.error) * kSlack;
     return (gap * (Real(1) - 4 * kUnit) > errors + kTiny && gap <= kLargest) ||
@@ -139,7 +139,7 @@ struct WithErrorBound {
   static constexpr Real kLargest = kIsFloat ? Real(0x1.fffffep127) : Real(0x1.fffffffffffffp1023);
 };
 
-// Any component that is certainly not zero serves as an axis: a doubt is raised only where the chosen one is not.
+// Any component that is certainly nonzero serves as an axis. A doubt is raised only if the chosen one may be zero.
 template <class Real>
 GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
   const int axis = dominant_axis(Vec3<Real>{v.x.value, v.y.value, v.z.value});
@@ -148,8 +148,8 @@ GRAZE_HD int dominant_axis(const Vec3<WithErrorBound<Real>>& v) {
   return axis;
 }
 
-// The least and the greatest of three quantities lie within the largest bound of the least and the greatest value:
-// which one it is need not be settled.
+// The exact least and greatest of three quantities lie within the largest bound of the least and the greatest value. It
+// need not be settled which of the three it is.
 template <class Real>
 GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& direction,
                                              const Vec3<WithErrorBound<Real>> (&v)[3]) {
@@ -166,7 +166,7 @@ GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& d
   return range;
 }
 
-// False only where it is certain; where nothing is, true, with a doubt.
+// False only if that is certain. If nothing is certain, it is true and raises a doubt.
 template <class Real>
 GRAZE_HD bool overlap(const Range<WithErrorBound<Real>>& s, const Range<WithErrorBound<Real>>& t, const ExactZero&) {
   if (s.hi.is_below(t.lo) || t.hi.is_below(s.lo)) return false;

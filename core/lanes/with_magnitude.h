@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that know from how large quantities they were computed: a value, computed as always, and its size. Times half
-// the machine epsilon, the size bounds the value's rounding error to first order: running error analysis, N. J. Higham,
-// Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3. The size has the value's unit, so
-// that a tolerance in sizes does not change with the scene's scale.
+// Numbers that record the size of the quantities they were computed from: a value, computed as usual, and its size. The
+// size times half the machine epsilon bounds the value's rounding error to first order: running error analysis, N. J.
+// Higham, Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3. The size has the value's
+// unit, so a tolerance in sizes does not change with the scene's scale.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ inline namespace GRAZE_FP {
 template <class Real>
 struct WithMagnitude {
   Real value = 0;
-  Real size = 0;  // of a given number zero: it is not rounded
+  Real size = 0;  // zero for a given number, because it is not rounded
 
   WithMagnitude() = default;
   GRAZE_IN_PLACE GRAZE_HD explicit WithMagnitude(Real given) : value(given) {}

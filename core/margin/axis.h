@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a few strata vary besides the margin: the scale of the coordinates, or how far from the origin they lie. Counted
-// by a small integer, as margins are by their bucket, and on host and device alike.
+// Axes: quantities that a few strata vary besides the margin, namely the coordinates' scale or their distance from the
+// origin. Host and device count by a small integer, the place on the axis, as they count margins by bucket.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +17,16 @@ inline std::string_view name(Axis axis) {
   return axis == Axis::scale ? "scale" : axis == Axis::offset ? "offset" : "none";
 }
 
-// log2 of an extreme's lower end. Scales come in steps of four powers of two: -152 is 2^-152 to 2^-148.
+// log2 of the lower end of place `extreme`. A place on the scale axis spans 2^4: -152 is 2^-152 to 2^-148.
 GRAZE_HD constexpr int exponent_of(Axis axis, std::int8_t extreme) {
   return axis == Axis::scale ? 4 * extreme : extreme;
 }
 
 inline namespace GRAZE_FP {
 
-// The pair's place on the axis, in [-kBucketMost, kBucketMost]. scale: floor(log2(m) / 4), m the largest magnitude of a
-// coordinate (all zero: as 2^-149). offset: floor(log2(m / s)), s the longest side of the box around both triangles;
-// the end is open, and where one point is all.
+// The pair's place on the axis, in [-kBucketMost, kBucketMost]. scale: floor(log2(m) / 4), where m is the largest
+// magnitude of a coordinate (2^-149 if all are zero). offset: floor(log2(m / s)), where s is the longest side of the
+// box around both triangles. kBucketMost stands for all larger offsets, and for s = 0.
 // Requires: finite coordinates; compiled without contraction, on host and device alike.
 GRAZE_HD inline std::int8_t place_on_axis(const Pair& pair, Axis axis) {
   if (axis == Axis::none) return 0;

@@ -28,14 +28,14 @@ GRAZE_HD constexpr Bucket make_bucket(int sign, int log2_ulps) {
 
 constexpr int sign_of(Bucket bucket) { return (bucket > 0) - (bucket < 0); }
 
-// "0", "+2^5", "-2^-3"; the names used in summaries.
+// The bucket's name in summaries: "0", "+2^5", "-2^-3".
 inline std::string name_of_bucket(Bucket bucket) {
   if (bucket == 0) return "0";
   const int k = (bucket < 0 ? -bucket : bucket) + kBucketLowest - 1;
   return (bucket < 0 ? "-2^" : "+2^") + std::to_string(k);
 }
 
-// floor(log2(x)) for a positive normal x; less than any such for zero.
+// floor(log2(x)) for a positive normal x; for zero, less than for any such x.
 GRAZE_HD inline int floor_log2(double x) {
   std::uint64_t bits;
   memcpy(&bits, &x, sizeof bits);

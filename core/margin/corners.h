@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles in registers: loops, choices and quick reciprocals that cost little on a device.
+// Triangles in registers: loops, selections and approximate reciprocals that are cheap on a device.
 #pragma once
 
 #include <cmath>
 
 #include "core/vec3.h"
 
-// Unrolls loops over arrays that should stay in registers, which have no indices.
+// Unrolls loops over arrays that should stay in registers, because registers cannot be indexed.
 #ifdef __CUDA_ARCH__
 #define GRAZE_UNROLL _Pragma("unroll")
 #else
@@ -21,7 +21,7 @@ using Vec = Vec3<double>;
 template <class Real>
 using Corners = Vec3<Real>[3];
 
-// 1 / x and 1 / sqrt(x) to 22 bits; for guesses, and for bounds with kUp and kDown.
+// 1 / x and 1 / sqrt(x) to 22 bits: for guesses, and for bounds together with kUp and kDown.
 GRAZE_HD inline float reciprocal(float x) {
 #ifdef __CUDA_ARCH__
   return __fdividef(1, x);
@@ -38,13 +38,13 @@ GRAZE_HD inline float reciprocal_root(float x) {
 #endif
 }
 
-// The triangle u or v. Like turn, without branches and indexing, which on a device would move registers to memory.
+// Chooses u or v. Like turn, it neither branches nor indexes: on a device that would move registers to memory.
 template <class Real>
 GRAZE_HD void choose(bool first, const Corners<Real>& u, const Corners<Real>& v, Corners<Real>& chosen) {
   for (int k = 0; k < 3; ++k) chosen[k] = {first ? u[k].x : v[k].x, first ? u[k].y : v[k].y, first ? u[k].z : v[k].z};
 }
 
-// The triangle from vertex number `first` on.
+// The triangle v, starting at vertex number `first`.
 template <class Real>
 GRAZE_HD void turn(const Corners<Real>& v, int first, Corners<double>& turned) {
   const auto at = [&](int k) -> Vec {

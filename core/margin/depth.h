@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds of the depth of two intersecting triangles: the least overlap along 11 axes, to which the faces of
-// their Minkowski difference are square.
+// Certified bounds of the depth of two intersecting triangles: the least overlap along 11 axes. The faces of the
+// triangles' Minkowski difference are perpendicular to these axes.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// An upper bound, up to rounding, of |axis - exact| / (5 kRoundoff) per component: with exact edges the accurate
-// cross product is itself relatively exact; otherwise each product carries the errors of its two factors.
+// Upper bound, up to rounding, of |axis - exact| / (5 kRoundoff) per component. If the edges are exact, the accurate
+// cross product has a small relative error. Otherwise each product carries the errors of its two factors.
 template <class Real>
 GRAZE_HD Vec3<Real> axis_weight(const MarginFrame<Real>& f, int axis, const Vec3<Real>& n) {
   if (f.exact) return magnitudes(n);
@@ -22,9 +22,9 @@ GRAZE_HD Vec3<Real> axis_weight(const MarginFrame<Real>& f, int axis, const Vec3
   return {u.y * v.z + u.z * v.y, u.z * v.x + u.x * v.z, u.x * v.y + u.y * v.x};
 }
 
-// Bounds of min(max n.a - min n.b, max n.b - min n.a) along a separating axis, which n is up to 5 kRoundoff weight;
-// |n| <= weight (1 + 5 kRoundoff). A projection is off by at most (5 for n, 1 for the difference, 3 roundings)
-// kRoundoff sum(weight * |difference|); two roundings on the way to the overlap make that 11, and 12 has slack.
+// Bounds of min(max n.a - min n.b, max n.b - min n.a) along a separating axis. n is off by up to 5 kRoundoff weight,
+// and |n| <= weight (1 + 5 kRoundoff). A projection is off by at most (5 for n, 1 for the difference, 3 roundings)
+// kRoundoff sum(weight * |difference|). Two roundings on the way to the overlap make that 11; 12 has slack.
 template <class Real>
 GRAZE_HD Interval<Real> overlap(const MarginFrame<Real>& f, int axis, const Vec3<Real>& n, const Vec3<Real>& weight) {
   Vec3<Real> seen[3];
@@ -34,7 +34,7 @@ GRAZE_HD Interval<Real> overlap(const MarginFrame<Real>& f, int axis, const Vec3
     along[k] = dot(n, seen[k]);
     error[k] = Real(12 * kRoundoff<Real>) * dot(weight, magnitudes(seen[k]));
   }
-  // The feature itself is at zero; the first projection belongs to either side.
+  // The feature itself projects to zero. seen[0] belongs to its triangle if own is 1, else to the other one.
   Interval<Real> least = {along[1] - error[1], along[1] + error[1]}, most = least;
   Interval<Real> own_least = {0, 0}, own_most = {0, 0};
   include(least, most, along[2], error[2]);
@@ -53,7 +53,7 @@ GRAZE_HD MarginBounds depth_bounds(const MarginFrame<Real>& f) {
     const double weight_length = sqrt(as_double(dot(weight, weight)));
     lowest[axis] = INFINITY;
     if (weight_length == 0) continue;  // parallel edges, or a flat triangle's normal: not an axis
-    // 5 + 3 roundings, slack; of a root in double, which is less precise than that, the last factors take account.
+    // 12: 5 for n, 3 roundings, and slack. The factors 1 ± 8 kHalfUlp cover the roots, which are only doubles.
     const double length = sqrt(as_double(dot(n, n))), length_error = 12 * kRoundoff<Real> * weight_length;
     const Interval<Real> o = overlap(f, axis, n, weight);
     lowest[axis] = greater(0.0, as_double(o.lo) / (length + length_error) * (1 - 8 * kHalfUlp));
@@ -61,7 +61,7 @@ GRAZE_HD MarginBounds depth_bounds(const MarginFrame<Real>& f) {
     const double hi = as_double(o.hi) / (length - length_error) * (1 + 8 * kHalfUlp);
     if (length > length_error) bounds.hi = lesser(bounds.hi, hi);
   }
-  if (bounds.lo == INFINITY) return {0, 0, 0, 0};  // no axis: both triangles lie on one line, or on parallel ones
+  if (bounds.lo == INFINITY) return {0, 0, 0, 0};  // no axis: both triangles lie on one line or on parallel lines
   for (int axis = 0; axis < kSeparatingAxes; ++axis) {
     if (lowest[axis] <= bounds.hi && lowest[axis] < INFINITY) bounds.axes |= 1u << axis;
   }

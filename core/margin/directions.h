@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The directions along which the margin of two triangles is measured, by number, and bounds of a margin that name them.
+// The numbered directions along which two triangles' margin is measured, and bounds of a margin that name a direction.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace graze {
 
 // Directions along which two triangles are compared. i and j run over 0..2; edge i goes from vertex i to i + 1.
 //   3i + j: a's edge i x b's edge j     9, 10: normal of a, of b     (these 11 are the separating axes)
-//   11 + 3i + j: from a's edge i square to it towards b[j]     20 + 3i + j: from b's edge j towards a[i]
+//   11 + 3i + j: from a's edge i, perpendicular to it, to b[j]     20 + 3i + j: from b's edge j to a[i]
 //   29 + 3i + j: from a[i] to b[j]
 inline constexpr int kNormalA = 9, kNormalB = 10, kSeparatingAxes = 11;
 inline constexpr int kFromEdgeA = 11, kFromEdgeB = 20, kFromVertex = 29, kDirections = 38;
@@ -18,15 +18,15 @@ inline constexpr int kFromEdgeA = 11, kFromEdgeB = 20, kFromVertex = 29, kDirect
 // lo <= |margin| <= hi.
 struct MarginBounds {
   double lo, hi;
-  int direction;       // disjoint: the direction whose separation is lo
-  std::uint32_t axes;  // intersecting: bit i is set when axis i may be the one of least overlap
+  int direction;       // disjoint: the separation along this direction is lo
+  std::uint32_t axes;  // intersecting: bit i is set if axis i may have the least overlap
 };
 
 inline namespace GRAZE_FP {
 
-// What an axis sees of the triangles beyond the feature it is square to, where its projections are all equal: of an
-// edge, seen[0] is the third vertex of the same triangle, and seen[1] and [2] stand for the other triangle; of a face,
-// all three are the other triangle's vertices.   Returns: how many are of the feature's own triangle.
+// What remains to be projected on an axis, as vectors from the feature that it is perpendicular to, which itself
+// projects to zero. Axis of two edges: seen[0] is a's third vertex; seen[1] and seen[2] stand for b. Normal of a face:
+// all three are the other triangle's vertices.   Returns: how many of them belong to the feature's own triangle.
 template <class Real>
 GRAZE_HD int seen_from_axis(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], int axis, Vec3<Real> (&seen)[3]) {
   if (axis >= kNormalA) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds of the distance of two disjoint triangles: it lies between any separation and the length of any
-// connection.
+// Certified bounds of the distance of two disjoint triangles. No separation is larger than the distance, and no
+// connection is shorter.
 #pragma once
 
 #include <cmath>
@@ -13,9 +13,9 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Lower bound of the distance: any direction separates by no more than it. Direction d is taken exactly as computed,
-// and all is seen from a vertex of the feature it belongs to: an error of (1 for the difference, 3 roundings)
-// kRoundoff sum(|n| * |difference|) for each vertex, and slack.
+// Lower bound of the distance: the separation along any direction is at most the distance. Direction d is taken exactly
+// as computed, and all points are relative to a vertex of its feature. Each vertex then has an error of (1 for the
+// difference, 3 roundings) kRoundoff sum(|n| * |difference|); 6 has slack.
 template <class Real>
 GRAZE_HD double separation(const MarginFrame<Real>& f, int d) {
   const Vec3<Real> n = direction(f, d), weight = magnitudes(n) * Real(6 * kRoundoff<Real>);
@@ -31,8 +31,8 @@ GRAZE_HD double separation(const MarginFrame<Real>& f, int d) {
   return gap > 0 ? gap / sqrt(as_double(dot(n, n))) * (1 - 8 * kHalfUlp) : 0;  // 7 roundings at most
 }
 
-// The shortest connection found so far: its squared length and the size of the terms it was summed from, as
-// computed, and the direction that should then separate.
+// The shortest connection found so far: its squared length and the sum of its terms' magnitudes, both as computed, and
+// the direction along which the triangles should then be separated.
 template <class Real>
 struct Connection {
   Real squared, terms;
@@ -49,14 +49,14 @@ GRAZE_HD void shorten(Connection<Real>& best, const Vec3<Real>& w, const Vec3<Re
   best = {squared, terms.x + terms.y + terms.z, towards};
 }
 
-// Point `at` (seen from the edge's start) to the foot of its perpendicular, if that lies in the edge.
+// From point `at` (relative to the edge's start) to the foot of its perpendicular, if that lies in the edge.
 template <class Real>
 GRAZE_HD void connect_to_edge(Connection<Real>& best, const Vec3<Real>& at, const Vec3<Real>& edge, int towards) {
   const Real along = dot(at, edge), length2 = dot(edge, edge);
   if (along > 0 && along < length2) shorten(best, at, edge * (-along / length2), {0, 0, 0}, towards);
 }
 
-// Point `at` (seen from the face's vertex 0) to its projection, if that lies in the face with edges u and v.
+// From point `at` (relative to the face's vertex 0) to its projection, if that lies in the face of edges u and v.
 template <class Real>
 GRAZE_HD void connect_to_face(Connection<Real>& best, const Vec3<Real>& at, const Vec3<Real>& u, const Vec3<Real>& v,
                               const Vec3<Real>& n, const Real& n2, int towards) {
@@ -64,7 +64,7 @@ GRAZE_HD void connect_to_face(Connection<Real>& best, const Vec3<Real>& at, cons
   if (s >= 0 && t >= 0 && s + t <= n2 && n2 > 0) shorten(best, at, u * (-s / n2), v * (-t / n2), towards);
 }
 
-// Interior points of two edges nearest to each other; w is the start of v's edge seen from the start of u's.
+// Between the nearest interior points of the edges u and v; w is the start of v relative to the start of u.
 template <class Real>
 GRAZE_HD void connect_edges(Connection<Real>& best, const Vec3<Real>& w, const Vec3<Real>& u, const Vec3<Real>& v,
                             int towards) {
@@ -98,13 +98,13 @@ GRAZE_HD Connection<Real> shortest_connection(const MarginFrame<Real>& f) {
 template <class Real>
 GRAZE_HD MarginBounds distance_bounds(const MarginFrame<Real>& f) {
   const Connection<Real> best = shortest_connection(f);
-  // A connection w + s u + t v joins two points of the triangles, whatever its parameters, if they are in [0, 1];
-  // for a face they may add up to 1 + 2 kRoundoff, and shrink by that much. Each component is off by at most
-  // (2 for that, 1 for the differences, 1 for the products, 2 for the sums) kRoundoff (|w| + |s u| + |t v|).
+  // A connection w + s u + t v joins two points of the triangles for any parameters in [0, 1]. For a face, s + t may be
+  // up to 1 + 2 kRoundoff; s and t are then too large by that factor. Each component is off by at most (2 for that, 1
+  // for the differences, 1 for the products, 2 for the sums) kRoundoff (|w| + |s u| + |t v|).
   const double terms = as_double(best.terms);
   const double hi = sqrt(as_double(best.squared)) * (1 + 8 * kHalfUlp) + 8 * kRoundoff<Real> * terms;
   MarginBounds bounds = {separation(f, best.direction), hi, best.direction, 0};
-  // Where two kinds of connection tie, rounding may have named the wrong one.
+  // If two kinds of connection tie, rounding may have named the wrong direction.
   for (int d = 0; d < kDirections && floor_log2(bounds.lo) != floor_log2(hi) && bounds.lo < 0.999 * hi; ++d) {
     const double lo = separation(f, d);
     if (lo > bounds.lo) bounds = {lo, hi, d, 0};

@@ -37,7 +37,7 @@ GRAZE_HD inline DoubleDouble ordered_sum(double x, double y) {
   return {sum, y - (sum - x)};
 }
 
-// The same of any two numbers.
+// x + y and its error, for any two numbers.
 GRAZE_HD inline DoubleDouble exact_sum(double x, double y) {
   const double sum = x + y, of_y = sum - x;
   return {sum, (x - (sum - of_y)) + (y - of_y)};

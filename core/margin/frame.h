@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair in double, or in numbers of twice its precision, and the arithmetic that certified bounds of its margin are
-// computed with.
+// A pair in doubles, or in numbers of twice their precision, and the arithmetic that computes certified bounds of its
+// margin.
 #pragma once
 
 #include <cmath>
@@ -15,17 +15,17 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Unit roundoff of double. Bounds computed with it hold with and without contraction: it only removes roundings.
+// Unit roundoff of double. Contraction only removes roundings, so bounds hold with and without it.
 inline constexpr double kHalfUlp = 0x1p-53;
 
-// The same of a type of numbers: no operation has a larger relative error.
+// Unit roundoff of a number type: no operation has a larger relative error.
 template <class Real>
 inline constexpr double kRoundoff = kHalfUlp;
 template <>
 inline constexpr double kRoundoff<DoubleDouble> = 0x1p-102;
 
-// The pair. Every difference of coordinates carries one relative error of at most kRoundoff, or none at all when
-// `exact`. No product of up to six of them over- or underflows: 2^-894 to 2^780, nor does the error of one.
+// The pair. Every difference of coordinates has a relative error of at most kRoundoff, or no error if `exact`. No
+// product of up to six differences over- or underflows (2^-894 to 2^780), nor does the error of such a product.
 template <class Real>
 struct MarginFrame {
   Vec3<Real> a[3], b[3], edge_a[3], edge_b[3];
@@ -42,7 +42,7 @@ GRAZE_HD Vec3<Real> magnitudes(const Vec3<Real>& v) {
   return {absolute(v.x), absolute(v.y), absolute(v.z)};
 }
 
-// One instruction each, which fmin and fmax with their care for NaN are not.
+// Each is one instruction. fmin and fmax take more, because they handle NaN.
 template <class Real>
 GRAZE_HD Real lesser(const Real& x, const Real& y) {
   return x < y ? x : y;
@@ -54,8 +54,8 @@ GRAZE_HD Real greater(const Real& x, const Real& y) {
 
 GRAZE_HD inline Vec3<double> widen(const Vec3<float>& v) { return {double(v.x), double(v.y), double(v.z)}; }
 
-// Whether the difference of any two coordinates is exact in double: they are multiples of 2^(low - 150) below
-// 2^(high - 126), so differences are integers of high - low + 25 bits, and 53 are at hand.
+// Whether the difference of any two coordinates is exact in double. Coordinates are multiples of 2^(low - 150) below
+// 2^(high - 126), so differences are integers of high - low + 25 bits. A double holds 53.
 GRAZE_HD inline bool differences_are_exact(const Pair& pair) {
   std::uint32_t low = 255, high = 0;
   const float* c = &pair.a[0].x;
@@ -94,7 +94,7 @@ GRAZE_HD inline double difference_of_products(double a, double b, double c, doub
   return fma(a, b, -cd) + error;
 }
 
-// In error by kRoundoff of each product, but of none between doubles, and of the difference.
+// Each product has an error of kRoundoff (none if its factors are doubles), and so has the difference.
 GRAZE_HD inline DoubleDouble difference_of_products(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
                                                     const DoubleDouble& d) {
   return a * b - c * d;
@@ -125,7 +125,7 @@ struct Interval {
   Real lo, hi;
 };
 
-// Extends bounds of a least and a greatest value by the value `at`, known up to `error`.
+// Extends the bounds of a least and a greatest value by a value `at` that is known up to `error`.
 template <class Real>
 GRAZE_HD void include(Interval<Real>& least, Interval<Real>& most, const Real& at, const Real& error) {
   least = {lesser(least.lo, at - error), lesser(least.hi, at + error)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds of the distance of disjoint triangles from their guessed nearest features: true in any case, and
-// close where the guess is right.
+// Certified bounds of the distance of disjoint triangles, from a guess of their nearest features. They hold for any
+// guess, and are close if the guess is right.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,8 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace first_attempt {
 
-// Whether the first vertices are the nearest points of the triangles because a coordinate axis joins them and parts the
-// triangles between them, and their distance, which is then exact: a tie with a power of two is no doubt.
+// Whether a coordinate axis joins the first vertices, no triangle reaches past its first vertex towards the other, and
+// nothing was rounded. Then these vertices are nearest and `distance` is exact, which decides ties with powers of two.
 GRAZE_HD inline bool joined_by_axis(const MarginFrame<double>& f, const Vec& between, double& distance) {
   const bool x = between.x != 0, y = between.y != 0, z = between.z != 0;
   if (x + y + z != 1) return false;
@@ -30,8 +30,8 @@ GRAZE_HD inline bool joined_by_axis(const MarginFrame<double>& f, const Vec& bet
          sign * component(f.b[1], axis) >= sign * b0 && sign * component(f.b[2], axis) >= sign * b0;
 }
 
-// Bounds from direction d of core/margin/directions.h, where d is 0, kNormalA, kFromEdgeA or kFromVertex: the
-// separation along it, and the length of the connection if it ends inside the features, else infinity.
+// Bounds from direction d of core/margin/directions.h: 0, kNormalA, kFromEdgeA or kFromVertex. lo: the separation along
+// d. hi: the connection's length if it ends inside the features, else infinity.
 template <int d>
 GRAZE_HD MarginBounds bounds_of_first(const MarginFrame<double>& f) {
   Connection<double> best = {INFINITY, 0, 0};
@@ -50,7 +50,7 @@ GRAZE_HD MarginBounds bounds_of_first(const MarginFrame<double>& f) {
   return {separation(f, d), sqrt(best.squared) * (1 + 8 * kHalfUlp) + 8 * kHalfUlp * best.terms, d, 0};
 }
 
-// Bounds of the distance of disjoint triangles, if these are their nearest features; true in any case.
+// Bounds of the distance of disjoint triangles. They always hold, and are close if `nearest` is right.
 template <class Real>
 GRAZE_HD MarginBounds distance_bounds(const Corners<Real>& a, const Corners<Real>& b, const Features& nearest) {
   const bool exchange = nearest.kind == Kind::face_b || nearest.kind == Kind::edge_b;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified double-precision bounds of a pair's margin, given its verdict; they decide its bucket nearly always.
+// Certified double-precision bounds of a pair's margin, given its verdict. They nearly always decide its bucket.
 #pragma once
 
 #include "core/margin/bucket.h"
@@ -13,7 +13,7 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// Certified bounds of |margin|. Real: double, or DoubleDouble, whose bounds are closer where much cancels.
+// Certified bounds of |margin|. Real: double, or DoubleDouble, whose bounds are closer after much cancellation.
 // Requires: finite coordinates; verdict is the pair's true verdict, not declined.
 template <class Real = double>
 GRAZE_HD MarginBounds margin_bounds(const Pair& pair, Verdict verdict) {
@@ -21,7 +21,7 @@ GRAZE_HD MarginBounds margin_bounds(const Pair& pair, Verdict verdict) {
   return verdict == Verdict::disjoint ? distance_bounds(frame) : depth_bounds(frame);
 }
 
-// Whether the bounds leave one bucket only, and which. A disjoint pair's margin is known not to be zero.
+// Whether the bounds allow one bucket only, and which one. The margin of a disjoint pair is known not to be zero.
 GRAZE_HD inline bool bucket_from_bounds(const MarginBounds& bounds, Verdict verdict, int log2_ulp, Bucket& bucket) {
   const int sign = verdict == Verdict::disjoint ? 1 : -1;
   bucket = 0;

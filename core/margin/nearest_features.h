@@ -11,15 +11,15 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace first_attempt {
 
-// Two features: an edge of each, a face and a vertex of the other, an edge and such a vertex, or two vertices. i is a
-// vertex of a or the edge that begins there, or 0 for its face; j is so of b.
+// Two features: two edges; a face and a vertex of the other triangle; an edge and a vertex of the other; two vertices.
+// i is a vertex of a, or the edge of a that begins there, or 0 for a's face. j is the same for b.
 enum class Kind { edges, face_a, face_b, edge_a, edge_b, vertices };
 struct Features {
   Kind kind;
   int i, j;
 };
 
-// The nearest features so far, the square of their distance, and of the next nearest.
+// The nearest features so far, their squared distance, and the squared distance of the next nearest.
 template <class Real>
 struct Nearest {
   Features features = {Kind::vertices, 0, 0};
@@ -35,7 +35,7 @@ struct Nearest {
   }
 };
 
-// The features that are nearest, up to rounding and the error of a reciprocal: a guess.
+// A guess of the nearest features: subject to rounding and to the error of a reciprocal.
 template <class Real>
 GRAZE_HD Nearest<Real> seem_nearest(const Corners<Real>& a, const Corners<Real>& b) {
   Corners<Real> edge_a, edge_b;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Certified bounds of the depth of intersecting triangles: in double along all axes, or along those axes only that
-// single precision leaves as candidates for the least overlap.
+// Certified bounds of the depth of intersecting triangles, in double. They use all axes, or only the axes that single
+// precision leaves as candidates for the least overlap.
 #pragma once
 
 #include <cmath>
@@ -15,13 +15,13 @@ namespace graze {
 inline namespace GRAZE_FP {
 namespace first_attempt {
 
-// What an axis sees: how much the triangles' projections overlap, in units of its length, and its square.
+// How much the triangles' projections on an axis overlap, in units of the axis' length, and its squared length.
 template <class Real>
 struct Overlap {
   Real along, n2;
 };
 
-// Square to the first edges of a and b, or to a. Of an edge axis, the edges' own projections are at zero.
+// If `edges`, the axis is perpendicular to the first edges of a and b, else to the face a. The edge of a projects to 0.
 template <class Real>
 GRAZE_HD Overlap<Real> overlap_along(const Corners<Real>& a, const Corners<Real>& b, bool edges) {
   const Vec3<Real> u = a[1] - a[0], v = a[2] - a[0], w = b[1] - b[0];
@@ -36,12 +36,12 @@ GRAZE_HD Overlap<Real> overlap_along(const Corners<Real>& a, const Corners<Real>
   return {over < under ? over : under, dot(n, n)};
 }
 
-// For all roundings in single precision of a bound, each way.
+// Factors that cover all single-precision roundings of a bound, upwards and downwards.
 constexpr float kUp = 1 + 0x1p-19f, kDown = 1 - 0x1p-19f;
 
-// With unit roundoff u: a projection on an axis is a determinant of three differences, so the bound of
-// core/exact/error_bound.h holds for all; two of them and a rounding make an overlap: 2 * 6 * 8 + 2. A component of an
-// axis has (3 + 1) u times two products.
+// u is the unit roundoff. A projection on an axis is a determinant of three differences, so the bound of
+// core/exact/error_bound.h holds for it. Two projections and a rounding make an overlap: 2 * 6 * 8 + 2. A component of
+// an axis is off by (3 + 1) u times two products.
 template <class Real>
 struct AxisErrors {
   Real overlap;
@@ -51,7 +51,7 @@ struct AxisErrors {
         length(static_cast<float>(static_cast<Real>(8 * u) * (r.y * r.z + r.z * r.x + r.x * r.y)) * 1.0001f) {}
 };
 
-// lo <= depth along the axis <= hi; 0 and infinity where nothing is known.
+// lo <= depth along the axis <= hi; 0 and infinity if nothing is known.
 template <class Real>
 GRAZE_HD void depth_bounds(const Overlap<Real>& seen, const AxisErrors<Real>& errors, float& lo, float& hi) {
   const float n2 = static_cast<float>(seen.n2);
@@ -90,7 +90,7 @@ GRAZE_HD void for_each_axis(const Corners<Real>& a, const Corners<Real>& b, cons
   visit(kNormalB, overlap_along(b, a, false));
 }
 
-// lo <= depth <= hi, in single precision but for the axes that it leaves; of many, none is looked at, and lo is 0.
+// lo <= depth <= hi. Single precision rules axes out; the rest are computed in double. If too many remain, lo is 0.
 GRAZE_HD inline void depth_in_single(const Corners<float>& a, const Corners<float>& b, const Vec3<float>& extent,
                                      float& lo, float& hi) {
   const AxisErrors<float> errors(extent * 1.0001f, 0x1p-24);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two first attempts at a pair's margin bucket: certified as core/margin/margin.h is, at a fraction of its cost, and
-// undecided more often. Written for GPUs, where double precision, roots and quotients are slow. The nearest features of
-// disjoint triangles are guessed, and only the guess is certified. For intersecting ones single precision finds which
-// axes may be those of least overlap, and only these are computed in double.
+// Two first attempts at a pair's margin bucket. They are certified like core/margin/margin.h and much cheaper, but
+// undecided more often. They are written for GPUs, where double precision, roots and quotients are slow. Disjoint
+// triangles: the nearest features are guessed, and only the guess is certified. Intersecting triangles: single
+// precision finds the axes that may have the least overlap, and only these are computed in double.
 #pragma once
 
 #include <cmath>
@@ -27,8 +27,8 @@ GRAZE_HD inline Vec extent_of(const Pair& pair) {
   return {extent.x, extent.y, extent.z};
 }
 
-// Whether single precision has the range: determinants, products of six differences, and the errors of determinants,
-// beside which underflow is nothing.
+// Whether the range of float suffices for determinants, for products of six differences, and for the errors of
+// determinants, compared with which underflow is negligible.
 GRAZE_HD inline bool fits_single(const Vec& extent) {
   const double largest = greater(extent.x, greater(extent.y, extent.z));
   const auto sensible = [](double r) { return r == 0 || r >= 0x1p-30; };
@@ -36,15 +36,15 @@ GRAZE_HD inline bool fits_single(const Vec& extent) {
 }
 
 GRAZE_HD inline bool bucket_of(const MarginBounds& bounds, Verdict verdict, int log2_ulp, Bucket& bucket) {
-  // Differences of scaled coordinates may be as small as 2^-277: the squares of lengths do not underflow, but products
-  // of more may, and then a separation is no bound. It does not lie between 0 and the connection's length either.
+  // Differences of scaled coordinates may be as small as 2^-277. Squared lengths do not underflow, but larger products
+  // may. Then lo is no bound; it also is not between 0 and the connection's length, so this returns false.
   return bounds.lo > 0 && bounds.lo <= bounds.hi && bounds.hi < INFINITY &&
          bucket_from_bounds(bounds, verdict, log2_ulp, bucket);
 }
 
 }  // namespace first_attempt
 
-// The bucket, if bounds decide it; single precision finds what to look at in double.
+// The bucket, if bounds decide it. Single precision selects what to compute in double.
 // Requires: finite coordinates; verdict is the pair's true verdict, not declined.
 GRAZE_HD inline bool bucket_by_single(const Pair& pair, Verdict verdict, Bucket& bucket) {
   using namespace first_attempt;
@@ -54,7 +54,7 @@ GRAZE_HD inline bool bucket_by_single(const Pair& pair, Verdict verdict, Bucket&
   if (verdict == Verdict::disjoint) {
     const Nearest<float> nearest = seem_nearest(pair.a, pair.b);
     const auto largest = static_cast<float>(greater(extent.x, greater(extent.y, extent.z)));
-    if (nearest.next < 0x1p-44f * largest * largest) return false;  // rounding may have chosen
+    if (nearest.next < 0x1p-44f * largest * largest) return false;  // rounding may have chosen them
     bounds = distance_bounds(pair.a, pair.b, nearest.features);
   } else {
     float lo, hi;
@@ -64,13 +64,13 @@ GRAZE_HD inline bool bucket_by_single(const Pair& pair, Verdict verdict, Bucket&
   return bucket_of(bounds, verdict, log2_ulp(pair), bucket);
 }
 
-// The same, all in double.
+// Like bucket_by_single, with all computation in double.
 GRAZE_HD inline bool bucket_by_double(const Pair& pair, Verdict verdict, Bucket& bucket) {
   using namespace first_attempt;
   const Vec extent = extent_of(pair);
   const double largest = greater(extent.x, greater(extent.y, extent.z));
   if (!(largest > 0)) return false;
-  // Scaled, so that the extent is in [1, 2); exact, and differences carry one rounding.
+  // Scales the extent into [1, 2). Scaling is exact, so differences still have one rounding.
   const int exponent = floor_log2(largest);
   const double scale = exact::detail::power_of_two(-exponent);
   Corners<double> a, b;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distances that are a power of two of an ulp, or within rounding of it: a proof in integers that the distance is no
-// smaller. The bounds of core/margin/margin.h leave only those open.
+// Proves in integers that a distance is at least a given power of two. It is for distances that are a power of two of
+// an ulp, up to rounding: only these remain undecided after the bounds of core/margin/margin.h.
 #pragma once
 
 #include <cstdint>
@@ -51,9 +51,9 @@ GRAZE_HD inline Vector direction(const Vector (&a)[3], const Vector (&b)[3], int
 
 }  // namespace tie_proof
 
-// Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin/directions.h). On
-// their grid coordinates have at most kIntBits = 40 bits, a direction at most 3 * 41 + 4, the gap along it 170, and its
-// square 340 of 512. Returns: false also where the numbers are too large to tell.
+// Whether the disjoint triangles are at least 2^exponent apart along direction d (of core/margin/directions.h). Bits on
+// their grid: coordinates at most kIntBits = 40, a direction 3 * 41 + 4, the gap along it 170, its square 340 of 512.
+// Returns: false also if the numbers are too large to tell.
 GRAZE_HD inline bool are_apart_by(const float* a, const float* b, int d, int exponent) {
   using namespace tie_proof;
   const exact::detail::Grid grid = exact::detail::grid_of(a, b);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds of margins in vectors of doubles, a pair in each lane; see core/margin/distance.h and depth.h, whose errors
-// these are. Included once for each instruction set, after core/exact_blocks/vectors-inl.h and in its namespace, so
-// there is no guard.
+// Bounds of margins in vectors of doubles, one pair in each vector lane, with the errors that core/margin/distance.h
+// and depth.h derive. Included once for each instruction set, after core/exact_blocks/vectors-inl.h and in its
+// namespace, so there is no include guard.
 
 using Vector = Three<V>;
 
@@ -29,7 +29,7 @@ HWY_INLINE Vector quick_cross(const Vector& u, const Vector& v) {
   return {hn::MulSub(u.y, v.z, hn::Mul(u.z, v.y)), hn::MulSub(u.z, v.x, hn::Mul(u.x, v.z)),
           hn::MulSub(u.x, v.y, hn::Mul(u.y, v.x))};
 }
-// As difference_of_products in core/margin/frame.h.
+// Like difference_of_products in core/margin/frame.h.
 HWY_INLINE V accurate_minor(V p, V q, V r, V s) {
   const V rs = hn::Mul(r, s);
   return hn::Add(hn::MulSub(p, q, rs), hn::NegMulAdd(r, s, rs));
@@ -38,11 +38,11 @@ HWY_INLINE Vector accurate_cross(const Vector& u, const Vector& v) {
   return {accurate_minor(u.y, v.z, u.z, v.y), accurate_minor(u.z, v.x, u.x, v.z), accurate_minor(u.x, v.y, u.y, v.x)};
 }
 
-// The pairs, and the differences of their vertices, each with one rounding.
+// The differences of the pairs' vertices, each with one rounding.
 struct Frame {
   Vector edge_a[3], edge_b[3];  // from vertex i to i + 1
   Vector between[3][3];         // from a[i] to b[j]
-  V largest;                    // coordinate, in magnitude
+  V largest;                    // the largest coordinate in magnitude
   M exact;                      // no difference is rounded: differences_are_exact in core/margin/frame.h
 
   HWY_INLINE explicit Frame(const Coordinates& pairs) {
@@ -64,7 +64,7 @@ struct Frame {
       least = hn::Min(least, hn::IfThenElse(hn::Eq(size, hn::Zero(df)), hn::Set(df, 0x1p127f), size));
     }
     largest = hn::PromoteTo(d, most);
-    // Multiples of least * 2^-23 at least, or of 2^-149, below 2 * largest: 27 + 1 + 24 bits, and 53 are at hand.
+    // Multiples of least * 2^-23 or 2^-149, below 2 * largest: 27 + 1 + 24 bits at most. A double holds 53.
     exact = hn::Le(largest, hn::Mul(number(0x1p27), hn::Max(hn::PromoteTo(d, least), number(0x1p-126))));
   }
 };
@@ -73,7 +73,7 @@ struct Bounds {
   V lo, hi;
 };
 
-// The nearest two features so far: a guess.
+// A guess of the nearest two features so far.
 struct Guess {
   V squared, kind, i, j;
 
@@ -90,7 +90,7 @@ constexpr double kVertices = 0, kEdgeA = 1, kEdgeB = 2, kEdges = 3, kFaceA = 4, 
 
 HWY_INLINE M within(V x, V end) { return hn::And(hn::Gt(x, hn::Zero(d)), hn::Lt(x, end)); }
 
-// Whether from 0 on, s and t add up to no more than `end`.
+// Whether s >= 0, t >= 0, s + t <= end, and end > 0.
 HWY_INLINE M inside(V s, V t, V end) {
   return hn::And(hn::And(hn::Ge(s, hn::Zero(d)), hn::Ge(t, hn::Zero(d))),
                  hn::And(hn::Le(hn::Add(s, t), end), hn::Gt(end, hn::Zero(d))));
@@ -141,8 +141,8 @@ HWY_INLINE Vector selected(V index, const Of& of) {
   return chosen(hn::Eq(index, number(0)), of(0), chosen(hn::Eq(index, number(1)), of(1), of(2)));
 }
 
-// Of disjoint triangles. The connection of the features that seem nearest is no shorter than the distance, the
-// separation along their common perpendicular no longer.
+// Bounds for disjoint triangles. The connection of the features that seem nearest is at least the distance. The
+// separation along their common perpendicular is at most the distance.
 HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const Guess guess = nearest_features(f);
   const auto is = [&](double kind) HWY_ATTR { return hn::Eq(guess.kind, number(kind)); };
@@ -151,7 +151,7 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const Vector w = selected(guess.i, [&](std::size_t i) HWY_ATTR {
     return selected(guess.j, [&](std::size_t j) HWY_ATTR { return f.between[i][j]; });
   });
-  // Of an edge or two: u from a's, v from b's. Of a face: u and v begin at its first vertex.
+  // Two edges: u is a's, v is b's. One edge: u. A face: u and v begin at its first vertex.
   const Vector of_a = selected(guess.i, [&](std::size_t i) HWY_ATTR { return f.edge_a[i]; });
   const Vector of_b = selected(guess.j, [&](std::size_t j) HWY_ATTR { return f.edge_b[j]; });
   const Vector none = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -161,7 +161,7 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const Vector normal = accurate_cross(u, v), perpendicular = accurate_cross(accurate_cross(u, from), u);
   const V n2 = dot(normal, normal), u2 = dot(u, u);
 
-  // from + s u + t v, s and t in [-1, 0], or t in [0, 1] for two edges.
+  // The connection is from + s u + t v, with s and t in [-1, 0]; for two edges t is in [0, 1].
   const V along = hn::IfThenElse(edge, dot(from, u), dot(quick_cross(from, v), normal)),
           whole = hn::IfThenElse(edge, u2, n2);
   const V beside = hn::IfThenElse(edges, dot(quick_cross(from, u), normal), dot(quick_cross(u, from), normal));
@@ -177,7 +177,7 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   const V hi =
       hn::MulAdd(hn::Sqrt(dot(connection, connection)), number(1 + 8 * kHalf), hn::Mul(terms, number(8 * kHalf)));
 
-  // A perpendicular is of degree three, and nothing here of more than six: see MarginFrame in core/margin/frame.h.
+  // A perpendicular has degree three, and nothing here exceeds degree six: see MarginFrame in core/margin/frame.h.
   const Vector n = chosen(vertices, w, chosen(edge, perpendicular, normal));
   V least = number(INFINITY), most = number(-INFINITY);
   for (const Vector(&row)[3] : f.between) {
@@ -192,13 +192,13 @@ HWY_INLINE Bounds distance_bounds(const Frame& f) {
   return {hn::IfThenElseZero(valid, lo), hi};
 }
 
-// Of intersecting triangles whose differences are exact: the squares of bounds.
+// For intersecting triangles whose differences are exact: the squares of bounds.
 struct Depth {
   V lo, hi;
 
   HWY_INLINE Depth() : lo(number(INFINITY)), hi(number(INFINITY)) {}
-  // Along the axis n, from the feature that it is square to: own is the third vertex of an edge's triangle, and 0 for a
-  // face. With exact differences n is relatively exact, as core/margin/depth.h has it: 5 kHalf.
+  // Adds the axis n, with points relative to the feature that it is perpendicular to. own: the third vertex of an
+  // edge's triangle, 0 for a face. With exact differences n has a relative error of 5 kHalf (core/margin/depth.h).
   template <class... Other>
   HWY_INLINE void look(const Vector& n, const V& own, const V& own_error, const Other&... other) {
     const V zero = hn::Zero(d);
@@ -239,11 +239,11 @@ HWY_INLINE Bounds squared_depth_bounds(const Frame& f) {
                  w[i][(j + 2) % 3]);
     }
   }
-  // 2 * 5 for n, 3 for its square, 5 for what follows, and slack.
+  // 2 * 5 for n, 3 for its square, 5 for the later operations, and slack.
   return {hn::Mul(depth.lo, number(1 - 32 * kHalf)), hn::Mul(depth.hi, number(1 + 32 * kHalf))};
 }
 
-// Whether intersecting triangles only touch: along some axis nothing overlaps, or there is none.
+// Whether intersecting triangles only touch: the overlap along some axis is zero, or there is no axis.
 template <class T>
 HWY_INLINE unsigned touch(const OnGrid& pair) {
   M touching = hn::Gt(hn::Zero(d), hn::Zero(d)), any_axis = touching;

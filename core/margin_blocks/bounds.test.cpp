@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds of margins are as far apart as the errors that their comments derive, alone and in vectors of every
-// instruction set: one that left out a rounding would be right on all pairs that a test can draw, and one too many
-// shows nowhere.
+// Bounds of margins are exactly as far apart as their comments derive, alone and in vectors of every instruction set. A
+// bound without one of the roundings would hold on all pairs that a test can draw. One with a rounding too many would
+// show nowhere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ namespace detail = exact::detail;
 #include "core/exact_blocks/vectors-inl.h"
 #include "core/margin_blocks/bounds-inl.h"
 
-// Bounds of a distance, or of a depth's square; and whether all differences of coordinates are exact.
+// Bounds of a distance or of a squared depth, and whether all differences of coordinates are exact.
 HWY_ATTR bool in_vectors(const Pair& pair, Verdict verdict, MarginBounds& found, bool& exact) {
   const float* where[kAtOnce];
   for (const float*& at : where) at = &pair.a[0].x;
@@ -56,7 +56,7 @@ namespace {
 
 HWY_EXPORT(in_vectors);
 
-// Calls check(bounds, exact) with what vectors find by each instruction set of this processor that computes in them.
+// Calls check(bounds, exact) with the bounds from each instruction set of this processor that supports these vectors.
 template <class Check>
 void on_every_target(const Pair& pair, Verdict verdict, const Check& check) {
   const auto take = [](std::int64_t targets) {
@@ -77,7 +77,7 @@ void on_every_target(const Pair& pair, Verdict verdict, const Check& check) {
 
 constexpr Verdict kApart = Verdict::disjoint, kMeet = Verdict::intersects;
 
-// A margin of 1, and how large the terms are that it is summed from, as distance.h and depth.h count them.
+// A pair of margin 1 and the sum of its terms' magnitudes, as distance.h and depth.h define them.
 struct Unit {
   const char* what;
   Verdict verdict;
@@ -97,7 +97,8 @@ const Unit kUnits[] = {
     {"depth by edges", kMeet, {{{-8, 0, 0}, {8, 0, 0}, {0, 0, -8}}, {{0, -8, -1}, {0, 8, -1}, {0, 0, 7}}}, 1},
 };
 
-// Units of kHalfUlp below and above 1. Of a depth both the overlap, or its square, and the axis carry an error.
+// below and above: in units of kHalfUlp from 1. For a depth, both the overlap (or its square) and the axis have an
+// error.
 void expect_bounds(double lo, double hi, double below, double above) {
   EXPECT_EQ((1 - lo) / kHalfUlp, below);
   EXPECT_EQ((hi - 1) / kHalfUlp, above);
@@ -115,7 +116,7 @@ TEST(MarginBounds, AreAsFarApartAsTheErrorsDerived) {
   }
 }
 
-// A depth of 3 along (1, 2, 2), by a vertex of b under a's face. The error is that of a's first vertex and b's lowest.
+// A depth of 3 along (1, 2, 2): a vertex of b under a's face. The error is that of a's first vertex and b's lowest.
 TEST(MarginBounds, OfADepthAreSeenFromTheFirstVertexOfAFace) {
   const Vec3<float> face[3] = {{0, 0, 0}, {18, 9, -18}, {18, -18, 9}},
                     over[3] = {{7, -4, -4}, {49, 80, -10}, {48, -12, 78}};
@@ -134,7 +135,7 @@ TEST(MarginBounds, OfADepthAreSeenFromTheFirstVertexOfAFace) {
   }
 }
 
-// Along z an edge of a and each of b's see the depth of 1 that b's face does, as the difference of 4 and 3.
+// An edge of a with each of b's edges gives the axis z, with the same depth of 1 as b's face, as the difference 4 - 3.
 TEST(MarginBounds, OfADepthCountTheErrorOfTheThirdVertex) {
   const Pair pair{{{-8, 0, -3}, {8, 0, -3}, {0, 0, 1}}, {{-8, -8, 0}, {8, -8, 0}, {0, 8, 0}}};
   const MarginBounds bounds = margin_bounds(pair, kMeet);
@@ -156,7 +157,7 @@ TEST(MarginBounds, InVectorsKnowWhichDifferencesAreExact) {
   expect_exact(0x1.000002p-99f, 0x1p-149f, false);
 }
 
-// Coplanar and apart: by the verdict of another pair it would be taken for one that touches.
+// A coplanar, disjoint pair: with the verdict of another pair it would be taken for a touching pair.
 TEST(MarginBounds, InVectorsLeaveOtherPairsAlone) {
   const Pair pairs[] = {{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{5, 0, 0}, {9, 0, 0}, {5, 4, 0}}}, kUnits[6].pair};
   const std::uint64_t intersects = 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// By Google Highway, as core/exact_blocks/decide.cpp. What bounds settle does not depend on how they are rounded.
+// Uses Google Highway like core/exact_blocks/decide.cpp. Buckets that bounds decide do not depend on their rounding.
 #include "core/margin_blocks/buckets.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -27,7 +27,7 @@ namespace detail = exact::detail;
 // floor(log2(x)) of positive numbers.
 HWY_INLINE VI floor_log2_of(V x) { return hn::Sub(hn::ShiftRight<52>(hn::BitCast(di, x)), hn::Set(di, 1023)); }
 
-// See make_bucket: without the sign.
+// Like make_bucket, without the sign.
 HWY_INLINE VI size_of_bucket(VI log2_margin, VI log2_ulp) {
   const VI k = hn::Sub(log2_margin, log2_ulp);
   return hn::Add(hn::Min(hn::Max(k, hn::Set(di, kBucketLowest)), hn::Set(di, kBucketHighest)),
@@ -46,7 +46,7 @@ HWY_INLINE Coordinates coordinates_at(const float* pairs, const Numbers& numbers
   return Coordinates(where);
 }
 
-// Writes the buckets that the bounds of the margins, or of their squares, settle.   Returns: which.
+// Writes the buckets that the bounds decide. squares: they bound the margins' squares.   Returns: which it wrote.
 HWY_INLINE unsigned settle(const Bounds& bounds, bool squares, V largest, std::int64_t sign, const Numbers& numbers,
                            unsigned which, Bucket* buckets) {
   const auto log2 = [&](V x) HWY_ATTR { return squares ? hn::ShiftRight<1>(floor_log2_of(x)) : floor_log2_of(x); };
@@ -82,7 +82,7 @@ HWY_ATTR void measure_depths(const float* pairs, const Numbers& numbers, Bucket*
   for (; open != 0; open &= open - 1) buckets[numbers.pair[std::countr_zero(open)]] = 0;
 }
 
-// Of each verdict kAtOnce at a time, of the last ones the first one again and again.
+// Takes kAtOnce pairs of a verdict at a time. The last group is filled up with its first pair.
 HWY_ATTR void measure_all(const float* pairs, std::size_t count, const std::uint64_t* intersects, Bucket* buckets) {
   std::fill_n(buckets, count, kOpenBucket);
   Numbers waiting[2] = {};

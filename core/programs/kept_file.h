@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that are built once and kept, with a checksum of their name and content as their last line. Whoever loads a
-// shared object does not see that line.
+// Files that are built once and kept. The last line is a checksum of a file's name and content. The loader of a shared
+// object ignores that line.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace graze {
 
-// Adds the line to `made` and gives it its name, in one step: nobody sees a part of it.   Throws: std::runtime_error.
+// Appends the checksum to `made` and renames it to `kept`: nobody sees a part of it.   Throws: std::runtime_error.
 void keep_file(const std::filesystem::path& made, const std::filesystem::path& kept);
 
-// Returns: what was kept; nothing where the file is not there, or is not as it was kept.
+// Returns: the content as it was kept; nothing if the file is missing or was changed.
 std::optional<std::string> kept_content(const std::filesystem::path& kept);
 
 }  // namespace graze

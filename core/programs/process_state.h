@@ -8,8 +8,8 @@
 
 namespace graze {
 
-// What the system says a process is at: 'R' running, 'D' waiting for a device, 'S' sleeping, 'T' or 't' stopped, 'Z'
-// ended; 0 where there is none.
+// The state that the system reports for a process: 'R' running, 'D' waiting for a device, 'S' sleeping, 'T' or 't'
+// stopped, 'Z' ended; 0 if there is no such process.
 inline char process_state(pid_t process) {
   std::ifstream in("/proc/" + std::to_string(process) + "/stat");
   std::string line;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that build something for graze, as a compiler does. None outlives graze, whatever ends it: each runs under a
-// supervisor, with all that it starts, in a process namespace of its own where the system allows one.
+// Runs programs that build something for graze, such as a compiler. None outlives graze, however graze ends: a
+// supervisor runs each program and all its children, in a process namespace of their own if the system allows one.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace graze {
 
-// A new folder for files on their way, removed with its owner. Removes those of a day ago: their owner was killed just
-// when no program ran.
+// A new folder for temporary files, removed with its owner. The constructor also removes folders that are a day old:
+// their owners were killed while they ran no program.
 class Scratch {
  public:
   explicit Scratch(const std::filesystem::path& within);
@@ -24,14 +24,14 @@ class Scratch {
 };
 
 struct Program {
-  std::vector<std::string> words;  // without a shell
-  double seconds = 1800;           // for which it may run
-  bool namespaces = true;          // whether to try one
+  std::vector<std::string> words;  // run without a shell
+  double seconds = 1800;           // time limit
+  bool namespaces = true;          // whether to try a process namespace
 };
 
-// Runs the program, whose temporary files are in `scratch`, a folder. Where graze is killed, the supervisor removes it.
-// Returns: the exit status, or 128 and the signal, as a shell does; 127 where there is no such program.
-// output: what it wrote to both streams.   Throws: Stopped; std::runtime_error where it takes too long.
+// Runs the program with `scratch` for its temporary files. If graze is killed, the supervisor removes `scratch`.
+// Returns: the exit status, or 128 plus the signal, as a shell does; 127 if there is no such program.
+// output: what it wrote to both streams.   Throws: Stopped; std::runtime_error if it takes too long.
 int run_program(const Program& program, const std::filesystem::path& scratch, std::string& output);
 
 }  // namespace graze

@@ -22,8 +22,8 @@ extern char** environ;
 namespace graze {
 namespace {
 
-constexpr int kLookEvery = 50;  // ms, whether a stop is requested
-// Looks of this process, not time: on a machine that is so busy that the supervisor waits, this process waits as well.
+constexpr int kLookEvery = 50;  // ms between two checks for a request to stop
+// Counts checks, not time: if the machine is so busy that the supervisor waits, this process waits as well.
 constexpr int kMostSilentLooks = 10'000 / kLookEvery;
 
 }  // namespace
@@ -36,7 +36,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   socket_ = sockets[0];
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  // Above the descriptors of the supervisor, so that none is closed by the next.
+  // Moves them above the descriptors that the supervisor gets, so that no dup2 overwrites another.
   int from[] = {sockets[1], shared, output};
   for (int& fd : from) fd = fd < 0 ? -1 : fcntl(fd, F_DUPFD_CLOEXEC, 16);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -49,7 +49,7 @@ SupervisorProcess::SupervisorProcess(const std::string& program, const std::vect
   }
   posix_spawn_file_actions_adddup2(&actions, from[0], 3);
   if (shared >= 0) posix_spawn_file_actions_adddup2(&actions, from[1], 4);
-  // A session of its own: Ctrl-C and the terminal are the asking process's business.
+  // A session of its own: Ctrl-C and the terminal concern only the calling process.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
@@ -90,7 +90,7 @@ SupervisorProcess::~SupervisorProcess() {
   const bool hangs = silent_ || is_stopped(process_);
   if (has_ended(hangs ? 0 : stop_requested ? 1 : 6) || (stop_requested && !hangs)) return;
   kill(process_, SIGKILL);
-  has_ended(1);  // a frozen one does not: it is left
+  has_ended(1);  // a frozen one does not end: it is left
 }
 
 bool SupervisorProcess::send(const void* message, std::size_t size) const {
@@ -108,7 +108,7 @@ ssize_t SupervisorProcess::receive(void* to, std::size_t size) {
       ++looks;
     }
     if (stop_requested) throw Stopped();
-    if (is_stopped(process_)) return -1;  // as a subject without a namespace of its own can do
+    if (is_stopped(process_)) return -1;  // a subject without a namespace of its own can stop it
   }
   silent_ = true;
   return -1;

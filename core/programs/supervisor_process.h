@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze-subject-host, beside the running program: the supervisor of programs that graze did not write. This is graze's
-// end of it; subjects/README.md has the other.
+// Graze's end of graze-subject-host, the supervisor of programs that graze did not write. graze-subject-host lies
+// beside the running program; subjects/README.md describes its end.
 #pragma once
 
 #include <sys/types.h>
@@ -10,16 +10,16 @@
 
 namespace graze {
 
-// While graze waits for it, the supervisor sends this message at least once a second, of one byte.
+// While graze waits, the supervisor sends this one-byte message at least once a second.
 inline constexpr char kAlive = 1;
 
 class SupervisorProcess {
  public:
-  // program: its file's name, in the folder of the running program. It has its end of a socket as descriptor 3, and
-  // `shared`, where there is one, as 4. It writes to `output`, or to /dev/null for -1.   Throws: std::system_error.
+  // program: a file name in the folder of the running program. It gets its end of a socket as descriptor 3, and
+  // `shared`, if given, as descriptor 4. It writes to `output`, or to /dev/null if -1.   Throws: std::system_error.
   SupervisorProcess(const std::string& program, const std::vector<std::string>& arguments, int shared, int output);
-  // The supervisor ends all that it started when the socket closes. One that does not end within 6 s is killed; after a
-  // request to stop, it is left to end by itself after 1 s.
+  // Closes the socket, so that the supervisor ends all that it started. A supervisor that does not end within 6 s is
+  // killed. After a request to stop, graze leaves it to end by itself after 1 s.
   ~SupervisorProcess();
   SupervisorProcess(const SupervisorProcess&) = delete;
   SupervisorProcess& operator=(const SupervisorProcess&) = delete;
@@ -27,10 +27,10 @@ class SupervisorProcess {
   bool send(const void* message, std::size_t size) const;
 
   // Waits for a message of more than one byte.
-  // Returns: its bytes; at most 0 where the supervisor ended, is stopped or is silent.   Throws: Stopped.
+  // Returns: the message's size; at most 0 if the supervisor ended, is stopped or is silent.   Throws: Stopped.
   ssize_t receive(void* to, std::size_t size);
 
-  // Whether that was so because it was silent for 10 s, as one that is frozen is.
+  // Whether `receive` failed because the supervisor was silent for 10 s, as a frozen one is.
   bool silent() const { return silent_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The atomic operations that the engine needs, on a device and on the host alike.
+// The atomic operations of the engine, for device and host.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace graze::cuda {
 
-// Reads what another thread published, and whatever it wrote before that.
+// Reads a published value. What the publishing thread wrote before it is visible too.
 GRAZE_HD inline std::uint64_t load_published(const std::uint64_t* at) {
 #ifdef __CUDA_ARCH__
   std::uint64_t value;
@@ -19,7 +19,7 @@ GRAZE_HD inline std::uint64_t load_published(const std::uint64_t* at) {
 #endif
 }
 
-// Lets other threads read what this one wrote before.
+// Writes a value. Threads that read it also see what this thread wrote before.
 GRAZE_HD inline void publish(std::uint64_t* at, std::uint64_t value) {
 #ifdef __CUDA_ARCH__
   asm volatile("st.release.gpu.u64 [%0], %1;" : : "l"(at), "l"(value) : "memory");
@@ -28,7 +28,7 @@ GRAZE_HD inline void publish(std::uint64_t* at, std::uint64_t value) {
 #endif
 }
 
-// A glance without order.
+// Reads without any memory order.
 GRAZE_HD inline std::uint64_t load_relaxed(const std::uint64_t* at) {
 #ifdef __CUDA_ARCH__
   return *const_cast<const volatile std::uint64_t*>(at);
@@ -37,7 +37,7 @@ GRAZE_HD inline std::uint64_t load_relaxed(const std::uint64_t* at) {
 #endif
 }
 
-// Writes `to` where `from` stands.   Returns: whether it did.
+// Replaces `from` by `to`.   Returns: whether the value was `from`.
 GRAZE_HD inline bool replace(std::uint64_t* at, std::uint64_t from, std::uint64_t to) {
 #ifdef __CUDA_ARCH__
   return atomicCAS(reinterpret_cast<unsigned long long*>(at), from, to) == from;
@@ -46,7 +46,7 @@ GRAZE_HD inline bool replace(std::uint64_t* at, std::uint64_t from, std::uint64_
 #endif
 }
 
-// Returns: what stood there before.
+// Returns: the previous value.
 GRAZE_HD inline std::uint64_t lower_to(std::uint64_t* at, std::uint64_t value) {
 #ifdef __CUDA_ARCH__
   return atomicMin(reinterpret_cast<unsigned long long*>(at), value);
@@ -66,7 +66,7 @@ GRAZE_HD inline void add(std::uint64_t* at, std::uint64_t value) {
 #endif
 }
 
-// Returns: what stood there before.
+// Returns: the previous value.
 GRAZE_HD inline std::uint32_t add_one(std::uint32_t* at) {
 #ifdef __CUDA_ARCH__
   return atomicAdd(at, 1u);

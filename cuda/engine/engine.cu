@@ -15,19 +15,18 @@ namespace {
 constexpr EngineLimits kLimits;
 constexpr int kBlocksAtOnce = 3;
 
-// The memory of one block under way. Several are, so that the last pairs of one, which keep few threads busy, do not
-// hold up the next.
+// The memory of one block. Several blocks run at once, because the last pairs of a block keep only a few threads busy.
 struct Buffers {
   cudaStream_t stream;
-  cudaEvent_t done;     // with the last block
-  std::uint32_t* left;  // to the host by then, by all blocks; in pinned memory
+  cudaEvent_t done;     // recorded after the last block
+  std::uint32_t* left;  // pairs that all blocks so far have left to the host; pinned memory
   DeviceExact exact;
   DeviceArray<float> coordinates;
   DeviceArray<std::uint32_t> truth, wrong, lane_words, places, lengths;
   DeviceArray<std::int8_t> buckets;
   DeviceArray<std::uint8_t> relations;
   DeviceArray<LaneWords> lanes;
-  std::vector<LaneWords> lanes_on_host;  // the same
+  std::vector<LaneWords> lanes_on_host;  // the same on the host
 
   Buffers() {
     check(cudaStreamCreate(&stream));
@@ -46,7 +45,7 @@ class CudaEngine final : public DeviceEngine {
   CudaEngine(int ordinal, std::span<const Lane* const> lanes)
       : ordinal_(ordinal), lanes_(lanes.begin(), lanes.end()), groups_(lane_groups(lanes)) {
     check(cudaSetDevice(ordinal_));
-    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // else each kernel with a stack of its own size waits for it
+    check(cudaSetDeviceFlags(cudaDeviceLmemResizeToMax));  // otherwise kernels with other stack sizes wait
     for (std::unique_ptr<Buffers>& buffers : buffers_) buffers = std::make_unique<Buffers>();
     LaneGroup* groups = groups_on_device_.at_least(groups_.size());
     check(cudaMemcpy(groups, groups_.data(), groups_.size() * sizeof *groups, cudaMemcpyHostToDevice));
@@ -78,7 +77,7 @@ class CudaEngine final : public DeviceEngine {
   }
 
  private:
-  // Empties what adds up over the blocks.
+  // Clears the memory that accumulates over blocks.
   EngineBlock begin(Axis axis) {
     EngineBlock block{};
     block.axis = axis;
@@ -111,7 +110,7 @@ class CudaEngine final : public DeviceEngine {
     check(cudaMemset(none, 0, words * sizeof *none));
     buffers.lanes_on_host.clear();
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->exact) {  // it is the truth, and declines nothing
+      if (lanes_[l]->exact) {  // the exact lane is the truth and declines nothing
         buffers.lanes_on_host.push_back({block.truth, none});
       } else {
         buffers.lanes_on_host.push_back({of_lanes + 2 * words * l, of_lanes + 2 * words * l + words});
@@ -129,10 +128,10 @@ class CudaEngine final : public DeviceEngine {
 
   void judge(const EngineBlock& block, Buffers& buffers, const strata::PairSource& source) {
     const cudaStream_t stream = buffers.stream;
-    check(cudaEventSynchronize(buffers.done));  // no more blocks are under way than there are buffers
+    check(cudaEventSynchronize(buffers.done));  // limits the blocks in progress to the number of buffers
     drawing_.draw(source, block.first, block.pairs.count, buffers.coordinates.at_least(0), stream);
     std::uint32_t* truth = buffers.truth.at_least(0);
-    // Pairs are finite: nothing is declined, and `wrong` is free until it is written.
+    // Pairs are finite, so nothing is declined. `wrong` serves as the unused output until it is written.
     buffers.exact.decide(block.pairs, truth, block.wrong, nullptr, stream);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
       const LaneWords& words = buffers.lanes_on_host[l];
@@ -146,7 +145,7 @@ class CudaEngine final : public DeviceEngine {
     check(cudaEventRecord(buffers.done, stream));
   }
 
-  // At most, without waiting for blocks under way.
+  // An upper bound that does not wait for blocks in progress.
   std::uint32_t may_be_left(std::uint32_t block_pairs) const {
     std::uint32_t most = 0;
     for (const std::unique_ptr<Buffers>& buffers : buffers_) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The on-device engine as the host sees it: pairs are drawn (those of a stratum, with a scene or without) or brought,
-// decided by lanes, judged exactly, measured and counted on a device; only counts and chosen cases come back. No CUDA
-// header is needed here, nor nvcc to build.
+// The engine on a device, as the host sees it. The device draws pairs of a stratum, with or without a scene, or takes
+// pairs from the host. It decides them by lanes, judges them exactly, measures and counts them. Only counts and chosen
+// cases come back. This header needs no CUDA header, and building it needs no nvcc.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,17 @@
 
 namespace graze::cuda {
 
-inline constexpr int kEngineCases = 4;  // kept of each signature
+inline constexpr int kEngineCases = 4;  // kept for each signature
 
-// A run of lanes of one subject: lanes [first, first + count) of the engine's.
+// Consecutive lanes of one subject: the engine's lanes [first, first + count).
 struct LaneGroup {
   std::uint32_t first, count;
 };
 
-// The groups of these lanes; exact lanes, which have no failures, are in none.   Requires: lanes in table order.
+// The groups of these lanes. Exact lanes never fail, so they are in no group.   Requires: lanes in table order.
 std::vector<LaneGroup> lane_groups(std::span<const Lane* const> lanes);
 
-// One subject's failure, and the pairs that fail so.
+// The signature of one subject's failures, and the pairs that have it.
 struct EngineSignature {
   Relation relation;
   Bucket bucket = 0;
@@ -36,29 +36,29 @@ struct EngineSignature {
   std::vector<std::uint64_t> cases;  // the smallest indices, sorted, at most kEngineCases
 };
 
-// What a run found. Pairs whose bucket the device cannot decide are in `undecided`, and counted nowhere else.
+// The result of a run. Pairs whose bucket the device cannot decide are listed in `undecided` and counted nowhere else.
 struct EngineResult {
-  std::uint64_t done = 0;  // pairs of the run: fewer than asked for when `undecided` was about to overflow
-  // By bucket plus kBucketMost: pairs, intersecting ones, then of each lane: false positives, false negatives,
-  // declined.
+  std::uint64_t done = 0;  // pairs judged; fewer than requested when `undecided` was about to overflow
+  // Indexed by bucket + kBucketMost. In order: pairs; intersecting pairs; then for each lane its false positives, false
+  // negatives and declined pairs.
   std::vector<std::uint64_t> counts;
-  std::vector<std::uint64_t> extreme_counts;  // the same by place_on_axis plus kBucketMost; empty without an axis
+  std::vector<std::uint64_t> extreme_counts;  // same, by place_on_axis + kBucketMost; empty without an axis
   std::vector<EngineSignature> signatures;
   std::vector<std::uint64_t> undecided;  // indices, sorted
   std::uint64_t disagreements = 0;
 };
 
-// One device. One thread at a time.
+// One device. Not thread-safe.
 class DeviceEngine {
  public:
   virtual ~DeviceEngine() = default;
 
-  // Pairs [first, first + count) of the source.   Requires: they are finite.
-  // Throws: std::runtime_error on any CUDA error, and when signatures or undecided pairs outgrow their memory.
+  // Judges pairs [first, first + count) of the source.   Requires: finite pairs.
+  // Throws: std::runtime_error on any CUDA error, or when signatures or undecided pairs exceed their memory.
   virtual EngineResult run(const strata::PairSource& source, std::uint64_t first, std::uint64_t count) = 0;
 };
 
-// An engine for each CUDA device.   Requires: CUDA lanes.   Returns: none without a device.
+// An engine for each CUDA device; none without a device.   Requires: CUDA lanes.
 std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* const> cuda_lanes);
 
 }  // namespace graze::cuda

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's steps, run on the host, against the plain way: the oracle's bucket of each pair, and sums.
+// Runs the engine's steps on the host and compares them with a direct computation: the oracle's bucket of each pair,
+// then sums.
 #include "cuda/engine/engine.h"
 #include "core/counts.h"
 
@@ -27,7 +28,7 @@ Verdict truth_of(const Pair& pair) {
   return exact::intersects(coordinates(pair), coordinates(pair) + 9) ? Verdict::intersects : Verdict::disjoint;
 }
 
-// A lane that is wrong on about one pair in 40, each such lane on its own ones.
+// A lane that is wrong on about one pair in 40. Each such lane is wrong on different pairs.
 Verdict wrong_at_times(const Pair& pair, std::uint64_t lane) {
   std::uint64_t hash = lane;
   for (int k = 0; k < kCoordinates; ++k)
@@ -98,7 +99,7 @@ struct Found {
 
 TEST_F(EngineTest, AnyNumberOfLanesCountsAsThePlainWay) {
   EngineLimits limits;
-  limits.block_pairs = 1000;  // no multiple of 64, and the last block is shorter
+  limits.block_pairs = 1000;  // not a multiple of 64, and the last block is shorter
   constexpr std::uint64_t kFirst = 77, kCount = 3333;
   for (const strata::Stratum stratum : {strata::Stratum::degenerate, strata::Stratum::far_from_origin}) {
     const EngineResult result = run(stratum, kFirst, kCount, limits);
@@ -128,7 +129,7 @@ TEST_F(EngineTest, AnyNumberOfLanesCountsAsThePlainWay) {
           count(4 + 3 * l, verdicts[l] == Verdict::declined);
         }
       }
-      bool any = false;  // a declined verdict is no disagreement
+      bool any = false;  // a declined verdict is not a disagreement
       std::uint32_t first = 0;
       for (const std::size_t group : kGroups) {
         const std::vector<Verdict> own(verdicts.begin() + first, verdicts.begin() + first + static_cast<int>(group));
@@ -161,7 +162,7 @@ TEST_F(EngineTest, GroupsAreRunsOfOneAlgorithmWithoutTheExactLanes) {
   ASSERT_EQ(groups.size(), 3u);
   EXPECT_EQ(groups[1].first, 3u);
   EXPECT_EQ(groups[1].count, 71u);
-  EXPECT_EQ(key_words(groups), 1u + 3u);  // 71 lanes of two bits
+  EXPECT_EQ(key_words(groups), 1u + 3u);  // 71 lanes of two bits each
   EXPECT_EQ(key_words({}), 1u);
 }
 
@@ -182,14 +183,14 @@ TEST_F(EngineTest, AFullSignatureTableIsAnError) {
             "the engine found more signatures than it can hold");
 }
 
-// A stratum of which bounds leave some pairs open, and how many of the first 20,000.
+// A stratum with pairs that the bounds leave open, among its first 20,000.
 constexpr strata::Stratum kLeavesSome = strata::Stratum::mixed_scale;
 
 TEST_F(EngineTest, MoreUndecidedPairsThanTheListHoldsAreAnError) {
   EngineLimits limits;
   const std::size_t left = run(kLeavesSome, 0, 20'000, limits).undecided.size();
   ASSERT_GT(left, 2u);
-  EXPECT_LT(left, 60u);  // numbers of twice a double's precision decide the others
+  EXPECT_LT(left, 60u);  // double-double bounds decide the others
   limits.undecided = static_cast<std::uint32_t>(left);
   EXPECT_EQ(run(kLeavesSome, 0, 20'000, limits).undecided.size(), left);
   --limits.undecided;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One block of pairs under way through the engine's steps, wherever its memory lies; and the keys of its signatures.
+// A block of pairs between the engine's steps, in device or host memory, and the keys of its signatures.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace graze::cuda {
 
-inline constexpr std::int8_t kUndecided = 127;  // a bucket, or an extreme, that is not known
+inline constexpr std::int8_t kUndecided = 127;  // a bucket or an extreme that is not known
 
 // A lane's verdicts: bit i % 32 of word i / 32 belongs to pair i.
 struct LaneWords {
@@ -26,17 +26,21 @@ struct LaneTable {
   std::uint32_t group_count;
 };
 
-// Indices of pairs for the host; `count` goes on past `size`.
+// Indices of pairs for the host. `count` keeps counting beyond `size`; such indices are not stored.
 struct IndexList {
   std::uint64_t* indices;
   std::uint32_t size;
   std::uint32_t* count;
 };
 
-// Pairs whose bucket single precision left open, disjoint ones and intersecting ones; disjoint ones that double left
-// open as well, and those of which bounds along all directions did; those that need their relation; of these the ones
-// of large grids, and those that need all axes, by the numbers that hold them; and intersecting ones that double left
-// open although their margin is not zero, and those of which bounds along all axes did.
+// The lists of pairs that one step leaves to a later one:
+// - kOpenGaps, kOpenDepths: disjoint and intersecting pairs whose bucket single precision does not decide.
+// - kTies: disjoint pairs whose bucket double precision does not decide either.
+// - kCloseTies: those of kTies whose bucket double bounds along all directions do not decide.
+// - kRelated: pairs that need their relation. kByBounds: those of kRelated with large grids.
+// - kByDoubles to kByWide: pairs that need all axes, by the number type that holds them.
+// - kDepths: intersecting pairs with a nonzero margin whose bucket double precision does not decide.
+// - kCloseDepths: those of kDepths whose bucket double bounds along all axes do not decide.
 enum EngineList {
   kOpenGaps,
   kOpenDepths,
@@ -58,9 +62,9 @@ struct EngineBlock {
   DevicePairs pairs;
   std::uint64_t first;  // index of the block's first pair
   const std::uint32_t* truth;
-  std::uint32_t* wrong;  // pairs on which some lane is
+  std::uint32_t* wrong;  // pairs on which some lane is wrong
   std::int8_t* buckets;
-  std::uint8_t* relations;  // as packed: of each pair that some lane decides wrongly, in the end
+  std::uint8_t* relations;  // packed; in the end it has the relation of every pair on which some lane is wrong
   LaneTable lanes;
   PairList lists[kEngineLists];
   SignatureTable signatures;
@@ -80,7 +84,7 @@ GRAZE_HD constexpr std::size_t engine_counters(std::size_t lanes) {
 
 GRAZE_HD inline bool bit(const std::uint32_t* words, std::uint32_t i) { return words[i / 32] >> (i % 32) & 1; }
 
-// How a lane's verdict compares with the truth. Two bits in a key.
+// A lane's verdict compared with the truth; two bits of a key.
 enum class Mark : std::uint8_t { right, false_positive, false_negative, declined };
 inline constexpr std::uint32_t kMarksOfWord = 32;
 
@@ -90,7 +94,7 @@ GRAZE_HD inline Mark mark_of(const LaneWords& lane, std::uint32_t i, bool truth)
   return says == truth ? Mark::right : says ? Mark::false_positive : Mark::false_negative;
 }
 
-// Whether some mark of a key's word is a wrong verdict's; a declined one is not.
+// Whether some mark in this word of a key is a wrong verdict; `declined` is not wrong.
 GRAZE_HD constexpr bool any_wrong(std::uint64_t marks) { return ((marks ^ marks >> 1) & 0x5555555555555555u) != 0; }
 static_assert(static_cast<int>(Mark::right) == 0 && static_cast<int>(Mark::declined) == 3);
 
@@ -101,10 +105,10 @@ constexpr Verdict verdict_of(Mark mark, Verdict truth) {
                                         : Verdict::disjoint;
 }
 
-// Words of marks that a group needs.
+// The number of words that hold the marks of a group.
 constexpr std::uint32_t mark_words(std::uint32_t lanes) { return (lanes + kMarksOfWord - 1) / kMarksOfWord; }
 
-// What a signature says besides its marks, in the first word of its key; group: place of its lanes among the groups.
+// The first word of a signature's key: everything but the marks. `group` is the index of the lanes' group.
 GRAZE_HD constexpr std::uint64_t packed(std::uint32_t group, std::uint8_t relation, Bucket bucket) {
   return static_cast<std::uint64_t>(bucket + kBucketMost) | std::uint64_t{relation} << 8 | std::uint64_t{group} << 32;
 }
@@ -120,7 +124,7 @@ constexpr SignatureHead unpacked(std::uint64_t word) {
   return {static_cast<std::uint32_t>(word >> 32), unpacked_relation(word >> 8 & 127, sign_of(bucket)), bucket};
 }
 
-// The marks of pair i by 32 lanes of the group, from lane 32 * word on.
+// The marks that up to 32 lanes of the group get for pair i, from lane 32 * word on.
 GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& group, std::uint32_t word,
                                     std::uint32_t i, bool truth) {
   const std::uint32_t from = word * kMarksOfWord;
@@ -130,8 +134,8 @@ GRAZE_HD inline std::uint64_t marks(const EngineBlock& block, const LaneGroup& g
   return result;
 }
 
-// The key of pair i's signature for one group of lanes, some of them wrong. Marks beyond the first word are read
-// whenever they are asked for: no number of lanes needs more registers.
+// The key of pair i's signature for one group of lanes, some of them wrong. Marks after the first word are computed
+// again at each use, so that the registers needed do not depend on the number of lanes.
 struct SignatureKey {
   const EngineBlock& block;
   LaneGroup group;

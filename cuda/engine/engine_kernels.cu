@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of cuda/engine/engine_steps.h, a kernel for each: a thread for a pair, a warp for a word in the tally.
+// The steps of cuda/engine/engine_steps.h as kernels: one thread for each pair; in the tally, one warp for each word.
 #include "cuda/engine/engine_kernels.cuh"
 
 #include "cuda/engine/engine_steps.h"
@@ -28,12 +28,12 @@ __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs(Engin
   take<Step>(block, blockIdx.x * kThreads + threadIdx.x);
 }
 
-// The threads of a block take its disjoint pairs first, then the others, so that the two ways do not share a warp.
+// The threads of a block take its disjoint pairs first, then the others, so that few warps diverge.
 template <class Step>
 __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_pairs_by_verdict(EngineBlock block) {
   __shared__ std::uint16_t order[kThreads];
   const std::uint32_t word = threadIdx.x / 32, in_word = threadIdx.x % 32, first = blockIdx.x * (kThreads / 32);
-  std::uint32_t meet = 0, before = 0;  // pairs that meet: of all, and of those before this thread's
+  std::uint32_t meet = 0, before = 0;  // intersecting pairs: all, and those before this thread's pair
   for (std::uint32_t w = 0; w < kThreads / 32; ++w) {
     const std::uint32_t truth = block.truth[first + w], earlier = w < word ? ~0u : w == word ? (1u << in_word) - 1 : 0;
     meet += static_cast<std::uint32_t>(__popc(truth));
@@ -55,7 +55,7 @@ __global__ void __launch_bounds__(kThreads, Step::kThreadBlocks) for_listed(Engi
   }
 }
 
-// Counts a pair for each thread of the mask, which all call: those of one key by one of them.
+// Counts one pair for each thread in the mask; all of these threads call this. One thread counts all pairs of a key.
 __device__ void add_together(const SignatureTable& table, const SignatureKey& key, std::uint64_t index, unsigned mask) {
   const unsigned like = __match_any_sync(mask, hash_of(key, table.key_words));
   const int first = __ffs(static_cast<int>(like)) - 1;
@@ -72,7 +72,7 @@ __device__ void add_together(const SignatureTable& table, const SignatureKey& ke
     if (!row) *table.full = 1;
   }
   row = reinterpret_cast<std::uint64_t*>(__shfl_sync(like, reinterpret_cast<unsigned long long>(row), first));
-  if (!same) return add_pair(table, key, index);  // one hash of two keys
+  if (!same) return add_pair(table, key, index);  // two keys with the same hash
   if (row) keep(table, row, index);
 }
 
@@ -85,7 +85,7 @@ __global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, En
     const unsigned threads = __ballot_sync(0xffffffffu, has_some);
     if (threads == 0) continue;
     const std::uint32_t some = __shfl_sync(0xffffffffu, i, __ffs(static_cast<int>(threads)) - 1);
-    if (!has_some) i = some;  // whose key is read and not added
+    if (!has_some) i = some;  // its key is read but not added
     for (std::uint32_t g = 0; g < block.lanes.group_count; ++g) {
       const SignatureKey key(block, g, i);
       const bool adds = has_some && key.any_wrong();
@@ -97,12 +97,12 @@ __global__ void __launch_bounds__(kThreads) add_signatures(EngineBlock block, En
 }
 
 constexpr unsigned kBlocks = 1024;
-constexpr std::size_t kSharedBytes = 48 << 10;  // of a thread block, on every device
+constexpr std::size_t kSharedBytes = 48 << 10;  // available to a thread block on every device
 constexpr std::uint32_t kLanesAtOnce =
     (kSharedBytes / sizeof(std::uint32_t) / kBucketCount - kCountersOfPairs) / kCountersOfLane;
 
-// By bucket, or by extreme. A warp for a word: the first thread of each bucket counts all pairs of that bucket. Blocks
-// with the same y take the same chunk of lanes, as many as shared memory has counters for.
+// Counts by bucket or by extreme. One warp for each word: the first thread of each bucket counts all pairs of that
+// bucket. Blocks with the same y take the same range of lanes, as many as shared memory has counters for.
 __global__ void __launch_bounds__(kThreads) tally(EngineBlock block, bool by_extreme) {
   extern __shared__ std::uint32_t counts[];
   const std::int8_t* const buckets = by_extreme ? block.extremes : block.buckets;
@@ -126,7 +126,7 @@ __global__ void __launch_bounds__(kThreads) tally(EngineBlock block, bool by_ext
       if (pairs) atomicAdd(&row[counter * kBucketCount], static_cast<std::uint32_t>(__popc(pairs)));
     });
   }
-  const bool first_chunk = blockIdx.y == 0;  // counts the pairs as well
+  const bool first_chunk = blockIdx.y == 0;  // also counts the pairs
   if (disagreements && first_chunk && !by_extreme) add(block.disagreements, disagreements);
   __syncthreads();
   std::uint64_t* const into = by_extreme ? block.extreme_counts : block.counts;

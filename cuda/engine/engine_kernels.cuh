@@ -8,7 +8,7 @@
 
 namespace graze::cuda {
 
-// Requires: truth and the lanes' words are written, the lists of places are empty.
+// Requires: truth and the lanes' words are written, and the lists are empty.
 void launch_engine(const EngineBlock& block, cudaStream_t stream);
 
 }  // namespace graze::cuda

@@ -10,7 +10,7 @@
 namespace graze::cuda {
 namespace {
 
-// The steps of one block, pair after pair.
+// Runs the steps of one block, pair by pair.
 struct HostRun {
   const EngineBlock& block;
 
@@ -126,7 +126,7 @@ class HostEngine final : public DeviceEngine {
     lanes_.clear();
     for (std::size_t l = 0; l < on_host_.size(); ++l) {
       if (is_truth_[l]) {
-        lanes_.push_back({words(0), words(2)});  // it declines nothing
+        lanes_.push_back({words(0), words(2)});  // the exact lane declines nothing
       } else {
         lanes_.push_back({words(3 + 2 * l), words(4 + 2 * l)});
       }
@@ -138,7 +138,7 @@ class HostEngine final : public DeviceEngine {
 
   std::uint32_t* words(std::size_t column) { return reinterpret_cast<std::uint32_t*>(&bits_[column * words_]); }
 
-  // Draws the pairs and has them decided, exactly and by the lanes.
+  // Draws the pairs, then decides them exactly and by the lanes.
   void decide(const EngineBlock& block, const strata::PairSource& source) {
     std::vector<Pair> pairs(block.pairs.count);
     std::fill_n(&bits_[0], words_, 0);

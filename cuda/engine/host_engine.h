@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An engine whose device is this processor, one thread of it: the steps of cuda/engine/engine_steps.h in their order.
-// It checks the engine's logic where there is no device.
+// An engine that runs the steps of cuda/engine/engine_steps.h on one thread of the CPU, in the same order. It tests the
+// engine's logic without a device.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace graze::cuda {
 
-// on_host: what decides each lane's pairs; not asked for exact lanes.
+// on_host[i] decides pairs by lanes[i]. It is not called for exact lanes.
 std::unique_ptr<DeviceEngine> make_host_engine(std::span<const Lane* const> lanes, std::span<const DecideBlock> on_host,
                                                const EngineLimits& limits = {});
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signatures by open addressing, for many threads at once, on host and device alike. A key is some 64-bit words, the
-// same number for all keys of a table. Nobody sees half a key: a row's first word says whether the row is free, being
-// written by the thread that claimed it, or published. Threads that meet a row being written wait; on a device that
-// needs independent thread scheduling, which sm_70 and later have.
+// A hash table of signatures with open addressing, used by many threads at once, on host and device. A key is a number
+// of 64-bit words, the same number for all keys of a table. The first word of a row says whether the row is free, being
+// written by the thread that claimed it, or published. So no thread reads an incomplete key. A thread that finds a row
+// being written waits. On a device this needs independent thread scheduling (sm_70 and later).
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@
 namespace graze::cuda {
 
 struct SignatureTable {
-  std::uint64_t* rows;      // of row_words() each: state, key, count, the smallest indices
+  std::uint64_t* rows;      // each of row_words() words: state, key, count, the smallest indices
   std::uint32_t size;       // rows; a power of two
-  std::uint32_t key_words;  // a word of shape, then words of marks
+  std::uint32_t key_words;  // one word for the shape, then the marks
   std::uint32_t* full;      // becomes 1 when a key finds no free row
 
   GRAZE_HD std::uint32_t row_words() const { return 1 + key_words + 1 + kEngineCases; }
@@ -29,7 +29,7 @@ struct SignatureTable {
 inline constexpr std::uint64_t kFree = 0, kBeingWritten = 1, kPublished = 3, kStateBits = 3;
 inline constexpr std::uint64_t kNoCase = ~std::uint64_t{0};
 
-// The hash of a key of so many words; the two lowest bits are zero. Key: word(k) is its word k.
+// The hash of a key of `words` words; the two lowest bits are zero. key.word(k) is word k.
 template <class Key>
 GRAZE_HD std::uint64_t hash_of(const Key& key, std::uint32_t words) {
   std::uint64_t hash = 0;
@@ -48,7 +48,7 @@ GRAZE_HD bool holds(const SignatureTable& table, const std::uint64_t* row, const
   return true;
 }
 
-// The key's row, claimed if it had none.   Returns: null when no row is free.
+// The row of the key. Claims a row if the key has none.   Returns: null when no row is free.
 template <class Key>
 GRAZE_HD std::uint64_t* find_row(const SignatureTable& table, const Key& key) {
   const std::uint64_t hash = hash_of(key, table.key_words);
@@ -70,11 +70,11 @@ GRAZE_HD std::uint64_t* find_row(const SignatureTable& table, const Key& key) {
   return nullptr;
 }
 
-// Keeps the index if it is one of the row's smallest.
+// Stores the index if it is among the row's kEngineCases smallest.
 GRAZE_HD inline void keep(const SignatureTable& table, std::uint64_t* row, std::uint64_t index) {
   std::uint64_t* cases = table.cases(row);
   if (index >= load_relaxed(&cases[kEngineCases - 1])) return;
-  // Whoever is larger moves on, so that in the end the smallest stand here in order, whoever came first.
+  // The larger index moves on to the next place. So the smallest end up here in order, whatever order they came in.
   for (int k = 0; k < kEngineCases; ++k) {
     const std::uint64_t old = lower_to(&cases[k], index);
     index = old > index ? old : index;

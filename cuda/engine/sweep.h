@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lanes get wrong on a source's pairs, counted on a device: pairs are drawn and judged there once, then decided by
-// each lane. No CUDA header is needed here, nor nvcc to build.
+// Counts the errors of lanes on a device. The pairs of a source are drawn and judged once, then decided by each lane.
+// This header needs no CUDA header, and building it needs no nvcc.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace graze::cuda {
 
-// Of one lane. Pairs that are not finite are counted nowhere.
+// The counts of one lane. Pairs that are not finite are not counted.
 struct ErrorCounts : Counts {
-  std::uint64_t fixed = 0, broken = 0;  // right, and the lane to compare with wrong or without an answer; or otherwise
-  std::uint64_t first_fixed = ~std::uint64_t{0}, first_broken = ~std::uint64_t{0};  // indices; at first none
+  std::uint64_t fixed = 0, broken = 0;  // fixed: right where `zero` is wrong or declines; broken: the converse
+  std::uint64_t first_fixed = ~std::uint64_t{0}, first_broken = ~std::uint64_t{0};  // first index, or ~0
 };
 
-// Of each lane, on all pairs of the source.
-// Requires: CUDA lanes, `zero` too.   Throws: std::runtime_error on any CUDA error.
+// Counts for each lane over all pairs of the source. `zero` is the lane to compare with.
+// Requires: CUDA lanes, including `zero`.   Throws: std::runtime_error on any CUDA error.
 std::vector<ErrorCounts> count_errors(const Lane& zero, std::span<const Lane> lanes, const strata::PairSource& source);
 
 }  // namespace graze::cuda

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes under the policy bound. Compiled once for each device variant that keeps error bounds, each time
-// with its flags and in its own namespace GRAZE_FP; nothing else may be defined here, or the linker would mix the
-// variants. They have no twins: what they decide is the exact verdict anyway, and their PTX is ten times as long.
+// The device lanes with the policy `bound`. Compiled once for each device variant that keeps error bounds, with its
+// flags and in its own namespace GRAZE_FP. Define nothing else here, or the linker would mix the variants. These lanes
+// have no twins, because their verdict is the exact one and their PTX is ten times as long.
 #include "core/lanes/decide_under.h"
 #include "cuda/lanes/kernels.cuh"
 #include "cuda/lanes/vote.cuh"
@@ -21,7 +21,7 @@ void launch_bound(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* d
   bound_pairs<algorithm, Real><<<thread_blocks(pairs), kThreads, 0, stream>>>(pairs, intersects, declined);
 }
 
-// Null of algorithms that are wrong without rounding.
+// Null for algorithms that would be wrong even without rounding.
 template <int algorithm, class Real>
 constexpr LaunchDecide launch() {
   if constexpr (std::tuple_element_t<algorithm, Algorithms>::kInfo.right_without_rounding) {

@@ -34,7 +34,7 @@ namespace {
 struct KernelTables {
   const VariantKernels* kernels = nullptr;
   const DeviceKernels<LaunchWithin>* within = nullptr;
-  const DeviceKernels<LaunchDecide>* bound = nullptr;  // null of fast math, which keeps no error bound
+  const DeviceKernels<LaunchDecide>* bound = nullptr;  // null for fast math, which has no error bound
 };
 
 const KernelTables& tables_of(Variant variant) {

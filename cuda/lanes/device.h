@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes as the host sees them; no CUDA header is needed here, and none of this needs nvcc to build.
+// The device lanes, as the host sees them. This header needs no CUDA header, and building it needs no nvcc.
 #pragma once
 
 #include <cstddef>
@@ -19,22 +19,22 @@ struct LaneBits {
   std::vector<std::uint64_t> declined;
 };
 
-// A CUDA device and the memory for blocks of pairs on it. One thread at a time.
+// A CUDA device with memory for blocks of pairs. Not thread-safe.
 class Device {
  public:
   virtual ~Device() = default;
 
-  // Decides the pairs by each lane, in their order. Requires: CUDA lanes.   Throws: std::runtime_error on any CUDA
-  // error.
+  // Decides the pairs by each lane; bits[k] has the verdicts of cuda_lanes[k].   Requires: CUDA lanes.
+  // Throws: std::runtime_error on any CUDA error.
   virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
                       std::vector<LaneBits>& bits) = 0;
 
   std::string name;     // "NVIDIA H100 80GB HBM3"
   std::string driver;   // CUDA version of the driver, "13.0"
-  std::string toolkit;  // of nvcc, "13.0.88"
+  std::string toolkit;  // version of nvcc, "13.0.88"
 };
 
-// The first CUDA device; null when there is none, with the reason in `why_not` ("no device", "built without CUDA").
+// The first CUDA device. Without one, returns null and the reason in `why_not` ("no device", "built without CUDA").
 std::unique_ptr<Device> open_device(std::string& why_not);
 
 }  // namespace graze::cuda

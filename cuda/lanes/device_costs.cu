@@ -11,7 +11,7 @@
 namespace graze::cuda {
 namespace {
 
-constexpr int kLaunches = 4;  // timed together, so that a launch's own microseconds do not count
+constexpr int kLaunches = 4;  // timed together, to make the few microseconds of a launch negligible
 
 class Stream {
  public:
@@ -29,7 +29,7 @@ class Stream {
   }
   operator cudaStream_t() const { return stream_; }
 
-  // Nanoseconds of what `work` puts into the stream.
+  // Nanoseconds that the work submitted by `work` takes on the stream.
   double time(const std::function<void()>& work) const {
     check(cudaEventRecord(start_, stream_));
     work();
@@ -40,7 +40,7 @@ class Stream {
     return double{milliseconds} * 1e6;
   }
 
-  // The first kernel that `work` puts into the stream; it does not run.   Requires: work that allocates nothing.
+  // The first kernel that `work` submits to the stream, which does not run.   Requires: `work` allocates nothing.
   const void* first_kernel(const std::function<void()>& work) const {
     cudaGraph_t graph;
     check(cudaStreamBeginCapture(stream_, cudaStreamCaptureModeThreadLocal));
@@ -68,7 +68,7 @@ class Stream {
   cudaEvent_t start_, stop_;
 };
 
-// Pinned, so that copies run at the link's speed.
+// Pinned memory, so that copies run at the speed of the link.
 class Pinned {
  public:
   explicit Pinned(std::size_t bytes) { check(cudaMallocHost(&data_, bytes)); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lanes cost on a device, in nanoseconds and in what the compiler gave their kernels.
+// The cost of lanes on a device: nanoseconds, and the resources that the compiler gave their kernels.
 #pragma once
 
 #include <span>
@@ -10,28 +10,28 @@
 
 namespace graze::cuda {
 
-// What one thread of a lane's kernel needs; of the exact lane, and of `filtered` what its filter needs: the kernel that
-// every pair goes through.
+// Resources of a lane's kernel. For the exact lane and `filtered` this is the filter, the kernel that decides every
+// pair first.
 struct KernelNeeds {
   int registers = 0;
-  int local_bytes = 0;     // registers that did not fit, and arrays
-  int active_threads = 0;  // of a multiprocessor, at most
+  int local_bytes = 0;     // bytes of local memory for each thread: spilled registers and arrays
+  int active_threads = 0;  // most threads that a multiprocessor runs at once
 };
 
-// Nanoseconds a pair, of each pass; all lanes take turns in a pass.
+// Nanoseconds per pair, one value for each pass. In a pass all lanes take turns.
 struct DeviceCost {
-  std::vector<double> resident;     // pairs that lie on the device, and verdicts that stay there
-  std::vector<double> with_copies;  // pairs from pinned memory of the host, and verdicts back
+  std::vector<double> resident;     // pairs and verdicts stay in device memory
+  std::vector<double> with_copies;  // pairs come from pinned host memory, verdicts go back
   KernelNeeds needs;
 };
 
 struct DeviceCosts {
   std::string device;          // "NVIDIA H100 80GB HBM3"
-  int threads_at_once = 0;     // of a multiprocessor
-  std::vector<DeviceCost> of;  // each lane
+  int threads_at_once = 0;     // most threads that a multiprocessor can run at once
+  std::vector<DeviceCost> of;  // for each lane
 };
 
-// Requires: CUDA lanes, pairs.   Throws: std::runtime_error on any CUDA error, and without a device.
+// Requires: CUDA lanes, pairs.   Throws: std::runtime_error on any CUDA error, or without a device.
 DeviceCosts measure_on_device(std::span<const Lane* const> lanes, const std::vector<Pair>& pairs, int passes);
 
 }  // namespace graze::cuda

@@ -5,7 +5,7 @@
 
 namespace graze::cuda {
 
-// An event that its owner destroys. Device code only.
+// A CUDA event, destroyed with its owner. Device code only.
 class Event {
  public:
   Event() { check(cudaEventCreate(&event_)); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a block of pairs lies in a device's memory; the kernels' first parameter, on the device and in its twin.
+// The layout of a block of pairs in device memory. It is the first parameter of the kernels and of their twins.
 #pragma once
 
 #include <cstdint>

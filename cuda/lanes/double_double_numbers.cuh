@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Determinants in twice a double's precision, with a bound of their error: for pairs whose grid no machine number
-// holds.
+// Determinants in double-double precision, with a bound of their error. For pairs whose grid does not fit any built-in
+// number type.
 //
-// Differences are exact: the sum of two floats and its error are doubles. Of each of a determinant's six products the
-// relative error is that of two multiplications and three sums, 2 * 5 u^2 + 3 * 3 u^2 and terms of u^3, u = 2^-53; see
-// core/margin/double_double.h. The size, of doubles, is too small by less than one part in 2^48. So 32 u^2 is a bound
-// for both. Nothing over- or underflows: differences of floats lie between 2^-149 and 2^129, or are zero.
+// Differences are exact: the sum of two floats and its error are both doubles. Each of a determinant's six products has
+// two multiplications and three sums. Its relative error is 2 * 5 u^2 + 3 * 3 u^2 plus terms of u^3, with u = 2^-53;
+// see core/margin/double_double.h. The size is a double that is too small by less than one part in 2^48. So 32 u^2
+// bounds both errors. Nothing overflows or underflows: a difference of floats lies between 2^-149 and 2^129 or is zero.
 #pragma once
 
 #include "core/exact/numbers.h"
@@ -13,12 +13,12 @@
 
 namespace graze {
 
-// Found by its argument.
+// Found by argument-dependent lookup.
 __device__ inline void convert(float x, double, DoubleDouble& out) { out = static_cast<double>(x); }
 
 namespace cuda {
 
-// A difference is one double and its error. A sum of products, and the sum of the products' magnitudes.
+// For a difference: a double and its error. For a sum of products: also the sum of the products' magnitudes.
 struct DoubleDoubleSum {
   DoubleDouble value;
   double size;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen, one thread for each pair, which needs few registers; then the steps of exact_steps.cuh for the pairs that
-// it left.
+// The filter, with one thread for each pair, which needs few registers. Then the steps of exact_steps.cuh for the pairs
+// that the filter leaves open.
 #include "cuda/lanes/exact_kernels.cuh"
 
 #include "cuda/lanes/exact_steps.cuh"
@@ -23,7 +23,7 @@ __global__ void __launch_bounds__(kThreads, 3)
     float c[kCoordinates];
     load(pairs, i, c);
     for (float x : c) finite = finite && is_finite(x);
-    if (finite) found = exact::detail::screen(c, c + 9);
+    if (finite) found = exact::detail::filter(c, c + 9);
     if (found == Finding::unsure && exact::detail::shared_vertex(c, c + 9) >= 0) found = Finding::intersects;
     if (found == Finding::unsure) list = list_of(c);
   }
@@ -38,7 +38,7 @@ __global__ void __launch_bounds__(kThreads, 3)
   add_of_block(in_floats, left, list, i);
 }
 
-// Lists the finite pairs that a filter declined, and takes their bits back.
+// Lists the finite pairs that a filter declined, and clears their bits in `declined`.
 __global__ void __launch_bounds__(kThreads) list_declined(DevicePairs pairs, PairList in_floats, PairList left,
                                                           std::uint32_t* intersects, std::uint32_t* declined) {
   const std::uint32_t i = blockIdx.x * kThreads + threadIdx.x;

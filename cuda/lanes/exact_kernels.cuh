@@ -16,17 +16,18 @@ struct Lane;
 
 namespace graze::cuda {
 
-// Lists of pairs: two that the screen leaves, and what steps of the exact decision leave to others.
+// Lists of pairs: two that the filter leaves open, and those that a step of the exact decision leaves to a later one.
 inline constexpr int kExactLists = 6;
 
-// The exact decision of blocks of pairs, and the memory for what its stages leave to each other.
+// The exact decision of blocks of pairs, with the memory for the lists between its stages.
 class DeviceExact {
  public:
-  // Starts kernels that write bit i % 32 of word i / 32: intersects, declined. Words of whole thread blocks are
-  // written. Adds to stages[s], unless null, the pairs that stage s decided.
+  // Starts kernels that write bit i % 32 of word i / 32 of `intersects` and `declined`. They write the words of whole
+  // thread blocks. Unless `stages` is null, adds to stages[s] the number of pairs that stage s decided.
   void decide(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, unsigned long long* stages,
               cudaStream_t stream);
-  // Decides those pairs alone whose bit in `declined` is set: what a filter left. Those that are not finite stay so.
+  // Decides only the pairs whose bit in `declined` is set: those that a filter left open. Pairs that are not finite
+  // stay declined.
   void decide_declined(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined, cudaStream_t stream);
 
  private:
@@ -37,7 +38,7 @@ class DeviceExact {
   PairList left_[kExactLists];
 };
 
-// Starts the kernels of a CUDA lane, which write as DeviceExact::decide does.
+// Starts the kernels of a CUDA lane. They write the same words as DeviceExact::decide.
 void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of the exact decision after the screen: the pairs that it left, where floats or doubles hold all
-// determinants; then those that this left, on residues; then on 128-bit integers, or by closer bounds; then on wide
-// integers. Hard pairs are listed, so that a warp does not wait for one of them in 32. Pairs: anything with a
+// The steps of the exact decision after the filter. The first steps take the pairs whose determinants fit in floats or
+// in doubles. The next ones use residues, then 128-bit integers or closer bounds, then wide integers. Each step lists
+// the pairs that it cannot decide, so that a warp does not wait for one hard pair in 32. Pairs is any type with
 // load(pairs, i, coordinates). Device code only.
 #pragma once
 
@@ -26,7 +26,7 @@ __device__ void count(unsigned long long* stages, Stage stage, std::uint32_t pai
   if (stages && pairs) atomicAdd(&stages[static_cast<int>(stage)], static_cast<unsigned long long>(pairs));
 }
 
-// What the threads of a warp have counted, all of which call this.
+// Adds up what the threads of a warp have counted. All threads of the warp call this.
 __device__ void count_of_warp(unsigned long long* stages, Stage stage, std::uint32_t pairs) {
   for (int far = 16; far > 0; far /= 2) pairs += __shfl_xor_sync(0xffffffffu, pairs, far);
   if (threadIdx.x % 32 == 0) count(stages, stage, pairs);
@@ -34,27 +34,27 @@ __device__ void count_of_warp(unsigned long long* stages, Stage stage, std::uint
 
 __device__ void set_bit(std::uint32_t* words, std::uint32_t i) { atomicOr(&words[i / 32], 1u << i % 32); }
 
-// Whether floats hold the pair, as SingleNumbers::holds says of its grid, in fewer instructions.
+// Whether floats hold the pair. Equivalent to SingleNumbers::holds on the pair's grid, in fewer instructions.
 __device__ bool floats_hold(const float* c) {
   float most = 0;
   for (int i = 0; i < kCoordinates; ++i) most = fmaxf(most, fabsf(c[i]));
-  // The coordinates times 2^-exponent are less than 2^kSingleBits.
+  // coordinates * 2^-exponent are less than 2^kSingleBits.
   const int exponent = static_cast<int>(exact::detail::bits_of(most) >> 23) - 126 - exact::detail::kSingleBits;
   if (exponent < -30 || exponent > 30) return false;
   const float scale = __uint_as_float(static_cast<unsigned>(127 - exponent) << 23);
   bool whole = true;
   for (int i = 0; i < kCoordinates; ++i) {
     const float x = c[i] * scale;
-    whole = whole && __fadd_rn(__fadd_rn(x, 0x1.8p23f), -0x1.8p23f) == x;  // rounded to a whole number
+    whole = whole && __fadd_rn(__fadd_rn(x, 0x1.8p23f), -0x1.8p23f) == x;  // rounded to an integer
   }
   return whole;
 }
 
-// To which list of launch_exact_steps a pair goes.
+// The list of launch_exact_steps for a pair: 0 or 1.
 __device__ int list_of(const float* c) { return floats_hold(c) ? 0 : 1; }
 
-// Calls decide(coordinates, yes) for each pair of a list: it returns the stage that decided, and in `yes` whether the
-// pair intersects; or kLeft, and the pair goes to another list.
+// Calls decide(coordinates, yes) for each pair of a list. It returns the stage that decided, and sets `yes` to
+// whether the pair intersects. If it returns kLeft, the pair goes to the list `left`.
 constexpr int kLeft = exact::kStages;
 
 template <class Pairs, class Decide>
@@ -80,7 +80,7 @@ __device__ void decide_listed(const Pairs& pairs, const PairList& from, const Pa
   for (int s = 0; s < exact::kStages; ++s) count_of_warp(stages, static_cast<Stage>(s), decided[s]);
 }
 
-// Of pairs that floats hold.
+// Decides pairs that floats hold.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 3)
     decide_by_floats(Pairs pairs, PairList from, std::uint32_t* intersects, unsigned long long* stages) {
@@ -90,8 +90,8 @@ __global__ void __launch_bounds__(kThreads, 3)
   });
 }
 
-// By the smallest of the kinds that holds a pair's grid. kThreadBlocks: how many blocks of threads a multiprocessor
-// should hold at once, which limits the registers.
+// Decides by the smallest number type of Kinds that holds a pair's grid. kThreadBlocks: the number of thread blocks
+// that a multiprocessor should run at once, which limits the registers.
 template <class Kinds, int kThreadBlocks, class Pairs>
 __global__ void __launch_bounds__(kThreads, kThreadBlocks)
     decide_by(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -105,7 +105,7 @@ __global__ void __launch_bounds__(kThreads, kThreadBlocks)
   });
 }
 
-// Exactly, or by one bound for each determinant.
+// Decides in 128-bit integers where they hold the pair, else by one error bound for each determinant.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_int128(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -122,7 +122,7 @@ __global__ void __launch_bounds__(kThreads, 2)
   });
 }
 
-// By closer bounds, of twice a double's precision.
+// Decides by closer bounds, in double-double precision.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads, 2)
     decide_closely(Pairs pairs, PairList from, PairList left, std::uint32_t* intersects, unsigned long long* stages) {
@@ -133,7 +133,7 @@ __global__ void __launch_bounds__(kThreads, 2)
   });
 }
 
-// By these bounds, and the determinants that they leave open in wide integers.
+// Decides by the same bounds; determinants that they leave open are computed in wide integers.
 template <class Pairs>
 __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairList from, PairList left,
                                                               std::uint32_t* intersects, unsigned long long* stages) {
@@ -148,8 +148,8 @@ __global__ void __launch_bounds__(kThreads) decide_one_by_one(Pairs pairs, PairL
 
 constexpr int kBlocksForLeft = 1024;
 
-// Of pairs that no small grid holds: the first of four lists; the others are for what one step leaves to the next, and
-// empty.
+// Decides pairs whose grid is too large for the small number types. `left` has four lists: the pairs to decide, then
+// three empty ones for what a step leaves to the next.
 template <class Pairs>
 void launch_large_steps(const Pairs& pairs, const PairList* left, std::uint32_t* intersects, unsigned long long* stages,
                         cudaStream_t stream) {
@@ -161,8 +161,8 @@ void launch_large_steps(const Pairs& pairs, const PairList* left, std::uint32_t*
   check(cudaGetLastError());
 }
 
-// Decides the pairs of the first two lists, the first those that floats hold; the other ones are for what the steps
-// leave to each other, and empty.
+// Decides the pairs of the first two lists; floats hold those of the first. The other lists must be empty: the steps
+// fill them.
 template <class Pairs>
 void launch_exact_steps(const Pairs& pairs, const PairList (&left)[kExactLists], std::uint32_t* intersects,
                         unsigned long long* stages, cudaStream_t stream) {

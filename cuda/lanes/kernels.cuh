@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device lanes' kernels, in tables [algorithm][scalar], one for each device variant in a namespace of its own.
+// The kernels of the device lanes, in tables [algorithm][scalar]. Each device variant has a table in its own namespace.
 // Device code only; see cuda/lanes/device.h.
 #pragma once
 
@@ -17,14 +17,14 @@ namespace graze::cuda {
 
 inline constexpr int kThreads = 256;
 
-// Starts a kernel that writes bit i % 32 of word i / 32: intersects, declined. Words of whole thread blocks are
-// written.
+// Starts a kernel that writes bit i % 32 of word i / 32 of `intersects` and `declined`. It writes the words of whole
+// thread blocks.
 using LaunchDecide = void (*)(DevicePairs pairs, std::uint32_t* intersects, std::uint32_t* declined,
                               cudaStream_t stream);
 // Starts a kernel that writes each pair's trace hash; see cuda/lanes/trace.h.
 using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStream_t stream);
 
-// As LaunchDecide, of lanes under tolerances.
+// As LaunchDecide, for lanes with tolerances.
 using LaunchWithin = void (*)(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects,
                               std::uint32_t* declined, cudaStream_t stream);
 
@@ -38,7 +38,7 @@ struct VariantKernels {
 
 constexpr std::uint32_t thread_blocks(const DevicePairs& pairs) { return (pairs.count + kThreads - 1) / kThreads; }
 
-// Throws: std::logic_error for a variant that no kernel is built in.
+// Throws: std::logic_error for a variant without kernels.
 const VariantKernels& kernels_of(Variant variant);
 
 }  // namespace graze::cuda

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs per second of each CUDA lane on pairs that already lie in the device's memory, by stratum; and beside them what
-// bounds them, the memory: a copy, and a kernel that only reads the pairs (72 bytes each) and writes a bit.
-// The exact lane must first give the host's bits on a sample. Prints a line and succeeds where there is no device.
+// Pairs per second of each CUDA lane, by stratum, on pairs in device memory. For comparison, the limits set by memory:
+// a copy, and a kernel that only reads the pairs (72 bytes each) and writes a bit.
+// Before that, the exact lane must give the same bits as the host on a sample. Without a device, prints a line and
+// succeeds.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -37,9 +38,9 @@ namespace {
 constexpr std::uint32_t kPairs = 1u << 24;
 constexpr std::size_t kFloats = std::size_t{kPairs} * kCoordinates;
 constexpr std::uint32_t kSample = 1u << 16;
-constexpr int kLaunches = 4;  // timed together, so that a launch's own microseconds do not count
+constexpr int kLaunches = 4;  // timed together, to make the few microseconds of a launch negligible
 
-// The pairs of one stratum at a time, and the memory that the lanes write.
+// The pairs of one stratum, and the memory to which the lanes write.
 struct Resident {
   int stratum = -1;
   DeviceArray<float> coordinates, copy;
@@ -68,7 +69,7 @@ __global__ void read_pairs(DevicePairs pairs, std::uint32_t* bits) {
   if (threadIdx.x % 32 == 0) bits[i / 32] = word;
 }
 
-// Counts items (pairs) and bytes for each launch.
+// Reports items (pairs) and bytes for each launch.
 template <class Launch>
 void measure(benchmark::State& state, double items, double bytes, const Launch& launch) {
   const Event start, stop;
@@ -90,13 +91,13 @@ void measure(benchmark::State& state, double items, double bytes, const Launch& 
 
 using Bits = std::vector<std::uint64_t>;
 
-// The first `count` resident pairs, to `columns`: 18 arrays of that length, as they lie on the device.
+// Copies the first `count` pairs from the device to `columns`: 18 arrays of that length.
 void fetch(Resident& resident, std::size_t count, float* columns) {
   check(cudaMemcpy2D(columns, count * sizeof(float), resident.pairs().coordinates, kPairs * sizeof(float),
                      count * sizeof(float), kCoordinates, cudaMemcpyDeviceToHost));
 }
 
-// The verdicts of the host's exact lane on pairs [first, first + count) of `stride` fetched ones.
+// The verdicts of the host's exact lane on pairs [first, first + count) in columns of length `stride`.
 // Requires: count is a multiple of 64.
 Bits by_host(const Lane& host, const float* columns, std::size_t stride, std::size_t first, std::size_t count) {
   std::vector<Pair> pairs(count);
@@ -114,7 +115,7 @@ Bits by_device(Resident& resident, std::size_t count) {
   return intersects;
 }
 
-// Decides the resident pairs, and returns in stages by whom.
+// Decides the pairs in device memory and returns how many pairs each stage decided.
 void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
   unsigned long long* counts = resident.stages.at_least(exact::kStages);
   check(cudaMemset(counts, 0, sizeof stages));
@@ -122,8 +123,8 @@ void decide(Resident& resident, unsigned long long (&stages)[exact::kStages]) {
   check(cudaMemcpy(stages, counts, sizeof stages, cudaMemcpyDeviceToHost));
 }
 
-// Rounds [first, end) of every stratum, each of kPairs pairs, by device and host: one line for each, with hashes of the
-// verdicts.   Returns: whether none differs.
+// Compares device and host on rounds [first, end) of every stratum, kPairs pairs in each. Prints a line for each, with
+// hashes of the verdicts.   Returns: whether there is no difference.
 bool device_is_host(std::uint64_t first, std::uint64_t end) {
   if (first >= end) throw std::invalid_argument("expected FIRST below END");
   const Lane& host = *(&lanes().back() - 1);
@@ -154,7 +155,7 @@ bool device_is_host(std::uint64_t first, std::uint64_t end) {
       threads.clear();
       Bits of_host;
       for (const Bits& part : parts) of_host.insert(of_host.end(), part.begin(), part.end());
-      Bits of_device(kPairs / 64);  // declined ones count as well: there are none
+      Bits of_device(kPairs / 64);  // counts declined pairs as differences, because there must be none
       check(cudaMemcpy(of_device.data(), resident.declined_bits(), kPairs / 8, cudaMemcpyDeviceToHost));
       for (const std::uint64_t declined : of_device) differ += static_cast<std::uint64_t>(std::popcount(declined));
       of_device = by_device(resident, kPairs);
@@ -175,7 +176,7 @@ void measure_lane(benchmark::State& state, Resident& resident, int stratum, cons
   resident.hold(stratum);
   if (lane.exact) {
     unsigned long long stages[exact::kStages];
-    const Lane& host = *(&lane - 1);  // exact/f32/cpu stands before exact/f32/cuda
+    const Lane& host = *(&lane - 1);  // exact/f32/cpu is the row before exact/f32/cuda
     decide(resident, stages);
     std::vector<float> columns(kSample * kCoordinates);
     fetch(resident, kSample, columns.data());
@@ -189,7 +190,7 @@ void measure_lane(benchmark::State& state, Resident& resident, int stratum, cons
   });
 }
 
-// All that a sweep of 64 tolerances takes, drawing and judging the pairs included.
+// The total time of a sweep over 64 tolerances, including drawing and judging the pairs.
 void measure_sweep(benchmark::State& state, const Lane& lane, const std::string& form) {
   strata::PairSource source = strata::stratum_sources(1, 1u << 28, {"near_edge_edge"}).front();
   std::vector<Lane> under;

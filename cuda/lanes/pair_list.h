@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists of pairs of a block that one step leaves to another, and how a pair is read; on host and device alike.
+// Lists of pairs that one step leaves to another, and access to a pair's coordinates; for host and device.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace graze::cuda {
 
-// Pairs of a block by place.
+// Indices of pairs in a block.
 struct PairList {
   std::uint32_t* at;
   std::uint32_t* count;
 
-  // On a device: one atomic operation for all threads of a warp that add to this list, for they all meet at one
-  // address. On the host: one thread at a time.
+  // On a device: one atomic operation for all threads of a warp that add to this list, because they all use the same
+  // counter. On the host: not thread-safe.
   GRAZE_HD void add(std::uint32_t place) const {
 #ifdef __CUDA_ARCH__
     const unsigned together = __match_any_sync(__activemask(), reinterpret_cast<unsigned long long>(count));
@@ -32,8 +32,9 @@ struct PairList {
 };
 
 #ifdef __CUDACC__
-// Adds the places of a block's threads to two lists, at most one each: which is 0, 1 or -1. All its threads call this.
-// One atomic operation for a block and list: a list's count, where all of a kernel's blocks meet, bears one in 0.7 ns.
+// Adds the indices of a thread block to two lists; `which` is 0 or 1, or -1 for neither. All threads of the block call
+// this. It makes one atomic operation for each block and list, because one counter takes only one such operation in 0.7
+// ns.
 __device__ inline void add_of_block(const PairList& first, const PairList& second, int which, std::uint32_t place) {
   __shared__ std::uint32_t begins[2][32];
   if (!__syncthreads_or(which >= 0)) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled with -fmad=false: the strata's bits are those of the host only without contraction.
+// Compiled with -fmad=false: without contraction the strata have the same bits as on the host.
 #include "cuda/lanes/stratum_kernels.cuh"
 
 #include <tbb/blocked_range.h>
@@ -16,7 +16,7 @@ namespace graze::cuda {
 inline namespace GRAZE_FP {
 namespace {
 
-// A kernel for each stratum: one for all would need the registers and the stack of the most expensive.
+// A kernel for each stratum. A single kernel would need the registers and stack of the most expensive stratum.
 template <strata::Stratum stratum>
 __global__ void generate_pairs(float* coordinates, std::uint32_t count, std::uint64_t seed, std::uint64_t first) {
   const std::uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
@@ -99,7 +99,7 @@ void Drawing::draw(const strata::PairSource& source, std::uint64_t first, std::u
         for (std::size_t c = 0; c < kCoordinates; ++c) brought_[c * count + i] = coordinates(pair)[c];
       }
     });
-    // Of memory that is not pinned: what is to be copied has been read when this returns.
+    // The memory is not pinned, so the copy has read it when this returns.
     check(cudaMemcpyAsync(to, brought_.data(), brought_.size() * sizeof(float), cudaMemcpyHostToDevice, stream));
   }
   check(cudaGetLastError());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of a stratum as a block, in a scene or in none, and counts of what differs between two runs. Device code only.
+// Kernels that draw blocks of pairs from a stratum, with or without a scene, and that count differences between two
+// runs. Device code only.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -14,7 +15,7 @@ namespace graze::cuda {
 
 inline constexpr std::uint32_t kExamples = 8;
 
-// Differences found, and the first few places found; in no particular order.
+// The number of differences, and the indices of the first few found, in no particular order.
 struct Differences {
   unsigned long long count;
   std::uint64_t places[kExamples];
@@ -24,7 +25,8 @@ struct Differences {
 void launch_generate(float* coordinates, std::uint32_t count, std::uint64_t seed, int stratum, std::uint64_t first,
                      cudaStream_t stream);
 
-// A source's pairs on a device: drawn there where its kernels can, else by all cores here and copied.
+// Brings a source's pairs to a device. They are drawn on the device if it has the kernels, else by all CPU cores and
+// copied.
 class Drawing {
  public:
   // Writes pairs [first, first + count) as 18 arrays of `count`, in the stream's order.
@@ -35,7 +37,7 @@ class Drawing {
   std::vector<float> brought_;
 };
 
-// Adds the set bits of (a ^ b): bit i % 32 of word i / 32 is place i. Bits from `count` on do not count.
+// Counts the set bits of (a ^ b), where bit i % 32 of word i / 32 is index i. Bits from `count` on are ignored.
 void launch_compare_bits(const std::uint32_t* a, const std::uint32_t* b, std::uint32_t count, std::uint64_t first,
                          Differences* differences, cudaStream_t stream);
 void launch_compare_hashes(const std::uint64_t* a, const std::uint64_t* b, std::uint32_t count, std::uint64_t first,

@@ -11,7 +11,7 @@
 namespace graze::cuda {
 inline namespace GRAZE_FP {
 
-// Order matters. Any NaN counts as one value: processors differ in their signs and payloads.
+// The order of the values matters. All NaNs count as one value, because processors differ in their signs and payloads.
 struct TracePolicy {
   std::uint64_t* hash;
 

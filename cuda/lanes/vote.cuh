@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair for each thread, and a bit for each of its verdicts. Device code only, in the namespace of its build variant.
+// Decides a pair in each thread and writes a bit for its verdict. In its build variant's namespace. Device code only.
 #pragma once
 
 #include "core/vec3.h"
@@ -24,7 +24,7 @@ __device__ Triangles<Real> widened(const DevicePairs& pairs, std::uint32_t i) {
   return {{vertex(0), vertex(1), vertex(2)}, {vertex(3), vertex(4), vertex(5)}};
 }
 
-// Writes bit i % 32 of word i / 32 for the pair i of this thread: intersects, declined.
+// Decides pair i of this thread and writes bit i % 32 of word i / 32 of `intersects` and `declined`.
 template <class Real, class Decide>
 __device__ void vote(const DevicePairs& pairs, std::uint32_t* intersects, std::uint32_t* declined,
                      const Decide& decide) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Queries on a device: chunks go through slots, two or three at a time, so that the host's part of one chunk (packing,
-// taking results), the copies of another and the kernels of a third overlap. Triangles in the device's own memory are
-// read where they are, those of the host come through pinned memory; each slot has a stream of its own.
+// Queries on a device. Chunks go through two or three slots, each with its own stream. So the host's work on one chunk
+// (packing, taking results) overlaps with the copies of another and the kernels of a third. Triangles in the device's
+// memory are read in place; those of the host come through pinned memory.
 #include "cuda/query/device_query.h"
 
 #include <cuda_runtime.h>
@@ -25,7 +25,7 @@ namespace {
 constexpr std::uint64_t kFirstOfAny = 1 << 12, kFirstOfAll = 1 << 20, kFirstResident = 1 << 25, kGrowth = 8;
 constexpr std::uint64_t kMostResident = 1 << 27, kMostStreamed = 1 << 20, kMostOfLane = 1 << 20;
 
-// Pinned memory of the host that grows and is freed with its owner.
+// Pinned host memory that grows and is freed with its owner.
 template <class T>
 class PinnedArray {
  public:
@@ -62,12 +62,12 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-// What kernels of a chunk write.
+// The outputs of a chunk's kernels.
 struct Verdicts {
   DeviceArray<std::uint32_t> hits, declined, lists, counts, not_finite;
   DeviceArray<float> columns, triangles;
   DeviceArray<QueryCounts> found;
-  DeviceExact exact;  // of a filtered lane
+  DeviceExact exact;  // of a lane with a filter
 };
 
 struct Slot {
@@ -77,10 +77,10 @@ struct Slot {
   PinnedArray<float> triangles;
   PinnedArray<std::uint64_t> hits, declined;
   PinnedArray<QueryCounts> found;
-  std::optional<QueryRange> range;  // what it is at
+  std::optional<QueryRange> range;  // the range in progress
 };
 
-// Copies or packs the triangles to where a device can fetch them fast.
+// Copies or packs the triangles into memory from which a device copies fast.
 void pack(const TriangleArray& array, std::uint64_t first, std::uint64_t count, float* to) {
   constexpr std::uint64_t kPart = 1 << 14;
   tbb::parallel_for(std::uint64_t{0}, (count + kPart - 1) / kPart, [&](std::uint64_t part) {
@@ -113,16 +113,17 @@ class Run {
     most_ = std::max<std::uint64_t>(1 << 12, most_ / references_.size() / 64 * 64);
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all));
-    // Of the lists, the verdicts and, where they are copied, the triangles in all slots; at most half of what is free.
+    // Bytes per triangle in all slots: lists, verdicts and, where copied, the triangles. At most half of the free
+    // memory.
     const std::size_t bytes = (resident_ ? 32 : 3 * 60) + references_.size() + (question.lane->exact ? 0 : 3 * 76);
     while (most_ > 1 << 12 && most_ * bytes > free / 2) most_ /= 2;
-    // The time that a launch may take is not known to be too short for the first ones.
+    // The first chunks may be large if the time that a launch may take is not very short.
     const bool at_leisure = resident_ && question.lane->exact && question.launch_seconds >= 0.05;
     if (resident_ && !question.stream) wait_for_default_stream();
     chunk_ = std::min(most_, question.any ? kFirstOfAny : at_leisure ? kFirstResident : kFirstOfAll);
   }
 
-  // However a run ends, nothing of it may still be running: the caller's memory goes.
+  // However a run ends, none of its work may still be in progress, because the caller frees the memory.
   ~Run() {
     bool busy = false;
     for (int k = 0; k < kSlots; ++k) busy = std::exchange(slots_[k].range, std::nullopt) || busy;
@@ -145,17 +146,17 @@ class Run {
   static constexpr int kSlots = 3;
 
  private:
-  // Our streams do not wait for the default one, on which the caller may just have copied triangles: cudaMemcpy from
-  // pageable memory returns before they have arrived.
+  // Our streams do not wait for the default stream, on which the caller may just have copied triangles. A cudaMemcpy
+  // from pageable memory returns before the data has arrived.
   void wait_for_default_stream() {
     check(cudaEventRecord(slots_[0].start, cudaStreamLegacy));
     for (int k = 0; k < kSlots; ++k) check(cudaStreamWaitEvent(slots_[k].stream, slots_[0].start));
   }
 
-  // On the caller's stream chunks follow each other, so that slots can share what kernels write. On ours the last steps
-  // of one chunk, which have little to do, overlap with the first ones of the next.
+  // On the caller's stream chunks run one after another, so slots can share the kernels' outputs. On our streams the
+  // last steps of a chunk, which do little work, overlap with the first steps of the next.
   void start(Slot& slot, Slot& shared, const QueryRange& range) {
-    failed_ = true;  // until all of it is started
+    failed_ = true;  // until everything is started
     const auto count = static_cast<std::uint32_t>(range.count);
     const cudaStream_t stream =
         resident_ && question_.stream ? static_cast<cudaStream_t>(question_.stream) : cudaStream_t{shared.stream};
@@ -214,7 +215,7 @@ class Run {
     launch_decline(words, not_finite, hits, declined, stream);
   }
 
-  // The caller's outputs in the memory of the device.
+  // Writes the caller's outputs in device memory.
   void put(const QueryRange& range, std::size_t r, const std::uint32_t* hits, const std::uint32_t* declined,
            cudaStream_t stream) {
     const auto count = static_cast<std::uint32_t>(range.count);
@@ -234,7 +235,7 @@ class Run {
     const double seconds = milliseconds / 1000.0;
     record_.longest = std::max(record_.longest, seconds);
     ++record_.chunks;
-    // The next chunk is larger while it then takes less than half of the time that a launch may take.
+    // The next chunk may grow as long as it would take less than half of the time that a launch may take.
     const double fitting = static_cast<double>(range.count) * question_.launch_seconds / 2 / std::max(seconds, 1e-9);
     const std::uint64_t wanted = std::min(most_, std::max(chunk_, range.count * kGrowth));
     chunk_ = fitting < static_cast<double>(wanted) ? static_cast<std::uint64_t>(fitting) : wanted;
@@ -258,7 +259,7 @@ class Run {
   LaunchRecord record_;
 };
 
-// Makes a device the current one, and at its end that which was before: the thread is the caller's.
+// Makes a device current, and restores the caller's device at the end.
 class Current {
  public:
   explicit Current(int device) {
@@ -268,7 +269,7 @@ class Current {
   Current(const Current&) = delete;
   Current& operator=(const Current&) = delete;
   ~Current() {
-    cudaGetLastError();  // of a call that failed here, or whoever asks next would find it
+    cudaGetLastError();  // of a call that failed here; otherwise the next check would report it
     cudaSetDevice(before_);
   }
 

@@ -18,7 +18,7 @@ class Memory final : public DeviceMemory {
     try {
       data = memory_.at_least(wanted);
     } catch (const DeviceFailure&) {
-      cudaGetLastError();  // or the next check would find it
+      cudaGetLastError();  // otherwise the next check would report it
       throw;
     }
     bytes = wanted;
@@ -30,9 +30,9 @@ class Memory final : public DeviceMemory {
     std::size_t done = std::min(block, bytes);
     char* to = static_cast<char*>(data);
     check(cudaMemcpy(to, from, done, cudaMemcpyHostToDevice));
-    for (; done < bytes; done += std::min(done, bytes - done))  // whole blocks but at the end
+    for (; done < bytes; done += std::min(done, bytes - done))  // whole blocks except at the end
       check(cudaMemcpy(to + done, to, std::min(done, bytes - done), cudaMemcpyDeviceToDevice));
-    check(cudaDeviceSynchronize());  // a copy from pageable memory returns before it has arrived
+    check(cudaDeviceSynchronize());  // a copy from pageable memory returns before the data has arrived
   }
 
   void fetch(void* to, std::size_t count) const override {

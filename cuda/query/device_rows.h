@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory of a device for those who need no CUDA but a device: benchmarks and tests. And what bounds a query there, the
-// speeds of a copy within the device and of one from the host.
+// Device memory for benchmarks and tests that do not include CUDA. Also measures the copy speeds that bound a query:
+// within the device, and from the host.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@ namespace graze::cuda {
 class DeviceMemory {
  public:
   virtual ~DeviceMemory() = default;
-  // Copies `bytes` to its beginning, and those again and again behind them to its end.   Throws: DeviceFailure.
+  // Copies `bytes` bytes to the start of the memory, then repeats them up to its end.   Throws: DeviceFailure.
   virtual void fill(const void* from, std::size_t bytes) = 0;
-  // The other way.   Throws: DeviceFailure.
+  // Copies the first `bytes` bytes back to the host.   Throws: DeviceFailure.
   virtual void fetch(void* to, std::size_t bytes) const = 0;
   void* data = nullptr;
   std::size_t bytes = 0;
@@ -25,11 +25,11 @@ class DeviceMemory {
 std::unique_ptr<DeviceMemory> device_memory(int device, std::size_t bytes);
 
 struct DeviceSpeeds {
-  double copy = 0;       // bytes read and bytes written, each second
-  double to_device = 0;  // bytes from pinned memory each second
+  double copy = 0;       // bytes read plus bytes written, per second
+  double to_device = 0;  // bytes from pinned host memory, per second
 };
 
-// The best of a few copies of so many bytes.   Throws: DeviceFailure.
+// The best of a few copies of `bytes` bytes.   Throws: DeviceFailure.
 DeviceSpeeds measure_speeds(int device, std::size_t bytes);
 
 }  // namespace graze::cuda

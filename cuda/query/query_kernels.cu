@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows the slabs: small grids, the screen in doubles, the steps of the exact decision, counts, and pairs for
-// other lanes.
+// The steps after the slabs: pairs on small grids, the filter in doubles, the exact decision and counts. Also writes
+// pairs for other lanes.
 #include "cuda/query/query_kernels.cuh"
 
 #include "cuda/lanes/exact_steps.cuh"
@@ -8,7 +8,7 @@
 namespace graze::cuda {
 namespace {
 
-// How the steps of the exact decision read a pair.
+// The pairs as the steps of the exact decision read them.
 struct QueryPairs {
   exact::PreparedTriangle reference;
   QueryChunk chunk;
@@ -19,8 +19,8 @@ __device__ void load(const QueryPairs& pairs, std::uint32_t i, float* c) {
   pairs.chunk.array.load(pairs.chunk.first + i, c + 9);
 }
 
-// Decides what is listed: by numbers of its grid where that is small, as where triangles touch it often is. What is not
-// finite is declined.
+// Decides the listed triangles whose grid is small, as it often is where triangles touch. Triangles that are not finite
+// are declined.
 __global__ void __launch_bounds__(kThreads, 2)
     decide_on_grid(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits,
                    std::uint32_t* declined) {
@@ -44,14 +44,14 @@ __global__ void __launch_bounds__(kThreads, 2)
   }
 }
 
-// The screen in doubles for those that this left.
+// The filter in doubles, for the triangles that decide_on_grid leaves open.
 __global__ void __launch_bounds__(kThreads, 3)
-    screen_listed(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
+    filter_listed(const __grid_constant__ QueryPairs pairs, PairList from, PairList left, std::uint32_t* hits) {
   for (std::uint32_t n = blockIdx.x * kThreads + threadIdx.x; n < *from.count; n += gridDim.x * kThreads) {
     const std::uint32_t i = from.at[n];
     float c[kCoordinates];
     load(pairs, i, c);
-    const Finding found = exact::detail::screen(c, c + 9);
+    const Finding found = exact::detail::filter(c, c + 9);
     if (found == Finding::crosses) set_bit(hits, i);
     if (found == Finding::unsure) left.add(i);
   }
@@ -130,12 +130,12 @@ void launch_exact_query(const exact::PreparedTriangle& reference, const QueryChu
   check(cudaMemsetAsync(counts, 0, kQueryLists * sizeof *counts, stream));
   check(cudaMemsetAsync(declined, 0, row_words(chunk.count) * sizeof *declined, stream));
   const QueryPairs pairs{reference, chunk};
-  // Each list takes the memory of the one before the last, which nobody needs any more.
+  // Each list reuses the memory of the list before the previous one, which is no longer needed.
   PairList left[kQueryLists];
   for (std::uint32_t k = 0; k < kQueryLists; ++k) left[k] = {lists + (k % 2) * chunk.count, counts + k};
   launch_slabs(reference, chunk, left[0], hits, stream);
   decide_on_grid<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[0], left[1], hits, declined);
-  screen_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], hits);
+  filter_listed<<<kBlocksForLeft, kThreads, 0, stream>>>(pairs, left[1], left[2], hits);
   launch_large_steps(pairs, left + 2, hits, nullptr, stream);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels of a query, as their launchers see them. Device code only.
+// The kernels of a query, as seen by the code that launches them. Device code only.
 #pragma once
 
 #include <cuda_runtime.h>
@@ -20,33 +20,35 @@ struct QueryChunk {
   std::uint32_t count;
 };
 
-// The words of 32 bits that a row of verdicts takes: whole thread blocks of every kernel.
+// The number of 32-bit words in a row of verdicts: a whole number of thread blocks of every kernel.
 constexpr std::uint32_t row_words(std::uint32_t count) { return (count + 255) / 256 * 8; }
 
 inline constexpr int kQueryLists = 6;
 
-// What the slabs of the reference and the screen in floats show of a chunk: all words of `hits` are written, and what
-// is left open is listed.
+// Decides triangles of a chunk by the reference's slabs and the filter in floats. It writes all words of `hits`, and
+// lists in `left` the triangles that remain open.
 void launch_slabs(const exact::PreparedTriangle& reference, const QueryChunk& chunk, PairList left, std::uint32_t* hits,
                   cudaStream_t stream);
 
-// The exact verdicts on a chunk: bit i % 32 of word i / 32. `lists`: room for 2 * count places; `counts`: kQueryLists.
+// Writes the exact verdicts on a chunk as bits i % 32 of words i / 32. `lists` has room for 2 * count indices, `counts`
+// has kQueryLists counters.
 void launch_exact_query(const exact::PreparedTriangle& reference, const QueryChunk& chunk, std::uint32_t* lists,
                         std::uint32_t* counts, std::uint32_t* hits, std::uint32_t* declined, cudaStream_t stream);
 
-// The chunk as pairs with the reference, 18 columns of row_words(count) * 32; and which triangles are not finite.
+// Writes each triangle of the chunk as a pair with the reference: 18 columns of row_words(count) * 32 floats. Also
+// marks the triangles that are not finite.
 void launch_pair_up(const exact::PreparedTriangle& reference, const QueryChunk& chunk, float* columns,
                     std::uint32_t* not_finite, cudaStream_t stream);
 
-// Turns verdicts on what is not finite into declined ones.
+// Changes the verdicts on triangles that are not finite to declined.
 void launch_decline(std::uint32_t words, const std::uint32_t* not_finite, std::uint32_t* hits, std::uint32_t* declined,
                     cudaStream_t stream);
 
-// Adds to counts, which the caller has set up, what the first (count + 31) / 32 words say.
+// Adds the counts of the first (count + 31) / 32 words to `counts`, which the caller initialises.
 void launch_count(std::uint32_t count, const std::uint32_t* hits, const std::uint32_t* declined, QueryCounts* counts,
                   cudaStream_t stream);
 
-// Takes from the first row's declined ones those behind the first hit of all rows.
+// Subtracts from the first row's declined count the triangles after the first hit of all rows.
 void launch_forget_behind(std::uint32_t count, const std::uint32_t* declined, QueryCounts* counts, std::uint32_t rows,
                           cudaStream_t stream);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A warp takes tiles of triangles, which it fetches ahead into shared memory by asynchronous copies: the memory's speed
-// bounds all of this. The slabs of the reference decide most triangles; those that they leave open are queued until
-// there are 32, or their tile has to go, and the screen in floats decides them together; what that leaves, one in a
-// hundred or so, is listed.
+// Each warp takes tiles of triangles and prefetches them into shared memory by asynchronous copies. Memory bandwidth
+// bounds the kernel. The reference's slabs decide most triangles. The others are queued until there are 32 or their
+// tile is about to be overwritten; then the filter in floats decides them together. It leaves about one in a hundred,
+// which are listed.
 #include <cuda_pipeline_primitives.h>
 
 #include <algorithm>
@@ -15,20 +15,20 @@ namespace {
 
 using exact::detail::Finding;
 
-constexpr std::uint32_t kEach = 4, kTile = 32 * kEach, kTileFloats = 9 * kTile;  // kEach: triangles of a thread
-// Tiles: fetched ahead, the one at hand, and those before it of which some triangles may still be queued.
+constexpr std::uint32_t kEach = 4, kTile = 32 * kEach, kTileFloats = 9 * kTile;  // kEach: triangles for each thread
+// Tiles: prefetched ones, the current one, and earlier ones that may still have queued triangles.
 constexpr std::uint32_t kAhead = 2, kKept = 1, kStages = kAhead + 1 + kKept, kQueue = 256, kUnsure = 64;
-constexpr std::uint32_t kWarps = 6, kBlocks = 2;  // kBlocks: of a multiprocessor, which has shared memory for so many
+constexpr std::uint32_t kWarps = 6, kBlocks = 2;  // kBlocks: for each multiprocessor, as its shared memory allows
 constexpr std::uint32_t kAll = 0xffffffffu;
 
 struct WarpMemory {
   alignas(16) float tile[kStages][kTileFloats];
   std::uint32_t hits[kStages][kEach];
   std::uint32_t unsure[kUnsure];
-  std::uint16_t queue[kQueue];  // stage * kTile + place in the tile; first in, first out
+  std::uint16_t queue[kQueue];  // stage * kTile + index in the tile; first in, first out
 };
 
-// Starts to fetch the tile; zeros where it lies beyond the end.
+// Starts to fetch a tile. Triangles beyond the end become zeros.
 __device__ void fetch(const QueryChunk& chunk, bool by_vectors, std::uint32_t tile, float* to) {
   const std::uint32_t lane = threadIdx.x % 32;
   const std::uint64_t at = std::uint64_t{tile} * kTile;
@@ -50,10 +50,10 @@ __device__ std::uint32_t lanes_before(std::uint32_t lanes) {
   return static_cast<std::uint32_t>(__popc(lanes & ((1u << threadIdx.x % 32) - 1)));
 }
 
-// Queues what the slabs leave open of a tile.   Returns: the queue's new end.
+// Queues the triangles of a tile that the slabs leave open.   Returns: the queue's new end.
 __device__ std::uint32_t queue_open(const exact::PreparedTriangle& reference, WarpMemory& warp, std::uint32_t stage,
                                     std::uint32_t end) {
-  // Four bytes times 9 kEach: as many as these have, so no two threads read from one bank at once.
+  // Each thread reads nine vectors of 4 kEach bytes. Nine is odd, so no two threads read from one bank at once.
   struct alignas(4 * kEach) Vector {
     float v[kEach];
   };
@@ -76,7 +76,7 @@ __device__ std::uint32_t queue_open(const exact::PreparedTriangle& reference, Wa
   return end;
 }
 
-// Lists `count` of the unsure ones, the last that came.
+// Moves the last `count` unsure triangles to the list.
 __device__ void list(const WarpMemory& warp, std::uint32_t unsure, std::uint32_t count, PairList left) {
   const std::uint32_t lane = threadIdx.x % 32;
   std::uint32_t first = 0;
@@ -85,7 +85,7 @@ __device__ void list(const WarpMemory& warp, std::uint32_t unsure, std::uint32_t
   if (lane < count) left.at[first + lane] = warp.unsure[unsure - count + lane];
 }
 
-// Writes the hits of a tile, and forgets them.
+// Writes the hits of a tile and clears them.
 __device__ void give(WarpMemory& warp, std::uint32_t stage, std::uint32_t tile, std::uint32_t* hits) {
   const std::uint32_t lane = threadIdx.x % 32;
   if (lane >= kEach) return;
@@ -110,14 +110,14 @@ __global__ void __launch_bounds__(kWarps * 32, kBlocks)
     __pipeline_wait_prior(kAhead);
     __syncwarp();
     for (std::uint32_t k = kKept; k > 1; --k) due[k] = due[k - 1];
-    due[1] = end;  // what was queued kKept tiles ago has to go: the next fetch takes its memory
+    due[1] = end;  // decide what was queued kKept tiles ago, because the next fetch overwrites its memory
     end = queue_open(reference, warp, stage, end);
     const bool last = tile + step >= tiles;
     __syncwarp();
     while (end - begin >= 32 || begin < due[kKept] || (last && begin < end)) {
       const bool some = begin + lane < end;
       const std::uint32_t entry = warp.queue[(some ? begin + lane : begin) % kQueue];
-      const Finding found = exact::detail::screen_in_floats(reference, warp.tile[0] + 9 * entry);
+      const Finding found = exact::detail::filter_in_floats(reference, warp.tile[0] + 9 * entry);
       if (some && found == Finding::crosses) atomicOr(&warp.hits[0][entry / 32], 1u << entry % 32);
       const std::uint32_t age = (stage + kStages - entry / kTile) % kStages;
       const std::uint32_t i = (tile - age * step) * kTile + entry % kTile;

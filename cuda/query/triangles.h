@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An array of triangles as its owner has it: nine floats each, with a stride; nine columns; or corners of a mesh. In
-// the memory of the host or of a device, and read by either.
+// An array of triangles in its owner's layout: rows of nine floats with a stride, nine columns, or an indexed mesh. The
+// array lies in host or device memory and can be read in either.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +16,17 @@ enum class Layout : std::uint8_t { rows, columns, mesh };
 struct TriangleArray {
   Layout layout = Layout::rows;
   const char* rows = nullptr;      // nine floats each
-  const float* columns[9] = {};    // of x y z of each vertex
+  const float* columns[9] = {};    // x, y, z of each vertex
   const char* vertices = nullptr;  // three floats each
   const char* faces = nullptr;     // three std::uint32_t each
-  std::size_t stride = 36;         // bytes from a row to the next, from an element of a column, or from a face
+  std::size_t stride = 36;         // bytes between consecutive rows, elements of a column, or faces
   std::size_t vertex_stride = 12;
   std::uint64_t vertex_count = 0;
   std::uint64_t count = 0;
 
   GRAZE_HD static float read(const char* at) { return *reinterpret_cast<const float*>(at); }
 
-  // A face of a vertex that is not there has coordinates that are no numbers.
+  // A face with a vertex index that is out of range gets NaN coordinates.
   GRAZE_HD void load(std::uint64_t i, float* t) const {
     if (layout == Layout::rows) {
       const char* row = rows + i * stride;

@@ -47,7 +47,7 @@ twin::Module module_of(const CudaBuild& build, const fs::path& source) {
   return twin::reduced(module, kSubjectKernel);
 }
 
-// Whether ptxas gives the same code for the PTX and for the explicit one. What it said is kept: a file of one digit.
+// Whether ptxas gives the same code for the PTX and for the explicit PTX. The result is cached in a file of one digit.
 bool same_machine_code(const CudaBuild& build, const twin::Module& module, const fs::path& ptxas,
                        const fs::path& cache) {
   std::ostringstream written;
@@ -101,7 +101,7 @@ std::vector<CudaBuild> build_cuda_subject(const fs::path& source, const std::str
       scalar_of(text, source, function, [&](const std::string& whole) { return compile(Variant::cuda_nofma, whole); });
   const std::string whole = wrapped(text, source, function, scalar);
   std::vector<CudaBuild> builds;
-  twin::Lines by_hand;  // lines with an fma without contraction too
+  twin::Lines by_hand;  // lines that have an fma even without contraction
   for (const Variant variant : {Variant::cuda_nofma, Variant::cuda_fma, Variant::cuda_fast, Variant::cuda_ftz}) {
     CudaBuild& build = builds.emplace_back();
     build.variant = variant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of users' files, and that builds are kept and the same each time.
+// Error messages about users' files; builds are cached and reproducible.
 #include "cuda/subject/cuda_subject.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ class CudaSubject : public testing::Test {
                                const std::vector<std::string>& flags = {}) const {
     return build_cuda_subject(file(text), function, flags, scratch_.path() / "cache");
   }
-  // What is said of the text, without the folder.
+  // The error message about the text, without the folder.
   std::string complaint(const std::string& text, const std::string& function = "intersects") const {
     try {
       build(text, function);
@@ -145,10 +145,10 @@ TEST_F(CudaSubject, HasTwinsOfWhatPeopleWrite) {
           "u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x); }\n__global__ void other(float* x) { x[0] = __sinf(x[1]); }\n"
           "int main() { return 0; }"),
       "");
-  // Math functions that the toolkit has in full precision: with their own tables and loops.
+  // Math functions that the toolkit computes in full precision, with their own tables and loops.
   EXPECT_EQ(why("return cosf(a[0]) < b[0] && atan2f(a[1], b[1]) < 1 && sinf(a[2]) < hypotf(b[2], 1);"), "");
   EXPECT_EQ(why("return nextafterf(a[3], 1) < lroundf(b[3]) && fdimf(a[0], b[0]) < scalbnf(b[1], 3);"), "");
-  // Others of them are made of approximate operations.
+  // Other math functions consist of approximate operations.
   EXPECT_NE(why("return fmodf(a[0], b[0]) < a[1];").find("cannot be replayed: rcp.approx.ftz.f32"), std::string::npos);
   EXPECT_NE(why("return cbrtf(a[2]) < b[2];").find("cannot be replayed: lg2.approx.f32"), std::string::npos);
   EXPECT_NE(why("return pow((double)a[0], 2.0) < b[0];").find("cannot be replayed: rcp.approx.ftz.f64"),
@@ -198,11 +198,11 @@ TEST_F(CudaSubject, KeepsWhatItBuilds) {
   for (const auto& entry : fs::directory_iterator(scratch_.path() / "cache"))
     EXPECT_TRUE(entry.path().filename().string().starts_with("twin-") ||
                 entry.path().filename().string().starts_with("code-"));
-  // What is not as it was built is built again.
+  // A damaged file in the cache is built again.
   fs::resize_file(first[1].twin, fs::file_size(first[1].twin) - 100);
   EXPECT_EQ(build(kSimple)[1].twin, first[1].twin);
   EXPECT_EQ(content(elsewhere[1].twin), content(first[1].twin));
-  // Comments do not change what a proof holds for.
+  // Comments do not change the hash of a proof.
   EXPECT_EQ(build(std::string("// a comment\n") + kSimple)[1].hash, first[1].hash);
 }
 

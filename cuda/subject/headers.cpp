@@ -4,7 +4,7 @@
 namespace graze::cuda {
 namespace {
 
-// NVRTC has the functions of <cmath> without a namespace.
+// NVRTC declares the functions of <cmath> outside a namespace.
 constexpr char kCmath[] = R"(#pragma once
 #ifndef INFINITY
 #define INFINITY __int_as_float(0x7f800000)

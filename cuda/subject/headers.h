@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stand-ins for headers that device code includes out of habit, and that NVRTC, which has none of a host's, needs not:
-// what they declare for a device is built into it, or written here.
+// Stand-ins for standard headers that device code often includes. NVRTC does not have them; their device functions are
+// built into NVRTC or defined here.
 #pragma once
 
 #include <span>

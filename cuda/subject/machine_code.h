@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Machine code of PTX, by the ptxas of a toolkit: what shows without a device that two texts of PTX are one program.
+// Machine code of PTX, from a toolkit's ptxas. It shows without a device that two PTX texts are the same program.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,15 @@
 
 namespace graze::cuda {
 
-// The machine code in a cubin, an ELF file, by the names of its kernels: the sections .text.KERNEL.
-// Throws: std::runtime_error for a file that ends early.
+// Reads the machine code of each kernel from a cubin (an ELF file), keyed by kernel name: the sections .text.KERNEL.
+// Throws: std::runtime_error when the file is truncated.
 std::map<std::string, std::string> read_cubin(const std::filesystem::path& file);
 
-// The ptxas of CUDA_HOME, of the toolkit that `library` (NVRTC) is in, on the PATH or below /usr/local; empty: none.
+// The first ptxas in CUDA_HOME, CUDA_PATH, the toolkit of `library` (NVRTC), the PATH or /usr/local/cuda. Empty when
+// there is none.
 std::filesystem::path find_ptxas(const std::filesystem::path& library);
 
-// Assembles for sm_90 in `scratch`, a folder.   Throws: std::runtime_error with the first line that ptxas says.
+// Assembles for sm_90; `scratch` is a folder.   Throws: std::runtime_error with the first line of ptxas's output.
 std::map<std::string, std::string> assemble(const std::filesystem::path& ptxas, const std::string& ptx,
                                             const std::filesystem::path& scratch);
 

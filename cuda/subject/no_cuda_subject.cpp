@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands in for cuda_subject.cpp, and all that it takes, in what scripts/campaign builds.
+// Replaces cuda_subject.cpp and everything that it needs in builds of scripts/campaign.
 #include "core/error.h"
 #include "cuda/subject/cuda_subject.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// NVRTC, the compiler of the CUDA Toolkit as a library, loaded when it is asked for: neither nvcc nor its headers are
-// needed to build this, and none of it to run the rest.
+// NVRTC, the CUDA Toolkit's compiler as a library, loaded at first use. Building this needs neither nvcc nor CUDA
+// headers; programs that do not compile CUDA run without NVRTC.
 #pragma once
 
 #include <stdexcept>
@@ -9,22 +9,22 @@
 
 namespace graze::cuda {
 
-// What the compiler says of a source that it refuses: its whole log.
+// The compiler refused a source; what() is its whole log.
 struct CompileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 class Nvrtc {
  public:
-  // The first NVRTC found: on the library path, below CUDA_HOME and /usr/local/cuda*, beside this program.
-  // Throws: std::runtime_error when there is none, in one line that says what to install.
+  // The first NVRTC found on the library path, below CUDA_HOME, CUDA_PATH and /usr/local/cuda*, or beside this program.
+  // Throws: std::runtime_error when there is none; one line that says what to install.
   static const Nvrtc& get();
 
-  // The source as PTX. `name` stands for it in messages and line tables.   Throws: CompileError.
+  // Compiles the source to PTX. `name` is the source's name in messages and line tables.   Throws: CompileError.
   std::string ptx(const std::string& source, const std::string& name, const std::vector<std::string>& options) const;
 
   const std::string& version() const { return version_; }  // "13.0"
-  const std::string& library() const { return library_; }  // its file
+  const std::string& library() const { return library_; }  // path of its file
 
  private:
   Nvrtc();

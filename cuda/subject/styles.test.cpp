@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Twenty predicates in as many styles (cuda/subject/styles): each has a twin that equals the same source compiled by
-// the host's compiler, or is refused by name. Skipped where there is no NVRTC.
+// Twenty predicates in different styles (cuda/subject/styles). Each has a twin that equals the same source compiled by
+// the host's compiler, or is refused by name. Skipped without NVRTC.
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 const fs::path kStyles = fs::path(GRAZE_SOURCE_DIR) / "cuda/subject/styles";
 
-// Of each style why it has no twin: a part of what is said; empty where it has one.
+// Why a style has no twin: a part of the message. Empty for a style that has one.
 const std::map<std::string, std::string> kStyleTwins = {
     {"approximate", "cannot be replayed: rsqrt.approx.f32"},
     {"bit_tricks", ""},
@@ -82,7 +82,8 @@ std::vector<Pair> pairs_of_all_strata(std::uint64_t each) {
   return pairs;
 }
 
-// The style by the host's compiler, every operation rounded: cuda/subject/styles/host.h stands for what CUDA has.
+// The style compiled by the host's compiler with every operation rounded. cuda/subject/styles/host.h replaces CUDA's
+// functions.
 std::vector<std::int8_t> on_host(const std::string& style, Scalar scalar, const std::vector<Pair>& pairs) {
   const Scratch scratch(cache());
   const fs::path in = scratch.path() / "host.cpp", out = scratch.path() / "host.so";
@@ -153,7 +154,7 @@ TEST_P(Style, TwinEqualsTheHostCompiler) {
   std::map<int, int> answers;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     ++answers[found[i]];
-    // It copies the sign of a difference. Of a new NaN the sign is set on x86, and not on a GPU or in a twin.
+    // The style copies the sign of a difference. A new NaN is negative on x86, but not on a GPU or in a twin.
     const Vec3<float>&p = pairs[i].a[0], &q = pairs[i].b[0];
     if (style == "min_max" && std::isnan(p.y * q.y - p.z * q.z)) continue;
     if (found[i] != expected[i] && wrong++ < 3)
@@ -161,7 +162,7 @@ TEST_P(Style, TwinEqualsTheHostCompiler) {
                     << int{expected[i]};
   }
   EXPECT_EQ(wrong, 0);
-  EXPECT_GT(answers[0], 100);  // a predicate that says something
+  EXPECT_GT(answers[0], 100);  // the predicate gives both answers
   EXPECT_GT(answers[1], 100);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Device and twin of every style, in every variant, on GRAZE_PAIRS pairs of all strata (a million when it is not set).
+// Compares device and twin of every style and variant, on GRAZE_PAIRS pairs of all strata (default: one million).
 // The builds are in the folder `styles` beside this program: cmake --build … --target graze_device_styles.
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ TEST_F(StylesOnADevice, EqualTheirTwins) {
         std::cout << lane.lane << ": differs on " << row.stratum << " " << index << "\n";
     }
   }
-  if (const char* file = std::getenv("GRAZE_PROOF")) {  // the record
+  if (const char* file = std::getenv("GRAZE_PROOF")) {  // writes the record
     EXPECT_TRUE((std::ofstream(file) << to_json(record).dump(1) << "\n").flush());
   }
 }

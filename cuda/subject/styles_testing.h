@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The builds of cuda/subject/styles in a folder, for tests on a machine that has a device, but neither NVRTC nor a
-// compiler: of each one the PTX, the twin, and a line about both.
+// Stores the builds of cuda/subject/styles in a folder: PTX, twin and a line about both. With them, tests can run on a
+// machine that has a device but neither NVRTC nor a compiler.
 #pragma once
 
 #include <filesystem>
@@ -16,10 +16,10 @@ struct StyleBuild {
   CudaBuild build;
 };
 
-// Builds every style; writes all builds that have a twin.
+// Builds every style and writes the builds that have a twin.
 void write_styles(const std::filesystem::path& styles, const std::filesystem::path& folder);
 
-// Those builds; empty when the folder has none.
+// Reads those builds; empty when the folder has none.
 std::vector<StyleBuild> read_styles(const std::filesystem::path& folder);
 
 }  // namespace graze::cuda

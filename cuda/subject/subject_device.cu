@@ -14,9 +14,9 @@
 namespace graze::cuda {
 namespace {
 
-constexpr unsigned kBlock = 1u << 22;  // pairs at once: 302 MB of coordinates in float
+constexpr unsigned kBlock = 1u << 22;  // pairs in one block: 302 MB of float coordinates
 constexpr unsigned kThreadsOfBlock = 256;
-constexpr std::size_t kStackBytes = 16384;  // of a thread: for recursion
+constexpr std::size_t kStackBytes = 16384;  // of each thread, for recursion
 
 __global__ void widen(const float* from, double* to, std::size_t count) {
   const std::size_t i = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
@@ -50,7 +50,7 @@ class Subject final : public SubjectOnDevice {
     }
   }
 
-  // Coordinates on the device, 18 arrays of n.
+  // coordinates: device memory, 18 arrays of n.
   void decide_block(const float* coordinates, unsigned n, std::int8_t* answers) {
     signed char* answers_at = answers_.at_least(n);
     const void* from = coordinates;
@@ -76,7 +76,7 @@ class Subject final : public SubjectOnDevice {
   DeviceArray<signed char> answers_;
 };
 
-// The block's pairs from the device: what its kernels saw.
+// Copies the block's pairs from the device, as its kernels saw them.
 void fetch(const float* on_device, std::vector<Pair>& pairs) {
   std::vector<float> columns(pairs.size() * kCoordinates);
   check(cudaMemcpy(columns.data(), on_device, columns.size() * sizeof(float), cudaMemcpyDeviceToHost));

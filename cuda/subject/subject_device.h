@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds of a user's CUDA source on a device, and the proof that their twins are the same.
+// Builds of a user's CUDA source on a device, and the proof that their twins give the same answers.
 #pragma once
 
 #include <cstdint>
@@ -14,21 +14,22 @@
 
 namespace graze::cuda {
 
-// A build that the driver has assembled for the first device. One thread at a time.
+// A build that the driver has assembled for the first device. Not thread-safe.
 class SubjectOnDevice {
  public:
   virtual ~SubjectOnDevice() = default;
 
-  // -1 declined, 0 disjoint, 1 intersects, for each pair.
-  // Throws: std::runtime_error on any CUDA error; after one that the user's code causes, this process has no device.
+  // Answers for each pair: -1 declined, 0 disjoint, 1 intersects.
+  // Throws: std::runtime_error on any CUDA error. After an error that the user's code causes, this process has no
+  // device.
   virtual void decide(std::span<const Pair> pairs, std::int8_t* answers) = 0;
 };
 
 // Throws: std::runtime_error without a device, when built without CUDA, or when the driver refuses the PTX.
 std::unique_ptr<SubjectOnDevice> open_on_device(const CudaBuild& build);
 
-// Compares device and twin, each build that has one, on `options.twin_pairs` pairs of all strata together; its lane is
-// the name. Of the record's counts those of the twin and of the pairs are the same pairs; there are no trace hashes.
+// Compares each build that has a twin with that twin, on `options.twin_pairs` pairs over all strata. In the record, the
+// twin's counts and the counts of pairs are of the same pairs; there are no trace hashes.
 // Throws: as open_on_device.
 struct NamedBuild {
   std::string lane;  // "mine/f32/cuda-fma"

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The text of subject.h, of the twins' operations and of twin_exports.inl, one after the other, in pieces.
+// The text of subject.h, the twins' operations and twin_exports.inl, concatenated, in pieces.
 constexpr const char* kTwinText[] = {
 #include "cuda/generated/twin_text.inc"
 };
@@ -36,7 +36,7 @@ std::string compiler() {
   return named && *named ? named : "c++";
 }
 
-// One line that tells this compiler from another.
+// A line that identifies the compiler.
 std::string version_of(const std::string& program, const fs::path& cache) {
   const Scratch scratch(cache);
   std::string said;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the PTX of one kernel to its twin as a shared library: generated, compiled by the host's compiler, kept.
+// Builds a twin from a kernel's PTX: generates C++, compiles it with the host's compiler, and caches the shared
+// library.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +11,10 @@
 
 namespace graze::cuda {
 
-// The shared library of the module's one kernel in `cache`, built when it is not there yet; subject.h's graze_subject
-// and what cuda/twin/twin_library.h reads. Its name is a hash of its source, the compiler and its flags.
-// Throws: twin::PtxError for an instruction that cannot be replayed, std::runtime_error when the compiler fails.
+// The twin of the module's only kernel in `cache`, built if it is not there yet. The library exports graze_subject (see
+// subject.h) and the symbols that cuda/twin/twin_library.h reads. Its file name is a hash of its source, the compiler
+// and the flags.
+// Throws: twin::PtxError for an instruction that cannot be replayed; std::runtime_error when the compiler fails.
 std::filesystem::path build_twin(const twin::Module& module, Scalar scalar, bool contracted,
                                  const std::filesystem::path& cache);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernel around a user's function, and which of float and double the function takes.
+// Appends a kernel to a user's source, and finds out whether the user's function takes float or double.
 #pragma once
 
 #include <filesystem>
@@ -10,13 +10,13 @@
 
 namespace graze::cuda {
 
-// The source with the kernel of cuda_subject.h behind it; lines keep their numbers.
+// The source followed by the kernel of cuda_subject.h. Lines of the source keep their numbers.
 std::string wrapped(const std::string& text, const std::filesystem::path& source, const std::string& function,
                     Scalar scalar);
 
-// The scalar of the function, float where it takes both. `compile` throws CompileError.
-// Throws: UsageError in one line, with the user's file and line, when the source does not compile, or says what there
-// is where no function of the name takes two triangles.
+// The function's scalar type; float if it takes both. `compile` throws CompileError.
+// Throws: UsageError, one line with the user's file and line, when the source does not compile. Also throws it when no
+// function of that name takes two triangles; the message then says what was found.
 Scalar scalar_of(const std::string& text, const std::filesystem::path& source, const std::string& function,
                  const std::function<std::string(const std::string& whole)>& compile);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs on which lanes must differ: see cuda/twin/canaries.pairs.
+// Pairs on which lanes must differ; see cuda/twin/canaries.pairs.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -30,7 +30,7 @@ const std::string& text(const corpus::Entry& entry, const char* key) {
   return *value;
 }
 
-// The lane "ALGORITHM/SCALAR" of the canary, in this variant.
+// The lane "ALGORITHM/SCALAR" of the canary in this variant.
 const Lane& lane_of(const corpus::Entry& canary, Variant variant) {
   const std::string id = text(canary, "lane") + "/" + std::string(name(variant));
   for (const Lane& lane : lanes()) {
@@ -95,7 +95,7 @@ TEST(Canaries, CpuFmaAndCudaFmaDiffer) {
   int lanes_that_differ = 0;
   for (const auto& [lane, count] : differ) {
     lanes_that_differ += count > 0;
-#ifdef GRAZE_RELEASE_BUILD  // what the host compiler contracts depends on its optimisation
+#ifdef GRAZE_RELEASE_BUILD  // what the host compiler contracts depends on the optimisation level
     EXPECT_GT(count, 0) << lane;
 #endif
   }

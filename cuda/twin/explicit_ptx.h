@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The kernels' PTX with every contraction written out, as text for the driver to assemble; see cuda/twin/prove.h.
+// The kernels' PTX with every contraction written out, as text that the driver assembles; see cuda/twin/prove.h.
 #pragma once
 
 #include <string>

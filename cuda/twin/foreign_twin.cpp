@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins of users' CUDA code, which are libraries of cuda/subject; and what is asked of theirs and of ours alike.
+// The twins of users' CUDA code, which are libraries of cuda/subject, and the functions common to them and our own
+// twins.
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -12,7 +13,7 @@
 namespace graze::cuda {
 namespace {
 
-// Those of users' CUDA code, by the lane's id.
+// Twins of users' CUDA code, by lane id.
 struct ForeignTwin {
   std::unique_ptr<TwinLibrary> library;
   std::vector<ContractionSite> sites;

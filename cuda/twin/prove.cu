@@ -21,9 +21,9 @@
 namespace graze::cuda {
 namespace {
 
-constexpr std::uint32_t kBlockPairs = 1u << 23;  // a block of pairs: 604 MB of coordinates
+constexpr std::uint32_t kBlockPairs = 1u << 23;  // 604 MB of coordinates
 
-// The explicit PTX, assembled by the driver for the device at hand.
+// The explicit PTX, assembled by the driver for this device.
 class ExplicitKernels {
  public:
   ExplicitKernels(Variant variant, bool wrong_rule) {
@@ -47,7 +47,7 @@ class ExplicitKernels {
   cudaLibrary_t library_;
 };
 
-// What one lane says of one block, by the default build and by the explicit PTX.
+// The results of a lane on a block, from the default build and from the explicit PTX.
 struct LaneRun {
   DeviceArray<std::uint32_t> intersects[2], declined[2];
   DeviceArray<std::uint64_t> hashes[2];
@@ -156,7 +156,7 @@ class Prover {
     }
   }
 
-  // The first pairs of the block, from the device: what its kernels saw.
+  // Copies the first pairs of the block from the device, as its kernels saw them.
   void fetch_pairs(std::uint32_t n, std::uint32_t sample) {
     std::vector<float> column(sample);
     pairs_.resize(sample);

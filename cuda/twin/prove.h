@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Verifies the twins on a device. Over all strata, and in every CUDA lane, verdicts and trace hashes of
-// the default build are compared with those of the explicit PTX, in which every contraction is written out and which
-// the driver assembles; and on a sample with the twin, which is generated from that explicit PTX.
+// Verifies the twins on a device, over all strata, for every CUDA lane. It compares verdicts and trace hashes of the
+// default build with those of the explicit PTX, in which every contraction is written out and which the driver
+// assembles. It compares a sample with the twin, which is generated from the explicit PTX.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,19 @@
 namespace graze::cuda {
 
 struct ProofOptions {
-  std::uint64_t pairs = 10'000'000'000;    // a lane, all strata together
-  std::uint64_t twin_pairs = 100'000'000;  // of them, on the CPU too
+  std::uint64_t pairs = 10'000'000'000;    // for each lane, over all strata
+  std::uint64_t twin_pairs = 100'000'000;  // how many of them also run on the twin
   std::uint64_t seed = 1;
   std::vector<std::string> lanes = {};  // shell patterns; all CUDA lanes when empty
-  bool wrong_rule = false;              // the explicit PTX contracts the right product first: differences must show
+  bool wrong_rule = false;  // the explicit PTX contracts the right product first, which must give differences
   std::function<void(const std::string& line)> progress = nullptr;  // called after each stratum
 };
 
-// Pairs compared and differences, in verdict or trace hash.
+// Pairs compared, and differences in verdict or trace hash.
 struct StratumProof {
   std::string stratum;
-  std::uint64_t pairs = 0, verdict_differences = 0, trace_differences = 0;  // default build, explicit PTX
-  std::uint64_t twin_pairs = 0, twin_verdict_differences = 0, twin_trace_differences = 0;  // default build, twin
+  std::uint64_t pairs = 0, verdict_differences = 0, trace_differences = 0;  // default build against explicit PTX
+  std::uint64_t twin_pairs = 0, twin_verdict_differences = 0, twin_trace_differences = 0;  // default build against twin
   std::vector<std::uint64_t> examples = {};  // indices of a few pairs that differ
 };
 
@@ -50,10 +50,10 @@ struct ProofRecord {
   bool verified() const;  // every lane
 };
 
-// Throws: std::runtime_error without a device, and on any CUDA error.
+// Throws: std::runtime_error without a device, or on any CUDA error.
 ProofRecord prove_twin(const ProofOptions& options);
 
-// The record as cuda/proofs keeps it.
+// The record in the format of cuda/proofs.
 nlohmann::ordered_json to_json(const ProofRecord& record);
 
 }  // namespace graze::cuda

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The PTX that the repository keeps, from which the twins are made without nvcc, is what nvcc writes today.
+// The stored PTX, from which the twins are built without nvcc, equals nvcc's current output.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ std::vector<std::string> lines_of(const std::string& path) {
   return lines;
 }
 
-// The first place where the files differ, a few lines of each.
+// The first difference between the files, with a few lines of each.
 std::string difference(const std::vector<std::string>& stored, const std::vector<std::string>& made) {
   std::size_t at = 0;
   while (at < stored.size() && at < made.size() && stored[at] == made[at]) ++at;

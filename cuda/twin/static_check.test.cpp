@@ -25,9 +25,10 @@
 namespace graze::cuda {
 namespace {
 
-using Code = std::map<std::string, std::string>;  // machine code by kernels
+using Code = std::map<std::string, std::string>;  // machine code by kernel name
 
-// Floating-point operations in machine code of sm_70 to sm_120: 16 bytes per instruction, told by its low nine bits.
+// Floating-point operations in machine code of sm_70 to sm_120. An instruction has 16 bytes; its low nine bits identify
+// it.
 std::map<std::string, int> operations(const std::string& code) {
   static const std::map<int, std::string> kNames = {{0x20, "FMUL"}, {0x21, "FADD"}, {0x23, "FFMA"},
                                                     {0x28, "DMUL"}, {0x29, "DADD"}, {0x2b, "DFMA"}};
@@ -69,7 +70,8 @@ TEST_P(StaticCheck, ExplicitPtxHasTheOperationsOfTheDefaultBuild) {
     EXPECT_EQ(operations(code), operations(written.at(kernel))) << kernel;
   }
   RecordProperty("same_code", same_code(built, written));
-  // The others differ in the order of instructions and in registers. nvcc 13.0.88: 16 of the 20 contracted ones.
+  // The others differ in instruction order and registers. With nvcc 13.0.88, 16 of the 20 contracted kernels are the
+  // same.
   EXPECT_GE(same_code(built, written), std::string(GetParam()) == "cuda_nofma" ? 20 : 14);
 }
 
@@ -80,13 +82,13 @@ TEST(StaticCheck, CatchesTheRightProductFirst) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
   const Code built = read_cubin(generated("cuda_fma.cubin")),
              wrong = read_cubin(generated("cuda_fma.right_first.cubin"));
-  // Every kernel has an a*b - c*d: none is the same code. (Its counts are the same: one fused, one not.)
+  // Every kernel has an a*b - c*d, so none has the same code. (The counts are equal: one fused, one not.)
   EXPECT_EQ(same_code(built, wrong), 0);
 }
 
 TEST(StaticCheck, SeesContraction) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
-  // Only division and square root may contain fused operations in the build without contraction.
+  // Without contraction, only division and square root may contain fused operations.
   const Code contracted = read_cubin(generated("cuda_fma.cubin")),
              not_contracted = read_cubin(generated("cuda_nofma.cubin"));
   for (const auto& [kernel, code] : not_contracted) {
@@ -183,7 +185,7 @@ std::string random_program(std::mt19937& random, const std::string& name, const 
 
 constexpr int kPrograms = 500;
 
-// Share of random programs whose machine code the explicit PTX reproduces, instruction for instruction.
+// The share of random programs for which the explicit PTX gives the same machine code, instruction for instruction.
 class RandomPrograms : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
@@ -213,7 +215,7 @@ class RandomPrograms : public testing::TestWithParam<const char*> {
 };
 
 TEST_P(RandomPrograms, AreContractedAsPtxasDoes) {
-  // nvcc 13.0.88: all of them.
+  // With nvcc 13.0.88: all of them.
   EXPECT_GT(share_of_same_code(twin::Rule::ptxas), 0.97);
 }
 

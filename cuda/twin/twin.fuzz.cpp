@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of any bits: where contraction is off, the twin of each CUDA lane decides as the host's lane does.
+// Pairs with arbitrary bits: without contraction, each CUDA lane's twin gives the same verdict as the host's lane.
 #include "cuda/twin/twin.h"
 
 #include "core/fuzz_pair.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins: CUDA lanes replayed on the CPU, bit for bit, by C++ generated from the PTX of cuda/lanes/kernels.cu.
-// Neither a GPU nor nvcc is needed. Of NaN values neither sign nor payload is replayed; verdicts do not show them.
+// The twins: CUDA lanes replayed on the CPU, bit for bit, by C++ generated from the PTX of cuda/lanes/kernels.cu. They
+// need neither a GPU nor nvcc. Sign and payload of a NaN are not replayed; they do not affect verdicts.
 #pragma once
 
 #include <cstdint>
@@ -11,28 +11,28 @@
 
 namespace graze::cuda {
 
-// The twin of a published CUDA lane; null where there is none.
+// The twin of a published CUDA lane; null when there is none.
 DecideBlock::Function twin_block(const Lane& lane);
 
-// What gives the lane's verdicts on the host: the lane itself, or the twin of a CUDA lane; that of the exact CUDA lane
-// is the exact CPU lane, the same source. Null where there is none.
+// The function that gives the lane's verdicts on the host: the lane's own, or the twin of a CUDA lane. For the exact
+// CUDA lane it is the exact CPU lane, which is built from the same source. Null when there is none.
 DecideBlock block_on_host(const Lane& lane);
 
-// Writes each pair's trace hash (see cuda/lanes/trace.h), the verdict folded in.
+// Writes each pair's trace hash (see cuda/lanes/trace.h), which includes the verdict.
 using TraceBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* hashes);
 TraceBlock twin_trace(const Lane& lane);
 
-// Whether lanes under tolerances have twins; what scripts/campaign builds is without.
+// Whether lanes with tolerances have twins; they have none in builds of scripts/campaign.
 bool has_policy_twins();
 
-// Toolkit whose PTX the twins replay: "13.0.88".
+// The toolkit whose PTX the twins replay: "13.0.88".
 const char* twin_toolkit();
 
-// Hash of the kernel's PTX and its contractions: what a record in cuda/proofs holds for. Empty where there is no twin.
+// Hash of the kernel's PTX and its contractions. A record in cuda/proofs is valid for this hash. Empty without a twin.
 const char* twin_hash(const Lane& lane);
 const char* twin_trace_hash(const Lane& lane);
 
-// What a record of `graze prove-twin` says of one lane; see LaneProof in prove.h.
+// The result of `graze prove-twin` for one lane; see LaneProof in prove.h.
 struct TwinProof {
   std::string_view device, toolkit;
   double pairs, twin_pairs;
@@ -42,7 +42,7 @@ struct TwinProof {
 // 1e+10".
 std::string evidence(const TwinProof& proof);
 
-// The words of `evidence` where a record in cuda/proofs holds for this very kernel, else "twin".
+// evidence() of the record in cuda/proofs for this very kernel; "twin" when there is none.
 std::string twin_evidence(const Lane& lane);
 
 struct SourceLine {
@@ -50,25 +50,27 @@ struct SourceLine {
   int line;
 };
 
-// An operation of a kernel with one rounding where the source has two.
+// An operation that a kernel rounds once and its source rounds twice.
 struct ContractionSite {
-  SourceLine at;    // of the operation
-  SourceLine from;  // into which the function with that line is inlined; what lies further out PTX does not say
-  bool by_ptxas;    // otherwise by nvcc's front end
-  int ptx_line;     // of the addition
+  SourceLine at;    // line of the operation
+  SourceLine from;  // line into which that function is inlined; PTX does not give further levels
+  bool by_ptxas;    // contracted by ptxas; otherwise by nvcc's front end
+  int ptx_line;     // line of the addition
 };
 
-// The contraction sites of a lane with a twin, in program order; none without a twin, or without contraction.
+// The contraction sites of a lane's twin, in program order. Empty without a twin or without contractions.
 std::span<const ContractionSite> contraction_sites(const Lane& lane);
 
-// Gives a foreign CUDA lane the sites of its twin, a library of cuda/subject; a verdict may take so many seconds.
+// Gives a foreign CUDA lane the sites of its twin, a library of cuda/subject. A verdict may take `most_seconds`
+// seconds.
 // Throws: as TwinLibrary.
 void add_foreign_twin(const Lane& lane, const std::string& twin, double most_seconds);
-double most_seconds(const Lane& lane);  // of a verdict.   Requires: a foreign lane with sites
+double most_seconds(const Lane& lane);  // for one verdict.   Requires: a foreign lane with sites
 
-// The verdict of a lane that has contraction sites, with two roundings at every site whose bit is not set: none set is
-// cuda-nofma, all set is the lane itself. Bit i % 64 of word i / 64 belongs to site i.   Requires: a word for each 64
-// sites begun. Foreign code runs in this very process, and may crash or not come back.
+// The verdict of a lane with contraction sites when sites whose bit is not set round twice. No bit set gives
+// cuda-nofma; all bits set give the lane itself. Bit i % 64 of word i / 64 belongs to site i. Foreign code runs in this
+// process and may crash or not return.
+// Requires: (sites + 63) / 64 words.
 Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused);
 
 }  // namespace graze::cuda

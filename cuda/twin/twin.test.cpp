@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 3;
 
-// Some of every stratum: random, near-touching, coplanar, degenerate, of extreme scale.
+// Pairs of every stratum: random, near-touching, coplanar, degenerate, of extreme scale.
 const std::vector<Pair>& sample() {
   static const std::vector<Pair> pairs = [] {
     std::vector<Pair> all;
@@ -80,7 +80,7 @@ TEST_P(Twin, EveryCudaLaneHasOne) {
   EXPECT_STRNE(twin_hash(sibling(Variant::cuda_fma)), twin_hash(sibling(Variant::cuda_nofma)));
 }
 
-// Its record, read anew: pairs that GPU and twin decided, and pairs that two builds decided, both on the GPU.
+// Compares the evidence with the record: pairs decided by GPU and twin, and pairs decided by two builds on the GPU.
 TEST_P(Twin, EvidenceSaysWhatTheRecordSays) {
   const auto record =
       nlohmann::json::parse(std::ifstream(GRAZE_SOURCE_DIR "/cuda/proofs/nvidia_h100_nvcc_13.0.88.json"));
@@ -115,7 +115,7 @@ TEST_P(Twin, WithoutContractionIsTheCpuLane) {
   EXPECT_TRUE(run(twin(Variant::cuda_nofma), sample()) == run(sibling(Variant::cpu).decide, sample()));
 }
 
-// What the cpu lane's algorithm traces, compiled without contraction on this processor.
+// The trace of the cpu lane's algorithm, compiled without contraction on this processor.
 template <class Algorithm, class Real>
 std::uint64_t traced(const Pair& pair) {
   Vec3<Real> a[3], b[3];

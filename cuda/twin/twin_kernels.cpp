@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins' block functions. Compiled once per variant, each in its own namespace GRAZE_FP, with the generated kernels
-// (GRAZE_TWIN_KERNELS) and without contraction by the host compiler; nothing else may be defined here, or the linker
-// would mix the variants.
+// The twins' block functions with the generated kernels (GRAZE_TWIN_KERNELS). Compiled once for each variant in its own
+// namespace GRAZE_FP, without contraction by the host compiler. Define nothing else here, or the linker would mix the
+// variants.
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -10,7 +10,7 @@
 #include "cuda/lanes/device_pairs.h"
 #include "cuda/twin/twin_ops_bits.h"
 #include "cuda/twin/twin_table.h"
-#ifndef __wasm__  // which rounds to nearest only, as the published algorithms do
+#ifndef __wasm__  // wasm only rounds to nearest, as the published algorithms do
 #include "cuda/twin/twin_ops_rounding.h"
 #endif
 
@@ -27,7 +27,7 @@ namespace ptx {
 
 const unsigned char* bytes(const void* object) { return static_cast<const unsigned char*>(object); }
 
-// The kernels' parameters as a device has them: addresses of 64 bits, also where those of this processor are shorter.
+// The kernels' parameters in the device's layout: addresses have 64 bits, even on a processor with shorter ones.
 u64 address(const void* object) { return reinterpret_cast<std::uintptr_t>(object); }
 struct Block {
   u64 coordinates;
@@ -36,8 +36,8 @@ struct Block {
 };
 static_assert(sizeof(Block) == 16 && (sizeof(DevicePairs) == 16 || sizeof(void*) < 8));
 
-// One pair as a block of one: stride 1, so that its coordinates are the 18 arrays. `more`: the kernel's parameters
-// between the block and the words that it writes.
+// Decides one pair as a block of one. With stride 1 its coordinates are the 18 arrays. `more`: the kernel's parameters
+// between the block and the output words.
 template <class Kernel, class Fuse, class... More>
 Verdict decide_one(const Pair& pair, const Fuse& fuse, const More&... more) {
   const Block block(pair);

@@ -11,7 +11,7 @@
 namespace graze::cuda {
 namespace {
 
-constexpr std::size_t kPart = 1 << 13;  // pairs for one thread at a time
+constexpr std::size_t kPart = 1 << 13;  // pairs that a thread takes at a time
 
 using Block32 = void (*)(const float*, std::size_t, signed char*);
 using Block64 = void (*)(const double*, std::size_t, signed char*);

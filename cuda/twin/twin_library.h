@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A twin of a user's kernel, loaded into this process: its answers, and its contraction sites.
+// A twin of a user's kernel, loaded into this process. It gives answers and contraction sites.
 #pragma once
 
 #include <cstddef>
@@ -14,31 +14,31 @@
 
 namespace graze::cuda {
 
-// A place where the kernel rounds once and its source twice; see ContractionSite in cuda/twin/twin.h.
+// A place where the kernel rounds once and its source rounds twice; see ContractionSite in cuda/twin/twin.h.
 struct TwinSite {
   std::string file;
   int line = 0;
-  std::string from_file;  // into which the function with that line is inlined; empty: into none
+  std::string from_file;  // file of the line into which that function is inlined; empty when it is not inlined
   int from_line = 0;
   bool by_ptxas = false;
 };
 
-// The library stays loaded with its owner. Its functions may run in several threads at once; a user's endless loop or
-// wild index is endless and wild here too.
+// The library stays loaded as long as its owner lives. Its functions may run in several threads at once. An endless
+// loop or an invalid memory access in the user's code happens in this process too.
 class TwinLibrary {
  public:
-  // Throws: std::runtime_error when the file is no twin.
+  // Throws: std::runtime_error when the file is not a twin.
   TwinLibrary(const std::filesystem::path& file, Scalar scalar);
   TwinLibrary(const TwinLibrary&) = delete;
   TwinLibrary& operator=(const TwinLibrary&) = delete;
   ~TwinLibrary();
 
-  // -1 declined, 0 disjoint, 1 intersects, for each pair; by several threads where there are many pairs.
+  // Answers for each pair: -1 declined, 0 disjoint, 1 intersects. Uses several threads if there are many pairs.
   void decide(std::span<const Pair> pairs, std::int8_t* answers) const;
 
   const std::vector<TwinSite>& sites() const { return sites_; }
 
-  // The answer with two roundings at every site whose bit is not set: bit i % 64 of word i / 64 is site i.
+  // The answer when sites whose bit is not set round twice. Bit i % 64 of word i / 64 belongs to site i.
   // Throws: std::invalid_argument for too few bits.
   int decide_fusing(const Pair& pair, std::span<const std::uint64_t> fused) const;
 

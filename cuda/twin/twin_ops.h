@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX operations on the CPU, one function each: what generated twins are made of. IEEE 754 binary32 and binary64,
-// round to nearest even. Of a NaN neither sign nor payload is replayed.
-// Requires: compiled with -ffp-contract=off, in a namespace GRAZE_FP of its own for each set of instructions.
+// PTX operations on the CPU, one function for each; generated twins consist of calls to them. IEEE 754 binary32 and
+// binary64, round to nearest even. Sign and payload of a NaN are not replayed.
+// Requires: compiled with -ffp-contract=off, with a separate namespace GRAZE_FP for each instruction set.
 // Reference: NVIDIA, PTX ISA 9.0, chapter 9.7.
 #pragma once
 
@@ -33,15 +33,15 @@ template <class T>
 using Bits = std::conditional_t<sizeof(T) == 1, u8,
                                 std::conditional_t<sizeof(T) == 2, u16, std::conditional_t<sizeof(T) == 4, u32, u64>>>;
 
-// The bits of a register. The NaN that an operation on float32 makes is another on a device than on x86, and its sign
-// shows where its bits are looked at; of float64 it is the same.
+// The bits of a register. A device's float32 operations return another NaN than those of x86, which shows when the bits
+// are read. For float64 the NaN is the same.
 constexpr u32 bits_of(f32 x) {
   const u32 bits = std::bit_cast<u32>(x);
   return bits == 0xffc00000u ? 0x7fffffffu : bits;
 }
 constexpr u64 bits_of(f64 x) { return std::bit_cast<u64>(x); }
 
-// The register's bits as another type of the same size; integers of other sizes are widened or cut.
+// The register's bits as another type of the same size. Integers of another size are extended or truncated.
 template <class T, class From>
 constexpr T as(From x) {
   if constexpr (std::is_integral_v<T> && std::is_integral_v<From>) {
@@ -86,7 +86,7 @@ T abs(T x) {
     return std::bit_cast<T>(std::bit_cast<Bits<T>>(x) & ~kSign<T>);
 }
 
-// The magnitude of b with the sign of a: PTX has the operands in this order.
+// The magnitude of b with the sign of a, in PTX's order of operands.
 template <class T>
 T copysign(T a, T b) {
   return std::bit_cast<T>((bits_of(a) & kSign<T>) | (std::bit_cast<Bits<T>>(b) & ~kSign<T>));
@@ -102,10 +102,10 @@ bool is_subnormal(T x) {
   return x != 0 && abs(x) < std::numeric_limits<T>::min();
 }
 
-// .ftz: a subnormal becomes a zero of its sign.
+// .ftz: a subnormal becomes a zero of the same sign.
 inline f32 flushed(f32 x) { return is_subnormal(x) ? copysign(x, 0.0f) : x; }
 
-// .sat: [0, 1], and +0 for NaN.
+// .sat: clamps to [0, 1]; NaN becomes +0.
 template <class T>
 T saturated(T x) {
   return x > 0 ? (x < 1 ? x : T{1}) : T{0};
@@ -147,9 +147,9 @@ T div(T a, T b) {
   return a / b;
 }
 
-// .ftz looks at a result rounded to 24 bits without a least exponent, unlike IEEE arithmetic, which rounds what is
-// below the least normal number to fewer: the largest results that flush would be rounded up to it. (Measured on an
-// H100.) A sum or difference is exact there, so that only products and quotients can tell.
+// .ftz checks a result that is rounded to 24 bits with unlimited exponent range. IEEE arithmetic rounds results below
+// the least normal number to fewer bits, so it would round the largest flushed results up to that number. (Measured on
+// an H100.) Sums and differences are exact there, so only products and quotients are affected.
 constexpr f64 kFlushBelow = 0x1p-126 - 0x1p-151;
 
 inline f32 mul_ftz(f32 a, f32 b) {
@@ -165,7 +165,7 @@ inline f32 fma_ftz(f32 a, f32 b, f32 c) {
   return flushes ? static_cast<f32>(copysign(sum, 0.0)) : fma(flushed(a), flushed(b), flushed(c));
 }
 
-// Double precision cannot round a quotient of floats onto the limit: they differ by 2^-49 of it at least.
+// Double precision cannot round a quotient of floats onto the limit: their relative distance is at least 2^-49.
 inline f32 div_ftz(f32 a, f32 b) {
   const f64 quotient = f64{flushed(a)} / f64{flushed(b)};
   return abs(quotient) < kFlushBelow ? static_cast<f32>(copysign(quotient, 0.0)) : flushed(a) / flushed(b);
@@ -181,7 +181,7 @@ T sqrt(T x) {
     return __builtin_sqrt(x);
 }
 
-// The other operand for a NaN; -0 is less than +0.
+// If one operand is NaN, returns the other; -0 is less than +0.
 template <class T>
 T min(T a, T b) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -202,7 +202,7 @@ T max(T a, T b) {
   return a < b ? b : a;
 }
 
-// .NaN: a NaN if either operand is one.
+// .NaN: returns NaN if either operand is NaN.
 template <class T>
 T min_nan(T a, T b) {
   return is_nan(a) || is_nan(b) ? std::numeric_limits<T>::quiet_NaN() : min(a, b);
@@ -213,9 +213,9 @@ T max_nan(T a, T b) {
   return is_nan(a) || is_nan(b) ? std::numeric_limits<T>::quiet_NaN() : max(a, b);
 }
 
-// ---- what contracts ----
+// ---- contractions ----
 
-// A contraction site of a kernel as it runs: one rounding, at every site.
+// Rounds once at every contraction site, as the kernel does.
 struct AllFused {
   template <class T>
   T operator()(int, T a, T b, T c) const {
@@ -224,7 +224,7 @@ struct AllFused {
   static f32 flushing(int, f32 a, f32 b, f32 c) { return fma_ftz(a, b, c); }
 };
 
-// The same kernel with two roundings at the sites whose bit is not set.
+// Rounds twice at the sites whose bit is not set.
 struct SomeFused {
   const u64* bits;
 

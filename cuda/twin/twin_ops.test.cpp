@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every PTX operation that the generator replays, over special values: cuda/twin/generator/semantics.ptx, through the
-// generator and this compiler, against the standard library or the words of the PTX ISA.
+// Tests every PTX operation that the generator replays on special values. cuda/twin/generator/semantics.ptx, translated
+// by the generator and compiled, is compared with the standard library or the text of the PTX ISA.
 #include "cuda/twin/twin_ops_bits.h"
 #include "cuda/twin/twin_ops_rounding.h"
 
@@ -35,8 +35,8 @@ Real flush(Real x) {
   return std::fpclassify(x) == FP_SUBNORMAL ? std::copysign(Real(0), x) : x;
 }
 
-// A result with .ftz, rounded once to 24 bits and then flushed, exponent unlimited: the exact value has more bits than
-// long double only where a sum is far from the limit.
+// A .ftz result: rounded once to 24 bits with unlimited exponent, then flushed. The exact value has more bits than long
+// double only for sums far from the limit.
 f32 flushed_result(long double exact, f32 rounded) {
   return std::fabs(exact) < 0x1p-126L - 0x1p-151L ? std::copysign(0.0f, static_cast<f32>(exact)) : rounded;
 }
@@ -56,8 +56,8 @@ Real greatest(Real a, Real b) {
   return a == 0 && b == 0 ? (std::signbit(a) ? b : a) : std::fmax(a, b);
 }
 
-// The nearest integer of the type to an integral value. PTX ISA, cvt: a NaN is 0, or 2^63 where either type has 64 bits
-// and the other does not allow 0.
+// The integer of the type nearest to an integral value. PTX ISA, cvt: NaN gives 0, or 2^63 where either type has 64
+// bits and the other does not allow 0.
 template <class To, class Real>
 To nearest_integer(Real x, To of_nan) {
   if (std::isnan(x)) return of_nan;
@@ -250,11 +250,11 @@ TEST(TwinOps, FlushedProductKeepsItsSign) {
   EXPECT_EQ(flushed(0x1p-126f), 0x1p-126f);
 }
 
-// The exact result lies 2^-197 beside the limit, on which double precision rounds it.
+// The exact result differs from the limit by 2^-197, and double precision rounds it to the limit.
 TEST(TwinOps, FmaFlushesByWhatRoundingToDoubleLeavesOut) {
   const f32 limit = 0x1p-126f, up = (1 + 0x1p-23f) * 0x1p-75f,
-            down = (1 - 0x1p-23f) * 0x1p-76f;                       // times: 2^-151 less 2^-197
-  const f32 large = 8384513 * 0x1p-98f, also = 8392705 * 0x1p-99f;  // times: 2^-151 and 2^-197 more
+            down = (1 - 0x1p-23f) * 0x1p-76f;                       // product: 2^-151 - 2^-197
+  const f32 large = 8384513 * 0x1p-98f, also = 8392705 * 0x1p-99f;  // product: 2^-151 + 2^-197
   ASSERT_EQ(f64{large} * f64{also}, 0x1p-151 + 0x1p-197);
   for (const f32 sign : {1.0f, -1.0f}) {
     EXPECT_EQ(fma_ftz(sign * up, -down, sign * limit), sign * limit);

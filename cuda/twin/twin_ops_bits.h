@@ -25,33 +25,34 @@ T brev(T x) {
   return result;
 }
 
-// Place of the highest bit that is set, of a negative number that is clear; all ones when there is none.
+// Index of the highest set bit; of a negative number, the highest clear bit. All ones when there is none.
 template <class T>
 u32 bfind(T x) {
   const Bits<T> bits = static_cast<Bits<T>>(x < 0 ? ~x : x);
   return bits == 0 ? ~u32{0} : static_cast<u32>(8 * sizeof(T)) - 1 - clz(bits);
 }
 
-// .shiftamt: by how much to shift that bit left until it is the highest.
+// .shiftamt: the left shift that moves this bit to the top.
 template <class T>
 u32 bfind_shift(T x) {
   const u32 place = bfind(x);
   return place == ~u32{0} ? place : static_cast<u32>(8 * sizeof(T)) - 1 - place;
 }
 
-// Of a bit field's place and size: the low byte counts where the number has 32 bits, all of it where it has 64, as
+// Position or size of a bit field. For 32-bit values only the low byte counts, for 64-bit values all 32 bits do, as
 // measured on a device.
 template <class T>
 u64 field(u32 number) {
   return sizeof(T) == 4 ? number & 0xff : number;
 }
 
-// Bits [at, at + count), with the highest of them, or of the number, as sign.
+// Bits [at, at + count). Signed types are sign-extended from the field's highest bit, or from the value's if the field
+// exceeds it.
 template <class T>
 T bfe(T x, u32 from, u32 size) {
   constexpr u32 kMost = 8 * sizeof(T) - 1;
   const u64 at = field<T>(from), count = field<T>(size);
-  const u64 top = at + count - 1 < kMost ? at + count - 1 : kMost;  // of count 0 it is not used
+  const u64 top = at + count - 1 < kMost ? at + count - 1 : kMost;  // not used if count is 0
   const Bits<T> bits = static_cast<Bits<T>>(x), sign = std::is_unsigned_v<T> || count == 0 ? 0 : bits >> top & 1;
   Bits<T> result = 0;
   for (u32 k = 0; k <= kMost; ++k) {
@@ -61,7 +62,7 @@ T bfe(T x, u32 from, u32 size) {
   return static_cast<T>(result);
 }
 
-// b with its bits [at, at + count) from the low end of a.
+// b with bits [at, at + count) replaced by the low bits of a.
 template <class T>
 T bfi(T a, T b, u32 from, u32 size) {
   const u64 at = field<T>(from), count = field<T>(size);
@@ -72,7 +73,7 @@ T bfi(T a, T b, u32 from, u32 size) {
   return b;
 }
 
-// Four of the eight bytes of (b, a), each chosen by four bits, of which the highest spreads the byte's sign.
+// Selects four of the eight bytes of (b, a) by four bits each. The highest of these replicates the byte's sign bit.
 inline u32 prmt(u32 a, u32 b, u32 choice) {
   const u64 all = u64{b} << 32 | a;
   u32 result = 0;
@@ -85,15 +86,15 @@ inline u32 prmt(u32 a, u32 b, u32 choice) {
   return result;
 }
 
-// The shift of shf: modulo 32, or 32 at most.
+// The shift amount of shf: modulo 32 (wrap), or at most 32 (clamp).
 inline u32 wrap(u32 by) { return by & 31; }
 inline u32 clamp(u32 by) { return by < 32 ? by : 32; }
 
-// (b, a) shifted: its upper half to the left, its lower half to the right.
+// (b, a) shifted: the upper half after a left shift, the lower half after a right shift.
 inline u32 shf_l(u32 a, u32 b, u32 by) { return static_cast<u32>((u64{b} << 32 | a) << by >> 32); }
 inline u32 shf_r(u32 a, u32 b, u32 by) { return static_cast<u32>((u64{b} << 32 | a) >> by); }
 
-// Each result bit is the table's bit whose number is made of the three operands' bits.
+// Each result bit is the bit of the table whose index consists of the three operands' bits.
 inline u32 lop3(u32 a, u32 b, u32 c, u32 table) {
   u32 result = 0;
   for (u32 k = 0; k < 8; ++k) {

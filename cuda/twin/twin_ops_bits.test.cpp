@@ -37,20 +37,21 @@ u64 pair_of(u32 low, u32 high) { return u64{high} << 32 | low; }
 s32 sign(u32 x) { return static_cast<s32>(x); }
 s64 sign(u64 x) { return static_cast<s64>(x); }
 
-// The quotient of numbers as wide as they need be.
+// The quotient or remainder, computed in wide integers.
 template <class T>
 T divided(T a, T b, bool rest) {
   const __int128 x = a, y = b;
   return static_cast<T>(rest ? x % y : x / y);
 }
 
-// What counts of a field's place and size; that 64-bit numbers take all of it an H200 shows, the PTX ISA does not say.
+// The bits of a field's position or size that count. The PTX ISA does not say that 64-bit numbers use all bits; an H200
+// does.
 template <class T>
 s64 counted(u32 number) {
   return sizeof(T) == 4 ? number & 255 : number;
 }
 
-// Bits one by one, from the words of the PTX ISA.
+// Computed bit by bit from the text of the PTX ISA.
 template <class T>
 T field(T x, u32 at, u32 count) {
   const s64 most = 8 * sizeof(T) - 1, p = counted<T>(at), n = counted<T>(count);

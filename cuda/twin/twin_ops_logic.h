@@ -38,7 +38,7 @@ T mul_hi(T a, T b) {
   }
 }
 
-// PTX leaves division by zero open; devices give all ones, and the dividend as the remainder.
+// PTX does not define division by zero. Devices return all ones as quotient and the dividend as remainder.
 template <class T>
 T quotient(T a, T b) {
   if (b == 0) return static_cast<T>(-1);
@@ -59,7 +59,7 @@ T sad(T a, T b) {
   return a < b ? sub(b, a) : sub(a, b);
 }
 
-// Shifts by the width or more leave zero, or the sign.
+// Shifts by the width or more give zero, or copies of the sign.
 template <class T>
 T shl(T x, u32 by) {
   return by < 8 * sizeof(T) ? static_cast<T>(static_cast<u64>(x) << by) : T{0};
@@ -70,7 +70,7 @@ T shr(T x, u32 by) {
   return by < 8 * sizeof(T) ? static_cast<T>(x >> by) : x < 0 ? static_cast<T>(-1) : T{0};
 }
 
-// ---- comparisons; those with u are true for a NaN, the others false ----
+// ---- comparisons; for a NaN those with u are true, the others false ----
 
 template <class T>
 bool eq(T a, T b) {
@@ -159,7 +159,7 @@ bool test_subnormal(T x) {
 
 // ---- conversions ----
 
-// To an integer of floating point: nearest even, toward zero, down, up; a zero keeps its sign.
+// Floating-point to integral floating-point: nearest even, toward zero, down, up. A zero keeps its sign.
 template <class T>
 T rni(T x) {
   return std::nearbyint(x);
@@ -177,8 +177,8 @@ T rpi(T x) {
   return std::ceil(x);
 }
 
-// An integral floating-point number as an integer, the nearest there is. NaN: 0, or only the top bit where 64 bits
-// are involved.
+// Converts an integral floating-point number to the nearest integer of the type. NaN gives 0, or only the top bit if
+// either type has 64 bits.
 template <class To, class From>
 To to_integer(From x) {
   if (is_nan(x))
@@ -189,7 +189,7 @@ To to_integer(From x) {
   return static_cast<To>(x);
 }
 
-// cvt.sat between integers: the nearest number of the type.
+// cvt.sat between integers: clamps to the range of the type.
 template <class To, class From>
 To clamped(From x) {
   if constexpr (std::is_signed_v<From>) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX operations on the CPU, continued: rounding toward zero, down and up. In f32 from the exact result, as a double
-// and the sign of what it leaves out; in f64 by the processor's rounding mode.
+// PTX operations on the CPU, continued: rounding toward zero, down and up. f32 operations round the exact result, which
+// is a double and the sign of its remainder. f64 operations set the processor's rounding mode.
 #pragma once
 
 #include <cfenv>
@@ -13,7 +13,7 @@ namespace ptx {
 
 enum class Rounding { rz, rm, rp };
 
-// An exact number: near it, and the sign of what is missing; less than half of the double's last place.
+// An exact number: a nearby double and the sign of the remainder, which is less than half of the double's last place.
 struct Exact {
   f64 near;
   int rest;
@@ -30,25 +30,26 @@ inline f32 next_to(f32 x, bool up) {
   return std::nextafter(x, up ? std::numeric_limits<f32>::infinity() : -std::numeric_limits<f32>::infinity());
 }
 
-// With Flush a result below the least normal number is a zero; rounded to 24 bits for that, as in twin_ops.h.
+// With Flush, a result below the least normal number becomes zero. It is compared as rounded to 24 bits, as in
+// twin_ops.h.
 template <Rounding R, bool Flush>
 f32 narrowed(Exact x) {
   if (is_nan(x.near) || abs(x.near) == std::numeric_limits<f64>::infinity()) return static_cast<f32>(x.near);
   const bool negative = x.near < 0 || (x.near == 0 && std::signbit(x.near));
   if (Flush && x.near != 0) {
     const bool away = R == Rounding::rp ? !negative : R == Rounding::rm && negative;
-    const f64 limit = away ? 0x1p-126 - 0x1p-150 : 0x1p-126;  // what is greater becomes the least normal number
+    const f64 limit = away ? 0x1p-126 - 0x1p-150 : 0x1p-126;  // larger results become the least normal number
     const int above = abs(x.near) > limit ? 1 : abs(x.near) < limit ? -1 : negative ? -x.rest : x.rest;
     if (above < 0 || (away && above == 0)) return negative ? -0.0f : 0.0f;
   }
   const f32 result = static_cast<f32>(x.near);
-  const int side = result < x.near ? 1 : result > x.near ? -1 : x.rest;  // where the exact number lies
+  const int side = result < x.near ? 1 : result > x.near ? -1 : x.rest;  // the side on which the exact number lies
   if (side < 0 && (R == Rounding::rm || (R == Rounding::rz && !negative))) return next_to(result, false);
   if (side > 0 && (R == Rounding::rp || (R == Rounding::rz && negative))) return next_to(result, true);
   return result;
 }
 
-// The same f64 operation under another rounding mode; volatile, for compilers take the mode for granted.
+// Runs an f64 operation in another rounding mode. The result is volatile because compilers assume the default mode.
 template <Rounding R, class Operation>
 auto in_mode(Operation operation) {
   std::fesetround(R == Rounding::rz ? FE_TOWARDZERO : R == Rounding::rm ? FE_DOWNWARD : FE_UPWARD);

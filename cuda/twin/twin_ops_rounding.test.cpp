@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reciprocals, and what rounds toward zero, down and up: generator/semantics_rounding.ptx, against the exact result in
-// quadruple precision, of which the sign of the error is known.
+// Reciprocals, and operations that round toward zero, down and up (generator/semantics_rounding.ptx). Compared with the
+// exact result in quadruple precision and the sign of its error.
 #include "cuda/twin/twin_ops_rounding.h"
 
 #include <gtest/gtest.h>
@@ -35,20 +35,20 @@ __extension__ typedef __float128 Quad;
 bool finite(Quad x) { return x - x == 0; }
 int sign_of_quad(Quad x) { return (x > 0) - (x < 0); }
 
-// A result rounded to nearest, and on which side of it the exact one lies.
+// A result rounded to nearest, and the side of it on which the exact result lies.
 template <class Real>
 struct Nearest {
   Real value;
   int side;
 };
 
-// The sign of what a sum leaves out.
+// The sign of a sum's rounding error.
 int rest_of_sum(Quad a, Quad b) {
   const Quad sum = a + b, part = sum - a;
   return sign_of_quad((a - (sum - part)) + (b - part));
 }
 
-// The sum of two numbers, each exact in quadruple precision.
+// The sum of two numbers that are exact in quadruple precision.
 template <class Real>
 Nearest<Real> sum_of(Quad a, Quad b, Real nearest) {
   const Quad sum = a + b;
@@ -64,7 +64,7 @@ Real directed(const std::string& mode, Nearest<Real> x) {
   return x.value;
 }
 
-// Zero of an exact sum: negative when rounding down, unless both are positive.
+// An exact sum of zero is negative when rounding down, unless both operands are positive.
 template <class Real>
 Real directed_sum(const std::string& mode, Quad a, Quad b, Real nearest) {
   if (nearest == 0 && a + b == 0) {
@@ -80,7 +80,7 @@ template <class Real>
 Real directed_quotient(const std::string& mode, Real a, Real b) {
   const Real nearest = a / b;
   if (b == 0 || !finite(a) || !finite(b)) return nearest;
-  // nearest is infinite where the quotient is too large: its error is then of the other sign.
+  // When the quotient overflows, nearest is infinite and its error has the other sign.
   const int left =
       std::isinf(nearest) ? (nearest > 0 ? -1 : 1) : sign_of_quad(Quad(a) - Quad(nearest) * Quad(b)) * (b < 0 ? -1 : 1);
   return directed<Real>(mode, {nearest, left});
@@ -103,7 +103,8 @@ Real directed_root(const std::string& mode, Real a) {
 
 f32 flush_subnormal(f32 x) { return std::fpclassify(x) == FP_SUBNORMAL ? std::copysign(0.0f, x) : x; }
 
-// With .ftz: what 24 bits without a least exponent make of the exact result, a zero when that is below 2^-126.
+// With .ftz: rounds the exact result to 24 bits with unlimited exponent range. The result is zero if that is below
+// 2^-126.
 f32 flushed_to_zero(const std::string& mode, Quad exact, int rest, f32 otherwise) {
   const Quad size = exact < 0 ? -exact : exact;
   const bool below = size < Quad(0x1p-126) || (size == Quad(0x1p-126) && (exact < 0 ? rest > 0 : rest < 0));
@@ -196,7 +197,7 @@ std::vector<Slot<f64>> f64_slots() {
   return joined<f64>(parts);
 }
 
-// Of two normal numbers, so that only the result is flushed.
+// Operands are normal numbers, so that only the result is flushed.
 TEST(TwinOps, SumsBelowTheLeastNormalNumberAreFlushed) {
   EXPECT_EQ((rounded_add<Rounding::rz, true, f32>(0x1.8p-126f, -0x1p-126f)), 0);
   EXPECT_EQ((rounded_sub<Rounding::rp, true, f32>(-0x1.8p-126f, -0x1p-126f)), 0);

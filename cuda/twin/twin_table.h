@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twins' functions, one table for each variant with a twin, in a namespace of its own: [algorithm][scalar]. The
-// contracted kernels are compiled twice, for processors with and without FMA instructions; the verdicts are the same,
-// the time is not.
+// The twins' functions: a table [algorithm][scalar] for each variant with a twin, in its own namespace. Contracted
+// kernels are compiled twice, for processors with and without FMA instructions. Both give the same verdicts at
+// different speed.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ struct TwinRow {
   Verdict (*decide_fusing)(const Pair& pair, const std::uint64_t* fused) = nullptr;
   const char* hash = "";
   const char* trace_hash = "";
-  const char* symbol = "";  // of the kernel that it replays
+  const char* symbol = "";  // name of the kernel that it replays
   const char* trace_symbol = "";
   std::span<const ContractionSite> sites = {};
-  DecideBlock::Within absolute = nullptr, relative = nullptr;  // under tolerances, without relative ones or with
+  DecideBlock::Within absolute = nullptr, relative = nullptr;  // with tolerances: absolute; also relative
 };
 
 struct TwinTable {
@@ -28,8 +28,8 @@ struct TwinTable {
   std::array<std::array<TwinRow, 2>, kAlgorithmCount> rows;
 };
 
-// twin_NAME of the variants with a twin, and twin_NAME_portable of those with contraction; policy_twin_NAME, of
-// lanes under tolerances, for all processors.
+// twin_NAME for the variants with a twin; twin_NAME_portable for those with contraction; policy_twin_NAME for lanes
+// with tolerances, on all processors.
 #define GRAZE_DECLARE(name)          \
   namespace name {                   \
   extern const TwinTable kTwinTable; \
@@ -46,7 +46,7 @@ struct TwinTable {
 #include "core/variants.inc"
 #undef GRAZE_VARIANT
 
-// A lane's row for this processor; one without functions where there is no twin.
+// The lane's row for this processor. A lane without a twin has a row without functions.
 const TwinRow& twin_row(const Lane& lane);
 
 }  // namespace graze::cuda

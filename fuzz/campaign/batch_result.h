@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an engine makes of a batch of pairs; all of it adds, in any order.
+// An engine's results for a batch of pairs. Results can be added in any order.
 #pragma once
 
 #include <compare>
@@ -13,10 +13,10 @@
 
 namespace graze::fuzz {
 
-// Cases kept of each signature: those with the smallest keys, whoever finds them first.
+// The number of cases kept for each signature: those with the smallest keys, no matter which are found first.
 inline constexpr std::size_t kKeptCases = 4;
 
-// A pair by its numbers: which source of the campaign, and its index there.
+// Identifies a pair: its source in the campaign, and its index in that source.
 struct CaseKey {
   std::uint64_t index = 0;
   int source = 0;
@@ -25,7 +25,7 @@ struct CaseKey {
 
 struct SignatureCount {
   std::uint64_t count = 0;
-  std::vector<CaseKey> cases;  // the smallest, sorted, at most kKeptCases
+  std::vector<CaseKey> cases;  // the smallest keys, sorted, at most kKeptCases
 
   void add(const CaseKey& found);
   void add(const SignatureCount& other);

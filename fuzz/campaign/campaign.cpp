@@ -26,12 +26,13 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint64_t kBatchPairs = 65536;                  // a transaction of the CPU engine
-constexpr std::uint64_t kDrawnHere = std::uint64_t{1} << 25;  // at most, of pairs that a device cannot draw
+constexpr std::uint64_t kBatchPairs = 65536;                  // pairs in a transaction of the CPU engine
+constexpr std::uint64_t kDrawnHere = std::uint64_t{1} << 25;  // batch limit for pairs that a device cannot draw
 
-// The next batch: of the source of which the least is done, so that a campaign that is cut short has seen all of them.
-// Of a large source whose cost is not known, first a few pairs, so that the time left is known early. Not before a
-// whole batch where all sources have been seen: else one that is always cut short would never end.
+// Chooses the next batch. It comes from the source with the fewest pairs done, so that an interrupted campaign has seen
+// all sources. A large source with unknown cost first gets a small batch, so that the remaining time is known early.
+// Once every source has been seen, such a small batch waits until a whole batch is done; otherwise a campaign that is
+// always interrupted would never end.
 std::optional<PairRange> next_batch(const Campaign& campaign, const Store& store,
                                     const std::vector<std::uint64_t>& done, const CostEstimate& costs,
                                     std::uint64_t done_here, int threads) {
@@ -166,7 +167,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
     std::optional<BatchResult> judged_batch;
     try {
       judged_batch = judged(*batch);
-    } catch (const Stopped&) {  // in the middle of foreign code; the batch is run again
+    } catch (const Stopped&) {  // foreign code was interrupted; the batch will run again
       break;
     }
     const BatchResult& result = *judged_batch;
@@ -187,7 +188,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
   if (campaign.shard.whole() && !campaign.take) {
     outcome.summary = write_summary(campaign, store, complete);
   } else {
-    if (complete) store.compact();  // what is merged, perhaps with thousands, is small
+    if (complete) store.compact();  // keeps merges of thousands of shards small
     outcome.summary = shard_summary(campaign.shard, store, complete, progress.done);
   }
   Json run = {{"pairs", progress.done_here},
@@ -197,7 +198,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
               {"engine", campaign.engines.empty() ? "cpu" : "gpu"}};
   try {
     if (complete && campaign.shard.number == 1) run["costs"] = measure_costs(campaign);  // once is enough
-  } catch (const Stopped&) {                                                             // then they are not known
+  } catch (const Stopped&) {                                                             // the costs stay unknown
   }
   append_timing(campaign.directory, run, outcome.oracle);
   return outcome;

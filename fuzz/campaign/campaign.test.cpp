@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The campaign's promises: the same bytes whatever the threads and interruptions, and nothing lost.
+// The guarantees of campaigns: the same bytes for any number of threads and interruptions, and no loss.
 #include "fuzz/campaign/campaign.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ TEST_F(CampaignTest, SameBytesForOneThreadAndMany) {
 
 TEST_F(CampaignTest, SameBytesWhenInterruptedAfterEveryBatch) {
   run(campaign("whole", 2));
-  EXPECT_EQ(run_in_parts(campaign("parts", 2)), 3 * 3);  // of each source a few pairs, a batch, and the rest
+  EXPECT_EQ(run_in_parts(campaign("parts", 2)), 3 * 3);  // for each source a few pairs, a batch, and the rest
   EXPECT_EQ(lasting_files(root_ / "parts"), lasting_files(root_ / "whole"));
 }
 
@@ -67,7 +67,7 @@ TEST_F(CampaignTest, CountsEveryPairAndStoresCasesThatAreDisagreements) {
   }
   const std::uint64_t disagreements = summary["disagreements"];
   EXPECT_GE(failures, disagreements);  // one for each failing algorithm
-  std::uint64_t sampled = 0;           // right in every lane, and seen by GMP all the same
+  std::uint64_t sampled = 0;           // right in every lane, but checked by GMP anyway
   for (const strata::PairSource& source : campaign("counts", 2).sources) {
     for (std::uint64_t index = 0; index < source.pairs; index += 1024) {
       const Pair pair = source.pair(index);
@@ -117,7 +117,7 @@ TEST_F(CampaignTest, RefusesADirectoryOfAnotherCampaign) {
   const std::string before = read_whole(root_ / "taken" / "summary.json");
   EXPECT_THROW(run(campaign("taken", 1, 5000)), UsageError);
   EXPECT_EQ(read_whole(root_ / "taken" / "summary.json"), before);
-  // Nor does another build go on with it: its type and flags count as its commit does.
+  // Another build does not resume it either: type and flags count as well as the commit.
   for (const char* key : {"commit", "type", "flags"}) {
     Campaign other = campaign("taken", 1, 4000);
     EXPECT_FALSE(other.build[key].get<std::string>().empty()) << key;
@@ -146,7 +146,7 @@ TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
   EXPECT_THROW(run(campaign("cut", 1, 4000)), std::runtime_error);
 }
 
-// A device that is its twin, but for the eighth pair of every block.
+// A device that equals its twin, except on the eighth pair of every block.
 class WrongOnce final : public cuda::Device {
  public:
   void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as campaigns and cases name it: the file it came from, and what it says, which is recorded with the results.
+// A scene in campaigns and cases: its file name, and its contents, which are recorded with the results.
 #pragma once
 
 #include <cstdint>
@@ -21,24 +21,23 @@ struct NamedScene {
 // Throws: as strata::read_scene.
 NamedScene open_scene(const std::string& file);
 
-// As strata::scene_sources; meshes are looked for beside the scene's file.
+// As strata::scene_sources; looks for meshes beside the scene's file.
 strata::SceneSources sources_of(const NamedScene& scene, std::uint64_t seed, std::uint64_t pairs,
                                 const std::vector<std::string>& globs);
 
-// What a campaign's spec records under "scene": {"file", "name", "pairs" asked for, "text", "left_out": {stratum:
-// why}}.
+// Returns a campaign's record under "scene": {"file", "name", "pairs" requested, "text", "left_out": {stratum: why}}.
 nlohmann::ordered_json scene_spec(const NamedScene& scene, std::uint64_t pairs, const strata::SceneSources& drawn);
 
-// Of what scene_spec recorded.   Throws: std::runtime_error, or nlohmann's for another shape.
+// Reads what scene_spec recorded.   Throws: std::runtime_error; nlohmann's exceptions for another shape.
 NamedScene recorded_scene(const nlohmann::ordered_json& recorded);
 
-// Of ID@SCENE:SEED:INDEX, where SCENE is a scene's file, with #HASH or without, or a campaign's directory.
+// The parts of ID@SCENE:SEED:INDEX. SCENE is a scene's file, with or without #HASH, or a campaign's directory.
 struct SceneCase {
   std::string id, scene;
   std::uint64_t seed, index;
 };
 
-// The pair that it names.   Throws: UsageError; std::runtime_error where the file now says something else.
+// Draws the named pair.   Throws: UsageError; std::runtime_error if the scene's file has changed.
 Pair draw_again(const SceneCase& named);
 
 }  // namespace graze::fuzz

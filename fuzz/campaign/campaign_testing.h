@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Campaigns in a folder of their own, for tests that compare what they leave.
+// For tests that compare results: runs campaigns in a folder of their own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace graze::fuzz {
 
-// Everything that a campaign leaves and that must not depend on how it ran.
+// All files of a campaign that must not depend on how it ran.
 inline std::map<std::string, std::string> lasting_files(const std::filesystem::path& directory) {
   std::map<std::string, std::string> files{{"summary.json", read_whole(directory / "summary.json")}};
   for (const auto& file : std::filesystem::directory_iterator(directory / "cases"))
@@ -67,21 +67,21 @@ class CampaignFiles : public testing::Test {
     return c;
   }
 
-  // Runs so many batches of the campaign.   Returns: its summary.
+  // Runs this many batches of the campaign.   Returns: its summary.
   Json run(const Campaign& c, std::uint64_t stop_after_batches = ~0ull) const {
     std::atomic<bool> stop{false};
     std::uint64_t batches = 0;
     return run_campaign(c, stop, [&](const Progress&) { stop = ++batches >= stop_after_batches; }).summary;
   }
 
-  // Interrupts the campaign after every batch until it is done.   Returns: how often.
+  // Interrupts the campaign after every batch until it is done.   Returns: the number of parts.
   int run_in_parts(const Campaign& c) const {
     int parts = 1;
     while (!run(c, 1)["complete"].get<bool>()) ++parts;
     return parts;
   }
 
-  // The same, but for what ran the lanes, which the build says.
+  // Compares lasting_files of two campaigns byte by byte.
   void expect_same_bytes(const std::string& one, const std::string& other) const {
     const auto files = lasting_files(root_ / one), others = lasting_files(root_ / other);
     EXPECT_EQ(files.size(), others.size()) << one << " and " << other << " keep other cases";
@@ -95,8 +95,8 @@ class CampaignFiles : public testing::Test {
   std::filesystem::path root_;
 };
 
-// Copies of the lanes under test, so many of each, beside each other, told apart by a policy that does nothing: more
-// lanes than a subject has.
+// Makes `copies` adjacent copies of each lane under test, with policy names that have no effect. This gives more lanes
+// than a subject has.
 class ManyLanes {
  public:
   ManyLanes(const SelectedLanes& of, int copies) {

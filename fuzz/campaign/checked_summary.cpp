@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Which counts of a summary cannot be, in words.
+// A summary has impossible counts; what() describes them.
 struct Impossible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -35,7 +35,7 @@ std::uint64_t count(const Json& row, const char* field) {
   return value.get<std::uint64_t>();
 }
 
-// Rows {"pairs", "wrong": {lane: count}}, which split the stratum's pairs.
+// Checks rows {"pairs", "wrong": {lane: count}} that split the stratum's pairs.
 void expect_split(const std::string& where, const Json& rows, const Json& stratum) {
   std::uint64_t pairs = 0;
   std::map<std::string, std::uint64_t> wrong;
@@ -77,7 +77,7 @@ void expect_possible(const Json& stratum) {
   for (const auto& [axis, rows] : extremes.items()) expect_split(axis, rows, stratum);
 }
 
-// Of a summary without its database: counts within each other, and sums that agree.
+// Checks a summary that has no database: counts are within their limits, and sums agree.
 void expect_possible_summary(const Json& summary) {
   std::uint64_t pairs = 0;
   for (const auto& [id, stratum] : summary.at("strata").items()) {
@@ -98,14 +98,14 @@ void expect_possible_summary(const Json& summary) {
            fmt::format("at most {} pairs of the signature {}", pairs, row.at("key").dump()), count(row, "count"));
 }
 
-// What the store's rows add up to, as the summary says it.
+// The summary that follows from the sums of the store's rows.
 Json summary_of_database(const fs::path& directory) {
   StoreSpec store = recorded_store(directory);
   std::vector<StoredCounts> of_source;
   for (const std::string id : store.spec.at("strata")) {
     const auto row =
         std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata), [&](auto& s) { return s.id == id; });
-    // How many pairs a mesh has is known from the mesh alone; no source has more than all.
+    // Only the mesh itself tells how many pairs it has; no source has more than all pairs.
     strata::PairSource source{id, store.spec.at("pairs"), nullptr};
     if (row != std::end(strata::kStrata) && !store.spec.contains("scene")) source.axis = row->axis;
     store.sources.push_back(std::move(source));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign's summary.json, believed only where it checks.
+// Reads a campaign's summary.json and checks its counts.
 #pragma once
 
 #include <filesystem>
@@ -8,13 +8,14 @@
 
 namespace graze::fuzz {
 
-// summary.json of a campaign's directory: what its database says, or, where that is not beside it, counts that can be.
-// Throws: std::runtime_error, in one line, without a summary, for one that disagrees with the database or cannot be,
-// and as recorded_store; FormatError for another shape.
+// Returns the summary.json in a campaign's directory. It must agree with the database; without a database, its counts
+// must be possible.
+// Throws: std::runtime_error, in one line, if it is missing, disagrees with the database or is impossible, and as
+// recorded_store; FormatError for another shape.
 Json checked_summary(const std::filesystem::path& directory);
 
-// What the campaign recorded of itself under "spec": by its database, or by its summary where there is no database.
-// Returns: null where there is neither.   Throws: as recorded_store.
+// Returns the campaign's recorded "spec", from its database, or from its summary if there is no database.
+// Returns: null if there is neither.   Throws: as recorded_store.
 Json recorded_spec(const std::filesystem::path& directory);
 
 // Whether the campaign's database is in the directory.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the exact lane judges, here or on devices, CGAL and GMP judge each case that is kept once more.
+// If the exact lane judges, on the CPU or on devices, CGAL and GMP check each kept case again.
 #pragma once
 
 #include <map>
@@ -13,13 +13,13 @@ class Confirmation {
   // Requires: campaign outlives this.
   explicit Confirmation(const Campaign& campaign) : campaign_(campaign) {}
 
-  // Has the oracle judge those cases of the result that would be kept and that it has not judged yet.
-  // Throws: OracleMismatch when a case is not what the result says.
+  // Makes the oracle judge the cases of `result` that would be kept and that it has not judged yet.
+  // Throws: OracleMismatch if the oracle contradicts the result on a case.
   void confirm(int source, BatchResult& result);
 
  private:
   const Campaign& campaign_;
-  std::map<analysis::Signature, SignatureCount> confirmed_;  // what is kept so far
+  std::map<analysis::Signature, SignatureCount> confirmed_;  // the cases kept so far
 };
 
 }  // namespace graze::fuzz

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Devices: the GPU engine, the CPU engine with lanes on a device, and the CPU engine with their twins leave the same
-// bytes. A program of its own, to be carried to a GPU machine. Without a device its tests are skipped; with
-// --require-device, or GRAZE_REQUIRE_DEVICE=1 in the environment, they fail.
+// Tests with devices: the GPU engine, the CPU engine with lanes on a device, and the CPU engine with their twins must
+// leave the same bytes. This is a separate program, to be carried to a GPU machine. Without a device its tests are
+// skipped; with --require-device, or GRAZE_REQUIRE_DEVICE=1 in the environment, they fail.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -29,12 +29,12 @@ class DeviceTest : public CampaignFiles {
     }
   }
 
-  // engines: how many devices share it; 0: the CPU engine.
+  // engines: how many devices share the campaign; 0: the CPU engine.
   Campaign campaign(const SelectedLanes& under_test, const std::string& name, std::uint64_t pairs, std::size_t engines,
                     std::uint64_t seed = 3, const std::vector<std::string>& strata = {}) const {
     Campaign c = campaign_of(under_test, strata::stratum_sources(seed, pairs, strata), seed, name);
     c.threads = 0;
-    c.build = build_info(twins_);  // one for all, so that their summaries can be the same
+    c.build = build_info(twins_);  // the same for all, so that their summaries can be equal
     if (engines > 0) c.engines = cuda::open_engines(under_test.lanes);
     if (c.engines.size() < engines) throw std::runtime_error("expected more devices");
     c.engines.resize(engines);
@@ -147,7 +147,7 @@ TEST_F(DeviceTest, BoundsDecideNothingWrongly) {
     }
   }
   EXPECT_GT(declined, 10'000u);
-  EXPECT_EQ(summary["disagreements"], 0);  // what declines is not wrong
+  EXPECT_EQ(summary["disagreements"], 0);  // declined is not wrong
   EXPECT_TRUE(summary["signatures"].empty());
 }
 
@@ -171,12 +171,12 @@ TEST_F(DeviceTest, OddCountsLeaveTheSameBytes) {
 TEST_F(DeviceTest, InterruptionsInTheMiddleOfAStratumChangeNothing) {
   run(campaign(twins_, "twins", 30'011, 0));
   Campaign parts = campaign(on_device_, "parts", 30'011, 1);
-  parts.engine_batch = 701;  // of a stratum's 1579 or 1580
+  parts.engine_batch = 701;  // out of a stratum's 1579 or 1580
   EXPECT_EQ(run_in_parts(parts), 19 * 3);
   expect_same_bytes("twins", "parts");
 }
 
-// More pairs than there is memory for at once: seven blocks, and runs that share none of their borders.
+// More pairs than memory holds at once: seven blocks, compared with runs at different borders.
 TEST_F(DeviceTest, ManyBlocksCountAsManyRuns) {
   constexpr std::uint64_t kPairs = (std::uint64_t{7} << 22) - 12'345;
   for (const char* stratum : {"near_edge_edge", "extreme_scale"}) {
@@ -202,7 +202,7 @@ TEST_F(DeviceTest, TwoDevicesLeaveTheBytesOfOne) {
 }
 
 TEST_F(DeviceTest, TakesAnyNumberOfLanes) {
-  ManyLanes on_host(twins_, 9), on_device(on_device_, 9);  // 36 of an algorithm, five chunks of the tally
+  ManyLanes on_host(twins_, 9), on_device(on_device_, 9);  // 36 of each algorithm: five chunks of the tally
   std::string why_not;
   on_device.under_test.device = cuda::open_device(why_not);
   run(campaign(on_host.under_test, "twins", 4'001, 0));

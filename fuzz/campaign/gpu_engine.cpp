@@ -17,7 +17,7 @@ analysis::Signature signature_of(const cuda::EngineSignature& row, std::span<con
   return analysis::signature(row.relation, row.bucket, lanes.subspan(row.lanes.first, row.lanes.count), row.verdicts);
 }
 
-// Counts as EngineResult lays them out.
+// Adds counts in the layout of EngineResult.
 void add(const std::vector<std::uint64_t>& counts, int lanes, analysis::Tally& tally) {
   const auto counter = [&](int c, int b) {
     return counts[static_cast<std::size_t>(c * kBucketCount + b + kBucketMost)];
@@ -25,7 +25,7 @@ void add(const std::vector<std::uint64_t>& counts, int lanes, analysis::Tally& t
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
     const auto bucket = static_cast<Bucket>(b);
     tally.add(bucket, counter(0, b), counter(1, b));
-    for (int l = 0; l < lanes; ++l)  // none differs from its cpu lane: no cpu lane runs
+    for (int l = 0; l < lanes; ++l)  // differs_from_cpu is 0, because no cpu lane runs
       tally.add(bucket, l, {counter(2 + 3 * l, b), counter(3 + 3 * l, b), counter(4 + 3 * l, b), 0});
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the GPU engine does with pairs: all of them on the devices; the few that these leave, and each case that is
-// kept, by the CPU engine as well, and so by CGAL and GMP.
+// Judges pairs on the devices. The CPU engine, and with it CGAL and GMP, also judges each kept case and the few pairs
+// that the devices leave undecided.
 #pragma once
 
 #include "fuzz/campaign/confirmation.h"
@@ -12,8 +12,8 @@ class GpuEngine {
   // Requires: campaign outlives this.
   explicit GpuEngine(const Campaign& campaign) : campaign_(campaign), confirmation_(campaign) {}
 
-  // Pairs [first, first + count) of the source, shared by the campaign's engines.
-  // Throws: OracleMismatch when a kept case is not what the device says.
+  // Judges the pairs [first, first + count) of the source, split among the campaign's engines.
+  // Throws: OracleMismatch if a kept case contradicts the device's result.
   BatchResult judge(int source, std::uint64_t first, std::uint64_t count);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The GPU engine without a GPU: its steps run on this processor, and the campaign must leave the bytes of the CPU
-// engine. device.test.cpp asks the same of devices.
+// The GPU engine without a GPU. Its steps run on this processor, and the campaign must leave the same bytes as the CPU
+// engine. device.test.cpp tests the same on devices.
 #include "fuzz/campaign/gpu_engine.h"
 
 #include "cuda/engine/host_engine.h"
@@ -53,13 +53,13 @@ TEST_F(GpuEngineTest, TwoEnginesAndInterruptionsChangeNothing) {
   limits.block_pairs = 100;
   limits.undecided = 101;  // so that runs end early
   Campaign parts = campaign(twins_, "parts", 3'001, 2, 3, strata, limits);
-  parts.engine_batch = 77;  // 154 of a stratum's 1000 or 1001 pairs
+  parts.engine_batch = 77;  // 154 out of a stratum's 1000 or 1001 pairs
   EXPECT_EQ(run_in_parts(parts), 3 * 7);
   expect_same_bytes("cpu", "parts");
 }
 
 TEST_F(GpuEngineTest, TakesAnyNumberOfLanes) {
-  const ManyLanes many(twins_, 9);  // 36 of an algorithm
+  const ManyLanes many(twins_, 9);  // 36 of each algorithm
   ASSERT_GT(many.under_test.lanes.size(), 128u);
   run(campaign(many.under_test, "cpu", 2'003, 0));
   run(campaign(many.under_test, "engine", 2'003, 1));

@@ -80,10 +80,12 @@ void expect_possible_costs(const Json& costs, const std::vector<std::string>& la
 
 void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
                          const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs) {
-  // Parts of a merged campaign may have judged pairs again, after damage.
-  if (run.contains("pairs") &&
-      !(run["pairs"].is_number_unsigned() && (run.contains("merged") || run["pairs"] <= pairs)))
-    throw std::runtime_error(fmt::format("it has a run of {} pairs, of at most {}", shown(run["pairs"].dump()), pairs));
+  if (run.contains("pairs")) {
+    // The parts of a merged campaign may have judged pairs again, after damage.
+    const Json& judged = run["pairs"];
+    if (!judged.is_number_integer() || judged < 0 || (judged > pairs && !run.contains("merged")))
+      throw std::runtime_error(fmt::format("it has a run of {} pairs, of at most {}", shown(judged.dump()), pairs));
+  }
   if (run.contains("seconds") && !(run["seconds"].is_number() && run["seconds"] >= 0))
     throw std::runtime_error(fmt::format("it has a run of {} seconds", shown(run["seconds"].dump())));
   if (run.contains("costs")) expect_possible_costs(run["costs"], lanes, sources);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a lane costs on a campaign's own pairs, in nanoseconds a pair on one core: for timings.json, since it depends on
-// the machine and on the moment.
+// A lane's cost on the campaign's own pairs, in nanoseconds a pair on one core. It goes into timings.json, because it
+// depends on the machine and on its load.
 #pragma once
 
 #include <map>
@@ -9,21 +9,21 @@
 
 namespace graze::fuzz {
 
-inline constexpr std::uint64_t kPairsTimed = 1024;  // of each source, its first ones
+inline constexpr std::uint64_t kPairsTimed = 1024;  // the first pairs of each source
 inline constexpr int kPassesTimed = 9;
 
-// Times the lanes of the host; those of a device and their twins have no cost here, nor has foreign code, whose time
-// would be that of its processes. All lanes take turns on all pairs,
-// so many passes over: what else the machine does then falls on all of them, and no lane finds its branches remembered.
-// Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, of the passes the quartiles.
+// Times the host lanes. Device lanes and their twins are not timed, nor is foreign code, whose time would be that of
+// its processes. In each of the kPassesTimed passes, every lane runs over all pairs in turn. So other load on the
+// machine affects all lanes, and no lane benefits from trained branch prediction.
+// Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, with the quartiles of the passes.
 Json measure_costs(const Campaign& campaign);
 
-// Of costs that a file holds: lanes and sources (id, pairs) are those of the campaign, and times can be.
+// Checks costs from a file: lanes and sources (by id, with their pairs) must be the campaign's, and times possible.
 // Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
                            const std::map<std::string, std::uint64_t>& sources);
 
-// The same of one of the runs in timings.json, with its costs if it has any. pairs: of the whole campaign.
+// Checks a run of timings.json, with its costs if it has any.   pairs: of the whole campaign.   Throws: the same.
 void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
                          const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs);
 

@@ -9,19 +9,31 @@
 
 #include "fuzz/campaign/cpu_engine.h"
 #include "fuzz/campaign/gpu_engine.h"
+#include "fuzz/campaign/result_files.h"
 
 namespace graze::fuzz {
 namespace {
 
 constexpr std::uint64_t kSample = 2048, kSampleOfDevice = std::uint64_t{1} << 22;
-constexpr double kShardSeconds = 3600;    // a shard that dies loses nothing; an hour is what schedulers like
+constexpr double kShardSeconds = 3600;    // an hour suits job schedulers; a shard that dies loses nothing
 constexpr double kRowPairs = 16777216;    // of the CPU engine; see store.cpp
-constexpr double kDatabaseBytes = 65536;  // without rows, and with the small files beside it
+constexpr std::uint64_t kFewer = 8;       // the part of a sample that shows how its bytes grow
+constexpr double kDatabaseBytes = 65536;  // without rows; includes the small files beside it
 
-// Bytes of a row of so many pairs. A new signature is met more and more seldom, so this is rather too much.
-double row_bytes(const Sample& sample, std::size_t source, double pairs) {
+// Estimates the bytes for `pairs` pairs. New signatures become rarer and rarer, so this is rather too high.
+double bytes_of(const Growing& growing, const Sample& sample, double pairs) {
   const double more = pairs / static_cast<double>(sample.pairs_of_row);
-  return sample.row_bytes[source] * std::pow(std::max(more, 1.0), sample.row_growth[source]);
+  return growing.bytes * std::pow(std::max(more, 1.0), growing.exponent);
+}
+
+Growing growing(double few, double bytes) {
+  return {bytes, std::clamp(std::log(bytes / few) / std::log(kFewer), 0.0, 0.25)};
+}
+
+// The bytes of summary.json on the pairs of one source.
+double summary_bytes(const StoreSpec& spec, const StoredCounts& counts) {
+  const Json summary = summary_of(spec, {counts}, counts.signatures, counts.executor_mismatches, true);
+  return static_cast<double>(summary["strata"].dump(1).size() + summary["signatures"].dump(1).size());
 }
 
 }  // namespace
@@ -33,21 +45,20 @@ Sample measure(const Campaign& campaign) {
   sample.pairs_of_row = campaign.engines.empty() ? kSample : kSampleOfDevice;
   for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
     const auto source = static_cast<int>(s);
-    const auto judged = [&](std::uint64_t first, std::uint64_t count, double& seconds) {
-      const auto start = std::chrono::steady_clock::now();
-      const StoredCounts counts = campaign.engines.empty()
-                                      ? judge(campaign, source, count, [&](std::size_t i) { return first + i; })
-                                      : device.judge(source, first, count);
-      seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto judged = [&](std::uint64_t count) -> StoredCounts {
       sample.pairs += count;
-      return static_cast<double>(to_bytes(counts).size());
+      if (campaign.engines.empty()) return judge(campaign, source, count, [](std::size_t i) { return i; });
+      return device.judge(source, 0, count);
     };
-    double seconds = 0, unused = 0;
-    const double few = judged(0, sample.pairs_of_row / 8, unused);
-    const double bytes = judged(0, sample.pairs_of_row, seconds);
+    const StoredCounts few = judged(sample.pairs_of_row / kFewer);
+    const auto start = std::chrono::steady_clock::now();
+    const StoredCounts all = judged(sample.pairs_of_row);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     sample.seconds_a_pair.push_back(seconds / static_cast<double>(sample.pairs_of_row));
-    sample.row_bytes.push_back(bytes);
-    sample.row_growth.push_back(std::clamp(std::log(bytes / few) / std::log(8), 0.0, 0.25));
+    StoreSpec spec = store_spec(campaign);
+    spec.sources = {spec.sources[s]};
+    sample.row.push_back(growing(static_cast<double>(to_bytes(few).size()), static_cast<double>(to_bytes(all).size())));
+    sample.summary.push_back(growing(summary_bytes(spec, few), summary_bytes(spec, all)));
   }
   return sample;
 }
@@ -71,8 +82,8 @@ Plan plan(const Campaign& campaign, const Sample& sample, const Workers& workers
   for (std::size_t s = 0; s < campaign.sources.size(); ++s) {
     const double here = static_cast<double>(campaign.sources[s].pairs),
                  part = here / static_cast<double>(result.shards);
-    result.shard_bytes += std::ceil(part / of_row) * row_bytes(sample, s, std::min(part, of_row));
-    result.merged_bytes += row_bytes(sample, s, here);
+    result.shard_bytes += std::ceil(part / of_row) * bytes_of(sample.row[s], sample, std::min(part, of_row));
+    result.merged_bytes += bytes_of(sample.row[s], sample, here) + bytes_of(sample.summary[s], sample, here);
   }
   return result;
 }

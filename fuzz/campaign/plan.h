@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a campaign takes, and how much disk: from what its pairs cost here, stratum by stratum, or from a given
-// rate.
+// Estimates a campaign's duration and disk use from measured costs of each stratum's pairs, or from a given rate.
 #pragma once
 
 #include <optional>
@@ -9,16 +8,20 @@
 
 namespace graze::fuzz {
 
-// What was measured of each source, by one core or one device.
-struct Sample {
-  std::vector<double> seconds_a_pair;  // of each source
-  std::vector<double> row_bytes;       // of each source's row in the store, of a sample's pairs
-  std::vector<double> row_growth;      // the exponent by which it grows with the pairs
-  std::uint64_t pairs = 0;             // all samples
-  std::uint64_t pairs_of_row = 1;      // those of each source's row
+// The bytes for the sample's pairs, and the exponent by which they grow with the number of pairs.
+struct Growing {
+  double bytes = 0, exponent = 0;
 };
 
-// Judges the first pairs of each source, by the campaign's engines or one core: some seconds.
+// Measurements of each source, by one core or one device.
+struct Sample {
+  std::vector<double> seconds_a_pair;  // by source
+  std::vector<Growing> row, summary;   // a row of the store, and what summary.json says of its pairs, by source
+  std::uint64_t pairs = 0;             // in all samples
+  std::uint64_t pairs_of_row = 1;      // pairs in each source's row
+};
+
+// Judges the first pairs of each source with the campaign's engines or one core. Takes some seconds.
 Sample measure(const Campaign& campaign);
 
 struct Plan {
@@ -32,7 +35,7 @@ struct Plan {
 struct Workers {
   std::uint64_t count = 1;     // at least
   bool devices = false;        // GPUs; else cores
-  std::optional<double> rate;  // of each, instead of the sample's
+  std::optional<double> rate;  // of each worker, instead of the sample's rate
 };
 Plan plan(const Campaign& campaign, const Sample& sample, const Workers& workers);
 

@@ -38,7 +38,7 @@ void take_in_ranks(const Campaign& campaign, Store& store) {
             found.spec != of_rank.spec || found.build != of_rank.build)
           throw std::runtime_error(cannot("use", directory, "it holds a rank of another campaign; remove it"));
         for_each_row(of_rank, [&](const PairRange& range, const StoredCounts& counts) {
-          if (!store.holds(range)) store.commit(range, counts);  // else taken in by a run that was killed then
+          if (!store.holds(range)) store.commit(range, counts);  // a killed run may have committed it already
           pairs += range.pairs;
         });
       } catch (const DamagedStore& error) {

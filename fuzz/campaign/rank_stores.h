@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stores that ranks leave in a campaign's directory, in DIR/rank-R, until their rows are in the campaign's own.
+// The stores DIR/rank-R that ranks leave in a campaign's directory until their rows are in the campaign's own store.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@ namespace graze::fuzz {
 
 std::filesystem::path rank_directory(const std::filesystem::path& campaign, int rank);
 
-// All there are, in order of their names: folders with a store, or with nothing. Others are not Graze's.
+// All rank directories, sorted by name: folders that hold a store or nothing. Other folders are not Graze's.
 std::vector<std::filesystem::path> rank_directories(const std::filesystem::path& campaign);
 
-// Commits what a run that was killed has left, and removes it.
-// Throws: std::runtime_error, in one line, for a store that is damaged or of another campaign.
+// Commits the rows that a killed run left in rank stores, and removes these stores.
+// Throws: std::runtime_error, in one line, for a store that is damaged or belongs to another campaign.
 void take_in_ranks(const Campaign& campaign, Store& store);
 
 void remove_ranks(const std::filesystem::path& campaign);

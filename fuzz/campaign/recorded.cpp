@@ -64,19 +64,19 @@ std::string command_of(const Json& spec, const Shard& shard, const std::filesyst
   std::uint64_t pairs = scene ? spec["scene"].at("pairs") : spec.at("pairs");
   std::string command = hunt ? "graze hunt" : "graze fuzz";
   const auto add = [&](const char* name, const std::string& value) {
-    command += fmt::format(" {} {}", name, shell_word(value));
+    command += fmt::format(" {} {}", name, path_word(value));
   };
   if (scene) add("--scene", spec["scene"].at("file"));
   if (mesh) {
     command += " --mesh";
-    for (const std::string file : spec["mesh"].at("files")) command += ' ' + shell_word(file);
+    for (const std::string file : spec["mesh"].at("files")) command += ' ' + path_word(file);
     std::erase(strata, "mesh");
     for (const strata::PairSource& source : recorded_sources(spec)) pairs -= source.stratum < 0 ? source.pairs : 0;
   }
   if (!mesh || !strata.empty()) add(hunt ? "--runs" : "--pairs", std::to_string(pairs));
   add("--seed", std::to_string(spec.at("seed").get<std::uint64_t>()));
   for (const strata::StratumInfo& row : strata::kStrata) all_strata.emplace_back(row.id);
-  if (scene) {  // what the scene left out was asked for as well
+  if (scene) {  // the user also asked for strata that the scene excludes
     for (const auto& [id, why] : spec["scene"].at("left_out").items()) strata.push_back(id);
     if (std::all_of(all_strata.begin(), all_strata.end(),
                     [&](const std::string& id) { return std::find(strata.begin(), strata.end(), id) != strata.end(); }))
@@ -86,16 +86,16 @@ std::string command_of(const Json& spec, const Shard& shard, const std::filesyst
   for (const Json& row : spec.value("subjects", Json::array())) {
     add("--subject", row.at("name").get<std::string>() + '=' + row.at("what").get<std::string>());
   }
-  if (spec.contains("subjects")) {  // flags and timeout are those of all
+  if (spec.contains("subjects")) {  // flags and timeout are the same for all subjects
     const Json& first = spec["subjects"].at(0);
     for (const std::string flag : first.at("flags")) command += ' ' + shell_word("--flags=" + flag);
     if (first.at("timeout") != 1) add("--subject-timeout", fmt::format("{}", first["timeout"].get<double>()));
   }
   for (const Lane* lane : select_lanes({}, Executor::twin).lanes) all_lanes.push_back(lane->id);
-  // What was left out was asked for as well, and by a pattern of which some lane ran.
+  // The user also asked for the lanes that were left out, perhaps by a pattern that matched other lanes.
   if (spec.contains("lanes_left_out")) lanes = spec["lanes_left_out"].at("patterns");
   if (!lanes.empty() && lanes != all_lanes) add("--lanes", fmt::format("{}", fmt::join(lanes, ",")));
-  // The reasons are recorded as well: without a look for a device they are shorter.
+  // The reasons are recorded as well; they are shorter if no device was looked for (--executor twin).
   const Json why = spec.value("lanes_left_out", Json::object()).value("why", Json::object());
   if (std::any_of(why.begin(), why.end(), [](const Json& reason) { return reason == "no twin"; }))
     add("--executor", "twin");

@@ -24,14 +24,14 @@
 namespace graze::fuzz {
 namespace {
 
-// A name for the signature's file.
+// The name of the signature's case file.
 std::string case_name(const std::string& key) { return fmt::format("cases/{:016x}.pairs", fnv1a(key)); }
 
 std::string signature_line(const std::string& key, std::uint64_t count) {
   return fmt::format("# {}: {} pairs\n", key, count);
 }
 
-// Whether the entry's truth, and what its signature says of it, are those of its pair.
+// Whether the entry's truth and its signature match its pair.
 bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signature) {
   const oracle::Truth truth = oracle::truth(entry.pair);
   for (const auto& [name, value] : truth_fields(truth)) {
@@ -41,7 +41,7 @@ bool has_its_truth(const corpus::Entry& entry, const analysis::Signature& signat
          signature.bucket == oracle::margin_bucket(entry.pair, truth.verdict);
 }
 
-// Whether it is the pair that its stratum draws; also where that is not known: in a scene, of a mesh, of a hunt.
+// Whether the pair is the one that its stratum draws. Also true if that is not known: for scenes, meshes and hunts.
 bool is_drawn(const corpus::Entry& entry) {
   const std::string id = corpus::text_of(entry, "stratum");
   const auto row =
@@ -71,14 +71,14 @@ std::string case_text(const Campaign& campaign, const std::string& key, const Si
   return out.str();
 }
 
-// The lane of the same subject, scalar and policy that the processor runs as it is written.
+// The cpu lane (rounded as written) of the same subject, scalar and policy.
 std::string cpu_lane_of(const std::string& id) {
   LaneName name = parse_lane_name(id).value();
   name.variant = graze::name(Variant::cpu);
   return id_of(name);
 }
 
-// differs_from_cpu is null for the cpu lanes, and for lanes that ran without theirs.
+// differs_from_cpu becomes null for cpu lanes, and for lanes whose cpu lane did not run.
 void leave_out_what_was_not_compared(Json& strata, const std::vector<std::string>& lanes) {
   for (const std::string& lane : lanes) {
     const std::string cpu = cpu_lane_of(lane);
@@ -114,7 +114,7 @@ Json summary_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_sourc
                   {"strata", results["strata"]},
                   {"disagreements", results["disagreements"]},
                   {"signatures", rows}};
-  // Pairs on which a device and its twin differ: nobody's failure.
+  // Pairs on which a device and its twin differ do not belong to any subject.
   for (const auto& [lane, found] : executor_mismatches)
     summary["executor_mismatches"].push_back({{"lane", lane}, {"count", found.count}, {"case", case_name(lane)}});
   return summary;
@@ -220,7 +220,7 @@ void expect_usable_records(const std::filesystem::path& directory) {
 }
 
 bool is_minimised_from(const std::string& text, const std::string& fresh) {
-  const std::size_t head = fresh.find('\n', fresh.find('\n') + 1) + 1;  // the version line, and the signature's
+  const std::size_t head = fresh.find('\n', fresh.find('\n') + 1) + 1;  // the version line and the signature's line
   return text.size() >= fresh.size() && text.starts_with(fresh.substr(0, head)) && text.ends_with(fresh.substr(head));
 }
 

@@ -29,7 +29,7 @@ std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-// Of the signatures, their margins aside, the hashes, each once.
+// The distinct hashes of the signatures without their margins.
 std::set<std::string> ways_of(const std::map<std::string, SignatureCount>& signatures) {
   std::set<std::string> ways;
   for (const auto& [key, count] : signatures) {

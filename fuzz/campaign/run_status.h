@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// status.json: what a run says of itself now and then, for `graze status` and for merge. Nothing that a campaign counts
+// status.json: a run's progress, updated every few seconds for `graze status` and for merge. No count of a campaign
 // comes from it.
 #pragma once
 
@@ -13,14 +13,15 @@ namespace graze::fuzz {
 
 class RunStatus {
  public:
-  // Nothing is written before the first tell: the directory may be another's.
+  // Writes nothing before the first tell, because the directory may belong to another campaign.
   explicit RunStatus(const Campaign& campaign);
 
-  // Says how far it is, and what was seen so far, every few seconds at most. What cannot be written is left out: it is
-  // for those who watch.
+  // Records the progress and the signatures so far, at most once every few seconds. Write errors are ignored, because
+  // the file only serves observers.
   void tell(const Progress& progress, const std::map<std::string, SignatureCount>& signatures);
 
-  // Says how it ended: "done", "stopped" or "failed", and then why. Nothing of a run that told nothing.
+  // Records how the run ended: "done", "stopped" or "failed", and why it failed. Does nothing if `tell` was never
+  // called.
   void end(const std::string& state, const std::string& why = {});
 
  private:
@@ -31,18 +32,19 @@ class RunStatus {
   double written_ = -1;  // seconds, as Progress counts them
 };
 
-// The hash of a file's bytes, 16 hex digits.   Throws: std::runtime_error.
+// The hash of a file's bytes, as 16 hex digits.   Throws: std::runtime_error.
 std::string file_hash(const std::filesystem::path& file);
 
-// Adds the hash of the directory's database, which no run uses any more, to its status; merge compares it.
+// Adds the hash of the directory's database to its status; merge compares it.   Requires: no run uses the database any
+// more.
 void seal(const std::filesystem::path& directory);
 
-// Removes a status that is damaged or counts what cannot be: by its name in a campaign's folder it is Graze's.
-// Throws: std::runtime_error for one that is no file, or lies behind a link.
+// Removes a status that is damaged or has impossible counts. In a campaign's folder this name is Graze's own.
+// Throws: std::runtime_error if it is not a file; UsageError if it is behind a link.
 void remove_damaged_status(const std::filesystem::path& directory);
 
-// The directory's status; null where there is none.
-// Throws: std::runtime_error that names the file where it is damaged, or counts what cannot be.
+// Returns the directory's status; null if there is none.
+// Throws: std::runtime_error that names the file if it is damaged or its counts are impossible.
 Json read_status(const std::filesystem::path& directory);
 
 }  // namespace graze::fuzz

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The file, whole, under its name or not at all, also after a crash of the machine.
+// Copies the file so that its target is whole or missing, even after a crash of the machine.
 void copy_whole(const fs::path& from, const fs::path& to) {
   const fs::path part = to.string() + ".part";
   expect_file(from);

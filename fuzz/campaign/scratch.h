@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A shard whose store lives on a local disk while it runs, and comes to its directory, which may be far away, as one
-// file: no database is ever open there, and no lock is needed.
+// Keeps a running shard's store on a local disk, and copies it as one file to its directory, which may be on a network.
+// The database is never opened there, so it needs no locks.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,14 @@
 
 namespace graze::fuzz {
 
-// The folder on the local disk for what goes to that directory.
+// The folder on the local disk for results that go to `directory`.
 std::filesystem::path scratch_of(const std::filesystem::path& disk, const std::filesystem::path& directory);
 
-// Begins with what an earlier run brought to the directory, unless its scratch is still there.
-// Throws: std::runtime_error, also where another process on this machine runs the same shard.
+// Copies the results of an earlier run from the directory, unless its scratch still exists.
+// Throws: std::runtime_error, also if another process on this machine runs the same shard.
 void fetch_from_directory(const Campaign& campaign);
 
-// Brings the store to the directory, and removes the scratch.   Requires: the store is closed.
+// Copies the store to the directory and removes the scratch.   Requires: the store is closed.
 void bring_to_directory(const Campaign& campaign);
 
 }  // namespace graze::fuzz

@@ -16,7 +16,7 @@ std::optional<Shard> parse_shard(std::string_view text) {
 }
 
 PairRange share_of(const Shard& shard, int source, std::uint64_t pairs) {
-  // pairs * k / n without its overflow: the quotient and the rest of pairs / n, each times k.
+  // Computes pairs * k / n without overflow, from the quotient and the remainder of pairs / n.
   const auto until = [&](std::uint64_t k) { return pairs / shard.of * k + pairs % shard.of * k / shard.of; };
   const std::uint64_t first = until(shard.number - 1);
   return {source, first, until(shard.number) - first};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts failures by the bytes that tell them apart; each kind of failure becomes a Signature once, at the end.
+// Counts failures by their distinguishing bytes; converts each kind of failure to a Signature once, at the end.
 #pragma once
 
 #include <map>
@@ -18,18 +18,18 @@ class SignatureCounts {
   // Requires: lanes in table order.
   explicit SignatureCounts(std::vector<const Lane*> lanes) : lanes_(std::move(lanes)) {}
 
-  // Counts the pair for each subject of which a lane's verdict is wrong.
+  // Counts the pair once for each subject that has a lane with a wrong verdict.
   void add(const Relation& truth, Bucket bucket, std::span<const Verdict> verdicts, const CaseKey& pair);
 
-  // Adds all that was counted, and begins anew.
+  // Adds all counts to `signatures` and resets them.
   void move_to(std::map<analysis::Signature, SignatureCount>& signatures);
 
  private:
-  // The signature but for the lanes' verdicts, one byte each, which follow it in a key.
+  // The signature without the lanes' verdicts. In a key, the verdicts follow it, one byte each.
   struct Head {
     std::uint8_t relation;  // packed
     Bucket bucket;
-    std::uint16_t first;  // of the subject's lanes
+    std::uint16_t first;  // index of the subject's first lane
   };
   static_assert(std::has_unique_object_representations_v<Head>);
 

@@ -10,8 +10,8 @@
 namespace graze::fuzz {
 namespace {
 
-// Rows grow to so many pairs, which keeps a long campaign's database small; what a damaged row loses is judged again in
-// a minute or two. A batch of a device's engine is larger than that, and a row of its own.
+// Rows grow up to this many pairs, which keeps the database of a long campaign small. The pairs of a damaged row are
+// judged again in a minute or two. A batch of a device's engine is larger, and is a row of its own.
 constexpr std::uint64_t kRowPairs = std::uint64_t{1} << 24;
 
 const std::filesystem::path& with_folders(const StoreSpec& spec) {
@@ -22,7 +22,7 @@ const std::filesystem::path& with_folders(const StoreSpec& spec) {
   return directory;
 }
 
-// Whether it is of foreign code, opened here or recorded.
+// Whether the lane belongs to foreign code, opened here or recorded.
 bool is_foreign(const StoreSpec& spec, const std::string& id) {
   if (const Lane* lane = find_lane(id)) return lane->foreign;
   const Json subjects = spec.spec.value("subjects", Json::array());
@@ -137,7 +137,7 @@ void Store::commit(const PairRange& range, const StoredCounts& fresh) {
   add(range, fresh);
 }
 
-// One row of the source's share: of its rows, and these counts.
+// Replaces all rows of the source by one row for its whole share: their counts and `counts`.
 void Store::put_whole(int source, StoredCounts counts) {
   auto& rows = rows_[static_cast<std::size_t>(source)];
   const PairRange all = share_of(spec_.shard, source, spec_.sources[static_cast<std::size_t>(source)].pairs);
@@ -187,7 +187,7 @@ Json Store::oracle() const {
     all.gmp += source.gmp;
     all.exact += source.exact;
   }
-  // The last is always 0: a campaign that finds two exact decisions apart stops before it stores anything.
+  // "apart" is always 0: a campaign stops before it stores anything if two exact decisions differ.
   return {{"cgal", all.cgal}, {"gmp", all.gmp}, {"exact", all.exact}, {"apart", 0}};
 }
 

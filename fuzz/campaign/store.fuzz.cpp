@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign's store, edited at random: it opens, or refuses in one line that names it; what --discard-damaged leaves
-// opens. With the batches that are then missing the results are the same as of the whole store.
+// Edits a campaign's store at random. The store must open, or refuse in one line that names it. After --discard-damaged
+// it must open. Once the missing batches are added, the results must equal those of the whole store.
 #include "fuzz/campaign/store.h"
 
 #include <unistd.h>
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A store of two sources in five rows, as a run that ended leaves it, and as a killed one does, with a log beside it.
+// A store of two sources in five rows, in two states: after a normal end, and after a kill, with a log beside it.
 class Whole {
  public:
   Whole() {
@@ -61,7 +61,7 @@ class Whole {
     if (!files.log.empty()) write_whole(log(), files.log);
   }
 
-  // Of a store that opened: what it lacks are batches that were committed, and with them it is whole.
+  // Checks a store that opened: its missing batches were committed, and with them it is whole.
   void check(Store& store) const {
     std::size_t rows = 0;
     for (std::size_t row = 0; row < std::size(kRows); ++row) {
@@ -75,7 +75,7 @@ class Whole {
   }
 
  private:
-  // No two of a source would be one row.
+  // No two adjacent ranges of a source merge into one row.
   static constexpr PairRange kRows[] = {{0, 0, 16}, {0, 16, 8}, {0, 24, 6}, {1, 0, 20}, {1, 20, 10}};
 
   static Json results(const Store& store) {
@@ -95,7 +95,7 @@ class Whole {
   Json results_;
 };
 
-// Six bytes are an edit: what, where (three bytes), with what (two).
+// Six bytes describe an edit: the kind, the place (three bytes) and the value (two bytes).
 void edit(std::string& bytes, std::string_view how) {
   const auto byte = [&](std::size_t i) { return static_cast<std::size_t>(static_cast<unsigned char>(how[i])); };
   if (bytes.empty()) return;
@@ -118,7 +118,7 @@ void edit(std::string& bytes, std::string_view how) {
   }
 }
 
-// What opening says; empty when the store opened, and was found to be as it must.
+// The error on opening; empty if the store opened and passed the check.
 std::string refusal(const Whole& whole) {
   try {
     Store store = whole.opened();

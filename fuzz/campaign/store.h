@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The campaign's store: one SQLite database, one transaction a batch. Kill the process anywhere: what was
-// committed stays, and the same campaign goes on from there. Totals are not stored but added up from rows that check:
-// a row that has changed is found out, and pairs whose row is lost are judged again.
+// The campaign's store: one SQLite database with one transaction for each batch. If the process is killed at any point,
+// committed batches stay, and the same campaign resumes from there. Totals are not stored; they are sums over rows
+// whose checksums are right. A changed row is detected, and pairs whose row is lost are judged again.
 #pragma once
 
 #include <cstdint>
@@ -14,48 +14,49 @@
 
 namespace graze::fuzz {
 
-// {"strata": …, "disagreements": …} of the counts of each source, in a fixed order.
+// {"strata": …, "disagreements": …} from the counts of each source, in a fixed order.
 Json results_of(const StoreSpec& spec, const std::vector<StoredCounts>& of_source);
 
 class Store {
  public:
-  // Opens the campaign in the directory, or begins it; no other process can while this lives.
-  // Throws: as StoreFile; std::runtime_error when another process is at work there.
+  // Opens or creates the store in the directory. No other process can open it while this object lives.
+  // Throws: as StoreFile; std::runtime_error if another process uses it.
   explicit Store(StoreSpec spec);
 
   // How many pairs of the source are done.
   std::uint64_t done(int source) const;
 
-  // The first pairs of the source that are not, at most so many.
+  // The first range of missing pairs of the source, at most `most` pairs.
   PairRange missing(int source, std::uint64_t most) const;
 
-  // All of them, of what the store is to hold.
+  // All missing pairs of the source within the store's shard.
   std::vector<PairRange> gaps(int source) const;
   // Whether all of these pairs are done.
   bool holds(const PairRange& range) const;
 
-  // One transaction: these pairs are done.
-  // Requires: none of them was.
+  // Commits these pairs in one transaction.
+  // Requires: none of them was committed before.
   void commit(const PairRange& range, const StoredCounts& fresh);
 
-  // One transaction: all that was missing of the source is done, and this is its sum; one row is left of it.
+  // Commits all missing pairs of the source, with the sum of their counts, in one transaction. Leaves one row for the
+  // source.
   void complete(int source, const StoredCounts& rest);
 
-  // Leaves one row of each source, and a file without room for more.   Requires: nothing is missing.
+  // Leaves one row for each source, and shrinks the file.   Requires: no pairs are missing.
   void compact();
 
-  // Of all that is committed: how many pairs each decision saw.
+  // How many committed pairs each exact decision saw.
   Json oracle() const;
 
   // Pairs on which some lane is wrong.
   std::uint64_t disagreements() const;
 
-  // Of all that is committed; see results_of.
+  // Of all committed pairs; see results_of.
   Json results() const { return results_of(spec_, of_source_); }
 
   const StoreSpec& spec() const { return spec_; }
 
-  // Of all that is committed, but for signatures and executor_mismatches: of each source.
+  // The committed counts of each source, without signatures and executor_mismatches.
   const std::vector<StoredCounts>& of_source() const { return of_source_; }
 
   const std::map<std::string, SignatureCount>& signatures() const { return signatures_; }  // by key
@@ -75,7 +76,7 @@ class Store {
   FolderLock lock_;
   StoreFile file_;
   std::vector<std::map<std::uint64_t, Row>> rows_;  // of each source, by their first pair
-  std::vector<StoredCounts> of_source_;             // but for signatures and executor_mismatches
+  std::vector<StoredCounts> of_source_;             // without signatures and executor_mismatches
   std::map<std::string, SignatureCount> signatures_, executor_mismatches_;  // of all sources
 };
 

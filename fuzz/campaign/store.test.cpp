@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A damaged store is never believed: what changes in it is found out, and the batches that check can be kept.
+// A damaged store is never accepted: changes are detected, and batches whose checksums are right can be kept.
 #include "fuzz/campaign/store.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class StoreTest : public testing::Test {
   StoreTest() {
     std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
     std::replace(name.begin(), name.end(), '/', '-');
-    // In memory where that is possible: a file system on a disk takes milliseconds for each of 100,000 databases.
+    // In memory if possible: a disk's file system takes milliseconds for each of 100,000 databases.
     const fs::path folder = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : fs::temp_directory_path();
     root_ = folder / ("graze-store-" + name + std::to_string(getpid()));
     fs::remove_all(root_);
@@ -51,7 +51,8 @@ class StoreTest : public testing::Test {
     store.commit(range, judge(c, range.source, range.pairs, [&](std::size_t i) { return range.first + i; }));
   }
 
-  // A campaign of 400 pairs a source, in the seven rows (0, 300), (300, 80), (380, 20) of two sources and (0, 400).
+  // A campaign of 400 pairs for each source, in seven rows: (0, 300), (300, 80), (380, 20) of two sources, and (0,
+  // 400).
   Campaign in_seven_rows(const std::string& name) const {
     Campaign c = campaign(name);
     Store store(store_spec(c));
@@ -68,7 +69,7 @@ class StoreTest : public testing::Test {
     return SQLite::Database(file(c).string()).execAndGet("SELECT count(*) FROM batch").getInt64();
   }
 
-  // What opening says; empty when all is well.
+  // The error on opening; empty if there is none.
   static std::string refusal(const Campaign& c) {
     try {
       Store store(store_spec(c));
@@ -123,7 +124,7 @@ TEST_F(StoreTest, EditsAreFoundOutAndWhatChecksIsKept) {
   }
 }
 
-// A range of one pair is one.
+// A range of one pair works.
 TEST_F(StoreTest, OnePairOfASourceIsEnough) {
   const Campaign c = campaign("three", 3);
   const std::string whole = run(c);
@@ -131,7 +132,7 @@ TEST_F(StoreTest, OnePairOfASourceIsEnough) {
   EXPECT_EQ(run(c), whole);
 }
 
-// Rows that are lost leave a gap, which is judged again.
+// Lost rows leave a gap, which is judged again.
 TEST_F(StoreTest, GapsAreFilled) {
   const std::string whole = run(campaign("whole"));
   for (const char* sql :
@@ -143,7 +144,7 @@ TEST_F(StoreTest, GapsAreFilled) {
   }
 }
 
-// Rows that check, but are not of the source's 400 pairs, or of the shard's share of them.
+// Rows with right checksums that are outside the source's 400 pairs, or outside the shard's share.
 TEST_F(StoreTest, RangesThatTheStoreDoesNotHoldAreFoundOut) {
   int number = 0;
   const auto refused = [&](const Shard& shard, const PairRange& range) {
@@ -202,7 +203,7 @@ TEST_F(StoreTest, OtherBuildsFormatsAndProcessesAreRefused) {
   EXPECT_TRUE(names(refusal(c), {file(c).string(), "format 5", "format 3", "--out"}));
 }
 
-// Crashes and the like are counted of foreign lanes, also behind lanes of ours, and of no others.
+// Crashes and other failures are counted only for foreign lanes, even if these follow our own lanes.
 TEST_F(StoreTest, ResultsOfForeignLanesSayMore) {
   struct Foreign : ForeignCode {
     void decide(const Pair*, std::size_t, std::uint64_t*, std::uint64_t*) override {}
@@ -221,7 +222,7 @@ TEST_F(StoreTest, ResultsOfForeignLanesSayMore) {
   }
 }
 
-// Equal batches become rows of their sum, as the digits of a binary number do.
+// Equal batches merge into rows like the digits of a binary number.
 TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
   const Campaign parts = campaign("parts"), whole = campaign("whole");
   Json results;
@@ -247,7 +248,7 @@ TEST_F(StoreTest, RowsMergeAndResultsStayTheSame) {
   }
 }
 
-// What has its right checksum and still cannot be.
+// Rows that have the right checksum but are impossible.
 TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
   const Campaign c = campaign("sums");
   const PairRange range{2, 100, 200};
@@ -285,18 +286,18 @@ TEST_F(StoreTest, SumsThatDoNotAgreeAndIndicesOutOfRangeAreFoundOut) {
   refused("/2/1/0", all[2][0][0]);
   const std::string key = all[2][0][0];
   refused("/2/0/0", "no signature");
-  refused("/2/0/0", key + "\x87");  // no UTF-8
+  refused("/2/0/0", key + "\x87");  // not UTF-8
   refused("/2/0/0", "none/22/skew/+2^2147483648/" + key.substr(key.rfind('/', key.find(':')) + 1));
   refused("/4", 201);
   refused("/7", "device");
   EXPECT_THROW(from_bytes("\x9b\x7f\xff\xff\xff\xff\xff\xff\xff", range, Axis::scale, 2),
-               Damaged);  // a size beyond any memory
+               Damaged);  // larger than any memory
   EXPECT_THROW(from_bytes(bytes.substr(1), range, Axis::scale, 2), Damaged);
   EXPECT_THROW(from_bytes(bytes, {2, 100, 199}, Axis::scale, 2), Damaged);
   EXPECT_THROW(from_bytes(bytes, range, Axis::none, 2), Damaged);
 }
 
-// Every bit of a small campaign's database, in parts: the same results, or one line.
+// Flips every bit of a small campaign's database, in parts: the results are the same, or the error is one line.
 class EveryBit : public StoreTest, public testing::WithParamInterface<int> {
  protected:
   static constexpr int kParts = 8;
@@ -305,7 +306,7 @@ class EveryBit : public StoreTest, public testing::WithParamInterface<int> {
 TEST_P(EveryBit, ChangesNothingInSilence) {
   const Campaign c = campaign("flipped", 12);
   const std::string whole = run(c);
-  // Small pages: less room that nothing uses.
+  // Small pages leave less unused space.
   SQLite::Database(file(c).string(), SQLite::OPEN_READWRITE)
       .exec("PRAGMA journal_mode = DELETE; PRAGMA page_size = 2048; VACUUM");
   const auto results = [&] {
@@ -347,7 +348,7 @@ TEST_P(EveryBit, ChangesNothingInSilence) {
     }
   }
   std::cout << refused << " refused, " << same << " the same, " << again << " judged again\n";
-  EXPECT_GT(refused, 100u);  // the rest is mostly room that nothing uses
+  EXPECT_GT(refused, 100u);  // the rest is mostly unused space
 }
 
 INSTANTIATE_TEST_SUITE_P(, EveryBit, testing::Range(0, 8));

@@ -31,13 +31,13 @@ CREATE TABLE batch(id INTEGER PRIMARY KEY, source INTEGER NOT NULL, first INTEGE
 )";
 constexpr const char* kColumns = "SELECT id, source, first, pairs, counts, checksum FROM batch ";
 
-// SQLite quotes what it stumbles on, line breaks and all.
+// SQLite's messages quote the offending text, including line breaks.
 std::string one_line(std::string text) {
   for (char& c : text) c = static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
   return text;
 }
 
-// The system's error that the database or its log met last, as errno has it; 0 for none.
+// The last system error (errno) of the database or its log; 0 for none.
 int last_errno(const SQLite::Database& database) {
   int error = 0;
   for (const int which : {SQLITE_FCNTL_FILE_POINTER, SQLITE_FCNTL_JOURNAL_POINTER}) {
@@ -48,7 +48,7 @@ int last_errno(const SQLite::Database& database) {
   return error;
 }
 
-// Calls body(); its errors become one line that names the file. database: which knows the system's reason, if any.
+// Calls body() and turns its errors into one line that names the file. database: knows the system's reason, if any.
 template <class Body>
 auto in_one_line(const fs::path& file, const Body& body, const std::optional<SQLite::Database>& database = {}) {
   constexpr const char* kGoOn = "add --discard-damaged to keep the batches whose checksum is right";
@@ -80,7 +80,7 @@ std::string text_of(const StoreSpec& spec) {
 
 std::int64_t number(SQLite::Database& database, const char* sql) { return database.execAndGet(sql).getInt64(); }
 
-// Whether there is nothing in it yet.   Throws: std::runtime_error for another program's, or an older one.
+// Whether the database is empty.   Throws: std::runtime_error if it belongs to another program or has another format.
 bool is_fresh(SQLite::Database& database, const fs::path& file) {
   const std::int64_t application = number(database, "PRAGMA application_id");
   if (application == 0 && number(database, "SELECT count(*) FROM sqlite_schema") == 0) return true;
@@ -103,7 +103,7 @@ void begin(SQLite::Database& database, const std::string& text) {
   transaction.commit();
 }
 
-// What the database says that it is of.   Throws: Damaged.
+// The campaign's identity as the database records it.   Throws: Damaged.
 std::string recorded_text(SQLite::Database& database) {
   SQLite::Statement query(database, "SELECT text, checksum FROM campaign");
   if (!query.executeStep()) throw Damaged("the record of what it is of is gone");
@@ -131,7 +131,7 @@ std::string first_difference(const Json& expected, const Json& found) {
 
 namespace {
 
-// Throws: UsageError when the text, which checks, is of another campaign.
+// Throws: UsageError if the text, whose checksum is right, belongs to another campaign.
 void compare(const StoreSpec& spec, const std::string& text) {
   if (text == text_of(spec)) return;
   const Json found = Json::parse(text);
@@ -147,12 +147,12 @@ void compare(const StoreSpec& spec, const std::string& text) {
           another ? first_difference(spec.spec, found["spec"]) : first_difference(spec.build, found["build"]))));
 }
 
-// The ranges seen so far, of each source by their first pair.
+// The ranges seen so far, for each source by their first pair.
 class Coverage {
  public:
   explicit Coverage(const StoreSpec& spec) : spec_(spec), pairs_(spec.sources.size()) {}
 
-  // Throws: Damaged for a range that is not within its source, or that overlaps another.
+  // Throws: Damaged if the range is not within its source, or overlaps another.
   void take(const PairRange& range) {
     const std::uint64_t size = spec_.sources[static_cast<std::size_t>(range.source)].pairs;
     const PairRange share = share_of(spec_.shard, range.source, size);
@@ -210,8 +210,8 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// To be read alone: a store whose last run ended well is one file that nobody writes to; that of a killed one has a log
-// beside it, which its next reader takes in, alone.
+// Opens a store for reading only. If its last run ended normally, it is one file that nobody writes to. A killed run
+// leaves a log beside the file; the next reader merges the log, under an exclusive lock.
 struct OpenedToRead {
   explicit OpenedToRead(const fs::path& directory)
       : lock(fs::exists(directory / (std::string(kDatabase) + "-wal"))
@@ -252,7 +252,8 @@ struct KeptRow {
   std::string bytes;
 };
 
-// The rows that check, from both ends: a tree that is damaged in the middle can be read up to there.
+// Returns the rows whose checksums are right. Reads from both ends, because a tree that is damaged in the middle can be
+// read up to the damage.
 std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec& spec, std::uint64_t campaign,
                                      std::size_t& seen) {
   std::vector<KeptRow> kept;
@@ -275,7 +276,8 @@ std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec
   return kept;
 }
 
-// Rows have checksums that begin with the campaign's, so what checks is of this campaign, whatever else is damaged.
+// A row's checksum starts from the campaign's. So a row with the right checksum belongs to this campaign, whatever else
+// is damaged.
 Salvage salvage(const StoreSpec& spec) {
   const fs::path file = database_file(spec), fresh = file.string() + ".part";
   const std::string text = text_of(spec);
@@ -293,10 +295,10 @@ Salvage salvage(const StoreSpec& spec) {
     kept = rows_that_check(database, spec, fnv1a(text), seen);
     if (!known && kept.empty() && seen > 0)
       throw std::runtime_error(cannot("recover", file, "no batch of this campaign can be read; choose another --out"));
-  } catch (const SQLite::Exception&) {  // nothing can be read
+  } catch (const SQLite::Exception&) {  // nothing is readable
   }
   Salvage result{kept.size(), 0, file.string() + ".damaged"};
-  for (const char* left : {"", "-journal"}) fs::remove(fresh.string() + left);  // by one that was killed
+  for (const char* left : {"", "-journal"}) fs::remove(fresh.string() + left);  // left by a killed process
   {
     SQLite::Database database = opened(fresh);
     begin(database, text);
@@ -308,14 +310,14 @@ Salvage salvage(const StoreSpec& spec) {
     transaction.commit();
   }
   fs::copy_file(file, result.damaged, fs::copy_options::overwrite_existing);
-  fs::remove(file.string() + "-wal");  // the old database's; read above
+  fs::remove(file.string() + "-wal");  // log of the old database, already read
   fs::rename(fresh, file);
   return result;
 }
 
 }  // namespace
 
-// As in_one_line; the database knows the system's reason.
+// As in_one_line, with the system's reason from the database.
 template <class Body>
 auto StoreFile::checked(const Body& body) {
   return in_one_line(file_, body, database_);
@@ -328,7 +330,7 @@ StoreFile::StoreFile(const StoreSpec& spec) : spec_(spec), file_(database_file(s
     if (fresh && fs::exists(spec.directory / "summary.json"))
       throw UsageError(
           cannot("resume", spec.directory, "it holds results but not their database; choose another --out"));
-    // A write-ahead log: a killed process loses only the transaction under way.
+    // With a write-ahead log, a killed process loses only the current transaction.
     database.exec("PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL;");
     if (fresh) return begin(database, text_of(spec));
     const std::string found = one_line(database.execAndGet("PRAGMA quick_check(1)").getString());
@@ -399,7 +401,7 @@ void for_each_row(const StoreSpec& spec, const std::function<void(const PairRang
     coverage.take(row.range);
     return row;
   };
-  // visit is called without: what it throws is not the database's.
+  // visit is called outside in_one_line: its exceptions are not the database's.
   while (const auto row = in_one_line(database_file(spec), next)) visit(row->range, row->counts);
 }
 

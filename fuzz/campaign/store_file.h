@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The campaign's database: who it is of, and a row for a range of one source's pairs, each with a checksum.
+// The campaign's database: the identity of the campaign, and rows with a checksum, one for a range of one source's
+// pairs.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -26,33 +27,34 @@ inline constexpr const char* kDatabase = "campaign.sqlite";  // in its directory
 // Which campaign a store holds.
 struct StoreSpec {
   std::filesystem::path directory;
-  Json spec, build;  // recorded, and compared when the campaign goes on
+  Json spec, build;  // recorded, and compared when the campaign resumes
   std::vector<strata::PairSource> sources;
-  std::vector<std::string> lanes;  // their ids
-  Shard shard;                     // of the campaign, which the store holds; recorded and compared unless it is all
+  std::vector<std::string> lanes;  // lane ids
+  Shard shard;                     // the part in the store; recorded and compared unless it is the whole campaign
 };
 
-// A database that does not check; what() is one line that names it.
+// A damaged database; what() is one line that names it.
 struct DamagedStore : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 class StoreFile {
  public:
-  // Opens the directory's database, or begins it.
-  // Throws: UsageError when it is of another campaign; std::runtime_error, in one line that names the file, for a
-  // foreign or damaged one, here and in all that follows.
+  // Opens or creates the directory's database.
+  // Throws: UsageError if it holds another campaign. This and all other members throw std::runtime_error, in one line
+  // that names the file, for a foreign or damaged database.
   explicit StoreFile(const StoreSpec& spec);
 
-  // Calls visit for every row, all of which have been checked: within its source, apart from the others, and whole.
+  // Calls visit for every row after checking it: its checksum, its range within the source, and no overlap with other
+  // rows.
   void for_each(const std::function<void(std::int64_t id, const PairRange&, const StoredCounts&)>& visit);
 
   StoredCounts counts(std::int64_t id);
 
-  // Gives back the room of rows that are gone.
+  // Shrinks the file after rows were removed.
   void shrink();
 
-  // One transaction: a new row in place of those.   Returns: its id.
+  // Replaces the rows `replaced` by a new one in one transaction.   Returns: the new row's id.
   std::int64_t put(const PairRange& range, const StoredCounts& counts, const std::vector<std::int64_t>& replaced);
 
  private:
@@ -62,32 +64,33 @@ class StoreFile {
   const StoreSpec& spec_;
   std::filesystem::path file_;
   std::optional<SQLite::Database> database_;
-  std::uint64_t campaign_;  // the checksum of what it is of
+  std::uint64_t campaign_;  // checksum of the campaign's identity
 };
 
 // The first place in which two specs differ, with both values: `seed 2, found 1`.
 std::string first_difference(const Json& expected, const Json& found);
 
-// A store as it is found, without its sources.
+// Reads the spec of an existing store; its `sources` stay empty.
 // Throws: std::runtime_error, as StoreFile; DamagedStore.
 StoreSpec recorded_store(const std::filesystem::path& directory);
 
-// Removes a store, and what its run wrote beside it; the folder as well, unless something else is in it.
+// Removes a store and the files that its run wrote beside it. Removes the folder too, unless it holds something else.
 void remove_store(const std::filesystem::path& directory);
 
-// Calls visit for every row of such a store, once its sources are known; writes nothing, and needs no lock where the
-// last run ended well.   Throws: as recorded_store.
+// Calls visit for every row of such a store, once its sources are known. Writes nothing, and needs no lock if the last
+// run ended normally.   Throws: as recorded_store.
 void for_each_row(const StoreSpec& spec, const std::function<void(const PairRange&, const StoredCounts&)>& visit);
 
-// What discard_damaged kept of a damaged database.
+// What discard_damaged recovered from a damaged database.
 struct Salvage {
   std::size_t batches = 0;
   std::uint64_t pairs = 0;
   std::filesystem::path damaged;  // where the old database is now
 };
 
-// Keeps of a damaged database the rows that check; what the others held is judged again when the campaign goes on.
-// Returns: nothing when all is well.   Throws: as StoreFile, but for damage.
+// Keeps only the rows of a damaged database whose checksums are right. The pairs of the other rows are judged again
+// when the campaign resumes.
+// Returns: nothing if the database is not damaged.   Throws: as StoreFile, except for damage.
 std::optional<Salvage> discard_damaged(const StoreSpec& spec);
 
 }  // namespace graze::fuzz

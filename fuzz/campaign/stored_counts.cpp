@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]; of foreign
-// code that has them also crashed, timed out, unstable, by convention.
+// [[bucket, pairs, intersects, [[lane, false positive, false negative, declined, differs from cpu], …]], …]. Foreign
+// code with such counts also has crashed, timed out, unstable and by convention.
 Json to_json(const analysis::Tally& tally) {
   Json rows = Json::array();
   for (int b = -kBucketMost; b <= kBucketMost; ++b) {
@@ -61,7 +61,7 @@ const Json& list(const Json& value, std::size_t least, std::size_t most, const c
   return value;
 }
 
-// Returns: the tally's pairs in all.
+// Returns: the total number of pairs in the tally.
 std::uint64_t read_tally(const Json& rows, std::uint64_t pairs, analysis::Tally& tally, const char* what) {
   std::uint64_t left = pairs;
   int last_bucket = -kBucketMost - 1;
@@ -114,16 +114,16 @@ std::map<std::string, SignatureCount> read_signatures(const Json& rows, const Pa
   return signatures;
 }
 
-// Signatures and lanes are of printable ASCII.
+// Signatures and lane names consist of printable ASCII.
 bool is_printable(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return c > ' ' && c < 0x7f; });
 }
 
-// Null for what is no CBOR.
+// Returns null if the bytes are not CBOR.
 Json parsed(const std::string& bytes) {
   try {
     return Json::from_cbor(bytes, true, false);
-  } catch (const Json::exception&) {  // of sizes beyond the memory's, in spite of what was asked
+  } catch (const Json::exception&) {  // for sizes beyond the memory, although exceptions are off
     return nullptr;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the store keeps of a range of one source's pairs, as bytes (CBOR) and back. Reading checks every sum that must
-// agree and the range of every index.
+// The stored counts for a range of one source's pairs, converted to bytes (CBOR) and back. Reading checks every sum
+// that must agree and the range of every index.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace graze::fuzz {
 
-// Stored bytes do not agree with each other; what() says which.
+// Stored bytes contradict each other; what() says which.
 struct Damaged : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -24,7 +24,7 @@ struct PairRange {
   std::uint64_t first = 0, pairs = 0;
 };
 
-// Counts add, in any order.
+// Counts can be added in any order.
 struct StoredCounts {
   explicit StoredCounts(int lanes);
   StoredCounts(const BatchResult& result);
@@ -38,14 +38,15 @@ struct StoredCounts {
 
 std::string to_bytes(const StoredCounts& counts);
 
-// Requires: the range lies within the source, and holds at least so many pairs, of which the bytes are the counts.
+// Requires: the range lies within the source and holds at least `pairs` pairs; the bytes are the counts of `pairs`
+// pairs.
 // Throws: Damaged.
 StoredCounts from_bytes(const std::string& bytes, const PairRange& range, std::uint64_t pairs, Axis axis, int lanes);
 inline StoredCounts from_bytes(const std::string& bytes, const PairRange& range, Axis axis, int lanes) {
   return from_bytes(bytes, range, range.pairs, axis, lanes);
 }
 
-// Of the range and its bytes, for the campaign with this checksum; any single change changes it.
+// The checksum of the range and its bytes, for the campaign with this checksum. Any single change alters it.
 std::uint64_t checksum(std::uint64_t campaign, const PairRange& range, const std::string& bytes);
 
 }  // namespace graze::fuzz

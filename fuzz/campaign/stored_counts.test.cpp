@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stored counts that do not agree with each other are damage, each number of them at its limit.
+// Stored counts that contradict each other are damage; tests each count at its limit.
 #include "fuzz/campaign/stored_counts.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kKey = "none/22/skew/+2^3/moller_1997:+f32/cpu";
 const PairRange kRange{1, 100, 10};
 
-// Ten pairs: bucket 5 has six, of which two intersect; lane 0 is wrong on three, lane 1 of foreign code on two.
+// Ten pairs: bucket 5 has six, of which two intersect. Lane 0 is wrong on three; lane 1, of foreign code, on two.
 Json good() {
   return {{{-4, 4, 1, Json::array()}, {5, 6, 2, {{0, 2, 1, 0, 3}, {1, 0, 0, 0, 0, 1, 0, 1, 1}}}},
           Json::array(),
@@ -26,7 +26,7 @@ Json good() {
           0};
 }
 
-// What reading says; empty when all agrees.
+// The error on reading; empty if all counts agree.
 std::string complaint(const Json& counts, Axis axis = Axis::none) {
   std::string bytes;
   Json::to_cbor(counts, bytes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What several stores hold together: of each source one sum, and which pairs are in it. Its size is that of the sources
-// and their signatures, however many stores there are.
+// Adds up several stores: one sum for each source, and the set of pairs that it covers. Its size depends on the sources
+// and their signatures, not on the number of stores.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ class Sums {
   // Requires: the sources outlive this.
   Sums(const std::vector<strata::PairSource>& sources, int lanes);
 
-  // from: a number of where the row comes from.
-  // Throws: Overlap when some of the pairs are in it already.
+  // from: identifies the origin of the row.
+  // Throws: Overlap if some of the pairs were added before.
   void add(const PairRange& range, const StoredCounts& counts, std::size_t from);
 
   struct Overlap {
@@ -26,14 +26,14 @@ class Sums {
     std::size_t before, now;
   };
 
-  // What is missing of the source's pairs within these, in order.
+  // The missing ranges of the source within `within`, in order.
   std::vector<PairRange> gaps(const PairRange& within) const;
-  // The same of all sources.
+  // The same for all sources.
   std::vector<PairRange> gaps() const;
 
   const StoredCounts& of_source(int source) const { return of_source_[static_cast<std::size_t>(source)]; }
 
-  // As bytes and back, from another rank of the same campaign.   Throws: Damaged.
+  // Converts to bytes, and adds the bytes of another rank of the same campaign.   Throws: Damaged.
   std::string bytes() const;
   void add(const std::string& bytes);
 
@@ -48,7 +48,7 @@ class Sums {
   int lanes_;
   std::vector<StoredCounts> of_source_;
   std::vector<std::map<std::uint64_t, Part>>
-      covered_;  // of each source, by their first pair; neighbours of one origin are one
+      covered_;  // of each source, by first pair; adjacent parts of one origin are merged
 };
 
 }  // namespace graze::fuzz

@@ -27,7 +27,7 @@ std::uint16_t feature(Kind kind, Values... values) {
   return static_cast<std::uint16_t>(hash ^ hash >> 16 ^ hash >> 32 ^ hash >> 48);
 }
 
-// The default policy, which also says how far beyond its error bound each value is.
+// The default policy, which also records the ratio of each value to its error bound.
 template <class Real>
 struct Meter {
   using Number = WithErrorBound<Real>;
@@ -81,7 +81,7 @@ void measure_sites(int algorithm, const Pair& pair, Features& features) {
   (std::make_index_sequence<kAlgorithmCount>());
 }
 
-// Where the algorithm's runs in float32 and in float64 first take different ways; 0 where they do not.
+// The line at which the algorithm's runs in float32 and float64 first differ in an outcome; 0 if they do not.
 unsigned line_of_parting(int algorithm, const Pair& pair) {
   const Trace<double> narrow = run_traced<float>(algorithm, pair), wide = run_traced<double>(algorithm, pair);
   const std::size_t both = std::min(narrow.seen.size(), wide.seen.size());

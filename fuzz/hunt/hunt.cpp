@@ -28,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// Processes of rounds; those that still run when it ends are ended.
+// The processes of rounds; the destructor kills those that still run.
 class Processes {
  public:
   ~Processes() {
@@ -39,7 +39,7 @@ class Processes {
   }
   std::size_t size() const { return running_.size(); }
   void add(pid_t pid) { running_.emplace(pid, 0); }
-  // Waits a little.   Returns: whether one of them has ended.
+  // Waits a little.   Returns: whether a process has ended.
   bool wait_for_one() {
     for (auto it = running_.begin(); it != running_.end(); ++it) {
       if (waitpid(it->first, nullptr, WNOHANG) == 0) continue;
@@ -55,7 +55,7 @@ class Processes {
   std::map<pid_t, int> running_;
 };
 
-// Whether it is a round's unread result, or a part of a file, that a killed process left: "000012.result".
+// Whether a killed process left the file: a round's unread result or a partial file, such as "000012.result".
 bool is_left_over(const fs::directory_entry& file) {
   const std::string name = file.path().filename().string();
   const std::size_t digits = name.find_first_not_of("0123456789");
@@ -122,7 +122,7 @@ class Hunter {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool over() const { return stop_ || (hunt_.seconds > 0 && seconds() >= hunt_.seconds); }
 
-  // Rounds [first, last), all from the corpus as it is now; then what they found, in their order.
+  // Runs rounds [first, last), all from the present corpus, then takes their findings in order.
   void generation(std::uint64_t first, std::uint64_t last) {
     std::vector<Wanted> rounds;
     for (std::uint64_t r = first; r < last; ++r) {
@@ -140,7 +140,7 @@ class Hunter {
     }
   }
 
-  // Runs those that are not whole, as many at once as there are threads.   Returns: whether all came to their end.
+  // Runs the rounds that are not whole, at most `threads_` at once.   Returns: whether all of them ended.
   bool play(const std::vector<Wanted>& rounds) {
     Processes processes;
     for (const Wanted& round : rounds) {
@@ -164,7 +164,7 @@ class Hunter {
     return {&hunt_.campaign, &hunt_.drawn, round.range, &found_->all.units};
   }
 
-  // Keeps the round, and what is new in it.
+  // Stores the round and its new findings.
   void finish(Wanted& round) {
     const fs::path result_file = file_of(round.range, "result");
     RoundResult result = round_result(task_of(round), result_file);
@@ -196,7 +196,7 @@ class Hunter {
     fs::remove(result_file);
   }
 
-  // One pair tells of all that are wrong in the same way, at whatever margin.
+  // One pair stands for all that are wrong in the same way, at any margin.
   void find_kinds_of(const RoundResult& result, KeptRound& kept) const {
     struct New {
       analysis::Signature signature;
@@ -279,7 +279,7 @@ class Hunter {
   Hunt& hunt_;
   const std::atomic<bool>& stop_;
   const std::function<void(const HuntProgress&)>& report_;
-  std::shared_ptr<HuntRounds> found_;  // the rounds that are done, in their order
+  std::shared_ptr<HuntRounds> found_;  // the finished rounds, in order
   RunStatus status_;
   PairRange share_;
   std::uint64_t per_round_, checksum_ = 0, done_here_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Guided search: the same bytes on any number of threads and after interruptions, kept pairs that are what is said of
-// them; and mutations that do what they are named after.
+// Guided search: the same bytes for any number of threads and interruptions, kept pairs that match their records, and
+// mutations that do what their names say.
 #include "fuzz/hunt/hunt.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ int shared_vertices(const Pair& pair) {
 
 bool same(const Pair& l, const Pair& r) { return std::memcmp(&l, &r, sizeof l) == 0; }
 
-// Of so many pairs of the stratum, changed in this way, on how many this holds.
+// Mutates pairs of the stratum and counts those for which `holds` is true.
 template <class Holds>
 int count_after(Mutation mutation, Holds holds, strata::Stratum stratum = strata::Stratum::uniform) {
   int count = 0;
@@ -179,7 +179,7 @@ class HuntFiles : public CampaignFiles {
         .summary;
   }
 
-  // Every pair of every case is wrong as its signature says.   Returns: how many there are.
+  // Checks that every pair of every case is wrong as its signature says.   Returns: the number of pairs.
   std::size_t expect_cases_are_true(const std::string& name, const Json& summary) const {
     Campaign campaign;
     campaign.under_test = &under_test_;
@@ -215,7 +215,7 @@ TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
   expect_same_hunt("whole", "one");
   for (int part = 0; !run("parts", 2, 3)["complete"].get<bool>(); ++part) {
     ASSERT_LT(part, 10);
-    std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // is found, and made again
+    std::ofstream(root_ / "parts/hunt/000000.round", std::ios::app) << "x";  // is detected, and the round is made again
   }
   expect_same_hunt("whole", "parts");
   EXPECT_EQ(read_whole(root_ / "whole/hunt/000000.round"), read_whole(root_ / "one/hunt/000000.round"));
@@ -259,7 +259,7 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
   for (std::uint64_t k = 1; k <= 3; ++k) {
     const std::string name = "part-" + std::to_string(k);
     parts.push_back(root_ / name);
-    if (k == 2) {  // interrupted, then gone on with
+    if (k == 2) {  // interrupted, then resumed
       EXPECT_FALSE(run_shard(name, {k, 3}, 2)["complete"].get<bool>());
     }
     const Json summary = run_shard(name, {k, 3});
@@ -274,7 +274,7 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
     wrong += summary["disagreements"].get<std::uint64_t>();
     units += told["units"].get<std::uint64_t>();
   }
-  EXPECT_LT(kinds.size(), new_kinds);  // some were found by several
+  EXPECT_LT(kinds.size(), new_kinds);  // several shards found the same kinds
 
   const Outcome merged = merge({parts, root_ / "merged", false});
   EXPECT_TRUE(merged.complete);
@@ -307,7 +307,7 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
   EXPECT_TRUE(names(refusal({parts, root_ / "none", true}), {"--partial", "hunt"}));
   std::ofstream(parts[1] / "hunt/000001.round", std::ios::app) << "x";
   EXPECT_TRUE(names(refusal({parts, root_ / "none", false}), {"part-2/hunt", "1667", "1411", "--shard 2/3"}));
-  run_shard("part-2", {2, 3});  // that round again
+  run_shard("part-2", {2, 3});  // the same round again
   merge({parts, root_ / "repaired", false});
   expect_same_hunt("merged", "repaired");
   EXPECT_THROW(run("merged", 1), UsageError);

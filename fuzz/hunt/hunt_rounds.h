@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rounds of a hunt kept, put together: of one process as it goes, or of shards when they are merged.
+// The combined results of a hunt's rounds: of one running process, or of shards that are merged.
 #pragma once
 
 #include <filesystem>
@@ -13,10 +13,10 @@
 namespace graze::fuzz {
 
 struct HuntRounds {
-  KeptRound all;  // what they kept, as one round of all their pairs; kinds in the order in which they were found
+  KeptRound all;  // all rounds as one round of all their pairs; kinds in the order in which they were found
   std::set<std::string> coarse, kinds;
 
-  // Adds what the next round kept; of its kinds those that are new.
+  // Adds the results of the next round, and those of its kinds that are new.
   void add(const KeptRound& round);
 
   // hunt.json: {"pairs", "units", "mutations": [{"mutation", "pairs", "disagreements", "units", "kinds"}],
@@ -26,13 +26,13 @@ struct HuntRounds {
 
 // The folder of a hunt's rounds.
 std::filesystem::path rounds_folder(const std::filesystem::path& hunt);
-// The one file there of a hunt that was merged of shards.
+// The only file in that folder if the hunt was merged from shards.
 std::filesystem::path merged_rounds_file(const std::filesystem::path& hunt);
 
-// The checksum of what a hunt is of, which its files of rounds carry.
+// The checksum of the hunt's identity, which its round files carry.
 std::uint64_t hunt_checksum(const Json& spec, const Json& build);
 
-// Those of the directory, by their first pairs; what does not check is left out.
+// Reads the rounds in the directory, sorted by first pair; skips files whose checksum is wrong.
 std::vector<KeptRound> read_rounds(const StoreSpec& hunt);
 
 }  // namespace graze::fuzz

@@ -30,13 +30,13 @@ void move(std::span<Vec3<float>> vertices, const Vec& by) {
   for (Vec3<float>& vertex : vertices) vertex = strata::rounded(wide(vertex) + by);
 }
 
-// The vertex to that place, alone or with its triangle.
+// Moves the vertex to `to`, alone or together with its triangle.
 void bring(Vec3<float>* triangle, std::uint32_t vertex, const Vec& to, bool alone) {
   if (!alone) move({triangle, 3}, to - wide(triangle[vertex]));
   triangle[vertex] = strata::rounded(to);
 }
 
-// A place on a segment: rather ends and simple fractions.
+// A place on a segment; often an end or a simple fraction.
 double draw_share(Draws& draws) {
   constexpr double kShares[] = {0, 1, 0.5, 0.25, 0.75};
   const std::uint32_t kind = draws.below(8);
@@ -70,7 +70,7 @@ void onto_edge(Pair& pair, Draws& draws) {
   move({sides.own, 3}, place - own);
 }
 
-// The point moved along one axis, or the normal, onto the plane.
+// Moves the point onto the plane, along one axis or the normal.
 Vec onto_plane(const Vec& point, const Vec3<float>* plane, bool along_axis) {
   const Vec origin = wide(plane[0]), normal = cross(wide(plane[1]) - origin, wide(plane[2]) - origin);
   const int axis = dominant_axis(normal);
@@ -150,7 +150,7 @@ double edge_length(const Vec3<float>& u, const Vec3<float>& v) {
 }
 
 bool has_size_of(const strata::Scene& scene, const Vec3<float> (&t)[3]) {
-  constexpr double kRoom = 1 + 0x1p-20;  // for the rounding of coordinates, and of this
+  constexpr double kRoom = 1 + 0x1p-20;  // for the rounding of coordinates and of this computation
   const double longest = std::max({edge_length(t[0], t[1]), edge_length(t[1], t[2]), edge_length(t[2], t[0])});
   if (longest > scene.edges.at[strata::kQuantiles - 1] * kRoom) return false;
   const Vec normal = cross(wide(t[1]) - wide(t[0]), wide(t[2]) - wide(t[0]));
@@ -243,7 +243,7 @@ bool fit(const strata::Scene& scene, Pair& pair) {
 
 Pair next_pair(const Drawn& drawn, const Pair& pair, const Pair* other, Draws& draws, Mutation& mutation) {
   for (int attempt = 0; attempt < 4; ++attempt) {
-    // A crossing is asked for; it takes the turn in which libFuzzer offers a second pair.
+    // If libFuzzer offers a second pair, it wants a crossing.
     mutation = other ? Mutation::crossed : static_cast<Mutation>(draws.below(kMutationCount - 1));
     if (mutation == Mutation::fresh) break;
     Pair result = mutated(mutation, pair, other ? *other : pair, draws);

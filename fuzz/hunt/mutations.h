@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changes of a pair that know geometry: what guided search tries on the pairs that it keeps.
+// Geometric changes of a pair, which guided search tries on the pairs that it keeps.
 #pragma once
 
 #include <array>
@@ -35,24 +35,26 @@ inline constexpr std::array<std::string_view, 14> kMutationIds{
     "shared_edge", "scaled", "moved",       "on_grid",   "mirrored",   "reordered", "crossed"};
 inline constexpr int kMutationCount = static_cast<int>(kMutationIds.size());
 
-// What pairs are drawn from, and in a scene the envelope that they must stay in.
+// The sources that pairs are drawn from and, in a scene, the envelope that they must stay in.
 struct Drawn {
   std::vector<strata::PairSource> sources;
   const strata::Scene* scene = nullptr;
 };
 
-// The pair changed in this way; for `crossed` with triangles of the other. Not finite where numbers overflow.
+// Applies the mutation to the pair; `crossed` takes triangles from `other`. The result is not finite if numbers
+// overflow.
 Pair mutated(Mutation mutation, const Pair& pair, const Pair& other, strata::Draws& draws);
 
 // A pair of one of the sources.
 Pair fresh_pair(const Drawn& drawn, strata::Draws& draws);
 
 // Rounds the pair into the scene: onto its grid, within its extent.
-// Returns: false where a triangle is larger, or a proper one thinner, than any of the scene.
+// Returns: false if a triangle is larger, or a proper triangle is thinner, than the scene allows.
 bool fit(const strata::Scene& scene, Pair& pair);
 
-// The pair after one mutation, which is said in `mutation`; a fresh one where the mutation leads to what is not finite,
-// to what the scene cannot contain, or four times to the same pair. `other`: null for no crossing.
+// Applies one mutation, and stores which one in `mutation`. An attempt fails if the result is not finite, does not fit
+// the scene, or equals the pair. After four failed attempts it draws a fresh pair. `other`: null if no pair is
+// available for crossing.
 Pair next_pair(const Drawn& drawn, const Pair& pair, const Pair* other, strata::Draws& draws, Mutation& mutation);
 
 }  // namespace graze::fuzz

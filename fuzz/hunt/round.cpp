@@ -21,7 +21,8 @@
 #ifdef GRAZE_LIBFUZZER
 extern "C" int LLVMFuzzerRunDriver(int* count, char*** arguments, int (*one)(const std::uint8_t*, std::size_t));
 
-// libFuzzer finds these by the section's name: a pair is interesting when one is set that no pair before set.
+// libFuzzer finds these counters by their section's name. A pair is interesting if it sets a counter that no pair
+// before set.
 __attribute__((used, section("__libfuzzer_extra_counters"))) static std::uint8_t extra_counters[graze::fuzz::kFeatures];
 #else
 static std::uint8_t extra_counters[graze::fuzz::kFeatures];
@@ -30,9 +31,9 @@ static std::uint8_t extra_counters[graze::fuzz::kFeatures];
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint32_t kMutations = 0x301;  // where a stratum's number stands in draws
+constexpr std::uint32_t kMutations = 0x301;  // stands in place of a stratum's number in draws
 
-// Ends the process without what others registered for its end: it is a copy of one that goes on.
+// Ends this process without the exit handlers of others, because it is a copy of a process that continues.
 [[noreturn]] void leave(int status) { _exit(status); }
 
 class Round {
@@ -42,7 +43,7 @@ class Round {
         file_(std::move(file)),
         counts_(no_counts(*task.campaign)),
         feedback_(task.campaign->under_test->lanes) {
-    // Foreign code of the process that this is a copy of answers that one.
+    // The foreign code's processes belong to the parent and answer only the parent, so start new ones.
     under_test_.lanes = task.campaign->under_test->lanes;
     for (std::size_t l = 0; l < under_test_.lanes.size(); ++l) {
       under_test_.on_host.push_back(task.campaign->under_test->on_host[l]);
@@ -60,7 +61,7 @@ class Round {
     }
   }
 
-  // libFuzzer's next input: first the corpus as it is, then what mutations make of what it kept.
+  // Returns libFuzzer's next input: first the units of the corpus, then mutations of the pairs that it kept.
   std::size_t next(std::uint8_t* data, std::size_t size, const std::uint8_t* other_data, std::uint32_t seed) {
     given_ = nullptr;
     Pair pair, other;
@@ -109,7 +110,7 @@ class Round {
     pairs_.push_back({pair, mutation_});
   }
 
-  // Whether something is thrown or not, this process ends here.
+  // This process ends here, whether or not something throws.
   [[noreturn]] void fail(const char* what, bool apart) {
     try {
       write_whole(file_, error_bytes(what, apart));
@@ -145,14 +146,14 @@ class Round {
   std::vector<Unit> units_;
   std::array<MutationCounts, kMutationCount> mutations_{};
   std::size_t next_unit_ = 0;
-  const Unit* given_ = nullptr;  // the unit of the corpus that the next input is
+  const Unit* given_ = nullptr;  // the corpus unit that is the next input
   Mutation mutation_ = Mutation::fresh;
   std::uint64_t turn_ = 0;
 };
 
 Round* current = nullptr;  // libFuzzer calls functions, not objects
 
-// An exception must not cross libFuzzer, which is built without them.
+// An exception must not pass through libFuzzer, which is built without exceptions.
 template <class Act>
 auto guarded(Act act) {
   try {
@@ -172,7 +173,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   return guarded([&] { return current->next(data, size, nullptr, seed); });
 }
 
-// 0: not now. One mutation in fourteen is a crossing, as each other kind is.
+// Returns 0 to skip the crossing. One mutation in fourteen is a crossing, like every other kind.
 extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* data, std::size_t size, const std::uint8_t* other,
                                                  std::size_t other_size, std::uint8_t* out, std::size_t,
                                                  unsigned seed) {
@@ -192,17 +193,17 @@ pid_t start_round(const RoundTask& task, const std::filesystem::path& file) {
   if (child > 0) return child;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) leave(1);
-  // Held open, the folder's lock would outlive the process that this is a copy of.
+  // An open descriptor would keep the folder's lock after the parent process has ended.
   close_range(3, ~0u, 0);
   const int nowhere = open("/dev/null", O_RDWR);
   for (const int stream : {0, 1, 2}) dup2(nowhere, stream);
   for (const int number : {SIGINT, SIGTERM}) std::signal(number, SIG_IGN);  // the parent ends this
   Round round(task, file);
   current = &round;
-  // Never 0, which libFuzzer takes for the time of day.
+  // The seed is never 0, because libFuzzer would use the time of day instead.
   const std::uint64_t seed = fnv1a(fmt::format("{} {}", task.campaign->seed, task.range.first)) % 0xffffffffu + 1;
   const std::string length = fmt::format("-max_len={}", sizeof(Pair)), seeded = fmt::format("-seed={}", seed);
-  // Without the entropic schedule, which costs more here than lanes and oracle together: a pair has a hundred features.
+  // The entropic schedule is off: with a hundred features a pair, it costs more here than the lanes and the oracle.
   std::vector<const char*> words{"graze",
                                  length.c_str(),
                                  seeded.c_str(),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A round of guided search: libFuzzer, in a process of its own, changes pairs of a corpus, and keeps those that show
-// something new. What it finds is a function of the task alone.
+// A round of guided search: libFuzzer, in a process of its own, changes pairs of a corpus and keeps those that show
+// something new. The result depends only on the task.
 #pragma once
 
 #include <sys/types.h>
@@ -16,16 +16,16 @@
 
 namespace graze::fuzz {
 
-// A pair that showed these features when no pair before it did.
+// A pair that was the first to show these features.
 struct Unit {
   Pair pair;
   Features features;
 };
 
 struct MutationCounts {
-  std::uint64_t pairs = 0;          // that it led to, as the last of up to five mutations in a row
-  std::uint64_t disagreements = 0;  // of them
-  std::uint64_t units = 0;          // of them; by the round they are in
+  std::uint64_t pairs = 0;          // pairs whose last mutation was this one, of up to five in a row
+  std::uint64_t disagreements = 0;  // of these pairs
+  std::uint64_t units = 0;          // of these pairs; new within their round
 };
 
 struct FoundPair {
@@ -34,9 +34,9 @@ struct FoundPair {
 };
 
 struct RoundTask {
-  const Campaign* campaign;  // its lanes are of the host or foreign, or have twins
+  const Campaign* campaign;  // its lanes run on the host, are foreign, or have twins
   const Drawn* drawn;
-  PairRange range;  // the numbers of its pairs
+  PairRange range;  // the indices of its pairs
   const std::vector<Unit>* corpus;
 };
 
@@ -45,18 +45,18 @@ struct RoundResult {
 
   StoredCounts counts;
   std::vector<Unit> units;                  // in the order in which they were found
-  std::map<std::uint64_t, FoundPair> kept;  // the cases of `counts`, by their numbers
+  std::map<std::uint64_t, FoundPair> kept;  // the cases in `counts`, by pair index
   std::array<MutationCounts, kMutationCount> mutations{};
 };
 
 // Whether this build has libFuzzer.
 bool has_libfuzzer();
 
-// Starts a round in a new process, which leaves its result, or what went wrong, in the file.
+// Starts a round in a new process, which writes its result or its error to the file.
 // Requires: has_libfuzzer().   Throws: std::runtime_error.
 pid_t start_round(const RoundTask& task, const std::filesystem::path& file);
 
-// What the process left.   Throws: OracleMismatch, std::runtime_error, where something went wrong in it.
+// Reads what the process wrote.   Throws: OracleMismatch, std::runtime_error, if the process failed.
 RoundResult round_result(const RoundTask& task, const std::filesystem::path& file);
 
 }  // namespace graze::fuzz

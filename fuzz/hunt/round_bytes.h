@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rounds as bytes: what a round's process hands over, and what a hunt keeps of a round (CBOR, with a checksum).
+// Rounds as bytes (CBOR, with a checksum): the result that a round's process passes on, and the part that a hunt keeps.
 #pragma once
 
 #include <optional>
@@ -12,29 +12,29 @@ namespace graze::fuzz {
 
 std::string error_bytes(const std::string& what, bool apart);
 std::string result_bytes(const RoundResult& result);
-// Throws: what error_bytes was made of; Damaged.
+// Throws: the error that error_bytes encoded; Damaged.
 RoundResult parse_result(const std::string& bytes, const RoundTask& task);
 
-// A kind of failure when it was found first.
+// A kind of failure, and the pair on which it was found first.
 struct NewKind {
   std::string key;  // see kinds.h
   std::uint64_t index = 0;
   Mutation mutation = Mutation::fresh;
 };
 
-// What is kept of a round besides its counts, which the campaign's store has.
+// The part of a round that is kept, apart from its counts, which are in the campaign's store.
 struct KeptRound {
   std::uint64_t first = 0, pairs = 0;
-  std::vector<Unit> units;                  // that showed something new when rounds were put together
+  std::vector<Unit> units;                  // pairs that still showed something new when rounds were combined
   std::map<std::uint64_t, FoundPair> kept;  // cases
   std::array<MutationCounts, kMutationCount> mutations{};
-  std::vector<std::string> coarse;  // signatures without margins that no round before had
+  std::vector<std::string> coarse;  // signatures without margins that no earlier round had
   std::vector<NewKind> kinds;
 };
 
-// campaign: the checksum of what the hunt is of.
+// campaign: the checksum of the hunt's identity.
 std::string round_bytes(const KeptRound& round, std::uint64_t campaign);
-// Returns: nothing for bytes that round_bytes did not make, of this campaign.
+// Returns: nothing unless round_bytes made the bytes for this campaign.
 std::optional<KeptRound> parse_round(const std::string& bytes, std::uint64_t campaign);
 
 }  // namespace graze::fuzz

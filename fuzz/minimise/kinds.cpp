@@ -23,7 +23,7 @@
 namespace graze::fuzz {
 namespace {
 
-// A signature's case file: its pairs, and why lanes are wrong on the one that is shown.
+// A signature's case file: its pairs, and the reasons why lanes are wrong on the pair that is shown.
 struct Case {
   analysis::Signature signature;
   std::string file;
@@ -84,8 +84,8 @@ bool is_of(const Kind& kind, const Case& c, const LaneReason& reason) {
   return kind_key(c.signature.subject, reason, c.signature.hulls) == kind.key;
 }
 
-// The place of the case whose pair shows the kind best: rather one on which no lane is wrong for another reason, then
-// one whose reasons are settled, then one that no kind before shows; of these the simplest.
+// The index of the case whose pair shows the kind best. Prefers a pair on which no lane is wrong for another reason,
+// then one with settled reasons, then one that no earlier kind shows, and then the simplest.
 std::size_t simplest_of(const Kind& kind, const std::vector<Case>& cases, std::set<std::string>& shown) {
   const auto rank = [&](std::size_t place) {
     const Case& c = cases[place];
@@ -106,7 +106,7 @@ double ulps_of(const corpus::Entry& entry) {
   return text.empty() ? 0 : std::abs(std::strtod(text.c_str(), nullptr));
 }
 
-// The pair as a person is shown it, with all lanes' verdicts, and why those of the kind are wrong.
+// The pair as users see it, with all lanes' verdicts, and the reasons why lanes of the kind are wrong.
 Json simplest_pair(const SelectedLanes& under_test, const Kind& kind, const Case& c) {
   std::vector<const Lane*> apart;
   const std::vector<Verdict> verdicts = decide(under_test, c.shown().pair, apart);

@@ -76,7 +76,7 @@ TEST_F(Kinds, EverySignatureHasOneAndPairsAddUp) {
   EXPECT_EQ(places.size(), summary_["signatures"].size());
 }
 
-// What the title says is true of the pairs that are shown: each lane named is wrong on it for that cause, at that line.
+// The title is true of the pairs shown: each named lane is wrong on them, for that cause, at that line.
 TEST_F(Kinds, TheirPairsAreOfTheKind) {
   for (const Json& kind : kinds_) {
     for (const char* which : {"simplest", "worst"}) {
@@ -118,7 +118,7 @@ TEST_F(Kinds, AreTheSameWithOneThreadAndAfterStoring) {
   write_whole(directory_ / "summary.json", text);
 }
 
-// What lacks something, or is of another type, is named by its file; nobody reads on.
+// If a field is missing or has another type, the error names the file.
 TEST_F(Kinds, StoredOnesAreWhole) {
   for (const auto& [field, value] : kinds_[0].items()) {
     Json damaged = kinds_;
@@ -132,7 +132,7 @@ TEST_F(Kinds, StoredOnesAreWhole) {
   fs::remove(directory_ / "failures.json");
 }
 
-// Whatever else can be told from the summary and the cases is compared with them.
+// Everything else that follows from the summary and the cases is compared with them.
 TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   const fs::path file = directory_ / "failures.json";
   write_kinds(directory_, under_test_, kinds_);
@@ -217,7 +217,7 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   fs::remove(file);
 }
 
-// Kinds of some lanes alone, or of none that runs here, do not hide the other failures.
+// Kinds found with only some lanes, or with none that runs here, do not hide the other failures.
 TEST_F(Kinds, SignaturesWithoutAKindAreCounted) {
   EXPECT_EQ(signatures_without_kind(summary_, kinds_), 0u);
   EXPECT_EQ(signatures_without_kind(summary_, Json::array()), summary_["signatures"].size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// failures.json: it is believed where it agrees with the summary and the cases beside it.
+// Reads and writes failures.json. On reading, it must agree with the summary and the cases beside it.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What in failures.json cannot be, in words.
+// failures.json has an impossible entry; what() describes it.
 struct Impossible : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -36,7 +36,7 @@ void expect(bool possible, const std::string& found) {
   if (!possible) throw Impossible(found);
 }
 
-// A signature of the summary, and its case file. The first pair decides to which kinds the signature belongs.
+// A signature of the summary, and its case file. The first pair decides which kinds the signature belongs to.
 struct Case {
   std::string key, file;
   std::uint64_t pairs = 0;
@@ -56,10 +56,10 @@ Case read_case(const fs::path& directory, const Json& row) {
   return c;
 }
 
-// What kinds are compared with.
+// The data that kinds are compared with.
 struct Known {
-  std::vector<Case> cases;          // by their places in the summary
-  std::set<std::string> lanes;      // that were looked at
+  std::vector<Case> cases;          // by index in the summary
+  std::set<std::string> lanes;      // lanes that were examined
   std::map<std::string, bool> own;  // those that always have a reason where they are wrong; whether it is audited
 };
 
@@ -78,7 +78,7 @@ Known known_of(const fs::path& directory, const Json& summary, const Json& lanes
   return known;
 }
 
-// Throws: Json::exception where a row of failures.json lacks something, or it is of another type.
+// Throws: Json::exception if a row of failures.json lacks a field or a field has another type.
 void expect_shape(const Json& kind) {
   using Texts = std::map<std::string, std::string>;
   for (const char* field : {"key", "subject", "cause", "line", "shape"}) kind.at(field).get_ref<const std::string&>();
@@ -100,7 +100,7 @@ void expect_shape(const Json& kind) {
   kind.at("worst").at("margin_ulps").get<double>();
 }
 
-// The counts of its places, and what they have in common.
+// Checks the counts of the kind's signatures, and the properties that they share.
 void expect_places(const Known& known, const Json& kind) {
   using Counts = std::map<std::string, std::uint64_t>;
   const auto places = kind.at("places").get<std::vector<std::uint64_t>>();
@@ -134,7 +134,7 @@ void expect_lanes(const Known& known, const Json& kind) {
   const Json& lanes = kind.at("lanes");
   for (const std::string id : lanes) {
     const auto name = parse_lane_name(id);
-    expect(name && name->subject == kind.at("subject") && known.lanes.contains(id),
+    expect(name && name->subject == kind.at("subject").get_ref<const std::string&>() && known.lanes.contains(id),
            "the lane " + shown(id) + ", which is none of its subject that was looked at");
   }
   const auto settled = kind.at("settled").get<std::array<std::uint64_t, 2>>();
@@ -147,7 +147,7 @@ void expect_lanes(const Known& known, const Json& kind) {
          "no lanes, or one twice, or the simplest pair with others");
 }
 
-// Of the subject's own lanes those that the case's first signature tells; of exact lanes the truth.
+// Checks that the subject's own lanes have the verdicts of the case's first signature, and exact lanes the truth.
 void expect_verdicts(const Known& known, const Json& verdicts, const Case& c) {
   expect(verdicts.size() == known.lanes.size(), "verdicts of other lanes than those that were looked at");
   const corpus::Entry& first = c.entries.front();
@@ -158,18 +158,18 @@ void expect_verdicts(const Known& known, const Json& verdicts, const Case& c) {
     const LaneName lane = parse_lane_name(id).value();
     const char mark = c.of_first.mark_of(lane.within_subject());
     const bool told = known.own.contains(id) && lane.subject == c.of_first.subject &&
-                      (mark != '.' || !corpus::field(first, "kind"));  // a result may be of some lanes only
+                      (mark != '.' || !corpus::field(first, "kind"));  // a result may cover only some lanes
     const bool exact = find_lane(id) && find_lane(id)->exact;
     expect((!told || analysis::mark(*verdict, truth_of(first)) == mark) && (!exact || *verdict == truth_of(first)),
            "another verdict of " + id + " on " + corpus::origin_of(first));
   }
 }
 
-// Its two pairs are those of cases of its places.
+// Checks that the simplest and the worst pair belong to cases of the kind.
 void expect_pairs(const Known& known, const Json& kind) {
   const auto case_of = [&](const Json& shown) -> const Case& {
     for (const std::uint64_t place : kind.at("places")) {
-      if (known.cases[place].file == shown.at("case")) return known.cases[place];
+      if (known.cases[place].file == shown.at("case").get_ref<const std::string&>()) return known.cases[place];
     }
     throw Impossible("the case " + graze::shown(shown.at("case").get<std::string>()) +
                      ", which is none of its signatures");
@@ -188,8 +188,8 @@ void expect_pairs(const Known& known, const Json& kind) {
          "another worst pair than one of the case");
 }
 
-// Each own lane that is wrong on a signature's first pair has a kind there; a pair on which a lane is wrong counts in
-// one kind alone.
+// Checks that each own lane that is wrong on a signature's first pair has a kind there. Also checks that a pair on
+// which a lane is wrong counts in only one kind.
 void expect_all_covered(const Known& known, const Json& kinds) {
   std::vector<std::set<std::string>> covered(known.cases.size());
   std::map<std::string, std::uint64_t> told, least;  // audited reasons, by subject
@@ -238,7 +238,7 @@ std::string hash_of_summary(const fs::path& directory) {
 // Throws: Json::exception.
 Json summary_in(const fs::path& directory) { return Json::parse(read_whole(directory / "summary.json")); }
 
-// Of the case files of all signatures, as they are now.
+// The hash of the present case files of all signatures.
 std::string hash_of_cases(const fs::path& directory, const Json& summary) {
   std::uint64_t hash = fnv1a("");
   for (const Json& row : summary.at("signatures")) hash = fnv1a(read_whole(case_file(directory, row)), hash);
@@ -249,7 +249,7 @@ std::string hash_of_cases(const fs::path& directory, const Json& summary) {
 
 Json read_kinds(const fs::path& directory) {
   const fs::path file = directory / "failures.json";
-  const std::string remedy = "remove it, then run: graze minimize " + shell_word(directory.string());
+  const std::string remedy = "remove it, then run: graze minimize " + path_word(directory.string());
   const auto refused = [&](const std::string& why) {
     return corpus::FormatError(cannot("use", file, why + "; " + remedy));
   };
@@ -279,7 +279,7 @@ Json kinds_of(const fs::path& directory, const Json& summary, const std::functio
   kinds = find_kinds(under_test, directory, summary, stop);
   try {
     if (!kinds.is_null()) write_kinds(directory, under_test, kinds);
-  } catch (const std::runtime_error&) {  // in a folder that cannot be written to they are found anew each time
+  } catch (const std::runtime_error&) {  // in a read-only folder, the kinds are found again each time
   }
   return kinds;
 }

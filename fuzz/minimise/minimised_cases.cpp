@@ -21,7 +21,7 @@ bool has_kind(const corpus::Entry& entry, std::string_view kind) {
 
 bool is_result(const corpus::Entry& entry) { return is_minimised(entry) || has_kind(entry, "worst"); }
 
-// The cases to minimise, in their order.
+// The cases to minimise, in order.
 std::vector<const corpus::Entry*> originals(const std::vector<corpus::Entry>& entries) {
   const bool only_results = std::all_of(entries.begin(), entries.end(), is_result);
   std::vector<const corpus::Entry*> found;
@@ -65,7 +65,7 @@ std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const 
       const DecideBlock on_host = cuda::block_on_host(*lane);
       if (!on_host) continue;
       const char recorded = signature.mark_of(lane->lane_name().within_subject());
-      // A result may be of some lanes only.
+      // A result may cover only some lanes.
       if (recorded == analysis::mark(decide_one(on_host, entry.pair), truth) || (is_result(entry) && recorded == '.'))
         continue;
       throw wrong_cases(
@@ -81,7 +81,7 @@ std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const 
 std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries,
                                           const std::function<bool()>& stop) {
   std::vector<MinimisedCase> results;
-  std::vector<std::vector<Minimised>> ended;  // of each result, what its originals came to
+  std::vector<std::vector<Minimised>> ended;  // for each result, the minimised forms of its originals
   for (const corpus::Entry* entry : originals(entries)) {
     if (stop()) return {};
     const std::string* recorded = corpus::field(*entry, "signature");
@@ -124,7 +124,7 @@ std::vector<MinimisedCase> minimise_cases(const SelectedLanes& under_test, const
     } catch (const oracle::OracleMismatch&) {
       throw;
     } catch (const std::runtime_error&) {
-      // Foreign code may not say the same twice, by its time alone. Then the original is all that is known.
+      // Foreign code may give a different verdict the second time, by timing alone. Then only the original is known.
       if (!result.failure.lanes.front()->foreign) throw;
       result.result.pair = result.result.worst = result.original;
       result.result.one_minimal = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Minimised cases as files: before a file's cases, which stay as they are, stand what they were minimised to
-// (kind=minimised) and the worst pair met on the way (kind=worst).
+// Minimised cases as files. Before a file's cases, which stay unchanged, come their minimised result (kind=minimised)
+// and the worst pair met on the way (kind=worst).
 #pragma once
 
 #include <filesystem>
@@ -17,30 +17,32 @@ namespace graze::fuzz {
 struct MinimisedCase {
   Failure failure;
   Minimised result;
-  std::string recorded;          // the signature by which the originals go together; empty for an original alone
-  std::string from, worst_from;  // the originals that the two pairs came from: "near_edge_edge:1:42", or empty
+  std::string recorded;          // the signature that the originals share; empty for a single original
+  std::string from, worst_from;  // the origins of the two pairs: "near_edge_edge:1:42", or empty
   Pair original;
 };
 
-// As read_cases; and those lanes under test that the campaign ran too, but for foreign code, say of each pair what its
-// signature says. spec: the campaign's.   Throws: as read_cases.
+// As read_cases. Also checks that the lanes under test that ran in the campaign, except foreign code, have the verdicts
+// that each pair's signature records. spec: the campaign's.   Throws: as read_cases.
 std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const Json& spec,
                                          const std::filesystem::path& directory, const Json& row);
 
-// Whether the entry is what a case was minimised to.
+// Whether the entry is a minimised result.
 bool is_minimised(const corpus::Entry& entry);
 
-// One result for all cases with the same recorded signature, of its algorithm, and the first one's cause: the simplest
-// one, and the worst pair of all. Those with another cause stay as they are. Cases without a record have one for each
-// algorithm that is wrong. What is minimised already counts as a case only where there is no other. Each result is
-// confirmed. Returns: nothing of cases on which no lane of the under_test is wrong; nothing at all once `stop`, which
-// is asked before each case, says so.   Throws: OracleMismatch, std::runtime_error.
+// Makes one result for all cases that share a recorded signature, its algorithm, and the first case's cause: the
+// simplest pair and the worst pair of all. Cases with another cause stay unchanged. Cases without a recorded signature
+// get one result for each algorithm that is wrong. Minimised entries count as cases only if there are no others. Each
+// result is confirmed.
+// Returns: nothing for cases on which no lane under test is wrong; nothing at all once `stop`, called before each case,
+// returns true.
+// Throws: OracleMismatch, std::runtime_error.
 std::vector<MinimisedCase> minimise_cases(
     const SelectedLanes& under_test, const std::vector<corpus::Entry>& entries,
     const std::function<bool()>& stop = [] { return false; });
 
-// The text of a file with these results in place of those that it may hold already.
-// Requires: entries are those of the text.
+// The text of a file with these results instead of those that it may already hold.
+// Requires: `entries` are those of the text.
 std::string with_results(const std::string& text, const std::vector<corpus::Entry>& entries,
                          const std::vector<MinimisedCase>& results);
 

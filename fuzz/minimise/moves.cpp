@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums and products are taken in double and rounded to float32 once: where the result is not exact, the move is one to
-// a pair nearby.
+// Sums and products are computed in double and rounded to float32 once. If the result is not exact, the move leads to a
+// nearby pair.
 #include "fuzz/minimise/moves.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ void append(Pairs& moved, const Pair& pair) {
   if (is_finite(pair)) moved.push_back(pair);
 }
 
-// Appends the pair whose coordinate i is make(i), rounded to float32; what overflows it is not finite.
+// Appends the pair whose coordinate i is make(i), rounded to float32. Coordinates that overflow are not finite.
 template <class Make>
 void append_each(Pairs& moved, Make make) {
   Pair result;
@@ -31,7 +31,8 @@ void append_each(Pairs& moved, Make make) {
   append(moved, result);
 }
 
-// 2^exponent, exactly; 0 or infinite beyond the exponents of double. std::ldexp is a call, and half the time of a move.
+// 2^exponent, exactly; 0 or infinite beyond the exponents of double. Avoids a call of std::ldexp, which took half the
+// time of a move.
 double power_of_two(int exponent) {
   if (exponent < -1022 || exponent > 1023) return std::ldexp(1.0, exponent);
   return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
@@ -43,7 +44,7 @@ double nearest_whole(double x) {
   return std::copysign((x + kWholeFromHere) - kWholeFromHere, x);
 }
 
-// With a vertex at the origin; -1 leaves all where they are.
+// Translates a vertex to the origin first; -1 leaves all where they are.
 void lattices(const Pair& pair, int origin, Pairs& moved) {
   double seen[kCoordinates], largest = 0;
   for (int i = 0; i < kCoordinates; ++i) {
@@ -81,14 +82,14 @@ void in_frame(const Pair& pair, const Point& origin, const Point& u, const Point
   if (!std::isfinite(largest) || largest == 0) return;
   append_each(moved, [&](int i) { return seen[i]; });
   const int top = std::ilogb(largest) + 1;
-  if (top > 1000 || top < -900) return;  // no float32
+  if (top > 1000 || top < -900) return;  // outside float32
   for (int bits = 1; bits <= 24; ++bits) {
     const double to_whole = power_of_two(bits - top), back = power_of_two(top - bits);
     append_each(moved, [&](int i) { return nearest_whole(seen[i] * to_whole) * back; });
   }
 }
 
-// Four vertices to the origin and the ends of the unit vectors.
+// Maps four vertices to the origin and the ends of the unit vectors.
 void frames(const Pair& pair, int origin, Pairs& moved) {
   const auto from_origin = [&](int i) { return widen(vertex(pair, i)) - widen(vertex(pair, origin)); };
   for (int i = 0; i < 6; ++i) {
@@ -127,7 +128,7 @@ void replace_vertex(const Pair& pair, int v, Pairs& moved) {
   }
 }
 
-// Two coordinates at once, each to 0, 1 or -1.
+// Replaces two coordinates, each by 0, 1 or -1.
 void replace_two(const Pair& pair, int first, Pairs& moved) {
   for (int second = 0; second < first; ++second) {
     for (const float one : {0.0f, 1.0f, -1.0f}) {
@@ -141,7 +142,8 @@ void replace_two(const Pair& pair, int first, Pairs& moved) {
   }
 }
 
-// An axis less as many times another as makes a vertex's coordinate there 0, or as many whole times.
+// Subtracts a multiple of one axis from another. The multiple makes a vertex's coordinate 0, or is the nearest whole
+// number.
 void shear(const Pair& pair, int axis, int other, Pairs& moved) {
   for (int v = 0; v < 6; ++v) {
     const double quotient = double{component(vertex(pair, v), axis)} / component(vertex(pair, v), other);
@@ -177,7 +179,7 @@ void change_axis(const Pair& pair, int axis, Pairs& moved) {
   }
 }
 
-// What a value may be replaced by, in the pair that it occurs in.
+// The candidates that may replace a value in its pair.
 std::vector<float> replacements(const Pair& pair, float value) {
   std::vector<float> found{0, value / 2, value * 2};
   for (int n = 1; n <= 9; ++n) found.push_back(static_cast<float>(n));
@@ -209,7 +211,7 @@ void replace_value(const Pair& pair, int at, Pairs& moved) {
   const float* c = coordinates(pair);
   const float value = c[at];
   const auto same = [value](float x) { return std::fabs(x) == std::fabs(value); };
-  if (std::any_of(c, c + at, same)) return;  // done where it first occurs
+  if (std::any_of(c, c + at, same)) return;  // done at its first occurrence
   for (const float with : replacements(pair, value)) {
     Pair result = pair;
     for (int i = at; i < kCoordinates; ++i) {
@@ -261,7 +263,7 @@ void rearrange(const Pair& pair, Pairs& moved) {
   }
 }
 
-// In the order of moves.h: how many kinds, and what appends the moves of the i-th of them.
+// In the order of moves.h: the number of kinds, and the function that appends the moves of the i-th one.
 constexpr struct {
   int kinds;
   void (*append)(const Pair& pair, int i, Pairs& moved);

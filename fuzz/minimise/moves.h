@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The single moves of the minimiser: what one step may make of a pair. A move promises nothing; the minimiser keeps
-// only what is simpler and fails alike.
+// The single moves of the minimiser: the candidates that one step may make from a pair. A move guarantees nothing; the
+// minimiser keeps only results that are simpler and fail in the same way.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace graze::fuzz {
 
-// The moves come in kinds, so many of each, in this order:
+// The moves come in kinds. The number of kinds and their moves, in order:
 //   7   a vertex to the origin (none, then each); all coordinates rounded to a lattice of 1 to 24 bits or not at
 //       all; then scaled to whole numbers, or to a size of about one, or not
 //   6   a vertex replaced by another, by one of the 27 points with coordinates in {-1, 0, 1}, or by p + q - r of
@@ -27,7 +27,7 @@ namespace graze::fuzz {
 // itself rounded towards and away from zero to 1 to 23 bits or to a whole number, or its neighbours.
 inline constexpr int kMoveKinds = 77;
 
-// Appends what the moves of a kind make of the pair; finite pairs only, some of them perhaps the pair itself.
+// Appends the results of the moves of a kind; only finite pairs, some of which may equal the original pair.
 // Requires: finite coordinates, 0 <= kind < kMoveKinds.
 void append_moves(const Pair& pair, int kind, std::vector<Pair>& moved);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The minimiser spends most of its time here: it asks of every pair that a move makes whether it is simpler at all.
+// The minimiser spends most of its time here: for every pair that a move makes, it asks whether it is simpler.
 #include "fuzz/minimise/simplicity.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace graze::fuzz {
 namespace {
 
-// Bits that each count takes: at most 18 coordinates of 24 bits and an exponent's distance of 149 each, 6 vertices.
+// Bits of each count. There are at most 18 coordinates of 24 bits, an exponent's distance of 149 each, and 6 vertices.
 constexpr int kWidths[] = {5, 5, 5, 9, 12, 3, 2, 5};
 
 constexpr int bits_below(int criterion) {
@@ -21,7 +21,7 @@ constexpr int bits_below(int criterion) {
 
 std::uint32_t rank(float value) { return std::rotl(std::bit_cast<std::uint32_t>(value), 1); }
 
-// How many of the vertices differ from all before them; -0 and 0 are the same.
+// The number of distinct vertices; -0 and 0 are the same.
 unsigned different_vertices(const Pair& pair) {
   const Vec3<float>* v = pair.a;  // the six vertices, one after the other
   unsigned different = 0;
@@ -41,7 +41,7 @@ unsigned plane_of_first(const Pair& pair) {
 std::uint64_t simplicity_counts(const Pair& pair, std::uint64_t most) {
   constexpr std::uint32_t kOne = 0x3f800000u, kMagnitude = 0x7fffffffu;
   const float* c = coordinates(pair);
-  // The values that are not 0, and of them those that are not 1 either, in front.
+  // The values other than 0, and those other than 0 and 1, packed at the front.
   std::uint32_t nonzero[kCoordinates], others[kCoordinates];
   unsigned nonzeros = 0, other = 0, signs = 0, unwieldy = 0;
   for (int i = 0; i < kCoordinates; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A total order of pairs by how simple they are to read. The minimiser goes down in it, so it always ends.
+// A total order of pairs by how simple they are to read. The minimiser only moves down in it, so it always ends.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace graze::fuzz {
 
-// The first count that differs decides, the smaller being the simpler:
+// The first count that differs decides; the smaller one is simpler:
 //   1. different magnitudes other than 0 and 1
 //   2. coordinates that are not zero
 //   3. coordinates that are not whole numbers below 1000
@@ -19,9 +19,9 @@ namespace graze::fuzz {
 //   6. different vertices
 //   7. 0 when the first triangle lies in the plane z = 0, 1 when in x = 0 or y = 0, else 2
 //   8. minus signs, that of -0 included
-//   9. the coordinates in their order, by magnitude and then sign: two pairs are equal only when all their bits are.
+//   9. the coordinates in order, by magnitude and then sign: two pairs are equal only if all their bits are equal.
 struct Simplicity {
-  std::uint64_t counts = 0;  // the eight of them, the first in the highest bits
+  std::uint64_t counts = 0;  // the eight counts, the first in the highest bits
   std::array<std::uint32_t, kCoordinates> ranks{};
   auto operator<=>(const Simplicity&) const = default;
 };
@@ -29,7 +29,7 @@ struct Simplicity {
 // Requires: finite coordinates.
 Simplicity simplicity(const Pair& pair);
 
-// simplicity(pair).counts, where that is at most `most`; else some number above `most`, which is found sooner.
+// Returns simplicity(pair).counts if that is at most `most`. Otherwise returns, faster, some number above `most`.
 // Requires: finite coordinates.
 std::uint64_t simplicity_counts(const Pair& pair, std::uint64_t most = ~std::uint64_t{0});
 

@@ -16,7 +16,7 @@
 namespace graze::fuzz {
 namespace {
 
-constexpr std::uint64_t kMostOnCpu = std::uint64_t{1} << 20;  // a block of the CPU engine: some seconds
+constexpr std::uint64_t kMostOnCpu = std::uint64_t{1} << 20;  // a block of the CPU engine: takes some seconds
 
 struct Tree final : Ranks::Reduction {
   explicit Tree(Sums& sums_) : sums(sums_) {}
@@ -25,7 +25,7 @@ struct Tree final : Ranks::Reduction {
   Sums& sums;
 };
 
-// What the root found, for all: {"build", "size", "gaps": [[source, first, pairs], …]} or {"error"}.
+// The root's plan for all ranks: {"build", "size", "gaps": [[source, first, pairs], …]} or {"error"}.
 Json plan_of(const Campaign& campaign, const Store& store, int ranks) {
   Json gaps = Json::array();
   std::uint64_t left = 0;
@@ -63,7 +63,7 @@ PairRange Blocks::at(std::uint64_t number) const {
 
 std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std::atomic<bool>& stop) {
   const auto start = std::chrono::steady_clock::now();
-  std::optional<Store> store;  // the root's, which holds the campaign's lock
+  std::optional<Store> store;  // on the root; it holds the campaign's lock
   Json plan;
   if (ranks.rank == 0) {
     try {

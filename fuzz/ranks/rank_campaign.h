@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A campaign by the ranks that mpirun started: each takes blocks from the shared counter into a store of its own, in
-// DIR/rank-R; at the end a tree of reductions leaves the sums with the root, whose campaign is that of one process.
-// Of a rank that died, what it had committed stays: the next run takes it in, and judges what is missing.
+// Runs a campaign on the ranks that mpirun started. Each rank takes blocks from the shared counter and writes to its
+// own store, DIR/rank-R. At the end a tree of reductions brings the sums to the root, whose campaign equals that of one
+// process. If a rank dies, its committed pairs stay: the next run adds them and judges the missing ones.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,15 @@
 
 namespace graze::fuzz {
 
-// Runs or goes on with the campaign.
-// Returns: the outcome on the root once all is done; nothing on the other ranks, and where a rank was stopped.
+// Runs or resumes the campaign.
+// Returns: the outcome on the root once everything is done; nothing on the other ranks, or if a rank was stopped.
 // Throws: as run_campaign, on the rank that fails, which must then abort.
 std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std::atomic<bool>& stop);
 
-// Pairs in a block, of so many that are left.
+// The number of pairs in a block if `left` pairs are left.
 std::uint64_t block_pairs(std::uint64_t left, int ranks, std::uint64_t most);
 
-// The blocks of these ranges, by number, in an order that soon visits all sources.
+// Splits these ranges into numbered blocks, in an order that soon reaches all sources.
 class Blocks {
  public:
   Blocks(std::vector<PairRange> ranges, std::uint64_t pairs);
@@ -30,7 +30,7 @@ class Blocks {
  private:
   std::vector<PairRange> ranges_;
   std::uint64_t pairs_, stride_ = 1;
-  std::vector<std::uint64_t> until_;  // blocks up to the end of each range
+  std::vector<std::uint64_t> until_;  // total number of blocks up to the end of each range
 };
 
 }  // namespace graze::fuzz

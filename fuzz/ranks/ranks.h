@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes that `mpirun` started together, as the rest of Graze sees them. Only mpi.cpp sees MPI: it is a library
-// of its own beside the program, opened when mpirun started it, so that without MPI nothing changes.
+// The processes that `mpirun` started together, as the rest of Graze sees them. Only mpi.cpp includes MPI. It is a
+// separate library beside the program, opened only under mpirun, so nothing changes without MPI.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@ namespace graze::fuzz {
 
 class Ranks {
  public:
-  virtual ~Ranks() = default;  // all of them must come here, or none
+  virtual ~Ranks() = default;  // collective: all ranks must get here, or none
 
   int rank = 0, size = 1;
   int local_rank = 0, local_size = 1;  // among those on this host
 
-  // The root's text, for all.
+  // Broadcasts the root's text to all ranks.
   virtual std::string from_root(const std::string& text) = 0;
 
-  // Takes the next number of a counter that all share; it waits for no other rank.
+  // Takes the next number of a counter that all ranks share, without waiting for other ranks.
   virtual std::uint64_t next() = 0;
 
-  // Everything that the rank and those behind it in the tree know goes to the one before it, in log2(size) rounds.
-  // Each round either sends what `give` returns, and is done, or hands what it received to `take`.
+  // Sends everything that a rank and those below it in the tree know to its parent, in log2(size) rounds. In each round
+  // a rank either sends the result of `give` and is done, or passes what it received to `take`.
   struct Reduction {
     virtual ~Reduction() = default;
     virtual std::string give() = 0;
@@ -31,21 +31,21 @@ class Ranks {
   };
   virtual void reduce(Reduction& reduction) = 0;
 
-  // Whether it is so on every rank.
+  // Whether `here` is true on every rank.
   virtual bool all(bool here) = 0;
 
-  // Ends all ranks at once: one that has failed must not leave the others waiting.
+  // Ends all ranks at once, so that a failed rank does not leave the others waiting.
   virtual void abort(int status) = 0;
 };
 
-// Whether mpirun, or Slurm's srun, started this process, with others.
+// Whether mpirun, or Slurm's srun, started this process together with others.
 bool started_by_mpirun();
 
-// The ranks; MPI is begun.   Requires: started_by_mpirun().
-// Throws: std::runtime_error where this build, or this machine, is without MPI.
+// Initialises MPI and returns the ranks.   Requires: started_by_mpirun().
+// Throws: std::runtime_error if this build or this machine has no MPI.
 std::unique_ptr<Ranks> open_ranks();
 
-// Leaves this process one CUDA device, by its number on this host.   Requires: CUDA has not begun.
+// Restricts this process to one CUDA device, chosen by its local rank.   Requires: CUDA is not initialised yet.
 void take_one_device(int local_rank);
 
 }  // namespace graze::fuzz

@@ -34,7 +34,7 @@ std::string seen_by(const Json& build, std::string_view kind, const std::string&
                      fnv1a(identity));
 }
 
-// The signature's pair alone: whose failure it is, but not of which lanes.
+// The signature without its lanes: its pair's properties and its subject.
 std::optional<analysis::Signature> without_lanes(const std::string& key) {
   std::optional<analysis::Signature> signature = analysis::parse_signature(key);
   if (signature) signature->wrong_lanes.clear();
@@ -49,7 +49,7 @@ std::string kind_of(const RegressionCase& c) {
   return field == c.other.end() ? "" : field->second;
 }
 
-// The pair's signatures, one for each subject, right or wrong.
+// The pair's signatures, one for each subject, whether it is right or wrong.
 std::vector<analysis::Signature> signatures_of(const Pair& pair, const Replay& seen) {
   const analysis::Signature blank{
       seen.truth.contact, seen.truth.hulls, oracle::margin_bucket(pair, seen.truth.verdict), "", {}};
@@ -73,8 +73,8 @@ std::vector<FoundFailure> found_in_kinds(const std::filesystem::path& directory,
                                          const std::vector<std::string>& globs, std::size_t most) {
   const std::string seen = seen_by(summary.at("build"), "campaign", summary.at("spec").dump());
   std::vector<FoundFailure> failures;
-  std::map<std::string, std::size_t> taken;  // kinds of a subject
-  for (const Json& kind : kinds) {           // the commonest first
+  std::map<std::string, std::size_t> taken;  // number of kinds taken, by subject
+  for (const Json& kind : kinds) {           // most frequent first
     const std::filesystem::path file = case_file(directory, kind.at("simplest"));
     const std::vector<corpus::Entry> entries = corpus::read_pairs(file);
     const std::string* signature = entries.empty() ? nullptr : corpus::field(entries.front(), "signature");
@@ -176,7 +176,7 @@ Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const
   c.name = known->second.name;
   c.count = known->second.count;
   c.first = known->second.first;
-  corpus.erase(known);  // of a failure of its kind the signature may be another
+  corpus.erase(known);  // the known case may have another signature of the same kind
   corpus.emplace(failure.signature, std::move(c));
   return Added::seen_again;
 }

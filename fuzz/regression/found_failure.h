@@ -16,27 +16,28 @@ struct FoundFailure {
   std::string signature;
   corpus::Entry entry;
   std::uint64_t count;    // pairs of this signature
-  std::string seen;       // by which build, and in what: "commit, compiler, toolkit, device; campaign HASH"
-  std::string kind = "";  // its kind's key; empty where it is not known
-  std::string file = "";  // that holds the entry; empty where it is the one that was named
+  std::string seen;       // the build and the campaign: "commit, compiler, toolkit, device; campaign HASH"
+  std::string kind = "";  // its kind's key; empty if unknown
+  std::string file = "";  // the file that holds the entry; empty for the file that the user named
 };
 
-// Of each kind of failure the simplest case, where its signature or its kind's key matches
-// one of the shell patterns (or there is none); of each subject only the `most` commonest kinds.
-// Throws: UsageError for a directory that holds no finished campaign; FormatError.
+// Returns the simplest case of each kind of failure whose signature or key matches one of the shell patterns, or of all
+// kinds without patterns. For each subject only the `most` most frequent kinds.
+// Throws: UsageError if the directory holds no finished campaign; FormatError.
 std::vector<FoundFailure> found_in_campaign(const std::filesystem::path& directory,
                                             const std::vector<std::string>& globs, std::size_t most);
 
-// One failure for each signature of the entries: that of the field `signature`, or those of all algorithms that are
-// wrong. Minimised entries stand for all.
+// Returns one failure for each signature of the entries: that of the field `signature`, or those of all algorithms that
+// are wrong. If there are minimised entries, only they are used.
 std::vector<FoundFailure> found_in_cases(const std::vector<corpus::Entry>& entries, const Json& build,
                                          std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 enum class Added { as_new, seen_again, known };
 
-// A failure becomes a case, after a replay, unless its signature or its kind has one: then it counts there. A case that
-// was fixed and is wrong again is failing again, with the new pair. The same failure twice in a row counts once, so
-// that an interrupted command can be run again. Throws: std::runtime_error when the pair is not one of the signature.
+// Replays a failure and adds it as a case. If its signature or its kind already has a case, it is counted there
+// instead. A fixed case that is wrong again becomes failing, with the new pair. The same failure twice in a row counts
+// once, so that an interrupted command can be repeated.
+// Throws: std::runtime_error if the pair does not have the signature.
 Added add(RegressionCorpus& corpus, const FoundFailure& failure, std::span<const Lane* const> lanes,
           const DecideLanes& decide);
 

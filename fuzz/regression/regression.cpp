@@ -31,7 +31,7 @@ std::string text_of(const Marks& marks) {
   return text;
 }
 
-// What a line of the file must hold, or an error that names it.
+// Reads a line of the file; each error names the line.
 struct Line {
   const corpus::Entry& entry;
   std::string where;
@@ -61,7 +61,7 @@ struct Line {
     return *value;
   }
 
-  // Lanes that the text does not name did not run; those of other builds stay in it.
+  // Lanes that the text does not name did not run. Lanes of other builds stay in it.
   Marks marks() const {
     Marks marks;
     std::istringstream subjects(text("lanes"));
@@ -70,7 +70,7 @@ struct Line {
       std::string_view rest = std::string_view(subject).substr(std::min(id.size() + 1, subject.size()));
       if (rest.empty()) fail("a subject and the marks of its lanes in lanes", '\'' + subject + '\'');
       while (!rest.empty()) {
-        std::size_t end = rest.find(',');  // of the lane: at a comma that a mark follows, or the end
+        std::size_t end = rest.find(',');  // the lane ends at the end, or at a comma before a mark
         while (end != rest.npos && end + 1 < rest.size() && kMarks.find(rest[end + 1]) == kMarks.npos)
           end = rest.find(',', end + 1);
         const std::string lane = id + '/' + std::string(rest.substr(1, end == rest.npos ? end : end - 1));
@@ -93,7 +93,7 @@ std::string verdict_of_mark(char mark, std::string_view truth) {
     case '-':
       return "disjoint (wrong)";
     case '?':
-      return "declined (wrong)";
+      return "declined";
     case '!':
       return "crashed (wrong)";
     case '@':

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regression corpus: failures that were seen, one case for each signature, all in one file of pairs, and what has
-// become of them since. Nothing in it depends on the clock, and the same failures in the same order give the same
-// bytes.
+// The regression corpus: known failures, one case for each signature, in one file of pairs, with their current state.
+// Nothing in it depends on the clock. The same failures in the same order give the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -20,12 +19,13 @@
 
 namespace graze::fuzz {
 
-// failing: a lane of the signature's algorithm is wrong. fixed: all that were are right. flaky: a verdict differed
-// between replays, or between a device and its twin; replays that agree later prove nothing, so it stays flaky.
+// failing: a lane of the signature's algorithm is wrong. fixed: all lanes that were wrong are right. flaky: a verdict
+// differed between replays, or between a device and its twin. Later replays that agree prove nothing, so it stays
+// flaky.
 enum class CaseState { failing, fixed, flaky };
 std::string_view name(CaseState state);
 
-// The mark of each lane that ran, by the lane's name: those of analysis/signature.h, and '~' where its verdict differed
+// The mark of each lane that ran, by the lane's name: a mark of analysis/signature.h, or '~' if its verdict differed
 // between replays.
 using Marks = std::map<std::string, char>;
 
@@ -34,25 +34,25 @@ struct RegressionCase {
   Pair pair{};
   std::string truth, contact;
   CaseState state = CaseState::failing;
-  std::uint64_t count = 0;  // pairs that were seen with this signature
+  std::uint64_t count = 0;  // pairs seen with this signature
   Marks marks;
-  std::string first, last;                                      // failures; see fuzz/regression/found_failure.h
-  std::vector<std::pair<std::string, std::string>> other = {};  // fields that the case came with
+  std::string first, last;  // first and last time it was seen; see FoundFailure::seen
+  std::vector<std::pair<std::string, std::string>> other = {};  // other fields of the original entry
 };
 
-// The fields of an entry that say nothing which a case keeps itself.
+// The fields of an entry that a case does not store itself.
 std::vector<std::pair<std::string, std::string>> other_fields(const corpus::Entry& entry);
 
-// By signature, as it was first seen.
+// By signature, as first seen.
 using RegressionCorpus = std::map<std::string, RegressionCase>;
 
-// Throws: FormatError, also for a file that is missing or holds a signature twice.
+// Throws: FormatError, also if the file is missing or holds a signature twice.
 RegressionCorpus read_regressions(const std::filesystem::path& file);
 
-// Replaces the file in one step.
+// Replaces the file atomically.
 void write_regressions(const std::filesystem::path& file, const RegressionCorpus& corpus);
 
-// Each lane's verdict on a pair, and in apart the lanes that disagree with themselves; see decide in
+// Each lane's verdict on a pair; `apart` receives the lanes whose executors disagree. See decide in
 // fuzz/selected_lanes.h.
 using DecideLanes = std::function<std::vector<Verdict>(const Pair&, std::vector<const Lane*>& apart)>;
 
@@ -66,7 +66,7 @@ inline constexpr int kReplays = 3;
 // Runs the lanes on the pair kReplays times.
 Replay replay(const Pair& pair, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
-// What a case of this signature is after a replay; `before` where the replay cannot tell.
+// The state of a case with this signature after a replay; `before` if the replay cannot tell.
 CaseState state_after(CaseState before, const std::string& signature, const Marks& now);
 
 struct Change {
@@ -79,9 +79,9 @@ struct Verified {
   std::size_t compared = 0;  // verdicts that had a record
 };
 
-// Replays every case and notes in the corpus what was found: verdicts, and states.
-// Returns: what differs from the record, which of an exact lane is the truth; other lanes without a record, or that did
-// not run, differ from nothing.
+// Replays every case and updates verdicts and states in the corpus.
+// Returns: the differences from the record; for an exact lane, the record is the truth. Lanes without a record, and
+// lanes that did not run, make no difference.
 Verified verify(RegressionCorpus& corpus, std::span<const Lane* const> lanes, const DecideLanes& decide);
 
 }  // namespace graze::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regression corpus with lanes that are wrong on request: what verify calls a change, and the life of a case.
+// The regression corpus with lanes that are wrong on request: the changes that verify reports, and the life of a case.
 #include "fuzz/regression/regression.h"
 
 #include <gtest/gtest.h>
@@ -15,12 +15,12 @@
 namespace graze::fuzz {
 namespace {
 
-// A vertex of b on the face of a: they touch.
+// A vertex of b on the face of a: the triangles touch.
 constexpr Pair kTouching{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{1, 1, 0}, {1, 2, 4}, {2, 1, 4}}};
 constexpr Pair kShifted{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{2, 1, 0}, {2, 2, 4}, {3, 1, 4}}};
 const std::string kSignature = "point/22/skew/0/moller_1997:-f32/cpu";
 
-// All lanes; those named say disjoint, which is wrong of these pairs, the others are right.
+// All lanes. Those in `wrong` say disjoint, which is wrong for these pairs; the others are right.
 struct Liars {
   std::vector<const Lane*> lanes;
   std::set<std::string> wrong{"moller_1997/f32/cpu"};
@@ -135,7 +135,7 @@ TEST_F(Regression, EveryLaneIsCompared) {
   EXPECT_EQ(verify(corpus, liars.lanes, liars.decide()).compared, published_lanes().size());
   liars.wrong.insert("separating_axes/f64/cuda-fma");
   EXPECT_EQ(changes(), Texts{"separating_axes/f64/cuda-fma: was intersects (right), is disjoint (wrong)"});
-  EXPECT_EQ(changes(), Texts());  // it is on record now
+  EXPECT_EQ(changes(), Texts());  // now it is recorded
 }
 
 TEST_F(Regression, AFailingCaseIsFixedAndFailsAgain) {
@@ -150,7 +150,7 @@ TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
   liars.wrong.clear();
   changes();
   EXPECT_EQ(add({kSignature, {kShifted}, 1, "s2"}), Added::seen_again);
-  EXPECT_EQ(only().state, CaseState::fixed);  // that build saw it fail; this one does not
+  EXPECT_EQ(only().state, CaseState::fixed);  // another build saw it fail; this one does not
   liars.wrong = {"moller_1997/f32/cpu"};
   EXPECT_EQ(add({kSignature, {kShifted}, 1, "s3"}), Added::seen_again);
   EXPECT_EQ(only().state, CaseState::failing);
@@ -160,7 +160,7 @@ TEST_F(Regression, AFixedCaseTakesThePairThatFailsAgain) {
   EXPECT_EQ(changes(), Texts());
 }
 
-// A failure of a kind that has a case counts there; where it takes the fixed case's place, it brings its own signature.
+// A failure is counted with a case of its kind. If it replaces a fixed case, it brings its own signature.
 TEST_F(Regression, AFixedCaseTakesAFailureOfItsKind) {
   const std::string signature = std::string(kSignature).substr(0, std::string(kSignature).find(':')) + ":-f64/cpu";
   const std::string kind = "moller_1997/rounding/moller_1997.h:1/general";
@@ -224,7 +224,7 @@ TEST(Failures, OfACaseAreAllItsWrongAlgorithms) {
   EXPECT_NE(found[0].seen, found_in_cases({{kShifted}}, build, liars.lanes, liars.decide())[0].seen);
 }
 
-// An exact lane has no marks in the file; its record is the truth.
+// An exact lane has no marks in the file; the truth is its record.
 TEST_F(Regression, AnExactLaneThatIsWrongIsAChange) {
   for (const Lane& lane : lanes()) {
     if (lane.id == "exact/f32/cpu") liars.lanes.push_back(&lane);

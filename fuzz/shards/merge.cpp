@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "device; twin, verified on …" of both.
+// Merges the words of both, as in "device; twin, verified on …".
 std::string common_words(const std::string& one, const std::string& other) {
   std::set<std::string> words;
   for (const std::string& text : {one, other}) {
@@ -38,7 +38,7 @@ std::string common_words(const std::string& one, const std::string& other) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-// What is recorded of each part; they are of one campaign.
+// Reads the record of each part; all must belong to one campaign.
 std::vector<StoreSpec> read_records(const std::vector<fs::path>& parts) {
   std::vector<StoreSpec> stores;
   for (const fs::path& part : parts) {
@@ -55,7 +55,7 @@ std::string named(const StoreSpec& store) {
   return store.directory.string() + (store.shard.whole() ? "" : ", shard " + store.shard.name());
 }
 
-// Throws: what the part's owner must do about what is missing, in one line.
+// Throws: std::runtime_error if pairs are missing; its one line says what the part's owner must do.
 void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, const fs::path& out) {
   const std::vector<PairRange> gaps = sums.gaps();
   if (gaps.empty()) return;
@@ -102,7 +102,7 @@ void expect_no_gaps(const std::vector<StoreSpec>& stores, const Sums& sums, cons
                         command));
 }
 
-// Throws: std::runtime_error where the file is not what the finished run sealed.
+// Throws: DamagedStore if the database differs from the one that the finished run sealed.
 void expect_sealed(const StoreSpec& store) {
   const Json status = read_status(store.directory);
   if (status.is_null() || status["state"] != "done" || !status.contains("hash")) return;
@@ -118,8 +118,8 @@ void expect_new(const fs::path& out) {
     throw UsageError(cannot("use", out, "it holds other files; choose a new or an empty directory as --out"));
 }
 
-// The folder that `out` means, without links; the finished campaign is renamed to it.
-// Throws: UsageError where that cannot be.
+// The folder that `out` names, without links; the finished campaign is renamed to it.
+// Throws: UsageError if that is impossible.
 fs::path place_of(const fs::path& out) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(behind_links(out), error);
@@ -132,11 +132,11 @@ fs::path place_of(const fs::path& out) {
   if (statx(AT_FDCWD, place.c_str(), 0, STATX_TYPE, &found) == 0 && (found.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0)
     throw UsageError(
         cannot("replace", out,
-               "it is a mount point; use a new directory in it: --out " + shell_word((out / "campaign").string())));
+               "it is a mount point; use a new directory in it: --out " + path_word((out / "campaign").string())));
   return place;
 }
 
-// The folder beside the place in which the campaign grows. A merge that was killed may have left it.
+// The folder beside the target in which the campaign is built. A killed merge may have left it.
 fs::path folder_beside(const fs::path& place) {
   std::error_code error;
   fs::path part = place;
@@ -147,7 +147,7 @@ fs::path folder_beside(const fs::path& place) {
   return part;
 }
 
-// Adds the part's runs to those of their machines.   Throws: as expect_possible_run.
+// Adds the part's runs to those of the same machine.   Throws: as expect_possible_run.
 void add_timings(const StoreSpec& part, const Json& runs, std::size_t parts, std::map<std::string, Json>& by_machine) {
   std::map<std::string, std::uint64_t> sources;
   for (const strata::PairSource& source : part.sources) sources[source.id] = source.pairs;
@@ -163,8 +163,8 @@ void add_timings(const StoreSpec& part, const Json& runs, std::size_t parts, std
   }
 }
 
-// Runs of the parts as one for each machine, and what one of them measured of the lanes.
-// Throws: std::runtime_error that names the timings.
+// Combines the runs of the parts into one for each machine, with the lane costs that one part measured.
+// Throws: std::runtime_error that names the timings file.
 std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   std::map<std::string, Json> by_machine;
   for (const StoreSpec& store : stores) {
@@ -181,8 +181,8 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   return by_machine;
 }
 
-// What the parts of a hunt kept in their rounds, as the campaign's, which draws its cases from it.
-// held: pairs of each part.
+// Joins the rounds of a hunt's parts into those of the campaign, which draws its cases from them.
+// held: the number of pairs in each part.
 void join_rounds(const std::vector<StoreSpec>& stores, const std::vector<std::uint64_t>& held, const Sums& sums,
                  Campaign& campaign) {
   std::vector<KeptRound> rounds;
@@ -264,7 +264,7 @@ Outcome merge(const MergeOptions& options) {
     campaign.build = common_build(campaign.build, store.build, store.directory);
     store.sources = campaign.sources;
   }
-  // The pairs of the cases are drawn again, here.
+  // The pairs of the cases are drawn again by this build.
   if (const Json here = build_info({}); campaign.build.at("commit") != here["commit"])
     throw std::runtime_error(
         cannot("merge", stores.front().directory,
@@ -274,7 +274,7 @@ Outcome merge(const MergeOptions& options) {
   campaign.under_test = &under_test;
   const std::map<std::string, Json> timings = timings_of(stores);
   const fs::path place = place_of(options.out), beside = folder_beside(place);
-  const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // up to the end, so that no other merge empties it
+  const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // held to the end; other merges must not empty it
   campaign.directory = beside / "campaign.part";
 
   Sums sums(campaign.sources, static_cast<int>(under_test.lanes.size()));
@@ -282,7 +282,7 @@ Outcome merge(const MergeOptions& options) {
   std::optional<Store> partial;
   std::error_code unimportant;
   try {
-    expect_new(options.out);  // as another merge may just have ended
+    expect_new(options.out);  // again, because another merge may just have ended
     fs::remove_all(campaign.directory);
     fs::create_directory(campaign.directory);
     if (options.partial) partial.emplace(store_spec(campaign));
@@ -313,7 +313,7 @@ Outcome merge(const MergeOptions& options) {
     partial.reset();
     for (const auto& [machine, run] : timings) append_timing(campaign.directory, run, outcome.oracle);
     std::error_code error;
-    fs::rename(campaign.directory, place, error);  // over an empty folder too
+    fs::rename(campaign.directory, place, error);  // may replace an empty folder
     if (error) throw std::runtime_error(cannot("put the campaign into", options.out, error.message()));
     fs::remove(beside, unimportant);
     return outcome;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// However a campaign is cut into shards, whoever runs them, and in whatever order they are merged: the bytes of one
-// run.
+// Merging gives the bytes of one run, whatever the number of shards, their executors and their order.
 #include "fuzz/shards/merge.h"
 
 #include <fmt/format.h>
@@ -33,8 +32,8 @@ class MergeTest : public CampaignFiles {
     return c;
   }
 
-  // The directories of all shards. Each third runs by the steps of the device engine, each fifth is interrupted after
-  // every batch.
+  // Returns the directories of all shards. Every third one runs with the steps of the device engine; every fifth one is
+  // interrupted after every batch.
   std::vector<fs::path> run_shards(std::uint64_t of) const {
     std::vector<fs::path> parts;
     for (std::uint64_t k = 1; k <= of; ++k) {
@@ -51,7 +50,7 @@ class MergeTest : public CampaignFiles {
     return parts;
   }
 
-  // What merge says of these; empty when all is well.
+  // The error of merge; empty if there is none.
   std::string refusal(const std::vector<fs::path>& parts) const {
     try {
       merge({parts, root_ / "refused", false});
@@ -73,7 +72,7 @@ TEST_F(MergeTest, AnyNumberOfShardsInAnyOrderLeavesTheBytesOfTheWhole) {
   const Json whole = run(campaign("whole"));
   EXPECT_GT(whole["signatures"].size(), 20u);
   std::mt19937 random(1);
-  // However many batches a shard took, it leaves one row of each source.
+  // A shard leaves one row for each source, however many batches it ran.
   const Campaign rows = campaign("rows", {2, 3});
   EXPECT_GT(run_in_parts(rows), 1);
   EXPECT_EQ(SQLite::Database(database("rows").string()).execAndGet("SELECT count(*) FROM batch").getInt64(), 3);
@@ -85,7 +84,7 @@ TEST_F(MergeTest, AnyNumberOfShardsInAnyOrderLeavesTheBytesOfTheWhole) {
     EXPECT_TRUE(outcome.complete);
     EXPECT_EQ(outcome.summary.dump(), whole.dump()) << of;
     expect_same_bytes("whole", name);
-    // The store is that of a campaign that is done: nothing is judged again.
+    // The store is that of a finished campaign: nothing is judged again.
     Campaign again = campaign(name);
     std::atomic<bool> stop{false};
     EXPECT_TRUE(run_campaign(again, stop, [](const Progress&) { ADD_FAILURE() << "a batch"; }).complete);
@@ -100,7 +99,7 @@ TEST_F(MergeTest, MergesOfMergesAreTheSame) {
   merge({{of7[6], root_ / "odd"}, root_ / "more", true});
   merge({{of7[2], root_ / "more", of7[0], of7[4]}, root_ / "all", false});
   expect_same_bytes("whole", "all");
-  // Half by one cut, half by another: 2/2 begins where 4/4's third ends.
+  // Half from one division, half from another: 1/2 ends where 3/4 begins.
   std::vector<fs::path> mixed{of2[0]};
   for (const Shard& shard : {Shard{3, 4}, Shard{4, 4}}) {
     const Campaign c = campaign("quarter" + std::to_string(shard.number), shard);
@@ -152,7 +151,7 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   expect({parts[0], root_ / "stopped", parts[2]}, {(root_ / "stopped").string() + ", shard 2/3", "not done", command,
                                                    "--shard 2/3 --out " + (root_ / "stopped").string()});
 
-  // A bit that a copy lost, found by the hash; then an edit that the hash does not cover, by the row's checksum.
+  // The hash detects a bit that was lost in copying; the row's checksum detects an edit that the hash does not cover.
   std::string bytes = read_whole(database("of3-2"));
   const std::string good = bytes;
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
@@ -179,7 +178,8 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   EXPECT_EQ(refusal(parts), "");
 }
 
-// The command that runs a part of a campaign again asks for the pairs that the campaign asked for, and no mesh's.
+// The command that runs a part of a campaign again asks for the pairs that the user requested, without those of the
+// mesh.
 TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   fs::create_directories(root_);
   const std::string file = (root_ / "mesh.off").string();
@@ -199,7 +199,7 @@ TEST_F(MergeTest, CommandsNameTheMeshAndThePairsBesideIt) {
   EXPECT_EQ(command(R"(["mesh"])", 6, true), "graze fuzz --mesh " + file + " --seed 3" + of_lanes);
 }
 
-// Lanes that were left out were asked for: by the patterns, of each of which some lane ran.
+// Lanes that were left out were requested as well, by patterns each of which matched a lane that ran.
 TEST_F(MergeTest, CommandsAskForTheLanesThatWereLeftOutToo) {
   const SelectedLanes some = select_lanes({"moller_1997/f32/cuda-*", "exact/f32/cpu"}, Executor::twin);
   Json spec = {
@@ -210,7 +210,7 @@ TEST_F(MergeTest, CommandsAskForTheLanesThatWereLeftOutToo) {
   EXPECT_EQ(command_of(spec, {}, "o"),
             "graze fuzz --pairs 9 --seed 3 --strata thesis --lanes "
             "'moller_1997/f32/cuda-*,exact/f32/cpu' --executor twin --out o");
-  // All that run here, without a pattern: nobody asked for the others.
+  // Without patterns, all lanes that run here are requested, and no others.
   EXPECT_TRUE(select_lanes({}, Executor::twin).left_out.empty());
   EXPECT_TRUE(left_out_json(select_lanes({"moller_1997/f32/cuda-*fma"}, Executor::twin)).is_null());
 }
@@ -245,7 +245,7 @@ TEST(Shard, PartsAreTheWholeEachIndexOnce) {
     EXPECT_FALSE(parse_shard(text)) << text;
 }
 
-// One process plays all ranks, in turns.
+// One process plays all ranks in turn.
 TEST_F(MergeTest, BlocksOfRanksAreTheWholeAndWhatARankLeftIsTakenIn) {
   const Json whole = run(campaign("whole"));
   const Campaign left = campaign("left");
@@ -258,7 +258,7 @@ TEST_F(MergeTest, BlocksOfRanksAreTheWholeAndWhatARankLeftIsTakenIn) {
     of_rank.directory = rank_directory(left.directory, rank);
     fs::create_directories(of_rank.directory);
     Store store(of_rank);
-    for (std::uint64_t b = static_cast<std::uint64_t>(rank); b < blocks.count(); b += 4) {  // the fourth died at once
+    for (std::uint64_t b = static_cast<std::uint64_t>(rank); b < blocks.count(); b += 4) {  // rank 3 died at once
       const PairRange block = blocks.at(b);
       store.commit(block, judge(left, block.source, block.pairs, [&](std::size_t i) { return block.first + i; }));
       pairs += block.pairs;

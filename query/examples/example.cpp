@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a type of one's own: is any hit, and which ones are.
+// Triangles in a type of your own: is there a hit, and which triangles are hit?
 #include <graze/query.h>
 
 #include <cstdio>

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which of a million random triangles of 2012 meet its reference: the C library through ctypes, with numpy where it is.
+"""Finds which of a million random triangles of the 2012 thesis meet its reference. Uses the C library through ctypes,
+and numpy if it is installed.
   example.py libgraze_query.so
 """
 import array
@@ -75,7 +76,7 @@ def address(numbers):
 
 
 def which(library, reference, rows, count, lane=None):
-    """Returns: a byte for each triangle, 1 meets the reference, 0 does not, 2 declined; and the answer."""
+    """Returns: a byte for each triangle (1: meets the reference, 0: does not, 2: declined), and the answer."""
     meets = numpy.zeros(count, numpy.uint8) if numpy is not None else array.array("B", bytes(count))
     part = Triangles(count=count, device=-1, rows=address(rows))
     query = Query(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tests' own settings. Chromium is the system's: GRAZE_CHROMIUM, or chromium on the PATH; none is downloaded.
+// Settings of the page's tests. They use the system's Chromium (GRAZE_CHROMIUM, or chromium on the PATH), and download
+// none.
 import { execSync } from 'node:child_process';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -12,16 +13,17 @@ export default defineConfig({
   outputDir: process.env.GRAZE_TEST_OUTPUT ?? join(tmpdir(), 'graze-page-test-results'),
   globalSetup: './tests/make_report.ts',
   workers: 1,
-  // A busy machine is slow, not wrong.
+  // The limit is long, because a busy machine is slow.
   timeout: 180_000,
   expect: { timeout: 30_000 },
   reporter: 'list',
   use: {
-    // Low: what is out of view is neither painted, which takes a processor the most here, nor are its maps decided.
+    // A low window: parts out of view need no painting, which costs most processor time here, and their maps are not
+    // computed.
     viewport: { width: 1360, height: 480 },
     launchOptions: {
       executablePath: chromium,
-      // WebGL by software, where there is no GPU; no sandbox, which the root of a container cannot have.
+      // WebGL in software if there is no GPU; no sandbox, because root in a container cannot have one.
       args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--no-sandbox'],
     },
     contextOptions: { permissions: ['clipboard-read', 'clipboard-write'] },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One file with everything in it: no chunk, style sheet or picture beside the page, which opens from disk. The report is
-// index.html; with --mode viewer, view.html. Both hold the module that GRAZE_WASM names; without it no card of the report
-// opens in the viewer.
+// Makes one file that contains everything, with no chunk, style sheet or picture beside it, so that the page opens from
+// disk. The report is index.html; with --mode viewer, view.html. Both include the module that GRAZE_WASM names; without
+// it the report's cards cannot open the viewer.
 import { readFileSync, readdirSync } from 'node:fs';
 import { gzipSync } from 'node:zlib';
 import { defineConfig } from 'vite';
@@ -17,7 +17,7 @@ const graze_wasm = {
       : null,
 };
 
-// The lines of the sources in which lanes take their steps.
+// The source lines at which lanes take their steps.
 const kSources = [
   'core/vec3.h',
   ...(process.env.GRAZE_WASM

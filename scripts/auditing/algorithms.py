@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The published algorithms, written anew from their headers in core/algorithms. Each comparison names its source line."""
+"""The published algorithms, reimplemented from their headers in core/algorithms. Each comparison names its source
+line."""
 import pathlib
 
 from auditing.numbers import Fused, outcome, root_of
@@ -7,7 +8,7 @@ from auditing.numbers import Fused, outcome, root_of
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
-# Where a comparison stands: the one line of the header that contains this text.
+# The source line of a comparison: the only line of the header that contains this text.
 _sources = {}
 
 
@@ -35,12 +36,12 @@ class Seen:
 
 
 class Run:
-    """An algorithm's run in some kind of number, led down a path; what it compared, and the verdict."""
+    """A run of an algorithm in one kind of number, forced along a path: its comparisons and its verdict."""
 
     def __init__(self, name, kind, coordinates, lead=(), rule="none"):
         self.rule, self.uses, self.known_uses = rule, [], []
         self._decide(name, kind, coordinates, lead)
-        if rule != "none":  # how often a product is used is known only after a whole run
+        if rule != "none":  # the number of uses of a product is known only after a whole run
             self.known_uses, self.uses = self.uses, []
             self._decide(name, kind, coordinates, lead)
 
@@ -53,7 +54,7 @@ class Run:
         self.intersects = ALGORITHMS[name](self, a, b)
 
     def path(self):
-        """What the algorithm was told."""
+        """The outcomes of all comparisons, as the algorithm saw them."""
         return tuple(self.lead) + tuple(s.held for s in self.seen[len(self.lead) :])
 
     def compare(self, line, left, relation, right, separation=False):
@@ -63,7 +64,7 @@ class Run:
         return self.lead[i] if i < len(self.lead) else held
 
     def snap(self, x):
-        return Fused(x.v, self) if isinstance(x, Fused) else x  # not a product any more
+        return Fused(x.v, self) if isinstance(x, Fused) else x  # no longer a product
 
 
 def add(u, v):
@@ -118,7 +119,7 @@ def project(r, direction, v):
 
 
 def overlap(r, axis, a, b):
-    t = project(r, axis, b)  # g++ evaluates arguments from the last to the first
+    t = project(r, axis, b)  # g++ evaluates arguments from last to first
     s = project(r, axis, a)
     return not r.compare(OVERLAP, s[1], "<", t[0], True) and not r.compare(OVERLAP, t[1], "<", s[0], True)
 
@@ -350,7 +351,7 @@ def moller_1997(r, a, b):
     s0, s1 = s_at + s_p * s_x1 * yy, s_at + s_q * s_x0 * yy
     t0, t1 = t_at + t_p * xx * t_x1, t_at + t_q * xx * t_x0
 
-    def less(line, s_first):  # the arguments from the last to the first
+    def less(line, s_first):  # arguments are evaluated from last to first
         if s_first:
             r_low = t0 if r.compare(line, t0, "<", t1) else t1
             l_high = s1 if r.compare(line, s0, "<", s1) else s0
@@ -393,7 +394,8 @@ G = {key: at("guigue_devillers_2003.h", text) for key, text in G_TEXT.items()}
 
 
 def first_lines():
-    """`if (orient2d(r2, p2, q1, policy) >= zero) {` begins vertex_region and, after it, edge_region."""
+    """`if (orient2d(r2, p2, q1, policy) >= zero) {` is the first line of vertex_region and of edge_region, in this
+    order."""
     lines = (ROOT / "core/algorithms/guigue_devillers_2003.h").read_text().splitlines()
     found = [i + 1 for i, line in enumerate(lines) if "if (orient2d(r2, p2, q1, policy) >= zero) {" in line]
     assert len(found) == 2, found

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers to run the algorithms in: exact ones, ones of any mantissa, and ones that fuse products into additions."""
+"""Number types for the algorithms: exact, with any mantissa size, and with products fused into additions."""
 import math
 from fractions import Fraction
 
@@ -9,7 +9,7 @@ np.seterr(all="ignore")
 
 
 class Root:
-    """p + q sqrt(m), exactly; p None: not a number. m is the one square root that a run takes."""
+    """p + q sqrt(m), exact. If p is None: not a number. m is the argument of the run's only square root."""
 
     __slots__ = ("p", "q", "m")
 
@@ -38,7 +38,7 @@ class Root:
 
     def __truediv__(self, o):
         if self.p is None or o.p is None or not (o.p or o.q):
-            return Root(None)  # the algorithms divide by zero only 0 by 0
+            return Root(None)  # the only division by zero in the algorithms is 0 by 0
         norm = o.p * o.p - o.q * o.q * o.m
         return self * Root(Fraction(o.p) / norm, Fraction(-o.q) / norm, o.m)
 
@@ -62,7 +62,7 @@ class Root:
         return sp * ((square > 0) - (square < 0))
 
     def number(self):
-        """As a Fraction, to a relative error of 2^-100 or better."""
+        """As a Fraction, with a relative error of at most 2^-100."""
         if not self.q:
             return Fraction(self.p)
         bits = 200
@@ -81,7 +81,7 @@ def floor_log2(n, d):
 
 
 def rounded(x, bits, lowest=None):
-    """The Fraction x to so many bits, half to even; to multiples of 2^lowest where it is given."""
+    """The Fraction x rounded to `bits` bits, ties to even; to a multiple of 2^lowest if that is given."""
     if not x:
         return x
     n, d = x.numerator, x.denominator
@@ -95,7 +95,7 @@ def rounded(x, bits, lowest=None):
 
 
 class Real:
-    """The reals with a mantissa of so many bits, limited exponents or not: for what numpy has no type."""
+    """Reals with a mantissa of `bits` bits, with or without exponent limits. For formats that numpy lacks."""
 
     __slots__ = ("v",)  # a Fraction, or nan or inf as a float
     bits, upper, lower = 24, None, None
@@ -155,7 +155,7 @@ class Real:
 
 
 def signed(v):
-    """A stand-in of the same sign that numpy takes."""
+    """A float of the same sign, which numpy accepts."""
     return v if isinstance(v, float) else float((v > 0) - (v < 0))
 
 
@@ -172,10 +172,10 @@ def fma(a, b, c):
     (na, da), (nb, db), (nc, dc) = (float(x).as_integer_ratio() for x in (a, b, c))
     top, bottom = na * nb * dc + nc * da * db, da * db * dc
     try:
-        value = top / bottom  # Python rounds a quotient of integers once
+        value = top / bottom  # Python rounds a quotient of integers only once
     except OverflowError:
         value = math.inf if top > 0 else -math.inf
-    if isinstance(a, np.float32) and math.isfinite(value):  # to odd, so that rounding again does no harm
+    if isinstance(a, np.float32) and math.isfinite(value):  # rounds to odd, so that the second rounding is harmless
         n, d = value.as_integer_ratio()
         if n * bottom != top * d and math.ldexp(math.frexp(value)[0], 53) % 2 == 0:
             value = math.nextafter(value, math.inf if n * bottom < top * d else -math.inf)
@@ -183,7 +183,7 @@ def fma(a, b, c):
 
 
 class Fused:
-    """A number of a contracting lane: it knows of which product it is."""
+    """A number of a contracting lane. It stores the product that it is the result of."""
 
     __slots__ = ("v", "run", "x", "y", "product", "quotient", "scaled")
 
@@ -237,7 +237,7 @@ def root_of(x):
 
 
 def value_of(x):
-    """Of any kind of number: int, Fraction or Root, or a float that is not finite."""
+    """The value of any kind of number: an int, Fraction or Root, or a float that is not finite."""
     if isinstance(x, Fused):
         x = x.v
     if isinstance(x, Real):

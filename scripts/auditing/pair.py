@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the second program finds of a pair: truth, runs, and the comparisons that decide."""
+"""The second program's results for a pair: truth, runs, and the comparisons that decide."""
 from fractions import Fraction
 
 import numpy as np
@@ -11,13 +11,13 @@ MOST_DECIDING = 4  # graze::analysis::kMostDeciding
 
 
 class Audited:
-    """What this program finds of a pair, asked lane by lane. Runs are kept: lanes share them."""
+    """This program's results for a pair, computed for each lane on request. Lanes share runs, which are cached."""
 
     def __init__(self, coordinates):
         self.floats = coordinates
         self.fractions = [Fraction(c) for c in coordinates]
         k = max(f.denominator for f in self.fractions)
-        self.integers = [int(f * k) for f in self.fractions]  # every comparison is between numbers of one degree
+        self.integers = [int(f * k) for f in self.fractions]  # every comparison is between numbers of the same degree
         self.runs, self.outcomes, self.sets = {}, {}, {}
         self.contact, self.distance_squared = contact_and_distance(self.fractions)
         self.truth = "intersects" if self.contact else "disjoint"
@@ -29,7 +29,7 @@ class Audited:
         return self.runs[key]
 
     def exactly(self, name, lead=()):
-        """In exact arithmetic; values scaled."""
+        """A run in exact arithmetic, on coordinates scaled to integers."""
         if name in ROOTS:
             return Run(name, lambda x: Root(Fraction(x)), self.integers, lead)
         return Run(name, int, self.integers, lead)
@@ -40,11 +40,11 @@ class Audited:
         return self.outcomes[name, path]
 
     def exact_seen(self, name, path):
-        """With the values themselves."""
+        """The comparisons of an exact run on the unscaled coordinates."""
         return Run(name, lambda x: Root(Fraction(x)), self.fractions, path).seen
 
     def sized(self, name, scalar, bits=None, upper=False, lower=False, rule="none", lead=()):
-        """With a mantissa of so many bits, and with ends of the scalar's exponents or without."""
+        """A run with a mantissa of `bits` bits, and with or without the scalar's exponent limits."""
         single = scalar == "f32"
 
         class Sized(Real):
@@ -56,8 +56,8 @@ class Audited:
         return Run(name, lambda x: Sized.made(Fraction(x)), self.fractions, lead, rule)
 
     def deciding(self, name, scalar, rule):
-        """The smallest set of comparisons whose correction gives the truth, the first of equals: their numbers and, of
-        each, the path that leads to it. None where it takes more than MOST_DECIDING."""
+        """The smallest set of comparisons whose correction gives the truth, or the first such set: the number of each
+        comparison and the path that leads to it. None if it takes more than MOST_DECIDING."""
         key = name, scalar, rule
         if key not in self.sets:
             for size in range(1, MOST_DECIDING + 1):
@@ -68,7 +68,7 @@ class Audited:
         return self.sets[key]
 
     def _with(self, name, scalar, rule, lead, begin, more):
-        """Depth first: a set of `more` further comparisons from `begin` on, the earliest first."""
+        """Searches depth first for `more` further comparisons, starting at `begin`, the earliest first."""
         path = self.run(name, scalar, rule, lead).path()
         exact = self.exact_outcomes(name, path)
         for i in range(begin, len(path)):
@@ -90,7 +90,7 @@ class Audited:
 
 
 def solved(rows, right):
-    """The one solution of a linear system, or None without one, and without exactly one."""
+    """The solution of a linear system; None if there is no solution or more than one."""
     rows = [list(row) + [value] for row, value in zip(rows, right)]
     n, rank = len(rows[0]) - 1, 0
     for column in range(n):
@@ -112,8 +112,8 @@ FACES = [[0], [1], [2], [0, 1], [1, 2], [0, 2], [0, 1, 2]]
 
 
 def contact_and_distance(c):
-    """The dimension of the common set as a word, '' for none, and the squared distance. The corners of the common set
-    are where faces of both meet in one point; the distance is that of a pair of faces' affine hulls."""
+    """The dimension of the common set as a word ('' for none) and the squared distance. The corners of the common set
+    are the points in which faces of both triangles meet. The distance is that of the affine hulls of two faces."""
     v = [c[i : i + 3] for i in range(0, 18, 3)]
     points, least = [], None
     for f in FACES:

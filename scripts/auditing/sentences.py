@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `graze explain --json` says of a pair, checked against the second program."""
+"""Checks the output of `graze explain --json` for a pair against the second program."""
 import math
 import re
 from collections import Counter
@@ -12,7 +12,7 @@ MOST_BITS = 512  # graze::oracle::kMostBits
 
 
 def close(text, value, digits):
-    """Whether the number in the text is the value, to so many digits."""
+    """Whether the number in the text equals the value to `digits` digits."""
     if isinstance(value, Root):
         value = "nan" if value.p is None else value.number() if value.sign() else Fraction(0)
     if value == "nan" or isinstance(value, float) and not math.isfinite(value):
@@ -45,7 +45,7 @@ def expect(holds, what):
 
 
 def check_lane(pair, lane, counts):
-    """What the JSON says of one lane."""
+    """Checks the JSON of one lane."""
     name, scalar, variant = lane["lane"].split("/")[:3]
     if variant == "cpu-fast" or lane["evidence"] == "none" or lane["lane"].count("/") > 2:
         counts["lanes not replayed"] += 1
@@ -95,7 +95,7 @@ def check_lane(pair, lane, counts):
 
 
 def by_cause(pair, name, scalar, rule, cause, i, path):
-    """Whether the comparison is right without the cause, or is of what is not finite."""
+    """Whether the comparison is right without the cause, or compares a value that is not finite."""
     seen = pair.run(name, scalar, rule, path[:i]).seen[i]
     finite = all(math.isfinite(value_of(x)) for x in (seen.left, seen.right))
     if cause == "rounding" or not finite:
@@ -237,7 +237,7 @@ def check_remedy(pair, name, scalar, lane, reason, counts):
 
 
 def audit(explained):
-    """Returns what was counted, and what does not hold."""
+    """Returns: the counts, and the statements that are false."""
     counts, wrong = Counter(pairs=1), []
     coordinates = explained["pair"].split()
     pair = Audited([float.fromhex(c) for c in coordinates])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Builds and asks mutants, from what a finished build knows (ninja's commands)."""
+"""Builds and tests mutants with the commands of a finished build (from ninja)."""
 import hashlib
 import json
 import math
@@ -16,13 +16,13 @@ import threading
 from mutating import tokens
 
 NOT_SWITCHED = 98  # exit status, as in switches.h
-# Subscripts out of range end the test, rather than find what lies there.
+# Subscripts out of range end the test; otherwise it might read any value.
 CHECKED = ["-w", "-D_GLIBCXX_ASSERTIONS", "-fsanitize=bounds-strict,object-size", "-fsanitize-undefined-trap-on-error"]
-MEMORY = 8 << 30  # bytes of addresses, of each compiler and test
+MEMORY = 8 << 30  # bytes of address space for each compiler and test
 
 
 class Refused(Exception):
-    """The tests cannot judge a mutant: they fail without one."""
+    """The tests cannot judge a mutant, because they fail without one."""
 
 
 class NotCompiled(Exception):
@@ -30,7 +30,7 @@ class NotCompiled(Exception):
 
 
 class Commands:
-    """How the finished build compiles and links, made cheap: unoptimised, what is not ours precompiled, linked by lld."""
+    """The finished build's compile and link commands, made faster: unoptimised, system headers precompiled, lld."""
 
     def __init__(self, root, build, programs, out):
         self.root, self.build, self.out = root, build, out
@@ -53,7 +53,7 @@ class Commands:
         words = shlex.split(self.compile[str(self.root / source)])
         cache = [k for k, word in enumerate(words) if pathlib.Path(word).name == "ccache"]
         words = words[cache[0] + 1 if cache else 0 :]
-        for flag in ["-MF", "-MT", "-o", "-c", "-include"]:  # the last: what the build precompiled, for other flags
+        for flag in ["-MF", "-MT", "-o", "-c", "-include"]:  # -include: a precompiled header for other flags
             if flag in words:
                 del words[words.index(flag) : words.index(flag) + 2]
         return [
@@ -68,8 +68,8 @@ class Commands:
         return [words[0], f"-I{folder}", *words[1:], *included, "-o", str(out), "-c", str(with_source)]
 
     def precompiled(self, source, words):
-        """A header of all that the source and our headers include in angle brackets, compiled once for all mutants; but
-        for Highway's, which are included once for each instruction set."""
+        """A precompiled header of everything that the source and our headers include in angle brackets, compiled once
+        for all mutants. Leaves out Highway's headers, which are included once for each instruction set."""
         with self.lock:
             said = subprocess.run(
                 [*words, "-E", "-dI", str(self.root / source)],
@@ -97,7 +97,7 @@ class Commands:
         return ["-include", str(header)]
 
     def linked(self, program, objects, out):
-        """The program, of these objects in place of its own tests'."""
+        """The command that links the program with these objects in place of its tests' objects."""
         words = shlex.split(self.link[program])
         words = [word for word in words if not word.endswith(".test.cpp.o") and "/Unity/" not in word]
         at = words.index("-o")
@@ -126,7 +126,7 @@ class Runner:
         self.seconds = json.loads(self.kept.read_text(encoding="utf-8")) if self.kept.exists() else {}
 
     def sources_seeing(self, group, file):
-        """What has to be compiled anew: the file itself, or of a header what the group names."""
+        """The sources to compile again: the file itself, or for a header the sources that the group names."""
         if file.endswith(".cpp"):
             return [file]
         return next(
@@ -134,8 +134,8 @@ class Runner:
         )
 
     def stages(self, group, seeing):
-        """The tests, in the order in which they are asked: those that are compiled anew one by one, as most mutants die
-        in the first; before them all others at once, if they can see it at all."""
+        """The tests in the order in which they run. First all tests that need no compilation, together, if they can see
+        the mutant at all. Then the tests that are compiled again, one by one, because most mutants die in the first."""
         anew = [
             source
             for source in dict.fromkeys([*group["tests"], *seeing])
@@ -145,8 +145,8 @@ class Runner:
         return ([others] if others and set(seeing) != set(anew) else []) + [[source] for source in anew]
 
     def run(self, command, seconds=600, env=None):
-        """Returns: status, or none for one that took so many seconds of the CPU, or ten times as long; what it said; and
-        its seconds of the CPU."""
+        """Returns: the exit status, the output, and the CPU seconds used. The status is None if the command used
+        `seconds` of CPU time or ran ten times as long."""
         limited = ["prlimit", f"--cpu={math.ceil(seconds)}", f"--as={MEMORY}", *command]
         with tempfile.TemporaryFile() as said:
             process = subprocess.Popen(
@@ -172,7 +172,7 @@ class Runner:
             )
 
     def compile(self, group, sources, folder, file=None):
-        """Returns: their objects, the file's mutated.   Throws: NotCompiled."""
+        """Returns: the sources' objects, with `file` mutated.   Throws: NotCompiled."""
         objects = [folder / (source.replace("/", "_") + ".o") for source in sources]
         for source, out in zip(sources, objects):
             path = (folder if source == file else self.root) / source
@@ -188,14 +188,15 @@ class Runner:
         return str(out)
 
     def ask(self, group, program, limit, env=None):
-        """Returns: the state, what was said, and the seconds of the CPU that the tests took."""
+        """Returns: the state, the output, and the CPU seconds that the tests took."""
         filter = f"--gtest_filter={group.get('filter', '*')}"
         status, said, used = self.run([program, "--gtest_brief=1", "--gtest_fail_fast", filter], limit, env)
         states = {None: "timed out", 0: "survived", NOT_SWITCHED: "not switched"}
         return states.get(status, "killed"), said, used
 
     def limit(self, group, stage, anew):
-        """Five times the seconds of the CPU that a stage takes without a mutant, whose tests then pass, and some patience."""
+        """Five times the CPU seconds of a stage without a mutant, plus some margin. Without a mutant the tests must
+        pass."""
         key = " ".join([group["name"], *stage, *anew])
         with self.lock:
             if key not in self.seconds:
@@ -217,7 +218,7 @@ class Runner:
         return [self.commands.object_of(source) for source in stage if source not in anew]
 
     def build_and_test(self, group, file, text, folder, limit=None):
-        """Returns: the state, and what was said by what failed.   Throws: NotCompiled."""
+        """Returns: the state, and the output of the stage that failed.   Throws: NotCompiled."""
         shutil.rmtree(folder, ignore_errors=True)
         (folder / file).parent.mkdir(parents=True)
         (folder / file).write_text(text, encoding="utf-8")
@@ -234,7 +235,8 @@ class Runner:
         return self.test_what_it_writes(group, mutated, folder) if "writes" in group else ("survived", "")
 
     def test_what_it_writes(self, group, mutated, folder, env=None):
-        """Of a generator: its program writes sources, and where one comes out other than it was, its test is asked too."""
+        """For a generator: runs its program to write sources. If a source differs from before, runs that source's
+        test."""
         writer = self.link(group["writes"]["program"], mutated, folder / "writer")
         for source, flag, written, test in group["writes"]["runs"]:
             (folder / written).parent.mkdir(parents=True, exist_ok=True)
@@ -256,7 +258,8 @@ class Runner:
         return "survived", ""
 
     def compile_switched(self, group, file, source, text, numbered, folder):
-        """Mutants of which the compiler complains, or of whose lines, are taken out of `numbered`.   Throws: NotCompiled."""
+        """Removes from `numbered` the mutants that the compiler rejects, or whose lines it rejects.   Throws:
+        NotCompiled."""
         while True:
             (folder / file).write_text(tokens.switched(text, numbered), encoding="utf-8")
             try:
@@ -264,7 +267,7 @@ class Runner:
             except NotCompiled as error:
                 if not numbered:
                     raise
-                named = {int(number) for number in re.findall(r"\bint id = (\d+)", str(error))}  # in switches.h
+                named = {int(number) for number in re.findall(r"\bint id = (\d+)", str(error))}  # see switches.h
                 lines = re.findall(re.escape(file) + r":(\d+):\d+: error", str(error)) or re.findall(
                     re.escape(file) + r":(\d+):", str(error)
                 )
@@ -277,8 +280,8 @@ class Runner:
                     del numbered[number]
 
     def test_together(self, mutants, folder, done):
-        """Mutants of one file by one build, each switched on in turn; calls done with each result.
-        Returns: those that need a build of their own.   Throws: NotCompiled; Refused."""
+        """Tests the mutants of one file with one build, each switched on in turn. Calls done with each result.
+        Returns: the mutants that need a separate build.   Throws: NotCompiled; Refused."""
         group, file = self.groups[mutants[0]["group"]], mutants[0]["file"]
         text = (self.root / file).read_text(encoding="utf-8")
         numbered = {number: mutant for number, mutant in enumerate(mutants) if tokens.switch_of(mutant, number, text)}
@@ -323,7 +326,7 @@ class Runner:
         return [mutant for mutant in mutants if mutant not in numbered.values()]
 
     def test(self, mutant, folder):
-        """By a build of its own."""
+        """Tests a mutant with a separate build."""
         text = (self.root / mutant["file"]).read_text(encoding="utf-8")
         text = text[: mutant["at"]] + mutant["new"] + text[mutant["at"] + len(mutant["old"]) :]
         try:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For scripts/mutate: many mutants of a source in one program, of which the environment variable GRAZE_MUTANT switches
-// on one, by its number. Switches stand beside a token so that what binds to it stays the same. `a < b` becomes
+// For scripts/mutate: one program with many mutants of a source. The environment variable GRAZE_MUTANT selects one by
+// its number. A switch is placed beside a token such that precedence stays the same: `a < b` becomes
 // `a < graze_mutant::Switch<7>{} < b`. In constant expressions every mutant is off.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace graze_mutant {
 
-constexpr int kNotSwitched = 98;  // exit status: switched on, this one does not compile; it has to be tried by itself
+constexpr int kNotSwitched = 98;  // exit status: the selected mutant does not compile with a switch; try it by itself
 
 struct Asked {
   bool of[8192] = {};
@@ -26,8 +26,8 @@ struct Asked {
     std::fclose(file);
   }
 };
-inline Asked asked;  // before all that a source initialises, as this header comes first
-// Unoptimised code as well: a switch stands in the innermost loops.
+inline Asked asked;  // initialised before everything in the source, because this header comes first
+// Inlined in unoptimised code too, because switches are in the innermost loops.
 #define GRAZE_INLINE [[gnu::always_inline]]
 GRAZE_INLINE inline bool is_chosen(int id) {
   asked.of[id] = true;
@@ -90,7 +90,7 @@ GRAZE_ASSIGNMENT(-=, +=)
 GRAZE_ASSIGNMENT(&=, |=)
 GRAZE_ASSIGNMENT(|=, &=)
 
-// Before a unary operator, to whose result they bind closer than any binary one.
+// Before a unary operator. They bind to its result more tightly than any binary operator.
 template <int id>
 struct Not {};
 template <int id>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The mutants of a source: its tokens that can be another one, each by itself or all behind switches (switches.h)."""
+"""The mutants of a source: its replaceable tokens, each by itself or all behind switches (switches.h)."""
 import re
 
 SWAPS = {
@@ -30,7 +30,8 @@ SWAPS = {
     "max": "min",
     "continue": "break",
 }
-# A token, by what stands around it: clang-format puts spaces around binary operators, and none inside <…> of templates.
+# A token, identified by its surroundings: clang-format puts spaces around binary operators, but not inside a template's
+# <…>.
 TOKEN = re.compile(
     r"""
     (?<=\ )(?:<=|>=|==|!=|&&|\|\||\+=|-=|&=|\|=|<<|>>|<|>|\+|-|\*|&|\|)(?=\ )   # binary
@@ -46,7 +47,7 @@ SKIPPED = re.compile(r"^\s*(#|static_assert|template|using|namespace|friend)|\bs
 
 
 def blanked(text):
-    """The text with strings, characters and comments replaced by spaces, at the same places."""
+    """The text with strings, characters and comments replaced by spaces; all positions stay the same."""
     pattern = r'//[^\n]*|/\*.*?\*/|R"\((?:.|\n)*?\)"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\''
     return re.sub(pattern, lambda m: re.sub(r"[^\n]", " ", m.group()), text, flags=re.S)
 
@@ -67,7 +68,7 @@ def mutants_of(root, group, file):
     text = (root / file).read_text(encoding="utf-8")
     result, offset = [], 0
     for number, (line, blank) in enumerate(zip(text.split("\n"), blanked(text).split("\n")), 1):
-        # A declaration that is a pure constant of an array's size would not compile; the rest is as it comes.
+        # A mutated constant array size would not compile. No other declaration is treated specially.
         if not SKIPPED.search(blank):
             for found in TOKEN.finditer(blank):
                 new = replacement(found.group(), blank[: found.start()])
@@ -94,7 +95,7 @@ def name_of(mutant):
 
 
 def switch_of(mutant, number, text):
-    """What stands in the mutant's place where it has a switch: (from, to, text); none for one that needs a build of its own."""
+    """The switch that replaces the mutant's token: (from, to, text). None for a mutant that needs a separate build."""
     old, new, at = mutant["old"], mutant["new"], mutant["at"]
     end, follows = at + len(old), text[at + len(old) : at + len(old) + 1]
     chosen = f"graze_mutant::on({number})"
@@ -113,7 +114,7 @@ def switch_of(mutant, number, text):
             else None
         )
     if old in ("&&", "||"):
-        return None  # switches would ask both sides
+        return None  # a switch would evaluate both sides
     return at, end, f"{old} graze_mutant::Switch<{number}>{{}} {old}"
 
 

@@ -127,7 +127,7 @@ def run(slurm, root, graze, pairs, shards):
     )
     print(f"shard 1 requeued while it ran: {requeued}")
     print(slurm("squeue", "--array"), end="")
-    # A requeued job waits for two minutes; this one need not.
+    # A requeued job normally waits two minutes; this releases it at once.
     seen = ""
     while state := slurm("squeue", "-h", "-o", "%i %T %r"):
         if state != seen:

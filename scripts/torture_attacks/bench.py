@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs graze under limits and judges what came of it: nothing here knows an attack."""
+"""Runs graze under limits and judges the results. Nothing here is specific to one attack."""
 import collections
 import os
 import pathlib
@@ -12,18 +12,18 @@ import signal
 import subprocess
 import time
 
-MEMORY_MIB = 1024  # address space; a sanitizer needs far more, so not for builds with one
-PROCESSOR_SECONDS = 60  # what takes longer hangs
-SECONDS = 600  # what waits, hangs; a machine under load takes many times as long as an idle one
+MEMORY_MIB = 1024  # address space; not applied to builds with a sanitizer, which need far more
+PROCESSOR_SECONDS = 60  # a process that takes longer hangs
+SECONDS = 600  # a process that waits longer hangs; a loaded machine takes many times as long as an idle one
 RESULTS = (
     "summary.json",
     "margins.svg",
     "hunt.json",
-)  # and what is in cases/; timings and the database's pages may differ
+)  # and the files in cases/; timings and the database's pages may differ
 
 
 class Violation(Exception):
-    """What graze did that it must not do."""
+    """graze did something that it must not do."""
 
 
 Ran = collections.namedtuple("Ran", "status out err killed late")
@@ -36,7 +36,7 @@ def results_of(campaign):
 
 
 class Bench:
-    """What all rounds share: the program, and campaigns that nothing disturbed."""
+    """Shared by all rounds: the program, and the results of undisturbed campaigns."""
 
     def __init__(self, graze, seed, folder):
         self.graze, self.seed, self.folder = graze, seed, folder
@@ -44,7 +44,7 @@ class Bench:
         self.undisturbed, self.seconds = {}, {}
 
     def campaign(self, name):
-        """Arguments of the campaign of that name, or of the hunt, all but --out."""
+        """The arguments of the campaign of that name, or of the hunt, except --out."""
         seed = str(random.Random(f"{self.seed} {name}").randrange(1 << 32))
         if name == "hunt":
             return ["hunt", "--runs", "12000", "--seed", seed, "--lanes", "interval_overlap/f32/cpu", "--threads", "2"]
@@ -69,7 +69,7 @@ class Bench:
         ]
 
     def reference(self, name, minimised=False, reported=False, shard=None):
-        """The folder of the campaign, run without disturbance. It must not be changed."""
+        """The folder of the campaign after an undisturbed run. Do not change it."""
         key = (name, minimised, reported) if shard is None else (name, shard)
         if key not in self.undisturbed:
             folder = self.folder / "undisturbed" / "-".join(map(str, key)).replace("/", "of")
@@ -95,7 +95,7 @@ class Bench:
 
 
 class Round:
-    """One attack, once: its random numbers, its folder, its counts."""
+    """One round of an attack: its random numbers, its folder, its counts."""
 
     def __init__(self, bench, kind, number, folder):
         self.bench, self.kind, self.number, self.folder = bench, kind, number, folder
@@ -143,7 +143,7 @@ class Round:
         return process, out, err
 
     def finish(self, started, kill_after=None, judged=True):
-        """Waits for it, or kills it after so many seconds."""
+        """Waits for the process, or kills it after `kill_after` seconds."""
         process, out, err = started
         handle = os.pidfd_open(process.pid)
         try:
@@ -168,7 +168,8 @@ class Round:
         return self.finish(self.start(*arguments, file_bytes=file_bytes), kill_after)
 
     def must_end(self, ran):
-        """By itself, in time, with a status that means something; and a refusal is one line."""
+        """Requires that graze ended by itself, in time, with a documented exit status, and that a refusal is one
+        line."""
         if ran.late or ran.status == -signal.SIGXCPU:
             raise Violation(f"expected an end within {SECONDS} s, and {PROCESSOR_SECONDS} s of a processor, found none")
         if ran.status not in (0, 1, 2):
@@ -179,7 +180,7 @@ class Round:
             raise Violation(f"expected one line on stderr that begins with 'graze: ', found {ran.err[-500:]!r}")
 
     def is_refused(self, ran, *names):
-        """Whether it was refused, which must be in one line that has one of the names."""
+        """Whether graze refused. Requires that the message contains one of the names."""
         if ran.status == 0 or not ran.err:
             return False
         if names and not any(name in ran.err for name in names):
@@ -191,7 +192,7 @@ class Round:
             raise Violation(f"expected success, found status {ran.status}: {ran.err[-500:]!r}")
 
     def must_be_same(self, campaign, reference):
-        """Requires the results, byte for byte, and no file that is half of one."""
+        """Requires results equal to the reference byte for byte, and no partial file."""
         found, expected = results_of(campaign), results_of(reference)
         apart = [name for name in sorted({*found, *expected}) if found.get(name) != expected.get(name)]
         if apart:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A campaign's database is damaged: its results are those of an undisturbed run, or it is refused in one line, and
---discard-damaged goes on to them."""
+"""Damages a campaign's database. Then graze gives the results of an undisturbed run, or it refuses in one line and
+--discard-damaged leads to these results."""
 import shutil
 import sqlite3
 
@@ -25,7 +25,7 @@ NUMBERS = [
     "-{0}",
 ]
 ROW = "WHERE id = (SELECT id FROM batch ORDER BY random() LIMIT 1)"
-# Each leaves a database that SQLite itself finds nothing wrong with.
+# Each leaves a database that SQLite considers valid.
 STATEMENTS = [
     "DELETE FROM batch " + ROW,
     "DELETE FROM batch",
@@ -72,7 +72,7 @@ def statement(random):
 
 
 def copy(turn, attempt):
-    """A finished campaign, sometimes without its results, which the database must bring back."""
+    """Copies a finished campaign, sometimes without its results, which must be restored from the database."""
     campaign = turn.folder / f"campaign-{attempt}"
     shutil.copytree(turn.bench.reference("small"), campaign)
     if turn.random.random() < 0.5:
@@ -82,14 +82,14 @@ def copy(turn, attempt):
 
 
 def judge(turn, campaign):
-    """Goes on with the campaign whose database was damaged, and counts what came of it."""
+    """Resumes the campaign whose database was damaged, and counts the outcome."""
     command = [*turn.bench.campaign("small"), "--out", campaign]
     if turn.random.random() < 0.25:
         refuses_another_seed(turn, campaign, command)
     refused = turn.run(*command)
     if turn.is_refused(refused, DATABASE, campaign.name + ": it holds results but not their database"):
         went_on = turn.run(*command, "--discard-damaged")
-        # Another program's database, and results without one, are no damage; the line says what to do.
+        # Another program's database, or results without a database, are not damage. The message says what to do.
         if not (turn.is_refused(went_on, campaign.name) and "choose another --out" in went_on.err):
             turn.must_succeed(went_on)
             turn.must_be_same(campaign, turn.bench.reference("small"))
@@ -112,7 +112,7 @@ def refuses_another_seed(turn, campaign, command):
     ran = turn.run(*other)
     if ran.status == 0 and (has_rows or (campaign / "cases").exists() and "summary.json" in map(str, before)):
         raise Violation("expected another seed to be refused, found that it went on")
-    if ran.status == 0:  # nothing was left of the campaign: it began anew; back to what there was
+    if ran.status == 0:  # nothing was left of the campaign, so it started again; restores the files
         shutil.rmtree(campaign)
         for name, data in before.items():
             (campaign / name).parent.mkdir(parents=True, exist_ok=True)
@@ -120,7 +120,7 @@ def refuses_another_seed(turn, campaign, command):
 
 
 def flips(turn):
-    """Single bits."""
+    """Flips single bits."""
     for attempt in range(ATTEMPTS):
         campaign = copy(turn, attempt)
         file = campaign / DATABASE
@@ -129,7 +129,7 @@ def flips(turn):
 
 
 def database_bytes(turn):
-    """Bytes, pieces, the end; or something else in the database's place."""
+    """Changes bytes, pieces or the end of the database, or replaces it by something else."""
     for attempt in range(ATTEMPTS):
         campaign = copy(turn, attempt)
         file = campaign / DATABASE
@@ -169,7 +169,7 @@ def signed(number):
 
 
 def forged(turn):
-    """A row is changed and its checksum with it: what it says may be believed, but nothing may break."""
+    """Changes a row and its checksum. graze may believe the row, but nothing may break."""
     for attempt in range(ATTEMPTS):
         campaign = copy(turn, attempt)
         with sqlite3.connect(campaign / DATABASE, isolation_level=None) as database:
@@ -193,7 +193,7 @@ def forged(turn):
 
 
 def sql(turn):
-    """Through SQLite, which leaves a file that it finds nothing wrong with."""
+    """Changes the database through SQLite, which leaves a valid file."""
     for attempt in range(ATTEMPTS):
         campaign = copy(turn, attempt)
         chosen = [statement(turn.random) for _ in range(turn.random.choice([1, 1, 2]))]
@@ -203,6 +203,6 @@ def sql(turn):
                 try:
                     database.execute(each).fetchall()
                 except (sqlite3.Error, OverflowError):
-                    pass  # the second may no longer fit; and what a column refuses is no damage
+                    pass  # the second statement may no longer apply; a value that a column refuses is no damage
         database.close()
         judge(turn, campaign)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subjects that attack what runs them (subjects/hostile.c), in campaigns that end by themselves, are stopped or are killed, also while
-a subject is compiled. Then the campaign has an end, the other lanes have the verdicts of a campaign without them, and no process is left."""
+"""Subjects that attack the process that runs them (subjects/hostile.c), in campaigns that end, are stopped or are
+killed, also while a subject is compiled. The campaign must end, the other lanes must have the verdicts of a campaign
+without these subjects, and no process may be left."""
 import json
 import os
 import pathlib
@@ -14,7 +15,7 @@ from torture_attacks.bench import Violation
 SOURCE = pathlib.Path(__file__).resolve().parents[2] / "subjects/hostile.c"
 OURS = "moller_1997/f32/cpu"
 ATTEMPTS = 3
-ENDS = 20  # seconds after which a campaign that was asked to stop must have ended, on a busy machine too
+ENDS = 20  # seconds within which a campaign must end after a request to stop, even on a busy machine
 
 
 def attacks():
@@ -29,14 +30,14 @@ def library(bench):
 
 
 def left_over(bench):
-    """Processes that a graze of this bench started, by their environment."""
+    """Processes started by a graze of this bench, recognised by their environment."""
     mark = f"XDG_CACHE_HOME={bench.folder}".encode()
     found = []
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
             if mark in (folder / "environ").read_bytes():
                 found.append(int(folder.name))
-        except OSError:  # it ended
+        except OSError:  # the process has ended
             pass
     return found
 
@@ -50,7 +51,7 @@ def must_leave_nothing(turn):
 
 
 def must_end_while_it_compiles(turn):
-    """The compiler waits for ever: in a header or in data that is a pipe."""
+    """The compiler waits forever, for a header or for data that is a pipe."""
     pipe, source = turn.folder / "pipe", turn.folder / "waits.c"
     os.mkfifo(pipe)
     reads = turn.random.choice([f'#include "{pipe}"\n', f'__asm__(".incbin \\"{pipe}\\"");\n'])
@@ -62,10 +63,10 @@ def must_end_while_it_compiles(turn):
     ran = turn.finish(started, kill_after=ENDS)
     if ran.late:
         raise Violation(f"expected an end within {ENDS} s of signal {way}, found none")
-    if ran.status not in (130, -way):  # in order, before it began
+    if ran.status not in (130, -way):  # stopped in order, or before it began
         raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
     must_leave_nothing(turn)
-    if way == signal.SIGKILL:  # a moment without a compiler leaves them to a later graze
+    if way == signal.SIGKILL:  # if no compiler ran when it was killed, a later graze removes the files
         return
     left = list((turn.bench.folder / "cache/graze").glob("unfinished-*"))
     if left:
@@ -104,7 +105,7 @@ def foreign(turn):
             time.sleep(turn.random.random() * 0.5)
             os.kill(
                 started[0].pid, signal.SIGTERM if way == "stopped" else signal.SIGKILL
-            )  # still there until it is waited for
+            )  # its id stays valid until it is waited for
             ran = turn.finish(started, kill_after=ENDS)
             if ran.late:
                 raise Violation(f"expected an end within {ENDS} s of SIGTERM, found none")
@@ -112,7 +113,7 @@ def foreign(turn):
                 0,
                 130,
                 -signal.SIGTERM,
-            ):  # by itself before, in order, before it began
+            ):  # it ended before; stopped in order; before it began
                 raise Violation(f"expected exit status 130, found {ran.status}: {ran.err[-500:]!r}")
             must_leave_nothing(turn)
         turn.must_succeed(turn.run(*command))

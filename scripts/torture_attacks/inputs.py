@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Mutated files of every reader: read, or refused in one line that names the file."""
+"""Mutated files for every reader. graze must read them, or refuse them in one line that names the file."""
 import pathlib
 import shutil
 import struct
@@ -10,12 +10,12 @@ from torture_attacks.bench import Violation
 ATTEMPTS = 12
 PROJECT = pathlib.Path(__file__).resolve().parents[2]
 LANES = ["--lanes", "guigue_devillers_2003/f32/cpu,interval_overlap/f32/cpu"]
-# A name that is not UTF-8 cannot be asked for in a line that is.
+# A name that is not UTF-8 cannot appear in a message that is.
 NAMES = ["mutated", "mutated", "mutated", "with space", "umläut", b"\xff", "a:b:c", "-"]
 
 
 def tetrahedra():
-    """Two that cut each other: 8 points, 8 triangles."""
+    """Two intersecting tetrahedra: 8 points, 8 triangles."""
     points = [(0, 0, 0), (4, 0, 0), (0, 4, 0), (0, 0, 4), (1, 1, 1), (5, 1, 1), (1, 5, 1), (1, 1, -3.5)]
     faces = [
         (a, b, c)
@@ -73,7 +73,7 @@ def judge(turn, ran, *names):
 
 
 def named(turn, extension):
-    """Where the mutated file goes, and what a refusal must contain."""
+    """The path of the mutated file, and the text that a refusal must contain."""
     name = turn.random.choice(NAMES)
     if isinstance(name, bytes):
         return turn.folder / (name + b"." + extension.encode()).decode(errors="surrogateescape"), "." + extension
@@ -127,14 +127,14 @@ def scenes(turn):
             if poses
             else turn.run("fuzz", "--scene", file, "--pairs", "200", *LANES, "--out", out)
         )
-        # Poses that put bodies apart leave no pairs, which is said of the mesh.
+        # Poses that separate the bodies leave no pairs; that message names the mesh.
         judge(turn, ran, name, "two.off")
         shutil.rmtree(out, ignore_errors=True)
         file.unlink()
 
 
 def pairs(turn):
-    """Files of pairs as every verb reads them, and the regression corpus."""
+    """Files of pairs, as all verbs read them, and the regression corpus."""
     sources = sorted((PROJECT / "corpus").glob("*/*.pairs"))
     cases = sorted((turn.bench.reference("small") / "cases").glob("*.pairs"))
     minimised = sorted((turn.bench.reference("tiny", minimised=True) / "cases").glob("*.pairs"))
@@ -179,7 +179,7 @@ def pairs(turn):
 
 
 def json(turn):
-    """The files of a campaign: summary, cases and what is stored of them, timings, and a report."""
+    """The files of a campaign: summary, cases and stored data about them, timings, and a report."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     for attempt in range(ATTEMPTS // 2):
         campaign = turn.folder / f"campaign-{attempt}"

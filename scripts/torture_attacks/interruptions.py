@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Killed, without room on the disk, two at once: in the end the bytes of a run that nothing disturbed."""
+"""Kills, full disks, two processes at once. In the end the bytes must be those of an undisturbed run."""
 import contextlib
 import os
 import shutil
@@ -11,11 +11,11 @@ from torture_attacks.bench import Violation
 
 
 def kill_repeatedly(turn, begin, arguments, seconds):
-    """Kills it one to three times, each time elsewhere on its way. `begin` makes it begin anew.
+    """Kills the command one to three times, each time at another moment. `begin` makes it start from the beginning.
     Returns: how often it was killed."""
     kills = 0
     for attempt in range(6):
-        # Much of what can go wrong is at the beginning and the end, so they have more than their share.
+        # Most problems occur near the beginning and the end, so these are chosen more often.
         share = turn.random.choice([turn.random.random(), turn.random.random() * 0.1, 0.8 + turn.random.random() * 0.4])
         if turn.run(*arguments, kill_after=seconds * share).killed:
             kills += 1
@@ -45,7 +45,7 @@ def kill_fuzz(turn):
 
 
 def kill_hunt(turn):
-    """With its processes; at times a round that was kept is damaged after it."""
+    """Kills a hunt and its processes. Sometimes damages a stored round afterwards."""
     campaign = turn.folder / "campaign"
     command = [*turn.bench.campaign("hunt"), "--out", campaign]
     ran = turn.run(
@@ -84,7 +84,7 @@ def kill_minimize(turn):
 
 @contextlib.contextmanager
 def small_disk(folder, size):
-    """A file system of so many bytes. Yields: a function that makes it larger, or none where it cannot be had."""
+    """A file system of `size` bytes. Yields: a function that enlarges it; None if it cannot be mounted."""
     folder.mkdir()
     options = f"size={max(size, 4096)},mode=0700"
     have = (
@@ -104,7 +104,7 @@ def small_disk(folder, size):
 
 
 def read_only(turn):
-    """A campaign that was killed, on a file system that can only be read: refused in one line, and nothing of it changed."""
+    """A killed campaign on a read-only file system. graze must refuse it in one line and change nothing."""
     campaign, reference = turn.folder / "disk" / "campaign", turn.bench.reference("large")
     command = [*turn.bench.campaign("large"), "--out", campaign]
     with small_disk(turn.folder / "disk", 64 << 20) as mounted:
@@ -129,7 +129,7 @@ def read_only(turn):
 
 
 def full_disk(turn):
-    """First without room, on a small file system or by a limit on a file's size, then with room."""
+    """Runs first with too little space (a small file system or a file size limit), then with enough."""
     minimises = turn.random.random() < 0.3
     name = "tiny" if minimises else "small"
     before, after = turn.bench.reference(name), turn.bench.reference(name, minimised=minimises)
@@ -144,7 +144,8 @@ def full_disk(turn):
             command = [*turn.bench.campaign(name), "--out", campaign]
         limit = None
         if enlarge and turn.random.random() < 0.5:
-            # A tmpfs gives whole pages, so there is more room than the sum of the sizes says; the filler takes the rest.
+            # A tmpfs allocates whole pages, so there is more room than the sum of file sizes. A filler file takes the
+            # rest.
             free = os.statvfs(turn.folder / "disk").f_bavail * 4096
             room = turn.random.randrange(0, needed * 2)
             with open(turn.folder / "disk" / "filler", "wb") as filler:
@@ -163,7 +164,8 @@ def full_disk(turn):
 
 
 def two_at_once(turn):
-    """On one campaign's folder: the second waits or is refused in one line; then all is as it should be."""
+    """Two processes in one campaign folder. The second must wait or be refused in one line; then the results must be
+    right."""
     campaign = turn.folder / "campaign"
     fuzz = [*turn.bench.campaign("tiny"), "--out", campaign]
     large = [*turn.bench.campaign("large"), "--out", campaign]

@@ -93,7 +93,7 @@ def repeat(random, data):
 
 
 def overwrite(random, data):
-    """A piece by zeros, or by another piece."""
+    """Overwrites a piece with zeros or with another piece."""
     first, last = _piece(random, data)
     other = random.randrange(len(data))
     piece = bytes(last - first) if random.random() < 0.5 else data[other : other + last - first]
@@ -129,7 +129,7 @@ TEXT = [*BINARY, insert, insert, replace_number, replace_number, replace_number,
 
 
 def any_of(random, data, changes):
-    """One to three changes."""
+    """Makes one to three changes."""
     for _ in range(random.choice([1, 1, 1, 2, 3])):
         if data:
             data = random.choice(changes)(random, data)
@@ -137,7 +137,7 @@ def any_of(random, data, changes):
 
 
 def _places(value):
-    """Every container and key in it."""
+    """Every container in the value, with each of its keys."""
     keys = value.keys() if isinstance(value, dict) else range(len(value)) if isinstance(value, list) else []
     for key in keys:
         yield value, key
@@ -145,7 +145,7 @@ def _places(value):
 
 
 def edit_json(random, data):
-    """A value of another type or size, or none, somewhere."""
+    """Replaces a value somewhere by one of another type or size, or removes it."""
     value = json.loads(data)
     places = list(_places(value))
     if not places:

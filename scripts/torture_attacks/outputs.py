@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stands where --out points stays what it is: a device, a pipe, a link, a folder."""
+"""A device, pipe, link or folder at the path of --out must stay what it is."""
 import os
 import pathlib
 import stat
@@ -12,7 +12,7 @@ LANE = "guigue_devillers_2003/f32/cpu"
 
 
 def verbs(turn):
-    """Each: arguments that write the file that is named last."""
+    """Lists of arguments; the output file is to be appended to each."""
     (turn.folder / "pair.txt").write_text(PAIR)
     report = turn.bench.reference("tiny", reported=True) / "report.json"
     return [
@@ -23,7 +23,8 @@ def verbs(turn):
 
 
 def device(folder, minor, name):
-    """A device of our own: a defect must not cost the machine its own. Returns: none where that is not permitted."""
+    """Makes a separate device, so that a defect cannot destroy the machine's own. Returns: None if that is not
+    permitted."""
     node = folder / f"{name}.png"
     try:
         os.mknod(node, stat.S_IFCHR | 0o600, os.makedev(1, minor))
@@ -87,7 +88,7 @@ def to_a_pipe(turn, verb, folder, expected):
 
 def to_links(turn, verb, folder, expected):
     target, link, dangling, loop = (folder / name for name in ("target.png", "link.png", "dangling.png", "loop.png"))
-    target.write_bytes(expected)  # of graze; see results.foreign_places for others
+    target.write_bytes(expected)  # made by graze; results.foreign_places tests other files
     link.symlink_to(target.name)
     dangling.symlink_to("made.png")
     loop.symlink_to("loop.png")

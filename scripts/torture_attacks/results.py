@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verbs that leave results beside a campaign's: killed, without room, where nothing can be written, and two at once; then the
-same bytes as undisturbed, timings aside, and never a part of a file. And what they must not replace."""
+"""Verbs with results other than a campaign's: killed, with a full disk, on a read-only disk, and two at once. In the
+end the bytes must be those of an undisturbed run, except for timings, and no file may be partial. Also files that the
+verbs must not replace."""
 import json
 import os
 import shutil
@@ -33,13 +34,13 @@ ASIDE = {
     "timings.json",
     "status.json",
     "campaign.sqlite",
-}  # and what a database has beside it
+}  # and the files that accompany a database
 SUBJECT = "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }\n"
 PAIR = "0.1 0.2 0.3  0.4 0.9 0.2  0.7 0.1 0.6   0.1 0.2 0.3  0.5 0.5 0.9  -0.3 0.8 0.4\n"
 
 
 def inputs(bench):
-    """What the verbs read: made once."""
+    """The folder of the verbs' input files, made once."""
     folder = bench.folder / "inputs"
     if not folder.exists():
         folder.mkdir(parents=True)
@@ -54,7 +55,7 @@ def shards(bench):
 
 
 def command(bench, verb, out):
-    """Its arguments."""
+    """The arguments of the verb."""
     folder = inputs(bench)
     few = ["--strata", "near_edge_edge,degenerate"]
     return {
@@ -104,13 +105,13 @@ def without_times(value):
         return {key: without_times(inner) for key, inner in value.items() if key not in TIMED}
     if not isinstance(value, list):
         return value
-    if all(isinstance(inner, dict) and "lane" in inner for inner in value):  # by what they cost
+    if all(isinstance(inner, dict) and "lane" in inner for inner in value):  # the order depends on costs
         value = sorted(value, key=lambda inner: str(inner["lane"]))
     return [without_times(inner) for inner in value]
 
 
 def snapshot(out):
-    """All results by name, without what was timed. Throws: Violation for half a JSON file."""
+    """All results by name, without timings. Throws: Violation for a partial JSON file."""
     found = {}
     for file in sorted(out.rglob("*")):
         name = file.relative_to(out).as_posix()
@@ -127,7 +128,7 @@ def snapshot(out):
 
 
 def undisturbed(turn, verb):
-    """Its results; none where this build is without the verb."""
+    """The results of an undisturbed run of the verb; None if this build lacks the verb."""
     key = ("results", verb)
     if key not in turn.bench.undisturbed:
         out = turn.bench.folder / "undisturbed" / verb
@@ -143,7 +144,7 @@ def undisturbed(turn, verb):
 
 
 def each(turn, attack):
-    """The attack on some verbs."""
+    """Runs the attack on some verbs."""
     for verb in turn.random.sample(VERBS, ATTEMPTS):
         expected = undisturbed(turn, verb)
         if expected is None:
@@ -156,7 +157,7 @@ def each(turn, attack):
 
 
 def must_be_whole(out, expected, begun):
-    """No part of a result: each file is as it was before, or as it is in the end."""
+    """Requires that no result is partial: each file is as before or as in the end."""
     for name, data in snapshot(out).items():
         if data != expected.get(name) and data != begun.get(name):
             raise Violation(f"expected {name} whole or not at all, found something else")
@@ -186,7 +187,7 @@ def kill_results(turn):
                 * turn.random.choice([turn.random.random(), 0.9 + 0.2 * turn.random.random()]),
             )
             must_be_whole(out, expected, begun)
-            if verb == "merge" and out.exists():  # done; it goes into a new folder alone
+            if verb == "merge" and out.exists():  # it had finished; merge writes only into a new folder
                 shutil.rmtree(out)
         must_end_alike(turn, verb, out, expected)
         turn.count("same")
@@ -258,7 +259,7 @@ def two_results(turn):
 
 
 def leaves(value, place=()):
-    """The places of all counts."""
+    """The paths of all counts in the value."""
     if isinstance(value, (dict, list)):
         for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
             yield from leaves(inner, (*place, key))
@@ -274,7 +275,8 @@ def changed(value, place, by):
 
 
 def forged_summaries(turn):
-    """Counts that another writes into a campaign's JSON: refused by the file's name, with the database beside it or without."""
+    """Forges counts in a campaign's JSON. graze must refuse the file by name, with or without the database beside
+    it."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
     for attempt in range(4):
         campaign = turn.folder / f"campaign-{attempt}"
@@ -321,7 +323,7 @@ def forged_summaries(turn):
 
 
 def forged_kinds(turn):
-    """Kinds, costs and a status that another changes: refused by the file's name."""
+    """Forges kinds, costs and a status. graze must refuse the file by name."""
     reported = turn.bench.reference("tiny", minimised=True, reported=True)
 
     def without_kinds(value):
@@ -417,8 +419,8 @@ def unsealed(turn):
 
 
 def forged_cases(turn):
-    """A file of cases that is another signature's, lacks a pair or has another one: refused by its name, and brought back
-    by the command that the message has."""
+    """Forges a file of cases: another signature's file, a missing pair, or a different pair. graze must refuse it by
+    name, and the command in its message must restore it."""
     minimised = turn.bench.reference("tiny", minimised=True)
     rows = json.loads((minimised / "summary.json").read_text())["signatures"]
     for attempt in range(4):
@@ -477,7 +479,8 @@ def pipes(turn):
 
 
 def foreign_places(turn):
-    """Where a person's own files are: refused in one line, and they stay; with --force the results go there."""
+    """Results in a folder with a person's own files. graze must refuse in one line and keep them; --force writes
+    there."""
     folder = turn.folder / "mine"
     folder.mkdir()
     (folder / "notes.txt").write_text("kept")

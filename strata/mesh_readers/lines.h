@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh file of text, line by line and each cut into words.
+// Reads a mesh file of text line by line and splits each line into words.
 #pragma once
 
 #include <string>
@@ -15,26 +15,27 @@ enum class Continuation { none, backslash };
 
 class Lines {
  public:
-  // comment: the character from which on a line is not read; '\0' for none. A byte order mark is skipped.
+  // comment: the character that starts a comment, up to the end of the line; '\0' for none. A byte order mark is
+  // skipped.
   Lines(const MeshBytes& file, char comment, Continuation continuation = Continuation::none);
 
   // Goes to the next line that has a word.   Returns: whether there is one.
   bool next();
-  // The same, where the file must not end.
+  // Like next.   Throws: an error that names what was expected, if the file ends.
   void expect_next(const std::string& expected);
 
   const std::vector<std::string_view>& words() const { return words_; }
   std::size_t line() const { return line_; }
-  std::size_t next_byte() const { return byte_; }  // behind the line
+  std::size_t next_byte() const { return byte_; }  // the first byte after the line
   std::size_t bytes_left() const { return file_.bytes.size() - byte_; }
 
-  // Word i as what is expected there. Requires: i < words().size().
+  // Parses word i.   Requires: i < words().size().   Throws: an error if it is not of that kind.
   float coordinate(std::size_t i) const;
   std::uint64_t whole(std::size_t i, const std::string& expected) const;
   std::uint32_t vertex(std::size_t i, std::size_t vertices) const;
   void number(std::size_t i, const std::string& expected) const;
 
-  // Throws: an error at this line; of word i, or of the line's end where it has no such word.
+  // Throws: an error at this line; at word i, or at the line's end if it has no such word.
   [[noreturn]] void fail(const std::string& expected, const std::string& found) const;
   [[noreturn]] void fail_at(std::size_t i, const std::string& expected) const;
 

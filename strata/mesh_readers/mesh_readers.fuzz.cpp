@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mesh files of any bytes: an error of one line, or finite vertices and triangles of vertices that exist.
+// Readers of mesh files must return, for any bytes, an error of one line or finite vertices and valid triangles.
 #include <cmath>
 #include <stdexcept>
 

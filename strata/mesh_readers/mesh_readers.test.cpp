@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of mesh files are strict: what they take is what stands there, and everything else is an error that
+// The readers of mesh files are strict: they take exactly what the file says, and everything else is an error that
 // names its place. A damaged file never becomes another mesh.
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ std::string error_of(Reader read, const std::string& bytes) {
 
 struct Misfit {
   std::string bytes;
-  std::vector<std::string> named;  // by the error: the place, what belongs there, what stands there
+  std::vector<std::string> named;  // what the error must name: the place, what was expected, what was found
 };
 
 void expect_errors(Reader read, const std::vector<Misfit>& misfits) {
@@ -54,7 +54,7 @@ TEST(ReadOff, TakesItsVariantsAndCountsWhatItSkips) {
 }
 
 TEST(ReadOff, RoundsDecimalsOnce) {
-  // A tie of float32 but for its last digit, which a double cannot hold.
+  // A float32 tie except for its last digit, which a double cannot hold.
   const Soup soup = read_off({"m", "OFF\n3 1 0\n16777217.0000000001 0 0\n0.1 0 0\n-0 1e-46 7.1e-46\n3 0 1 2\n"});
   EXPECT_EQ(soup.vertices[0].x, 16777218.0f);
   EXPECT_EQ(soup.vertices[1].x, 0.1f);
@@ -177,7 +177,7 @@ std::string ply_header(const std::string& format, const std::string& vertices, c
          faces + "\n" + kFace + "end_header\n";
 }
 
-// Three vertices and one face, in that byte order.
+// Three vertices and one face, in the given byte order.
 std::string ply_body(bool big) {
   std::string body;
   const auto append = [&](auto value) {
@@ -247,7 +247,7 @@ TEST(ReadPly, NamesPlaceExpectedAndFound) {
        {ply_header("ascii", "3", "1") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n", {"m:15", "end", "elements", "3"}}});
 }
 
-// Whatever the damage: an error of one line, or triangles of vertices that exist.
+// Any damage gives an error of one line, or triangles whose vertices exist.
 TEST(MeshReaders, DamagedFilesNeverCrash) {
   const std::vector<std::pair<Reader, std::string>> files = {
       {read_off, kOff + "3 0 1 2\n"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wavefront OBJ: vertices and faces; lines, points, normals, groups and materials are counted and left out.
+// Wavefront OBJ: reads vertices and faces. Lines, points, normals, groups and materials are counted and left out.
 #include <algorithm>
 #include <limits>
 
@@ -23,13 +23,13 @@ constexpr Skipped kSkipped[] = {{"vt", "texture coordinates"},
                                 {"usemtl", "materials"},
                                 {"mtllib", "material libraries"}};
 
-// The largest vertex that a face has named so far, which may be defined later, and where.
+// The largest vertex index that a face has named so far, and that face's line. The vertex may be defined later.
 struct Largest {
   std::uint64_t vertex = 0;
   std::size_t line = 0;
 };
 
-// A whole number that may be negative: vertices count from 1, or backwards from -1.
+// A nonzero whole number, which may be negative: vertices count from 1, or backwards from -1.
 std::optional<std::int64_t> parse_reference(std::string_view text) {
   const bool negative = text.starts_with('-');
   if (negative) text.remove_prefix(1);
@@ -38,7 +38,7 @@ std::optional<std::int64_t> parse_reference(std::string_view text) {
   return negative ? -static_cast<std::int64_t>(*value) : static_cast<std::int64_t>(*value);
 }
 
-// "v", "v/t", "v//n" or "v/t/n", of which only v counts.
+// "v", "v/t", "v//n" or "v/t/n"; only v is used.
 std::optional<std::int64_t> parse_corner(std::string_view word) {
   const std::size_t slash = word.find('/');
   const std::optional<std::int64_t> vertex = parse_reference(word.substr(0, slash));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OFF of Geomview, in text: OFF and its variants with normals (N), colours (C) and texture coordinates (ST).
+// Geomview's OFF in text form, and its variants with normals (N), colours (C) and texture coordinates (ST).
 #include <limits>
 
 #include "core/text.h"
@@ -13,7 +13,7 @@ struct Header {
   std::uint64_t vertices = 0, faces = 0;
 };
 
-// "CNOFF" and the like.   Returns: whether the word is one.
+// Parses a keyword such as "CNOFF".   Returns: whether the word is one.
 bool take_keyword(std::string_view word, Header& header) {
   const auto take = [&word](std::string_view prefix) {
     const bool found = word.starts_with(prefix);
@@ -26,7 +26,7 @@ bool take_keyword(std::string_view word, Header& header) {
   return word == "OFF";
 }
 
-// The counts may follow the keyword on its line; without a keyword, which may be missing, they come first.
+// The counts may follow the keyword on the same line. If the keyword is missing, they come first.
 Header take_header(Lines& lines) {
   Header header;
   lines.expect_next("OFF");
@@ -44,7 +44,7 @@ Header take_header(Lines& lines) {
   header.faces = lines.whole(at + 1, "the number of faces");
   if (lines.words().size() > at + 2) lines.whole(at + 2, "the number of edges");
   if (lines.words().size() > at + 3) lines.fail_at(at + 3, "the end of the line after the number of edges");
-  // A vertex takes six bytes at least ("0 0 0" and the line's end), a face two.
+  // A vertex takes at least six bytes ("0 0 0" and the line's end), a face two.
   const std::size_t bytes = lines.bytes_left();
   if (header.vertices > (bytes + 1) / 6 || header.faces > (bytes + 1) / 2)
     lines.fail("at most " + std::to_string((bytes + 1) / 6) + " vertices and " + std::to_string((bytes + 1) / 2) +
@@ -55,13 +55,13 @@ Header take_header(Lines& lines) {
   return header;
 }
 
-// What stands behind a vertex's coordinates.
+// Checks and counts what follows a vertex's coordinates.
 void skip_attributes(const Lines& lines, const Header& header, Soup& soup) {
   const std::size_t count = lines.words().size(), more = count - 3;
   for (std::size_t i = 3; i < count; ++i) lines.number(i, "a number or the end of the line");
   const std::size_t others = 3u * header.normals + 2u * header.texture;
   const std::size_t colour = more - others;
-  // Colours stand in plain OFF files too.
+  // Plain OFF files contain colours too.
   if (more < others || (colour != 0 && colour != 3 && colour != 4) || (header.colours && colour == 0))
     lines.fail("three coordinates" + std::string(others + header.colours > 0 ? " and what the header announces" : ""),
                std::to_string(count) + " numbers");

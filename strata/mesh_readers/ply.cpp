@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PLY, as text or binary of either byte order: the coordinates of its vertices and the vertices of its faces.
+// PLY, as text or binary of either byte order. Reads the coordinates of vertices and the vertices of faces.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -25,7 +25,7 @@ constexpr Type kTypes[] = {{"char", "int8", 1, false, true},    {"uchar", "uint8
 struct Property {
   std::string name;
   const Type* type = nullptr;
-  const Type* count_type = nullptr;  // of a list
+  const Type* count_type = nullptr;  // for a list; else null
 };
 
 bool is_coordinate(const Property& p) { return p.name == "x" || p.name == "y" || p.name == "z"; }
@@ -39,7 +39,7 @@ struct Element {
   Kind kind = Kind::other;
   std::vector<Property> properties;
 
-  // The place of a property; the number of them without it.
+  // The index of the property; the number of properties if there is none of that name.
   std::size_t place(std::string_view property) const {
     std::size_t i = 0;
     while (i < properties.size() && properties[i].name != property) ++i;
@@ -147,13 +147,13 @@ Header take_header(Lines& lines) {
   return header;
 }
 
-// The numbers of a file's body, one after another. A list's count is a number too.
+// The numbers of a file's body, one after another. The count of a list is also a number.
 class Body {
  public:
   Body(const MeshBytes& file, Lines& lines, Header::Format format)
       : file_(file), lines_(lines), format_(format), byte_(lines.next_byte()) {}
 
-  // Throws unless the rows can be there at all.
+  // Throws: an error if the rows cannot fit in the rest of the file.
   void expect_room(const Element& element) const {
     std::uint64_t row = 0;
     for (const Property& p : element.properties)

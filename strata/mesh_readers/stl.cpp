@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL, as text or binary. A file whose size is that of its count of binary facets is binary, also where its header
-// begins with "solid", as those of many programs do.
+// STL, as text or binary. A file is binary if its size is the one that its binary facet count implies. That holds even
+// if its header begins with "solid", as many programs write it.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -13,7 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "binary STL is little-endian");
 
-constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes; the header's last four are the count of facets
+constexpr std::size_t kHeader = 84, kFacet = 50;  // bytes; the header's last four bytes are the number of facets
 
 std::uint64_t count_of_binary(std::string_view bytes) {
   std::uint32_t count = 0;
@@ -46,7 +46,7 @@ Soup read_binary(const MeshBytes& file) {
   return soup;
 }
 
-// Throws unless the line is these words, and after them `more` numbers.
+// Throws: an error unless the line is these words followed by `more` numbers.
 void expect_words(Lines& lines, const std::vector<std::string_view>& words, std::size_t more = 0) {
   std::string expected;
   for (const std::string_view word : words) expected.append(expected.empty() ? "" : " ").append(word);
@@ -77,7 +77,7 @@ void take_facet(Lines& lines, Soup& soup) {
   add_triangle(soup, v);
 }
 
-// Solids one after another, each "solid NAME", facets, "endsolid NAME".
+// Reads one solid after another: "solid NAME", facets, "endsolid NAME".
 Soup read_text(const MeshBytes& file) {
   Lines lines(file, '\0');
   Soup soup;
@@ -106,7 +106,7 @@ Soup read_stl(const MeshBytes& file) {
   const std::size_t size = file.bytes.size();
   const std::uint64_t count = count_of_binary(file.bytes);
   if (size >= kHeader && size == kHeader + kFacet * count) return read_binary(file);
-  // No text has a zero byte.
+  // A text file has no zero byte.
   if (size >= kHeader && file.bytes.find('\0') != file.bytes.npos)
     fail(at_byte(file, 80),
          std::to_string(count) + " facets, for which the file has " + std::to_string(kHeader + kFacet * count) +

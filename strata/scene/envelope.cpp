@@ -9,8 +9,8 @@
 namespace graze::strata {
 namespace {
 
-// Between quantiles that stand in the file: the geometric mean, again and again, by roots, which are the same
-// everywhere.
+// Fills the gaps between the quantiles of the file: repeatedly with the geometric mean of neighbours. It uses square
+// roots, whose results are the same on every machine.
 Quantiles spread(const std::vector<double>& values) {
   Quantiles quantiles{};
   if (values.size() == 1) {
@@ -35,7 +35,7 @@ double largest_of(const SceneFile& scene) {
   return largest;
 }
 
-// What a stratum needs of the longest edge, in steps of the exact grid.
+// How long a stratum needs the longest edge to be, in steps of the exact grid; and the least factor between edges.
 constexpr double kLeastSteps = 64, kMostLatticeSteps = 64, kLeastFactor = 16;
 
 double longest_in_steps(const SceneFile& scene, const Grid& grid) {
@@ -70,7 +70,7 @@ Scene resolved(const SceneFile& file) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto& [from, to] = file.extent[static_cast<std::size_t>(axis)];
     double low = as_float32(from), high = as_float32(to);
-    // The first and the last point of a grid that is, as float32 stores it, within them.
+    // The first and last grid points that still lie within [low, high] after rounding to float32.
     const auto first_on = [&](const Grid& grid) {
       const double n = in_scene::number_of(grid, low);
       return as_float32(in_scene::point_of(grid, n)) < low ? n + 1 : n;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contacts and coplanar pairs that are exact on a scene's grid of powers of two, or on the ulps of its largest
-// coordinate; on a grid of decimals they are exact as written, before float32 rounds them.
+// Exact contacts and exactly coplanar pairs on a scene's grid of powers of two, or on the ulps of its largest
+// coordinate. On a decimal grid they are exact as written, before float32 rounds them.
 #pragma once
 
 #include "strata/coplanar.h"
@@ -9,12 +9,12 @@
 namespace graze::strata::in_scene {
 inline namespace GRAZE_FP {
 
-// How far whole numbers may reach, by axis.
+// How far integer coordinates may reach, by axis.
 struct Reach {
   int axis[3];
 };
 
-// `most`, or less where `widths` of them must fit the extent.
+// `most`, or less if the extent must hold `widths` times the reach.
 GRAZE_HD inline Reach reach_within(const Scene& scene, int most, double widths) {
   Reach reach{{most, most, most}};
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,13 +30,13 @@ GRAZE_HD inline Vec draw_whole(Draws& draws, const Reach& reach, int times = 1) 
           static_cast<double>(draws.integer(reach.axis[2] * times))};
 }
 
-// A longest edge in grid steps.
+// A random longest edge, in grid steps.
 GRAZE_HD inline double draw_edge_in_steps(Draws& draws, const Scene& scene) {
   const double edge = draw_from(draws, scene.edges, {});
   return scene.exact.decimal ? edge * scene.exact.scale : edge / scene.exact.scale;
 }
 
-// Moves whole numbers to anywhere in the extent.
+// Moves integer coordinates to a random place in the extent.
 GRAZE_HD inline Pair finished_on_grid(Draws& draws, const Scene& scene, const Draft& draft) {
   Vec to{0, 0, 0};
   for (int axis = 0; axis < 3; ++axis) {
@@ -54,12 +54,12 @@ GRAZE_HD inline Pair finished_on_grid(Draws& draws, const Scene& scene, const Dr
   return shuffled(draws, rounded(placed));
 }
 
-inline constexpr int kWeight = 8;         // multiples of a step
-inline constexpr double kEdgeSteps = 42;  // an edge is at most so many times the reach of a step: 24 * sqrt(3)
+inline constexpr int kWeight = 8;         // the largest multiple of a step
+inline constexpr double kEdgeSteps = 42;  // an edge is at most this many times the reach of a step: 24 * sqrt(3)
 
 GRAZE_HD inline double draw_weight(Draws& draws) { return 1.0 + draws.below(kWeight); }
 
-// An edge through the origin along e, or a vertex at it, and the rest on that side.
+// An edge through the origin along e, or a vertex at the origin; the rest of the triangle lies on the given side.
 GRAZE_HD inline void put_exact_edge(Draws& draws, const Reach& reach, const Vec& e, const Vec& side,
                                     Vec (&triangle)[3]) {
   const double back = draw_weight(draws);
@@ -75,10 +75,10 @@ GRAZE_HD inline void put_exact_vertex(Draws& draws, const Reach& reach, const Ve
   triangle[2] = toward(side, draw_whole(draws, reach, kWeight));
 }
 
-// Half touch exactly; a quarter each has one coordinate of b[0] one step above or below.
+// Half of the pairs touch exactly. In a quarter each, one coordinate of b[0] is one step more or less.
 GRAZE_HD inline Pair exact_contact(Draws& draws, const Scene& scene) {
   const Touch touch = static_cast<Touch>(draws.below(3));
-  // Up to 2^14, so that the products that tell sides are exact.
+  // Up to 2^14, so that the products that determine sides are exact.
   const double most = clamped(draw_edge_in_steps(draws, scene) / kEdgeSteps, 1, 0x1p14);
   const Reach reach = reach_within(scene, static_cast<int>(most), 4 * kWeight + 2);
   const Vec u = draw_whole(draws, reach);
@@ -108,7 +108,7 @@ GRAZE_HD inline Pair exact_contact(Draws& draws, const Scene& scene) {
   return finished_on_grid(draws, scene, draft);
 }
 
-// Tilted planes: the bits of an edge are split between the chart and the grid pair on it at random.
+// Tilted planes. The bits of an edge are split at random between the chart and the grid pair on it.
 GRAZE_HD inline Pair coplanar_wide(Draws& draws, const Scene& scene) {
   const int most = static_cast<int>(clamped(draw_edge_in_steps(draws, scene) / 8, 8, 0x1p22));
   int bits = 3;
@@ -119,9 +119,9 @@ GRAZE_HD inline Pair coplanar_wide(Draws& draws, const Scene& scene) {
   return finished_on_grid(draws, scene, laid(chart, draw_grid_pair(draws, 1 << bits)));
 }
 
-// Six points of the grid in a cube.
+// Six grid points in a cube.
 GRAZE_HD inline Pair lattice(Draws& draws, const Scene& scene) {
-  const double edge = scene.edges.at[kQuantiles - 1] * 0.57735;  // a cube's over its diagonal
+  const double edge = scene.edges.at[kQuantiles - 1] * 0.57735;  // edge of a cube over its diagonal
   const double steps = scene.exact.decimal ? edge * scene.exact.scale : edge / scene.exact.scale;
   const Reach reach = reach_within(scene, static_cast<int>(steps), 1);
   Draft draft;

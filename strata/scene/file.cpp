@@ -15,16 +15,16 @@
 #include "strata/mesh_readers/soup.h"
 #include "strata/scene/envelope.h"
 
-// Parse errors are values here, and nothing is linked.
+// toml++ returns parse errors as values here, and needs no linking.
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_WINDOWS_COMPAT 0
-#define TOML_ASSERT(expr) static_cast<void>(0)  // its parser asserts what "[[[" breaks, then refuses it
+#define TOML_ASSERT(expr) static_cast<void>(0)  // toml++ asserts what "[[[" violates, then rejects it
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wshadow"
-// toml++ 3.3 calls unreachable what characters such as U+00E9 outside of quotes reach: they are neither spaces nor
-// letters.
+// toml++ 3.3 treats as unreachable a place that characters such as U+00E9 outside quotes do reach: they are neither
+// spaces nor letters.
 #include <toml++/impl/preprocessor.h>
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
@@ -39,12 +39,12 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = 1 << 20;
 constexpr double kMostCoordinate = 0x1p126;
-constexpr double kLeastUlps = 8;         // so that float32 does not make points of all triangles
-constexpr double kLeastAspect = 1.1547;  // of an equilateral triangle, 2 / sqrt(3), to five digits
+constexpr double kLeastUlps = 8;         // so that float32 does not turn all triangles into points
+constexpr double kLeastAspect = 1.1547;  // aspect of an equilateral triangle, 2 / sqrt(3), to five digits
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; }
 
-// As TOML reads it back; other bytes than ASCII stay, for they are UTF-8.
+// The text as a TOML string. Bytes beyond ASCII stay, because they are UTF-8.
 std::string toml_string(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -58,7 +58,7 @@ std::string toml_string(std::string_view text) {
   return result + '"';
 }
 
-// What a person sees of a value.
+// A value as an error message shows it.
 std::string found_text(const toml::node& node) {
   if (const auto text = node.value_exact<std::string>()) return shown(*text);
   if (const auto number = node.value_exact<std::int64_t>()) return std::to_string(*number);
@@ -93,7 +93,7 @@ class Reader {
     strata::fail(fmt::format("{}:{}", name_, at.source().begin.line), expected, found);
   }
 
-  // Throws: for a key that is none of these.
+  // Throws: an error for a key that is not in `known`.
   void keys(const toml::table& table, const std::string& what, const std::vector<std::string>& known) const {
     for (const auto& [key, value] : table) {
       const std::string word(key.str());
@@ -199,7 +199,7 @@ class Reader {
     const bool decimal = grid.contains("decimals");
     const toml::node& places = grid.begin()->second;
     scene.grid = GridSpec{decimal, decimal ? whole(places, 0, 15) : whole(places, -149, 126)};
-    // Numbers of grid points must be exact in double, with room to spare; and there must be some.
+    // Numbers of grid points must be exact in double, with room to spare, and the extent must contain several.
     const double step = decimal ? std::pow(10.0, -scene.grid->places) : std::ldexp(1.0, scene.grid->places);
     for (const auto& [low, high] : scene.extent) {
       const double steps = std::max(std::fabs(low), std::fabs(high)) / step;
@@ -269,7 +269,7 @@ class Reader {
 
   const std::string& name_;
   const toml::table& root_;
-  double diagonal_ = 0, largest_ = 0;  // of the extent
+  double diagonal_ = 0, largest_ = 0;  // of the extent; its largest coordinate in magnitude
 };
 
 std::string list_of(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene files of any bytes: an error of one line, or a scene whose text gives the same scene again.
+// The scene reader must return, for any bytes, an error of one line or a scene whose text gives the same scene.
 #include <stdexcept>
 
 #include "core/fuzz_target.h"

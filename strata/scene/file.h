@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene as a person writes it: TOML, two lines at least. docs/formats.md describes the format.
+// A scene as a user writes it: TOML, at least two lines. docs/formats.md describes the format.
 #pragma once
 
 #include <array>
@@ -15,14 +15,14 @@
 
 namespace graze::strata {
 
-// What a pair of a scene is, by the first that holds: a triangle of no area; two stored vertices in common; one; all
-// six points in a plane; anything else.
+// The kind of a scene's pair: the first that applies of a triangle without area (degenerate), two stored vertices in
+// common (shared_edge), one in common (shared_vertex), all six points in a plane (coplanar), anything else (general).
 enum class Kind : std::uint8_t { general, shared_vertex, shared_edge, coplanar, degenerate };
 inline constexpr int kKinds = 5;
 inline constexpr std::array<std::string_view, kKinds> kKindIds{"general", "shared_vertex", "shared_edge", "coplanar",
                                                                "degenerate"};
 
-// All coordinates are multiples of 2^places, or have so many decimals.
+// All coordinates are multiples of 2^places, or, if decimal, have `places` decimals.
 struct GridSpec {
   bool decimal = false;
   int places = 0;
@@ -31,20 +31,20 @@ struct GridSpec {
 
 struct SceneMeshes {
   std::vector<std::string> files;  // relative to the folder of the scene's file
-  std::string poses;               // of a CSV file; may be empty
-  std::uint64_t content = 0;       // FNV-1a of all of them
+  std::string poses;               // path of a CSV file; may be empty
+  std::uint64_t content = 0;       // FNV-1a of all these files
   friend bool operator==(const SceneMeshes&, const SceneMeshes&) = default;
 };
 
-// The values that stand here are those of what a file leaves out; extent and edges have none.
+// The initial values are the defaults of what a file may omit. extent and edges have no default.
 struct SceneFile {
   std::string units = "units";
-  std::array<std::array<double, 2>, 3> extent{};  // least and greatest coordinate by axis
+  std::array<std::array<double, 2>, 3> extent{};  // least and greatest coordinate on each axis
   std::vector<double> edges;                      // of triangles' longest edges: 1, 2, 3, 5, 9, 17 or 33 quantiles
-  std::vector<double> aspect{1.2, 2, 10};         // longest edge over the height on it, likewise
+  std::vector<double> aspect{1.2, 2, 10};         // longest edge divided by the height on it, as quantiles too
   std::optional<GridSpec> grid;
-  std::array<double, kKinds> mix{0.6, 0.1, 0.1, 0.15, 0.05};  // shares of the pairs whose boxes overlap, by Kind
-  std::map<Bucket, double> margins;                           // share of them, by margin; told, not drawn from
+  std::array<double, kKinds> mix{0.6, 0.1, 0.1, 0.15, 0.05};  // share of each Kind among pairs whose boxes overlap
+  std::map<Bucket, double> margins;  // shares of these pairs by margin; for information, not drawn from
   SceneMeshes meshes;
   friend bool operator==(const SceneFile&, const SceneFile&) = default;
 };
@@ -53,10 +53,10 @@ struct SceneFile {
 SceneFile read_scene(const std::filesystem::path& file);
 SceneFile parse_scene(const std::string& name, std::string_view text);
 
-// Reading it gives the same scene; the same scene gives the same text.
+// Reading this text gives the same scene, and the same scene always gives the same text.
 std::string scene_text(const SceneFile& scene);
 
-// "arm.toml#0123456789abcdef": the file's name and a hash of what it says, comments and order aside.
+// "arm.toml#0123456789abcdef": the file's name and a hash of its content, regardless of comments and order.
 std::string scene_name(const std::string& file, const SceneFile& scene);
 
 }  // namespace graze::strata

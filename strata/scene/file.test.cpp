@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes as files: what is written is read, a person's few lines are enough, and every mistake is named by its line.
+// Scenes as files: written scenes are read back, a few lines by hand suffice, and every error names its line.
 #include "strata/scene/file.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(SceneFile, ThreeLinesAreEnough) {
   const Scene numbers = resolved(scene);
   EXPECT_EQ(numbers.high.z, 900);
   EXPECT_EQ(numbers.edges.at[0], 0.5);
-  EXPECT_NEAR(numbers.edges.at[16], std::sqrt(0.5 * 40), 1e-12);  // log-spaced between those that stand in the file
+  EXPECT_NEAR(numbers.edges.at[16], std::sqrt(0.5 * 40), 1e-12);  // log-spaced between the quantiles of the file
   EXPECT_EQ(numbers.edges.at[32], 40);
 }
 
@@ -60,7 +60,7 @@ TEST(SceneFile, WhatIsWrittenIsRead) {
       scene.margins.clear();
       scene.meshes = {};
     } else {
-      scene.extent[0] = {-0.1, 1e9};  // a grid of thousandths has its limits
+      scene.extent[0] = {-0.1, 1e9};  // a grid of thousandths limits the extent
       scene.edges = {0x1p-149, 1e-5, 1, 40, 1e8};
     }
     const std::string text = scene_text(scene);
@@ -128,7 +128,7 @@ TEST(SceneFile, HostileTextsAreOneLine) {
   }
 }
 
-// Found by fuzzing: outside of them toml++ went where its own code says that it cannot.
+// Found by fuzzing: outside quotes and comments they made toml++ reach code that it declares unreachable.
 TEST(SceneFile, CharactersBeyondAsciiStandInQuotesAndCommentsAlone) {
   const std::string rest = "extent = [[-4, 4], [0, 8], [1, 2]]\nedges = [0.5, 2]\n";
   EXPECT_EQ(parse_scene("s", "\xef\xbb\xbfunits = \"\u00b5m \\\" \u00e9\" # \u00e9\n" + rest).units,

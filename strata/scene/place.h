@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair's place in a scene: drafts around the origin are moved into the extent, rounded to the grid, and pushed by
-// ulps or grid steps, in this order, so that near contacts are near in the scene's own ulps.
+// A pair's place in a scene. A draft around the origin is moved into the extent, then rounded to the grid, then pushed
+// by ulps or grid steps. In this order, near contacts are near in the scene's own ulps.
 #pragma once
 
 #include "strata/contact.h"
@@ -25,7 +25,8 @@ GRAZE_INLINE float stored(const Scene& scene, int axis, double x) {
   return static_cast<float>(scene.on_grid ? point_of(scene.grid, number_of(scene.grid, inside)) : inside);
 }
 
-// The coordinate so many grid steps away, or ulps where the grid is finer or there is none; but within the extent.
+// The coordinate moved by that many grid steps, but kept within the extent. It moves by ulps if there is no grid or a
+// grid step does not change it.
 GRAZE_INLINE float pushed(const Scene& scene, int axis, float x, int steps) {
   if (scene.on_grid) {
     const double n = number_of(scene.grid, static_cast<double>(x)) + steps;
@@ -64,7 +65,7 @@ GRAZE_INLINE Interval span_of(const Draft& draft, int axis) {
   return {a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
 }
 
-// Moves the draft to anywhere in the extent; flattens it first along the axes in which there is no room for it.
+// Moves the draft to a random place in the extent. First flattens it along axes in which it does not fit.
 GRAZE_HD inline void place(Draws& draws, const Scene& scene, Draft& draft) {
   Vec by{1, 1, 1};
   for (int axis = 0; axis < 3; ++axis) {
@@ -84,7 +85,7 @@ GRAZE_HD inline void place(Draws& draws, const Scene& scene, Draft& draft) {
   move(draft.b, to);
 }
 
-// As `finished` of strata/contact.h, in the scene.
+// Like `finished` of strata/contact.h, but within the scene.
 GRAZE_HD inline Pair finished(Draws& draws, const Scene& scene, Draft& draft, const Push& push) {
   place(draws, scene, draft);
   Pair pair = stored(scene, draft);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is drawn in a scene: every pair within the extent, on the grid and of the scene's sizes; strata keep what they
-// promise; sources are shared by the mix, and what a scene cannot contain is left out with its reason.
+// Pairs drawn in a scene: every pair lies within the extent, on the grid, and has the scene's sizes. Strata keep their
+// promises. Sources get their shares of the mix, and strata that a scene cannot contain are left out with a reason.
 #include "strata/scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ using testing::edge;
 using testing::length;
 using testing::normal;
 
-// A scene in millimetres far from the origin, on thousandths; one on a coarse grid; a flat one; and one without a grid.
+// In millimetres far from the origin on thousandths; on a coarse grid; flat; and without a grid.
 const std::pair<const char*, const char*> kScenes[] = {
     {"millimetres",
      "extent = [[120000, 120800], [-5400, -5000], [300, 900.5]]\nedges = [0.5, 40]\n"
@@ -84,7 +84,7 @@ TEST(Scene, EveryPairIsWithinTheExtentOnTheGridAndOfTheSizes) {
         ASSERT_LE(longest(pair.b), most) << name << ' ' << row.id << ':' << i;
         if (i < 1000) kinds.insert(hash_bits(pair));
       }
-      EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // not one pair again and again
+      EXPECT_GT(kinds.size(), 900u) << name << ' ' << row.id;  // not one pair repeated
     }
     EXPECT_GE(drawn, 11) << name;
   }
@@ -152,7 +152,7 @@ TEST(Scene, ExactStrataAreExact) {
   EXPECT_EQ(coplanar, 10'000);
   EXPECT_GT(tilted, 7'000);
   EXPECT_EQ(axis_plane, 10'000);
-  testing::expect_between(5'000, 9'000, touching);  // half, and of those pushed by a step some
+  testing::expect_between(5'000, 9'000, touching);  // the exact half, and some of the pairs pushed by a step
 }
 
 TEST(Scene, NeighboursShareTheirVerticesBitForBit) {
@@ -177,7 +177,7 @@ TEST(Scene, SameBytesAsEver) {
     if (left_out(parse_scene(kScenes[0].first, kScenes[0].second), row.stratum)) continue;
     for (std::uint64_t i = 0; i < 1000; ++i) hash = hash_bits(generate(kGoldenSeed, row.stratum, scene, i), hash);
   }
-  EXPECT_EQ(hash, 0x7f8ed81904122499u) << std::hex << hash;  // a change here changes what every case of a scene means
+  EXPECT_EQ(hash, 0x7f8ed81904122499u) << std::hex << hash;  // if it changes, every case of a scene has another meaning
 }
 
 std::string why(const char* text, Stratum stratum) {
@@ -256,7 +256,7 @@ TEST_F(SceneMesh, ItsPairsAreDrawnAsTheyAreByUlpsAndByMotions) {
   const MeshPairs own = read_bodies({folder_ / "m.off"});
   const SceneSources drawn = scene_sources(file_, folder_, 5, 30'000, {"mesh*"});
   ASSERT_EQ(drawn.sources.size(), 3u);
-  EXPECT_EQ(drawn.sources[0].pairs, own.size());  // each once, in another order
+  EXPECT_EQ(drawn.sources[0].pairs, own.size());  // each pair once, in another order
   std::set<std::uint64_t> seen, all;
   for (std::size_t i = 0; i < own.size(); ++i) {
     seen.insert(hash_bits(drawn.sources[0].pair(i)));
@@ -271,7 +271,7 @@ TEST_F(SceneMesh, ItsPairsAreDrawnAsTheyAreByUlpsAndByMotions) {
         const auto& [low, high] = file_.extent[static_cast<std::size_t>(k % 3)];
         ASSERT_TRUE(low <= coordinates(pair)[k] && coordinates(pair)[k] <= high) << i;
       }
-      // Rigid, but for rounding: each triangle is one of the mesh.
+      // Rigid except for rounding: each triangle is congruent to one of the mesh.
       ASSERT_TRUE(std::any_of(own.triangles.begin(), own.triangles.end(), [&](const auto& t) {
         double d[2][3];
         for (std::size_t e = 0; e < 3; ++e) {

@@ -28,10 +28,10 @@ constexpr MeshSourceInfo kMeshSources[] = {{as_it_is, "mesh"}, {by_ulps, "mesh_u
 struct Meshes {
   Scene scene;
   MeshPairs pairs;
-  std::uint64_t stride;  // without a factor in common with the number of pairs: visits all, in no order
+  std::uint64_t stride;  // coprime to the number of pairs: visits all pairs, in scattered order
 };
 
-// Visits every pair once before any again.
+// Visits every pair once before it repeats any.
 Pair own_pair(const Meshes& meshes, std::uint64_t index) {
   const std::uint64_t size = meshes.pairs.size();
   return meshes.pairs.pair(static_cast<std::size_t>(index % size * meshes.stride % size));
@@ -41,7 +41,7 @@ Pair draw_own(Draws& draws, const Meshes& meshes) {
   return meshes.pairs.pair(draws.below(static_cast<std::uint32_t>(meshes.pairs.size())));
 }
 
-// B moved by up to 8 steps or ulps an axis, or one vertex of it along one axis.
+// Moves B by up to 8 grid steps or ulps on each axis, or one of its vertices along one axis.
 Pair pair_by_ulps(const Meshes& meshes, std::uint64_t seed, std::uint64_t index) {
   Draws draws(seed, 0x201, index);
   Pair pair = draw_own(draws, meshes);
@@ -59,13 +59,14 @@ Pair pair_by_ulps(const Meshes& meshes, std::uint64_t seed, std::uint64_t index)
   return shuffled(draws, pair);
 }
 
-// v turned by the unit quaternion (w, q).
+// Rotates v by the unit quaternion (w, q).
 Vec turned(double w, const Vec& q, const Vec& v) {
   const Vec t = cross(q, v) * 2.0;
   return v + t * w + cross(q, t);
 }
 
-// Turned any way and put anywhere; not turned where the turned pair does not fit the extent.
+// Rotates the pair at random and puts it at a random place. It is not rotated if the rotated pair does not fit the
+// extent.
 Pair pair_by_motion(const Meshes& meshes, std::uint64_t seed, std::uint64_t index) {
   Draws draws(seed, 0x202, index);
   const Pair pair = draw_own(draws, meshes);
@@ -140,7 +141,7 @@ void expect_names(const std::vector<std::string>& globs) {
   }
 }
 
-// Shares `pairs` by weight, to the pair.
+// Divides `pairs` among the sources by weight; the shares add up to `pairs`.
 void share(std::vector<PairSource>& sources, const std::vector<double>& weights, std::uint64_t pairs) {
   const double all = std::accumulate(weights.begin(), weights.end(), 0.0);
   double sum = 0;

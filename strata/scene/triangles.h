@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles of a scene's sizes, and two of them around a point of contact, at the origin. As in strata/contact.h, but
+// Triangles of a scene's sizes, and two of them around a point of contact at the origin. Like strata/contact.h, but
 // rigid: the edge and the aspect are drawn first, then turned into place.
 #pragma once
 
@@ -10,7 +10,7 @@
 namespace graze::strata::in_scene {
 inline namespace GRAZE_FP {
 
-// Which part of the quantiles is drawn from.
+// The part of the quantiles to draw from.
 struct Part {
   double from = 0, to = 1;
 };
@@ -26,9 +26,9 @@ GRAZE_HD inline double draw_from(Draws& draws, const Quantiles& quantiles, const
   return quantiles.at[i] + (quantiles.at[i + 1] - quantiles.at[i]) * (at - i);
 }
 
-inline constexpr double kSliver = 1024;  // slivers: from this aspect on
+inline constexpr double kSliver = 1024;  // the least aspect of a sliver
 
-// The fraction of the aspects below it.   Requires: the greatest one is not.
+// The fraction of aspects below kSliver.   Requires: the greatest aspect is not below it.
 GRAZE_HD inline double sliver_from(const Scene& scene) {
   const Quantiles& aspect = scene.aspect;
   int i = 0;
@@ -38,7 +38,7 @@ GRAZE_HD inline double sliver_from(const Scene& scene) {
   return (i - 1 + (kSliver - below) / (aspect.at[i] - below)) / (kQuantiles - 1);
 }
 
-// Vertices (0, 0), (length, 0) and (foot, height); no edge is longer than the first.
+// Vertices (0, 0), (length, 0) and (foot, height). The first edge is the longest.
 struct Form {
   double length, height, foot;
 };
@@ -46,13 +46,13 @@ struct Form {
 GRAZE_HD inline Form draw_form(Draws& draws, const Scene& scene, const Sizes& sizes = {}) {
   const double length = draw_from(draws, scene.edges, sizes.edges);
   const double flat = 1 / draw_from(draws, scene.aspect, sizes.aspect);
-  double most = 1 - flat * flat;  // the foot's distance from either end, as a part of the edge, squared
+  double most = 1 - flat * flat;  // the foot's distance from either end, divided by the edge, squared
   most = most > 0.25 ? sqrt(most) : 0.5;
   const double foot = (1 - most) + (2 * most - 1) * draws.positive();
   return {length, length * flat, length * foot};
 }
 
-// The same triangle, seen from any edge: vertices (0, 0), (length, 0) and (foot, height).
+// The same triangle, placed with another edge first: vertices (0, 0), (length, 0) and (foot, height).
 GRAZE_HD inline Form seen_from(const Form& form, std::uint32_t edge) {
   if (edge == 0) return form;
   const double foot = edge == 1 ? form.length - form.foot : form.foot;
@@ -60,13 +60,13 @@ GRAZE_HD inline Form seen_from(const Form& form, std::uint32_t edge) {
   return {length, form.length * form.height / length, form.length * foot / length};
 }
 
-// v of length 1; an axis if v is too short.
+// v scaled to length 1; an axis if v is too short.
 GRAZE_HD inline Vec unit(const Vec& v) {
   const double squared = dot(v, v);
   return squared > 0x1p-200 ? v * (1 / sqrt(squared)) : unit_axis(0);
 }
 
-// Where directions are drawn: all of space, or the plane of x and y, which are at right angles and of length 1.
+// Where directions are drawn: all of space, or the plane of x and y. x and y are perpendicular and have length 1.
 struct Space {
   bool flat = false;
   Vec x{1, 0, 0}, y{0, 1, 0};
@@ -79,7 +79,7 @@ GRAZE_HD inline Vec draw_direction(Draws& draws, const Space& space) {
   return squared > 0 ? (space.x * v.x + space.y * v.y) * (1 / sqrt(squared)) : space.x;
 }
 
-// A direction at right angles to f.
+// A random direction perpendicular to f.
 GRAZE_HD inline Vec draw_across(Draws& draws, const Space& space, const Vec& f) {
   const Vec v = draws.reals();
   if (space.flat) return unit(cross(cross(space.x, space.y), f)) * (v.x < 0 ? -1.0 : 1.0);
@@ -87,7 +87,7 @@ GRAZE_HD inline Vec draw_across(Draws& draws, const Space& space, const Vec& f) 
   return unit(dot(w, w) > 0x1p-40 ? w : cross(f, unit_axis((dominant_axis(f) + 1) % 3)));
 }
 
-// A plane through the origin: of any direction, or that of two axes.
+// A plane through the origin: of random direction, or spanned by two coordinate axes.
 GRAZE_HD inline Space draw_plane(Draws& draws) {
   const Vec x = draw_direction(draws, {});
   return {true, x, draw_across(draws, {}, x)};
@@ -96,14 +96,14 @@ GRAZE_HD inline Space axis_plane(int normal) {
   return {true, unit_axis((normal + 1) % 3), unit_axis((normal + 2) % 3)};
 }
 
-// A triangle with its vertex [0] at the origin, any of the form's, and the others on that side.
+// A triangle of the form: a randomly chosen corner, as vertex [0], is at the origin. The others lie on the given side.
 GRAZE_HD inline void put_vertex(Draws& draws, const Space& space, const Form& form, const Vec& side,
                                 Vec (&triangle)[3]) {
   const std::uint32_t corner = draws.below(3);
   const Vec any = toward(side, draw_direction(draws, space));
   Vec across = draw_across(draws, space, any);
   triangle[0] = {0, 0, 0};
-  if (corner < 2) {  // at an end of the longest edge, where no angle is obtuse
+  if (corner < 2) {  // at an end of the longest edge, where the angle is never obtuse
     const Form seen = corner == 0 ? form : Form{form.length, form.height, form.length - form.foot};
     across = toward(side, across);
     triangle[1] = any * seen.length;
@@ -120,7 +120,7 @@ GRAZE_HD inline void put_vertex(Draws& draws, const Space& space, const Form& fo
   triangle[2] = up * form.height + across * right;
 }
 
-// A triangle whose edge [0][1] passes through the origin along e, which is at right angles to the side.
+// A triangle whose edge [0][1] passes through the origin along e. e is perpendicular to the side.
 GRAZE_HD inline void put_edge(Draws& draws, const Space& space, const Form& form, const Vec& e, const Vec& side,
                               Vec (&triangle)[3]) {
   const Form seen = seen_from(form, draws.below(3));
@@ -131,7 +131,7 @@ GRAZE_HD inline void put_edge(Draws& draws, const Space& space, const Form& form
   triangle[2] = e * (seen.foot - back) + up * seen.height;
 }
 
-// A triangle in that plane with the origin inside.
+// A triangle in the plane, with the origin inside.
 GRAZE_HD inline void put_face(Draws& draws, const Space& plane, const Form& form, Vec (&triangle)[3]) {
   const double w0 = draws.positive();
   const double w1 = draws.positive();
@@ -143,8 +143,8 @@ GRAZE_HD inline void put_face(Draws& draws, const Space& plane, const Form& form
   triangle[2] = plane.x * (form.foot - x) + plane.y * (form.height - y);
 }
 
-// Two triangles that meet at the origin only, as long as nothing is rounded; in a plane, edges lie along each other.
-// Returns: the direction that parts B from A, of length 1.
+// Two triangles that meet only at the origin if nothing is rounded. Within a plane their edges lie along each other.
+// Returns: the direction that separates B from A, of length 1.
 GRAZE_HD inline Vec put_contact(Draws& draws, Touch touch, const Space& space, const Form& form_a, const Form& form_b,
                                 Draft& draft) {
   const Vec u = draw_direction(draws, space);

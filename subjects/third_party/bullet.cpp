@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bullet's two triangle tests, without margins. Bullet is either float or double as a whole: built once with each.
+// Bullet's two triangle tests, without margins. A Bullet build uses either float or double, so this is built with each.
 #include <BulletCollision/Gimpact/btTriangleShapeEx.h>
 #include <BulletCollision/Gimpact/gim_tri_collision.h>
 #include <graze/subject.h>
@@ -22,7 +22,7 @@ int hard_test(const btScalar a[9], const btScalar b[9]) {
   return make<GIM_TRIANGLE>(a).collide_triangle_hard_test(make<GIM_TRIANGLE>(b), contact);
 }
 
-// As btGImpactCollisionAlgorithm does it: planes first, then the quick test, then clipping.
+// As in btGImpactCollisionAlgorithm: planes first, then the quick test, then clipping.
 int clip_method(const btScalar a[9], const btScalar b[9]) {
   auto first = make<btPrimitiveTriangle>(a), second = make<btPrimitiveTriangle>(b);
   first.buildTriPlane();

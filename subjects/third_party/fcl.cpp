@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FCL's test of two triangles by separating axes. Its library has it in double; float is made from the header.
+// FCL's separating axis test of two triangles. The library contains the double version; float is instantiated here.
 #include <fcl/config.h>
 #include <fcl/narrowphase/detail/traversal/collision/intersect.h>
 #include <graze/subject.h>

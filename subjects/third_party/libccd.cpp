@@ -29,13 +29,13 @@ int intersects(const double a[9], const double b[9]) {
   CCD_INIT(&ccd);
   ccd.support1 = ccd.support2 = support;
   ccd.center1 = ccd.center2 = center;
-  ccd.max_iterations = 100;  // as in the library's own example; its default does not end
+  ccd.max_iterations = 100;  // as in the library's own example; with its default the iteration does not end
   return kTest(a, b, &ccd);
 }
 
 }  // namespace
 
-// The library has no macro for its version; the package's is given by scripts/league.
+// The library has no version macro; scripts/league passes the package's version.
 GRAZE_SUBJECT(gjk) = {GRAZE_SUBJECT_ABI,
                       0,
                       DEBIAN_VERSION,

@@ -18,7 +18,7 @@ int intersects(const double a[9], const double b[9]) {
 
 }  // namespace
 
-// The library has no macro for its version; the package's is given by scripts/league.
+// The library has no version macro; scripts/league passes the package's version.
 GRAZE_SUBJECT(intersect_triangle_triangle) = {GRAZE_SUBJECT_ABI,
                                               GRAZE_OUTSIDE_SHARED,
                                               DEBIAN_VERSION,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SFCGAL's intersects3D. It refuses geometries that are not valid, such as triangles without area: declined.
+// SFCGAL's intersects3D. It refuses invalid geometries, such as triangles without area; these are declined.
 #include <SFCGAL/Exception.h>
 #include <SFCGAL/Point.h>
 #include <SFCGAL/Triangle.h>

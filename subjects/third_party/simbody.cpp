@@ -25,7 +25,7 @@ int intersects(const Real a[9], const Real b[9]) {
 
 }  // namespace
 
-// The library has no macro for its version; the package's is given by scripts/league.
+// The library has no version macro; scripts/league passes the package's version.
 GRAZE_SUBJECT(overlaps_triangle) = {
     GRAZE_SUBJECT_ABI,
     GRAZE_OUTSIDE_TOUCHING,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TetGen's test of two triangles on Shewchuk's exact signs. It throws (an int) where it meets a case it does not know.
+// TetGen's test of two triangles with Shewchuk's exact predicates. It throws an int in a case that it does not handle.
 #define TETLIBRARY
 #include <graze/subject.h>
 #include <tetgen.h>
@@ -8,7 +8,8 @@
 namespace {
 
 int intersects(const double a[9], const double b[9]) {
-  // Once, as TetGen does before its first test; without its static filter, which wants the extent of the whole input.
+  // Once, as TetGen does before its first test. The static filter is off, because it needs the extent of the whole
+  // input.
   static const bool kReady = (exactinit(0, 0, 1, 1, 1, 1), true);
   (void)kReady;
   double v[18];
@@ -20,7 +21,7 @@ int intersects(const double a[9], const double b[9]) {
 
 }  // namespace
 
-// The library has no macro for its version; the package's is given by scripts/league.
+// The library has no version macro; scripts/league passes the package's version.
 GRAZE_SUBJECT(tri_tri_inter) = {
     GRAZE_SUBJECT_ABI,
     0,

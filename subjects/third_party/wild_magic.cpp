@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wild Magic 5: the test alone (separating axes), and the one that also finds the intersection.
+// Wild Magic 5: the separating axis test alone, and the query that also finds the intersection.
 #include <Wm5IntrTriangle3Triangle3.h>
 #include <graze/subject.h>
 
@@ -25,7 +25,7 @@ int decide_by_find(const Real a[9], const Real b[9]) {
 
 }  // namespace
 
-// The library has no macro for its version; the package's is given by scripts/league.
+// The library has no version macro; scripts/league passes the package's version.
 GRAZE_SUBJECT(test) = {
     GRAZE_SUBJECT_ABI,     0,
     DEBIAN_VERSION,        "Wild Magic 5 IntrTriangle3Triangle3<Real>::Test, BSL-1.0, https://www.geometrictools.com",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differences of products with fmaf (Kahan), which no flag takes away.
+// Differences of products with fmaf (Kahan), which no compiler flag removes.
 #include <cmath>
 
 __device__ float difference(float a, float b, float c, float d) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What CUDA gives to the styles, for a host's compiler: qualifiers, and functions on the bits of integers.
+// The CUDA features that the styles use, for a host's compiler: qualifiers, and functions on the bits of integers.
 #pragma once
 
 #include <cfenv>
@@ -46,7 +46,7 @@ inline unsigned __byte_perm(unsigned a, unsigned b, unsigned choice) {
 inline unsigned __usad(unsigned a, unsigned b, unsigned c) { return (a < b ? b - a : a - b) + c; }
 inline unsigned __umulhi(unsigned a, unsigned b) { return (unsigned)((unsigned long long)a * b >> 32); }
 
-// An operation in another rounding mode of the processor.
+// Runs an operation in another rounding mode of the processor.
 template <class F>
 auto in_rounding_mode(int mode, F f) {
   std::fesetround(mode);
@@ -85,7 +85,7 @@ inline float __int2float_rd(int x_) {
   const volatile int x = x_;
   return in_rounding_mode(FE_DOWNWARD, [&] { return (float)x; });
 }
-inline int __float2int_rn(float x) {  // the nearest integer there is, 0 of a NaN
+inline int __float2int_rn(float x) {  // the nearest int; 0 for NaN
   if (x != x) return 0;
   const double near = std::nearbyint((double)x);
   return near >= 2147483647.0 ? INT_MAX : near <= -2147483648.0 ? INT_MIN : (int)near;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Functions that take and return structs, in memory of their own.
+// Functions that take and return structs, each in its own memory.
 struct Vector {
   float x, y, z;
 };

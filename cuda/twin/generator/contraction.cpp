@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What nvcc contracts, and where. The front end (cicc) turns a*b + c into fma.rn. It leaves a*b - c*d and x - a*b as
-// mul, sub without a rounding suffix, which ptxas at -O1 and above may contract. The rule of ptxas, for m = a*b:
+// mul and sub without a rounding suffix, which ptxas at -O1 and above may contract. The rule of ptxas, for m = a*b:
 //
 //   PTX, all in one block                 machine code                  row
 //   m - x, x - m, m + x, x + m            fma                           single product
@@ -19,13 +19,16 @@
 //   .ftz on one but not the other         add, mul                      not fused
 //   .sat on the addition                  fma.sat                       fused
 //
-// The order in which ptxas takes the additions shows only where products are shared: first those that have a product of
-// one use, then in program order; of two products the one with fewer uses, or else the left.
+// The order in which ptxas takes the additions matters only where products are shared. It first takes additions with a
+// product that has one use, then the others in program order. Of two products it takes the one with fewer uses, or else
+// the left one.
 //
-// Evidence, with ptxas 13.0.88: the machine code of each row for sm_90, f32 and f64, taken apart by hand. Random
-// straight programs give the same machine code, instruction for instruction, when this pass wrote their contractions
-// out; so do most of the project's kernels, and all have the same counts of fused and unfused operations
-// (static_check.test.cpp). Verdicts and intermediate bits of an H100 (cuda/proofs).
+// Evidence, with ptxas 13.0.88:
+// - The machine code of each row for sm_90, f32 and f64, disassembled and read.
+// - Random straight-line programs give the same machine code, instruction for instruction, after this pass has written
+//   their contractions out. So do most of the project's kernels. All kernels have the same counts of fused and unfused
+//   operations (static_check.test.cpp).
+// - Verdicts and intermediate bits of an H100 (cuda/proofs).
 #include "cuda/twin/generator/contraction.h"
 
 #include <algorithm>
@@ -51,11 +54,11 @@ bool is_copy(const Instruction& i) {
 }
 
 struct Product {
-  std::size_t uses = 0;         // by additions
-  bool used_otherwise = false;  // also: the addend of a fusion
+  std::size_t uses = 0;         // in additions
+  bool used_otherwise = false;  // including as the addend of a fusion
 };
 
-// One addition's product operands: place of the product in Kernel::body.
+// The operands of an addition that are products, as indices in Kernel::body.
 struct Operands {
   std::optional<std::size_t> product[2];
   bool negated[2] = {false, false};
@@ -68,7 +71,7 @@ struct Fusion {
   bool negated;
 };
 
-// Products and additions of one block, and what is fused.
+// The products and additions of one block, and which of them are fused.
 class BlockPass {
  public:
   BlockPass(const Kernel& kernel, const Block& block, Rule rule) : kernel_(kernel), block_(block), rule_(rule) {
@@ -109,7 +112,7 @@ class BlockPass {
       for (const std::string& name : registers_written(i)) {
         if (i.guard.empty()) {
           holds.erase(name);
-        } else if (const auto at = holds.find(name); at != holds.end()) {  // may hold it still
+        } else if (const auto at = holds.find(name); at != holds.end()) {  // may still hold it
           products_[at->second.product].used_otherwise = true;
         }
       }
@@ -152,7 +155,7 @@ class BlockPass {
     }
   }
 
-  // Number of uses when the product may be fused into this addition, otherwise nothing.
+  // The number of uses if the product may be fused into this addition; otherwise nullopt.
   std::optional<std::size_t> uses(const std::optional<std::size_t>& product, bool single) const {
     if (!product) return {};
     const Product& p = products_.at(*product);
@@ -178,7 +181,7 @@ class BlockPass {
   std::map<std::size_t, Fusion> result_;
 };
 
-// Writes the kernel anew, with the fusions.
+// Writes the kernel again, with the fusions.
 class Rewriter {
  public:
   Rewriter(const Module& module, const Kernel& kernel, const std::map<std::size_t, Fusion>& fusions,
@@ -203,7 +206,7 @@ class Rewriter {
  private:
   std::string fresh(const std::string& type) { return "%graze_" + type + "_" + std::to_string(fresh_count_[type]++); }
 
-  // Copies of factors that are overwritten between the product and its addition.
+  // Makes copies of factors that are overwritten between the product and its addition.
   void keep_factors(std::size_t addition, const Fusion& fusion) {
     const Instruction& product = kernel_.body[fusion.product];
     auto& names = factors_[fusion.product];
@@ -221,7 +224,7 @@ class Rewriter {
         }
       }
     }
-    if (product.operands[0] == names[0] || product.operands[0] == names[1]) {  // m = m * b overwrites a factor itself
+    if (product.operands[0] == names[0] || product.operands[0] == names[1]) {  // m = m * b overwrites its own factor
       for (std::size_t f = 0; f < 2; ++f) {
         if (names[f] == product.operands[0]) {
           copies_[fusion.product].push_back({fresh(product.op.back()), names[f]});
@@ -251,7 +254,7 @@ class Rewriter {
     return name;
   }
 
-  // d = ±a*b ± c: sub negates its second operand, be it the product or the addend.
+  // d = ±a*b ± c. A sub negates its second operand, which may be the product or the addend.
   void write_fused(const Instruction& addition, const Fusion& fusion) {
     const bool subtracts = addition.op[0] == "sub";
     auto factors = factors_.at(fusion.product);
@@ -274,7 +277,7 @@ class Rewriter {
     Instruction i = kernel_.body[place];
     if (is_float(i) && (i.op[0] == "mul" || i.op[0] == "add" || i.op[0] == "sub") && !is_rounded(i))
       i.op.insert(i.op.begin() + 1, "rn");
-    if (i.has("approx") || i.has("full"))  // ptxas expands it, and contracts within
+    if (i.has("approx") || i.has("full"))  // ptxas expands it and contracts within the expansion
       throw PtxError(module_.path + ":" + std::to_string(i.line) + ": cannot be replayed: " + text(i));
     if (is_float(i) && i.op[0] == "mad")
       throw PtxError(module_.path + ":" + std::to_string(i.line) + ": mad leaves the rounding open: " + text(i));
@@ -285,7 +288,7 @@ class Rewriter {
   const Module& module_;
   const Kernel& kernel_;
   const std::map<std::size_t, Fusion>& fusions_;
-  const std::map<std::size_t, std::size_t>& order_;  // place in Kernel::body to place in the order of execution
+  const std::map<std::size_t, std::size_t>& order_;  // index in Kernel::body to position in the order of execution
   Contracted result_;
   std::map<std::string, int> fresh_count_;
   std::map<std::size_t, std::vector<std::string>> factors_;

@@ -14,7 +14,7 @@ std::string rounding_of(const Instruction& i) {
   return "";
 }
 
-// The words of the operation for one rounding mode: "add(…)", "mul_ftz(…)", "rounded_sqrt<Rounding::rm>(…)".
+// The call for an operation in one rounding mode: "add(…)", "mul_ftz(…)", "rounded_sqrt<Rounding::rm>(…)".
 std::string rounded_operation(const Operands& o, const std::string& arguments) {
   const Instruction& i = o.instruction();
   const std::string& op = i.op[0];
@@ -30,7 +30,7 @@ std::string rounded_operation(const Operands& o, const std::string& arguments) {
   return ftz && one_of(op, {"add", "sub"}) ? fmt::format("flushed({})", result) : result;
 }
 
-// mul, mad: the low half, the high one, or all of it.
+// mul, mad: the low half, the high half, or the whole product.
 std::string product(const Operands& o) {
   const Instruction& i = o.instruction();
   const std::string& type = o.type();
@@ -47,7 +47,7 @@ std::string product(const Operands& o) {
   return o.assign(result_type, result);
 }
 
-// Operations on bits; an empty result: none of them.
+// Operations on bits. Returns an empty text for other operations.
 std::string bit_statement(const Operands& o) {
   const Instruction& i = o.instruction();
   const std::string &op = i.op[0], &type = o.type();

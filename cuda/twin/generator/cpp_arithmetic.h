@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX arithmetic as C++ statements, in the words of cuda/twin/twin_ops.h and its continuations.
+// Writes PTX arithmetic as C++ statements that call the functions of cuda/twin/twin_ops*.h.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace graze::cuda::twin {
 
-// Throws: PtxError for an instruction that is unknown or cannot be replayed.
+// Throws: PtxError for an unknown instruction or one that cannot be replayed.
 std::string floating_statement(const Operands& operands);
 std::string integer_statement(const Operands& operands);
 

@@ -98,7 +98,7 @@ std::string Operands::address(const std::string& memory) const {
                            offset);
     }
   }
-  if (instruction_.has("param") && base[0] != '%')  // of a call
+  if (instruction_.has("param") && base[0] != '%')  // a parameter of a call
     return fmt::format("reinterpret_cast<u64>({} + {})", identifier(base), offset);
   return fmt::format("{} + static_cast<u64>({}ll)", value(base, "u64"), offset);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The operands of one PTX instruction in C++: what the writers of statements share.
+// The operands of one PTX instruction in C++; shared by the writers of statements.
 #pragma once
 
 #include <initializer_list>
@@ -10,14 +10,14 @@
 
 namespace graze::cuda::twin {
 
-// "%f32" as "f32_", which is no type; "$L__BB0_3" as "L__BB0_3".
+// "%f32" becomes "f32_", because f32 is a type. "$L__BB0_3" becomes "L__BB0_3".
 std::string identifier(std::string name);
 
-// C++ type of a PTX type; the untyped ones count as unsigned. Empty for a type without one.
+// The C++ type of a PTX type; an untyped one becomes unsigned. Empty when there is none.
 std::string cpp_type(const std::string& type);
 
 bool one_of(const std::string& word, std::initializer_list<const char*> words);
-int bytes(const std::string& type);  // of a PTX type
+int bytes(const std::string& type);  // size of a PTX type
 
 class Operands {
  public:
@@ -34,26 +34,26 @@ class Operands {
   std::size_t count() const { return instruction_.operands.size(); }
   const std::string& operand(std::size_t o) const;
 
-  // Operand, or any text but memory, as a value of the type.
+  // An operand, given by index or text, as a value of the type. Not for memory operands.
   std::string value(std::size_t o, const std::string& type) const { return value(operand(o), type); }
   std::string value(const std::string& name, const std::string& type) const;
 
-  // A register by its name in C++.
+  // The C++ name of a register.
   std::string reg(const std::string& name) const;
 
-  // "d = expression;" where the expression has the type; a wider register takes it extended by its sign.
+  // "d = expression;", where the expression has the type. A wider register gets the value extended as that type.
   std::string assign(const std::string& destination, const std::string& type, const std::string& expression) const;
   std::string assign(const std::string& type, const std::string& expression) const {
     return assign(operand(0), type, expression);
   }
 
-  // "[%rd1+8]" as an address.
+  // The address in "[%rd1+8]".
   std::string address(const std::string& memory) const;
 
-  // "{%r1,%r2}" one by one; anything else is alone.
+  // The elements of "{%r1,%r2}"; any other name is its own only element.
   static std::vector<std::string> elements(const std::string& name);
 
-  // The modifiers between the operation and its type must be among these.
+  // Throws: PtxError when a modifier between the operation and its type is not among these.
   void only(std::initializer_list<const char*> known) const;
 
  private:

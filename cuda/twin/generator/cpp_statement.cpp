@@ -19,7 +19,7 @@ std::string memory(const Operands& o) {
   const bool loads = i.op[0] == "ld";
   std::string where = o.address(o.operand(loads ? 1 : 0)), result;
   const Names elements = Operands::elements(o.operand(loads ? 0 : 1));
-  if (elements.size() > 1) {  // one of them may be the address's register
+  if (elements.size() > 1) {  // one of them may be the register of the address
     result = fmt::format("const u64 at = {}; ", where);
     where = "at";
   }
@@ -102,7 +102,7 @@ std::string convert(const Operands& o) {
   } else if (from[0] == 'f') {
     if (rounding.size() != 3) o.fail("the rounding is left open");
     if (bytes(to) == 1) o.fail("unknown instruction");
-    x = fmt::format("to_integer<{}>({}({}))", cpp_type(to), rounding, x);  // .sat changes nothing: it saturates
+    x = fmt::format("to_integer<{}>({}({}))", cpp_type(to), rounding, x);  // .sat changes nothing: to_integer saturates
   } else if (to[0] == 'f') {
     if (i.has("sat")) o.fail("unknown modifier .sat");
     if (rounding != "rn" && !directed) o.fail("the rounding is left open");
@@ -115,7 +115,7 @@ std::string convert(const Operands& o) {
   return o.assign(to, x);
 }
 
-// mov, also of a pair of halves: mov.b64 {lo,hi}, a and mov.b64 d, {lo,hi}.
+// mov, also of a register from or to its two halves: mov.b64 {lo,hi}, a and mov.b64 d, {lo,hi}.
 std::string move(const Operands& o) {
   o.only({});
   const std::string& type = o.type();
@@ -137,7 +137,7 @@ std::string move(const Operands& o) {
                                     cpp_type(type), o.value(parts[0], half), o.value(parts[1], half), shift));
 }
 
-// "(param0,param1)" one by one.
+// The elements of "(param0,param1)".
 Names arguments(const std::string& list) {
   return list == "()" ? Names() : Operands::elements('{' + list.substr(1, list.size() - 2) + '}');
 }
@@ -196,7 +196,7 @@ std::string statement(const Operands& o) {
     o.only({});
     return o.assign(type, fmt::format("{} ? {} : {}", o.value(3, "pred"), o.value(1, type), o.value(2, type)));
   }
-  if (op == "slct") {  // slct.TYPE.s32 d, a, b, c: a where c is not negative
+  if (op == "slct") {  // slct.TYPE.s32 d, a, b, c: a if c >= 0, else b
     const std::string what = i.op.at(i.op.size() - 2);
     if (i.op.size() != 3 || type != "s32" || cpp_type(what).empty()) o.fail("unknown instruction");
     return o.assign(what, fmt::format("{} >= 0 ? {} : {}", o.value(3, type), o.value(1, what), o.value(2, what)));

@@ -28,7 +28,7 @@ void declare(std::ostream& out, const Module& module, const Kernel& kernel, cons
   out << fmt::format("    [[maybe_unused]] {} {};\n", spelled, fmt::join(names, ", "));
 }
 
-// A directive of a body: scopes, and the memory of a call's arguments.
+// A directive in a body: scopes, and the memory for a call's arguments.
 std::string cpp_directive(const std::string& directive) {
   if (directive == "{" || directive == "}") return directive;
   const auto memory = parameter(directive.substr(0, directive.size() - 1));
@@ -36,7 +36,7 @@ std::string cpp_directive(const std::string& directive) {
 }
 
 void write_body(std::ostream& out, const Module& module, const Kernel& kernel) {
-  if (!kernel.local.empty())  // zeros: where a device reads what was never written, the twin is the same each time
+  if (!kernel.local.empty())  // zeros: a device may read memory that was never written; the twin is deterministic
     out << fmt::format("    alignas({}) unsigned char {}[{}] = {{}};\n", std::max(kernel.local_align, 8),
                        identifier(kernel.local), kernel.local_bytes);
   for (const auto& [prefix, row] : kernel.registers) declare(out, module, kernel, prefix, row.first, row.second);
@@ -78,7 +78,7 @@ std::string spelled(const Module& module, const Place& place) {
   return fmt::format("{{\"{}\", {}}}", file == module.files.end() ? "" : file->second, place.line);
 }
 
-// What the name of the kernel says: template<int, class> NAME<7, float>, or just a name.
+// The parts of a kernel's name: template<int, class> NAME<7, float>, or a plain name.
 struct KernelName {
   std::string name;
   int integer = -1;
@@ -112,7 +112,7 @@ void write_cpp(std::ostream& out, const Module& module, Rule rule) {
   for (const Kernel& kernel : module.kernels) {
     if (kernel.is_function) continue;
     const Contracted contracted = contract(module, kernel, rule);
-    std::vector<Site> sites = contracted.sites;  // then those of the functions
+    std::vector<Site> sites = contracted.sites;  // the kernel's sites, then those of the functions
     const KernelName name = parsed(kernel.name);
     all.push_back(name.integer < 0
                       ? name.name

@@ -7,7 +7,7 @@
 namespace graze::cuda::twin {
 namespace {
 
-// The registers named within an operand: "[%rd1+4]", "{%r1,%r2}", "%p1|%p2", "!%p3".
+// The registers in an operand: "[%rd1+4]", "{%r1,%r2}", "%p1|%p2", "!%p3".
 std::vector<std::string> registers_in(const std::string& operand) {
   std::vector<std::string> names;
   for (std::size_t at = operand.find('%'); at != std::string::npos; at = operand.find('%', at)) {
@@ -28,7 +28,7 @@ bool leaves(const Instruction& i) {
 }
 bool jumps(const Instruction& i) { return i.is_operation() && (i.op[0] == "bra" || i.op[0] == "brx"); }
 
-// The labels of a jump: one, or those of its list.
+// The target labels of a jump: one, or the labels of its list.
 std::vector<std::string> targets(const Kernel& kernel, const Instruction& i) {
   if (i.op[0] == "bra") return {i.operands.at(0)};
   const auto list = kernel.branch_targets.find(i.operands.at(1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks of a kernel, and which registers are alive at their ends: what the contraction pass asks of the control flow.
+// The basic blocks of a kernel and the registers alive at their ends, for the contraction pass.
 #pragma once
 
 #include <set>
@@ -10,18 +10,18 @@
 
 namespace graze::cuda::twin {
 
-// Registers that an instruction reads and writes; memory operands are read.
+// The registers that an instruction reads and writes. The registers in a memory operand are read.
 std::vector<std::string> registers_read(const Instruction& instruction);
 std::vector<std::string> registers_written(const Instruction& instruction);
 
 struct Block {
-  std::vector<std::size_t> instructions;  // places in Kernel::body, in the order of execution
-  std::vector<std::size_t> successors;    // places in Flow::blocks
+  std::vector<std::size_t> instructions;  // indices in Kernel::body, in order of execution
+  std::vector<std::size_t> successors;    // indices in the vector of blocks
   std::set<std::string> alive_at_end;     // registers that a successor may read before writing them
 };
 
-// The kernel's basic blocks. A block whose only successor has no other predecessor is one block with it.
-// Throws: PtxError for a jump to a label that is not there.
+// The kernel's basic blocks. A block is merged with its only successor if that has no other predecessor.
+// Throws: PtxError for a jump to an unknown label.
 std::vector<Block> blocks(const Module& module, const Kernel& kernel);
 
 }  // namespace graze::cuda::twin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reader and writers: what they make of PTX, and what they refuse. Values are in cuda/twin/twin_ops.test.cpp.
+// Reader and writers: their output for PTX, and the PTX that they refuse. cuda/twin/twin_ops.test.cpp checks values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Module module_of(const std::string& body) {
   return read_ptx(in, "test.ptx");
 }
 
-// What the writer says of a kernel whose line 13 is this instruction; empty when it writes it.
+// The writer's error for a kernel with this instruction on line 13; empty when it accepts it.
 std::string complaint(const std::string& instruction) {
   try {
     std::ostringstream out;
@@ -125,7 +125,7 @@ TEST(TwinGenerator, HashKnowsInstructionsButNoLines) {
   EXPECT_EQ(hash(body), hash(".loc 1 2 3\n" + body));
   EXPECT_NE(hash(body), hash(body + "mov.f32 %f1, %f2;"));
   EXPECT_NE(hash(body), hash(body, Rule::right_first));
-  // The number of the kernel in its module is in the names of labels.
+  // Names of labels contain the kernel's number in its module.
   EXPECT_EQ(hash("bra $L__BB0_7;\n$L__BB0_7:\n"), hash("bra $L__BB12_7;\n$L__BB12_7:\n"));
   EXPECT_NE(hash("bra $L__BB0_7;\n$L__BB0_7:\n"), hash("bra $L__BB0_8;\n$L__BB0_8:\n"));
 }
@@ -204,7 +204,7 @@ TEST(TwinGenerator, KeepsTheKernelThatCounts) {
   write_explicit(ptx, small, Rule::ptxas);
   for (const char* kept : {".pragma \"nounroll\";", ".const .align 4 .b8 table[8]", "mul.rn.f32", ".branchtargets"})
     EXPECT_NE(ptx.str().find(kept), std::string::npos) << kept;
-  std::istringstream again(ptx.str());  // its own reader takes it
+  std::istringstream again(ptx.str());  // its own reader accepts it
   EXPECT_EQ(read_ptx(again, "again.ptx").kernels.size(), 2u);
 }
 

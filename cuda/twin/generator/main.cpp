@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The twin generator: a tool of the build. PTX in; C++, explicit PTX, or PTX as the repository keeps it out.
+// The twin generator, a build tool. It reads PTX and writes C++, explicit PTX, or the PTX stored in the repository.
 #include <cstring>
 #include <fstream>
 #include <iostream>
@@ -22,13 +22,13 @@ constexpr char kUsage[] =
     "usage: graze_twin_generator --text OUT FILE …   the files as C++ string literals, without their own includes\n"
     "usage: graze_twin_generator --proofs OUT [RECORD …]\n";
 
-// The text as a list of raw string literals, since compilers limit the length of one.
+// Writes the text as a list of raw string literals, because compilers limit the length of a literal.
 void write_literal(std::ostream& out, const std::string& text) {
   constexpr std::size_t kPiece = 8000;
   for (std::size_t at = 0; at < text.size(); at += kPiece) out << "R\"ptx(" << text.substr(at, kPiece) << ")ptx\",\n";
 }
 
-// Headers of the project, which stand before what includes them.
+// The text of a file without its includes of project headers, which come before it.
 std::string without_own_includes(const std::string& path) {
   std::ifstream in(path);
   if (!in) throw PtxError(path + ":0: cannot be read");

@@ -17,7 +17,7 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
 }
 
-// Splits at the separator, but not within brackets and braces.
+// Splits at the separator, except within brackets and braces.
 std::vector<std::string> split(std::string_view text, char separator) {
   std::vector<std::string> parts;
   int depth = 0;
@@ -49,7 +49,7 @@ class Reader {
   Module read() {
     try {
       read_lines();
-    } catch (const std::out_of_range&) {  // of std::stoi and its like
+    } catch (const std::out_of_range&) {  // from std::stoi and similar functions
       fail("expected numbers that fit");
     }
     if (kernel_ != nullptr) fail("the file ends within a kernel");
@@ -74,7 +74,8 @@ class Reader {
     throw PtxError(module_.path + ":" + std::to_string(line_) + ": " + why + (text_.empty() ? "" : ": " + text_));
   }
 
-  // The next line without its comment, but for two that say more than PTX can: nvcc's version, and our "// from".
+  // Reads the next line without its comment. Two comments have information that PTX lacks: nvcc's version and our "//
+  // from".
   bool next_line() {
     static const std::regex kVersion(R"(// Cuda compilation tools, release [0-9.]+, V([0-9.]+))"),
         kFrom(R"(// from (\d+) (\d+) (\d+))");
@@ -97,7 +98,7 @@ class Reader {
     return {std::stoi(match[at]), std::stoi(match[at + 1]), std::stoi(match[at + 2])};
   }
 
-  // Adds the following lines up to the semicolon.
+  // Joins the following lines up to the semicolon.
   void join_lines() {
     const int first = line_;
     std::string whole = text_;
@@ -174,7 +175,7 @@ class Reader {
       } else if (std::regex_match(value, kNumber)) {
         bits = value[0] == '-' ? 0 - std::stoull(value.substr(1)) : std::stoull(value);
       } else {
-        fail("expected a table of numbers");  // addresses of other tables and of functions
+        fail("expected a table of numbers");  // such as addresses of other tables or of functions
       }
       for (std::size_t b = 0; b < size; ++b) table.bytes.push_back(static_cast<std::uint8_t>(bits >> (8 * b)));
     }
@@ -192,7 +193,7 @@ class Reader {
     if (text_ == "{") {
       in_body_ = true;
       kernel_->declared_before = declared_.contains(kernel_->name);
-    } else if (text_ == ";") {  // of a function: its definition follows, or is in another file
+    } else if (text_ == ";") {  // a declaration: the function is defined later or in another file
       declared_.insert(kernel_->name);
       module_.kernels.pop_back();
       kernel_ = nullptr;
@@ -204,7 +205,7 @@ class Reader {
     }
   }
 
-  // A line of a body: mostly one statement; inline assembly has several, and scopes.
+  // A line of a body, mostly one statement. Inline assembly may have several statements and scopes.
   void read_statements() {
     if ((text_.starts_with("call") || text_.starts_with('@') || text_.find(".branchtargets") != text_.npos) &&
         !text_.ends_with(';') && (text_.find("call") != text_.npos || text_.find(".branchtargets") != text_.npos))
@@ -271,20 +272,20 @@ class Reader {
       kernel_->local = match[2];
       kernel_->local_align = std::stoi(match[1]);
       kernel_->local_bytes = std::stoi(match[3]);
-    } else if (text_.starts_with(".pragma")) {  // "nounroll": ptxas unrolls the loop otherwise
+    } else if (text_.starts_with(".pragma")) {  // "nounroll": without it ptxas unrolls the loop
       add_directive(text_);
     } else if (text_.starts_with(".param") && !scopes_.empty() &&
-               parameter(text_.substr(0, text_.size() - 1))) {  // of a call
+               parameter(text_.substr(0, text_.size() - 1))) {  // parameter of a call
       add_directive(text_);
     } else {
       fail("expected an instruction");
     }
   }
 
-  // A register of a scope becomes one of the kernel, of a name of its own.
+  // Turns a scope's register into a register of the kernel with a unique name.
   void declare_in_scope(const std::smatch& match) {
     if (match[3].matched) fail("expected a register with a name of its own");
-    if (match[2] == "temp_param_reg") return;  // nvcc declares it for each call, and uses it nowhere
+    if (match[2] == "temp_param_reg") return;  // nvcc declares it for each call and never uses it
     std::string name = match[2];
     std::erase(name, '%');
     name = "%scope" + std::to_string(scope_count_) + "_" + name;
@@ -292,7 +293,7 @@ class Reader {
     scopes_.back()[match[2]] = name;
   }
 
-  // The operand, with names of registers of scopes replaced.
+  // The operand, with the names of scopes' registers replaced.
   std::string resolved(const std::string& operand) const {
     if (std::all_of(scopes_.begin(), scopes_.end(), [](const auto& scope) { return scope.empty(); })) return operand;
     static const std::regex kName(R"([%\w$]+)");
@@ -342,8 +343,8 @@ class Reader {
   bool in_body_ = false;
   bool in_debug_section_ = false;
   std::set<std::string> declared_;                          // functions
-  std::vector<std::map<std::string, std::string>> scopes_;  // registers that are declared in each, by their new names
-  int scope_count_ = 0;                                     // in the file
+  std::vector<std::map<std::string, std::string>> scopes_;  // registers declared in each scope, with their new names
+  int scope_count_ = 0;                                     // of scopes in the file
   Source source_;
   Place inlined_at_;
   std::string text_;

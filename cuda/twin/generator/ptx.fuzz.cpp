@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX of any bytes: an error of one line, or a module.
+// Reads arbitrary bytes as PTX: gives a one-line error or a module.
 #include <sstream>
 
 #include "core/fuzz_target.h"

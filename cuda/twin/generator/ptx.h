@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// PTX as the twin generator sees it: tables, and kernels and functions of parameters, registers, local memory and
-// instructions. Reference: NVIDIA, PTX ISA 9.0. Of its grammar, what nvcc writes for kernels without shared memory.
+// PTX for the twin generator: tables, kernels and functions with their parameters, registers, local memory and
+// instructions. Supports the part of the grammar that nvcc writes for kernels without shared memory. Reference: NVIDIA,
+// PTX ISA 9.0.
 #pragma once
 
 #include <cstdint>
@@ -20,21 +21,21 @@ struct PtxError : std::runtime_error {
 };
 
 struct Place {
-  int file = 0;  // number in Module::files; 0 when unknown
+  int file = 0;  // index in Module::files; 0 when unknown
   int line = 0;
   int column = 0;
   friend bool operator==(const Place&, const Place&) = default;
 };
 
-// Where an instruction comes from: its source line, and the line into which that was inlined (file 0: into none).
-// PTX does not say without doubt what lies further out.
+// Where an instruction comes from: its source line, and the line into which that code was inlined (file 0: not
+// inlined). PTX does not identify further levels of inlining reliably.
 struct Source {
   Place at;
   Place from;
   friend bool operator==(const Source&, const Source&) = default;
 };
 
-// A label, a directive among the instructions, or an instruction.
+// A label, an instruction, or a directive among the instructions.
 struct Instruction {
   std::string label = {};
   std::string directive =
@@ -43,10 +44,10 @@ struct Instruction {
   bool guard_negated = false;
   std::vector<std::string> op = {};        // "fma", "rn", "f32"
   std::vector<std::string> operands = {};  // destination first; "[%rd1+4]" and "{%r1,%r2}" are one operand each
-  int line = 0;                            // in the PTX file
+  int line = 0;                            // line in the PTX file
   Source source = {};
-  bool by_hand = false;  // an fma that the source has: no contraction
-  int site = -1;         // of a contraction, in Contracted::sites
+  bool by_hand = false;  // an fma written in the source, so not a contraction
+  int site = -1;         // of a contraction: index in Contracted::sites
 
   bool is_label() const { return !label.empty(); }
   bool is_operation() const { return !op.empty(); }
@@ -62,50 +63,51 @@ struct Parameter {
   int bytes = 0;
 };
 
-// Of a declaration ".param .b32 NAME"; nothing when it is none.
+// Parses a declaration ".param .b32 NAME"; nullopt when it is not one.
 std::optional<Parameter> parameter(const std::string& declaration);
 
 // A table in constant or global memory.
 struct Table {
-  std::string declaration;  // as it stands in the file, without the semicolon
+  std::string declaration;  // as in the file, without the semicolon
   std::string name;
   int align = 0;
   std::vector<std::uint8_t> bytes;
 };
 
-// A kernel, or a function that kernels call.
+// A kernel, or a function called by kernels.
 struct Kernel {
   std::string name;
   int line = 0;
   bool is_function = false;
-  bool declared_before = false;     // a function that is declared ahead of its definition
+  bool declared_before = false;     // a function that is declared before its definition
   std::string linkage;              // of a function: "", ".visible ", ".weak "
   std::vector<Parameter> returned;  // of a function
   std::vector<Parameter> parameters;
   std::map<std::string, std::pair<std::string, int>>
-      registers;      // prefix, such as "%f", to type and count: 0 for a single register
+      registers;      // prefix, such as "%f", to type and count; a count of 0 means a single register
   std::string local;  // name of the local array, or empty
   int local_align = 0;
   int local_bytes = 0;
-  std::map<std::string, std::vector<std::string>> branch_targets;  // labels, by the name of their list
+  std::map<std::string, std::vector<std::string>> branch_targets;  // lists of labels, by the name of the list
   std::vector<Instruction> body;
 };
 
-// Type of a register of the kernel ("f32", "pred"), or empty when it has none of that name.
+// The type of a register of the kernel ("f32", "pred"); empty when there is no register of that name.
 std::string register_type(const Kernel& kernel, std::string_view name);
 
 struct Module {
   std::string path;
   std::string version;  // "9.0"
   std::string target;   // "sm_75"
-  std::string toolkit;  // "13.0.88", from the comment of nvcc; or empty
+  std::string toolkit;  // "13.0.88", from nvcc's comment; may be empty
   std::map<int, std::string> files;
   std::vector<Table> tables;
   std::vector<Kernel> kernels;  // and functions
 };
 
-// Reads PTX. `path` stands for the stream in messages.
-// Throws: PtxError for what this reader does not know; an unknown instruction is the writers' affair.
+// Reads PTX. `path` is the name of the stream in messages.
+// Throws: PtxError for syntax that this reader does not support. It accepts unknown instructions; the writers reject
+// them.
 Module read_ptx(std::istream& in, const std::string& path);
 
 }  // namespace graze::cuda::twin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes PTX: a module as the repository keeps it, and one with every contraction written out.
+// Writes a module as PTX: in the form stored in the repository, or with every contraction written out.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace graze::cuda::twin {
 
-// The module in one spelling on every machine: paths relative to `root`, neither comments of nvcc nor mangled names of
-// inlined functions, but with the source lines of what may be contracted.
+// Writes the module in a form that is the same on every machine. Paths are relative to `root`; nvcc's comments and the
+// mangled names of inlined functions are left out. The source lines of operations that may be contracted stay.
 void write_stored(std::ostream& out, const Module& module, const std::string& root);
 
-// The module after the contraction pass: nothing is left for ptxas to choose.
+// Writes the module after the contraction pass, which leaves ptxas no choice.
 void write_explicit(std::ostream& out, const Module& module, Rule rule);
 
-// Hash of a kernel's instructions as they stand and as the pass contracts them. Names of files, lines and the
-// kernel's own name do not enter. 16 hexadecimal digits (FNV-1a, 64 bits).
+// Hash of a kernel's instructions, both as they stand and as the pass contracts them. File names, lines and the
+// kernel's own name do not count. 16 hexadecimal digits (FNV-1a, 64 bits).
 std::string kernel_hash(const Kernel& kernel, const Contracted& contracted);
 
 }  // namespace graze::cuda::twin

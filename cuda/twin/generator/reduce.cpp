@@ -11,7 +11,7 @@
 namespace graze::cuda::twin {
 namespace {
 
-// The function that a call names; empty for another instruction.
+// The name of the function in a call; empty for other instructions.
 std::string called(const Instruction& i) {
   if (!i.is_operation() || i.op[0] != "call") return "";
   for (const std::string& operand : i.operands) {

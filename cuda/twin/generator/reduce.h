@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of a module of others: the one kernel that counts, and what tells its contractions from an fma that a person wrote.
+// Reduces a user's module to the kernel that is needed, and tells its contractions from an fma in the source.
 #pragma once
 
 #include <set>
@@ -10,19 +10,19 @@
 
 namespace graze::cuda::twin {
 
-// The kernel, the functions that it calls, directly or not, and all tables.
-// Throws: PtxError when there is no such kernel, and where it writes to global memory more than its answer.
+// The kernel, the functions that it calls directly or indirectly, and all tables.
+// Throws: PtxError when there is no such kernel, or when it writes to global memory other than its answer.
 Module reduced(const Module& module, const std::string& kernel);
 
 using Lines = std::set<std::pair<std::string, int>>;  // file, line
 
-// Lines with an fma. Of a module compiled without contraction: those where a person wrote it.
+// Lines with an fma. In a module compiled without contraction, these are the lines with an fma in the source.
 Lines lines_with_fma(const Module& module);
 
-// Says of each fma on such a line that it is no contraction.
+// Marks each fma on these lines as written in the source, not as a contraction.
 void mark_by_hand(Module& module, const Lines& lines);
 
-// Hash of the kernel, its functions and tables: as kernel_hash where there are none.
+// Hash of the kernel, its functions and its tables. Without functions and tables it equals kernel_hash.
 std::string module_hash(const Module& module);
 
 }  // namespace graze::cuda::twin

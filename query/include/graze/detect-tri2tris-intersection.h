@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0
-   The two functions of the thesis of 2012 (docs/query.md), for its callers: with this folder on the include path they
-   compile as they are. New callers have <graze/query_c.h>. Decided exactly. */
+   The two functions of the 2012 thesis (docs/query.md). With this folder on the include path, its callers compile
+   without changes. New code should use <graze/query_c.h>. Verdicts are exact. */
 #ifndef GRAZE_DETECT_TRI2TRIS_INTERSECTION_H
 #define GRAZE_DETECT_TRI2TRIS_INTERSECTION_H
 
@@ -11,9 +11,9 @@ extern "C" {
 #endif
 
 #define COMPUTE_ALL_INTERSECTION 0x01     /* do not stop at the first hit */
-#define VERBOSE_MODE 0x02                 /* say on the error stream what is wrong */
-#define NO_WDDM_TDR_WORKAROUND 0x04       /* let kernels run as long as they take */
-#define FORCE_SINGLE_GPU_COMPUTATION 0x08 /* use the first device alone */
+#define VERBOSE_MODE 0x02                 /* write errors to the error stream */
+#define NO_WDDM_TDR_WORKAROUND 0x04       /* do not limit the time of a kernel */
+#define FORCE_SINGLE_GPU_COMPUTATION 0x08 /* use only the first device */
 
 typedef struct {
   float x, y, z;
@@ -26,9 +26,9 @@ typedef struct {
 void config_set(uint8_t config);
 void config_reset(void);
 
-/* Returns: 1 when a triangle meets ref, 0 when none does, -1 on an error, or when none does but some are not finite.
-   In result_array a byte for each triangle: 1 meets it, 0 does not, 2 is not finite; where the search stops at a hit,
-   1 for that one and 0 for all others. */
+/* Returns: 1 if a triangle meets ref, 0 if none does, -1 on an error, or if none does but some are not finite.
+   result_array receives a byte for each triangle: 1 meets ref, 0 does not, 2 is not finite. If the search stops at a
+   hit, it is 1 for that triangle and 0 for all others. */
 int8_t tri2tris_intersection_detect_cpu(triangle_t ref, triangle_t tri_array[], int array_sz, uint8_t result_array[]);
 int8_t tri2tris_intersection_detect_gpu(triangle_t ref, triangle_t tri_array[], int array_sz, uint8_t result_array[]);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reference triangles against an array of triangles, for C++20: <graze/query_c.h> with owners, spans and vectors. What
-// fields mean stands there.
+// Tests reference triangles against an array of triangles, for C++20. Adds owners, spans and vectors to
+// <graze/query_c.h>, which describes the fields.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace graze::query {
 
 using Triangle = std::array<float, 9>;  // x y z of each vertex
 
-// Triangles of a type that begins with their nine floats.
+// Triangles of a type whose first nine floats are the coordinates.
 template <class T>
 graze_triangles rows_of(std::span<const T> triangles) {
   static_assert(sizeof(T) >= sizeof(Triangle) && alignof(T) % alignof(float) == 0);
@@ -29,7 +29,7 @@ graze_triangles rows_of(std::span<const T> triangles) {
   return part;
 }
 
-// Triangles whose nine floats lie in nine arrays.
+// Triangles whose nine coordinates lie in nine arrays.
 inline graze_triangles columns_of(const std::array<const float*, 9>& columns, std::uint64_t count) {
   graze_triangles part = {};
   part.layout = GRAZE_COLUMNS;
@@ -39,7 +39,7 @@ inline graze_triangles columns_of(const std::array<const float*, 9>& columns, st
   return part;
 }
 
-// The faces of a mesh, three places of vertices each.
+// The faces of a mesh, each with the indices of three vertices.
 inline graze_triangles mesh_of(std::span<const std::array<float, 3>> vertices,
                                std::span<const std::array<std::uint32_t, 3>> faces) {
   graze_triangles part = {};
@@ -52,13 +52,13 @@ inline graze_triangles mesh_of(std::span<const std::array<float, 3>> vertices,
   return part;
 }
 
-// What a call found; `if (answer)` asks whether it did.
+// The answer of a call. `if (answer)` tests whether the call succeeded.
 struct Answer : graze_answer {
   explicit operator bool() const { return status == GRAZE_OK; }
   std::string_view what() const { return message; }
 };
 
-// A query of all triangles of a part, to be changed as wished.   Requires: reference and part outlive it.
+// A query for all triangles of a part, which may then be changed.   Requires: reference and part outlive the query.
 inline graze_query query_of(const Triangle& reference, const graze_triangles& part) {
   graze_query query = {};
   query.size = sizeof query;
@@ -83,22 +83,22 @@ class Context {
     return answer;
   }
 
-  // Whether any triangle meets the reference: hits is 0 or 1, first the first one that does.
+  // Whether any triangle meets the reference: hits is 0 or 1; first is the first triangle that meets it.
   Answer any(const Triangle& reference, const graze_triangles& part) const noexcept {
     graze_query query = query_of(reference, part);
     query.mode = GRAZE_ANY;
     return run(query);
   }
 
-  // How many do.
+  // How many triangles meet the reference.
   Answer count(const Triangle& reference, const graze_triangles& part) const noexcept {
     return run(query_of(reference, part));
   }
 
-  // For each triangle 1: meets it, 0: does not, 2: declined.   Throws: std::bad_alloc for the vector.
+  // For each triangle: 1 if it meets the reference, 0 if not, 2 if declined.   Throws: std::bad_alloc for the vector.
   Answer all(const Triangle& reference, const graze_triangles& part, std::vector<std::uint8_t>& bytes) const {
     graze_query query = query_of(reference, part);
-    if (part.count > GRAZE_MOST_TRIANGLES) return run(query);  // which refuses it
+    if (part.count > GRAZE_MOST_TRIANGLES) return run(query);  // which rejects it
     bytes.resize(part.count);
     query.bytes = bytes.data();
     return run(query);

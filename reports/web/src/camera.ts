@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera of a drawing: dragging turns it about the middle by three.js's OrbitControls, everything else sets a view.
+// The camera of a drawing. Dragging turns it about the centre with three.js's OrbitControls; everything else sets a
+// view.
 import { MathUtils, OrthographicCamera } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { View } from './drawing';
 
-const kSteepest = 1e-3; // radians from straight above or below, where right and left are lost
+const kSteepest = 1e-3; // radians from straight above or below, where left and right become undefined
 const kFar = 1e4; // parts outside the frame may lie far in front of it
 
 export function view_of({ position, zoom }: OrthographicCamera): View {
@@ -16,7 +17,7 @@ export interface Orbit {
   set: (view: Partial<View>) => void;
 }
 
-// `turned` is called whenever the camera has moved, `rested` at the end of a drag.
+// Calls `turned` whenever the camera has moved, and `rested` at the end of a drag.
 export function orbit(board: HTMLElement, view: View, turned: () => void, rested: () => void): Orbit {
   const camera = new OrthographicCamera();
   camera.up.set(0, 0, 1);
@@ -24,7 +25,7 @@ export function orbit(board: HTMLElement, view: View, turned: () => void, rested
   camera.far = 2 * kFar;
   camera.position.setScalar(kFar);
   const controls = new OrbitControls(camera, board);
-  board.style.touchAction = ''; // a finger that moves up or down scrolls the page
+  board.style.touchAction = ''; // vertical swipes scroll the page
   Object.assign(controls, {
     enablePan: false,
     enableZoom: false,
@@ -41,7 +42,7 @@ export function orbit(board: HTMLElement, view: View, turned: () => void, rested
       .set(Math.cos(steep) * Math.cos(azimuth), Math.cos(steep) * Math.sin(azimuth), Math.sin(steep))
       .multiplyScalar(kFar);
     camera.zoom = MathUtils.clamp(zoom, 0.25, 64);
-    if (!controls.update()) turned(); // it says true where the event tells
+    if (!controls.update()) turned(); // update() returns true if its change event already called `turned`
   }
 
   set(view);

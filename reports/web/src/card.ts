@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The card of a kind of failure: its simplest case, what every lane says of it, why, and how to have it again.
+// The card of a kind of failure: its simplest case, every lane's verdict on it, the explanation, and how to reproduce
+// it.
 import { viewer_button } from './card_viewer';
 import { breakable, code_block, copy_button, h, lazy_details } from './dom';
 import { counted, figure } from './format';
@@ -149,14 +150,14 @@ function ulp_maps(maps: NonNullable<Card['maps']>) {
   );
 }
 
-// The programs of a card, with the source that the report holds once for all of them.
+// A card's programs, with the source that the report stores once for all of them.
 export const snippet_texts = (report: Report, card: Card) =>
   card.snippets.map(({ label, text }) => ({
     label,
     text: text.replace('@SOURCE@', () => report.sources[card.kind.subject]),
   }));
 
-// One text at a time, chosen by its button.
+// Shows one text at a time, chosen by its button.
 function snippets(report: Report, card: Card) {
   const shown = h('div', {});
   const buttons = snippet_texts(report, card).map(({ label, text }) => {
@@ -190,7 +191,7 @@ function truth_words({ truth }: Card) {
   return `${truth.verdict}, ${where}${truth.margin === 0 ? '' : ` (${figure(Math.abs(truth.margin_ulps))} ulps)`}`;
 }
 
-// The inside of a card, made when it is opened.
+// The contents of a card, made when it is opened.
 export function card_body(report: Report, card: Card, id: string) {
   const truth = truth_words(card),
     [verdict] = truth.split(',');
@@ -243,7 +244,7 @@ export function card_body(report: Report, card: Card, id: string) {
   );
 }
 
-// Of the card at that place.
+// The id of the card at this index.
 export const kind_id = (place: number) => `kind-${place + 1}`;
 
 export function card_element(report: Report, card: Card, place: number) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A card's case in the viewer, in a dialog over the report. The page holds all that it takes; it is made ready when the
-// first case is opened. The address keeps the pair beside the card: "#kind-7&p=…&by=moller_1997/f32/cuda-fma".
+// Shows a card's case in the viewer, in a dialog over the report. The page contains everything that the viewer needs;
+// it is prepared when the first case is opened. The address stores the pair and the card:
+// "#kind-7&p=…&by=moller_1997/f32/cuda-fma".
 import compressed from 'graze.wasm';
 import { h } from './dom';
 import { kind_words, within } from './kind';
@@ -19,7 +20,7 @@ export const has_viewer = () => compressed !== '' && stored() !== null;
 
 const bits_of = ({ pair }: Card) => to_bits(Float32Array.from(pair.value));
 
-// A lane of the kind that is wrong on the pair shown; if there is one, one that the viewer has.
+// A lane of the kind that is wrong on the pair shown, preferably one that the viewer has.
 function lane_of(report: Report, { kind, verdicts }: Card) {
   const lanes = stored()!.replay.lanes,
     wrong = verdicts
@@ -37,7 +38,7 @@ export const viewer_button = (report: Report, card: Card, id: string) =>
     'Open in the viewer',
   );
 
-// Opens the viewer wherever the address holds a pair, now and after every link, and closes it where it holds none.
+// Opens the viewer whenever the address holds a pair, now and after every link, and closes it otherwise.
 export function follow_viewer(report: Report, id_of: (place: number) => string) {
   const checks = stored();
   if (!checks || !has_viewer()) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `graze pareto` and `graze tune` found, where their files lie in the campaign's folder.
+// The results of `graze pareto` and `graze tune`, if their files are in the campaign's folder.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, choice, code_block, copy_button, h, on_width, section } from './dom';
@@ -18,7 +18,7 @@ const far = (offer: Offer) => (offer.with_copies ?? offer.from_memory)!;
 const nanoseconds = (ns: number) => ns.toFixed(ns < 1 ? 4 : 1);
 const row_id = (lane: string) => `pareto-${lane.replace(/[^a-z0-9]+/gi, '-')}`;
 
-// Axis of shares: decades, and below them the line of those without any.
+// The axis of shares: decades, and below them a line for shares of zero.
 function shares_axis(shares: number[]) {
   const floor = Math.floor(Math.log10(Math.min(0.01, ...shares.filter((s) => s > 0)))),
     none = floor - 0.7;
@@ -35,7 +35,7 @@ function shares_axis(shares: number[]) {
   };
 }
 
-// The picture of the answer: lanes by cost and by how often they give no right verdict; a press leads to the row.
+// The picture of the answer: lanes by cost and by their share of verdicts that are not right. A click leads to the row.
 export function front(pareto: Pareto) {
   const axis = shares_axis(pareto.lanes.map((offer) => share(offer.errors)));
   const words = (offer: Offer) =>

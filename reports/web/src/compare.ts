@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What changed between two campaigns.
+// The differences between two campaigns.
 import { breakable, h, section, sentence } from './dom';
 import { count, in_full, percent } from './format';
 import type { Compare, Report, Share } from './report';

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elements, and the small parts that several sections share.
+// Elements, and small parts that several sections use.
 
 export type Child = Node | string | null | false | Child[];
 type Props = Record<string, string | number | boolean | null | ((event: never) => void)>;
 
-// An element. Functions are listeners (`onclick`), true is an attribute without value, false and null are absent.
+// Creates an element. Functions are listeners (`onclick`), true is an attribute without a value, false and null are
+// omitted.
 export function h<K extends keyof HTMLElementTagNameMap>(tag: K, props: Props, ...children: Child[]) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(props)) {
@@ -32,7 +33,7 @@ export function breakable(id: string): Child[] {
   return id.split(/(?<=[_/])/).flatMap((part, i) => (i ? [h('wbr', {}), part] : [part]));
 }
 
-// A sentence in which `…` is code.
+// A sentence; text between backticks becomes code.
 export function sentence(text: string): Child[] {
   return text.split('`').map((part, i) => (i % 2 ? h('code', {}, part) : part));
 }
@@ -41,7 +42,7 @@ async function to_clipboard(text: string) {
   try {
     await navigator.clipboard.writeText(text);
   } catch {
-    // not every browser counts a file on disk as a secure place
+    // some browsers do not count a file on disk as a secure context
     const area = h('textarea', { class: 'hidden' });
     area.value = text;
     document.body.append(area);
@@ -61,7 +62,7 @@ export function copy_button(text: string, what: string) {
   return button;
 }
 
-// A text to copy, in one scrolling line or as it is.
+// A text to copy, on one scrolling line or with its own lines.
 export function code_block(text: string, what: string) {
   return h(
     'div',
@@ -71,7 +72,7 @@ export function code_block(text: string, what: string) {
   );
 }
 
-// A <details> whose inside is made when it is opened first.
+// A <details> whose contents are made when it is first opened.
 export function lazy_details(summary: Child[], make: () => Child, props: Props = {}) {
   const details = h('details', props, h('summary', {}, ...summary));
   let made = false;
@@ -84,7 +85,7 @@ export function lazy_details(summary: Child[], make: () => Child, props: Props =
   return { details, open: () => ((details.open = true), open()) };
 }
 
-// A labelled <select>; `change` gets the value chosen.
+// A labelled <select>; calls `change` with the chosen value.
 export function choice(label: string, options: [string, string][], value: string, change: (value: string) => void) {
   const select = h(
     'select',

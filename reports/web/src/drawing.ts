@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair made ready to draw: brought into a box of half-width 1, and seen from a direction. Affine throughout, so that
-// lines stay lines and what touches touches. In double: a card's coordinates reach from 2^-149 to 2^128.
+// Prepares a pair for drawing: fits it into a box of half-width 1, and projects it along a direction. All maps are
+// affine, so lines stay lines and contacts stay contacts. Uses double, because a card's coordinates range from 2^-149
+// to 2^128.
 import { figure } from './format';
 import type { Report } from './report';
 
@@ -16,7 +17,7 @@ export interface Shape {
   marks?: Mark[];
   names?: { p: Vec; name: string }[];
 }
-// What else is drawn, in a colour of the style sheet: triangles, three corners each, or polylines of that width.
+// Additional marks in a colour of the style sheet: triangles with three corners each, or polylines of the given width.
 export interface Mark {
   colour: string;
   triangles?: Vec[];
@@ -53,7 +54,7 @@ export function shape_of(card: Report['cards'][number], frame: Frame): Shape {
     b: points.slice(3).map(place),
     contact: card.drawing.contact.map(place),
     line: card.drawing.planes_line.map(place),
-    radius: (frame === 'both' ? 1 : 1.5) * Math.max(0.5, ...framed.map((p) => Math.hypot(...place(p)))), // the other one shows as well
+    radius: (frame === 'both' ? 1 : 1.5) * Math.max(0.5, ...framed.map((p) => Math.hypot(...place(p)))), // the other one stays visible
     note: factors.length ? `not to scale: ${factors.join(', ')}` : 'to scale',
   };
 }
@@ -68,13 +69,13 @@ function normal([p, q, r]: Vec[]): Vec {
   return length > 0 ? (n.map((c) => c / length) as Vec) : [0, 0, 0];
 }
 
-// Right, up, and towards the eye; z is up.
+// The directions right, up, and towards the eye; the z axis points up.
 export function axes({ azimuth, elevation }: View): { right: Vec; up: Vec; eye: Vec } {
   const [ca, sa, ce, se] = [Math.cos(azimuth), Math.sin(azimuth), Math.cos(elevation), Math.sin(elevation)];
   return { right: [-sa, ca, 0], up: [-se * ca, -se * sa, ce], eye: [ce * ca, ce * sa, se] };
 }
 
-// A direction from which neither triangle is seen edge-on.
+// A direction from which neither triangle appears edge-on.
 export function good_view({ a, b }: Shape): View {
   const normals = [normal(a), normal(b)].filter((n) => dot(n, n) > 0);
   let best: View = { azimuth: 0.6, elevation: 0.45, zoom: 1 },
@@ -89,7 +90,7 @@ export function good_view({ a, b }: Shape): View {
   return best;
 }
 
-// The least height of a triangle as it is drawn: 0 for one that looks like a segment or a point.
+// The smallest height of a triangle as drawn: 0 if it looks like a segment or a point.
 function height([p, q, r]: Vec[]): number {
   const u = q.map((c, k) => c - p[k]),
     v = r.map((c, k) => c - p[k]);
@@ -98,7 +99,7 @@ function height([p, q, r]: Vec[]): number {
   return longest > 0 ? area / longest : 0;
 }
 
-// Both triangles, or the one that would be too small or too thin beside the other.
+// Frames both triangles, or only the one that would be too small or too thin beside the other.
 export function good_frame(card: Report['cards'][number]): Frame {
   const kThin = 0.06;
   const both = shape_of(card, 'both');
@@ -108,10 +109,10 @@ export function good_frame(card: Report['cards'][number]): Frame {
   return thin[0] ?? 'both';
 }
 
-// Half of the height that is seen at zoom 1: the framed points fit, however they are turned.
+// Half of the visible height at zoom 1. The framed points fit from every direction.
 export const framed_half_height = (shape: Shape) => 1.12 * shape.radius;
 
-// Where a point comes to lie on a stage of that many pixels.
+// The position of a point on a stage of this many pixels.
 export function project(
   shape: Shape,
   p: Vec,
@@ -124,7 +125,7 @@ export function project(
   return { x: width / 2 + scale * dot(p, right), y: height / 2 - scale * dot(p, up), depth: dot(p, eye) };
 }
 
-// The vertices' names, those of coinciding vertices as one, pushed away from the middle of what is drawn.
+// The vertices' names, pushed away from the centre of the drawing. Coinciding vertices share one label.
 export function labels(shape: Shape, view: View, width: number, height: number) {
   const at = new Map<string, { x: number; y: number; text: string }>();
   const kAway = 14,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heat maps of the error rate over the size of the coordinates, and over how far from the origin a pair lies.
+// Heat maps of the error rate by the size of the coordinates, and by a pair's distance from the origin.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { h, lazy_details, on_width, section } from './dom';
@@ -19,7 +19,7 @@ interface Cell {
   words: string;
 }
 
-// A cell of fewer pairs is drawn as a line: what it shows may be chance.
+// A cell with fewer pairs is drawn as a line, because its rate may be due to chance.
 const kFew = 100;
 const few = ({ wrong }: Cell) => wrong.of < kFew;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Failures: a card for each kind, and a table of the signatures behind them. One set of filters is for both.
+// Failures: a card for each kind, and a table of the signatures behind the kinds. The same filters apply to both.
 import { card_element, kind_id } from './card';
 import { has_viewer } from './card_viewer';
 import { choice, code_block, h, section } from './dom';
@@ -44,7 +44,7 @@ export function failure_sections(report: Report) {
   const none = h('p', { class: 'empty' }, 'No card passes the filter.');
   const card_count = h('h3', {});
 
-  // What a cell of the league table leads to, above the cards and rows that are left.
+  // The heading for a cell of the league table, above its cards and rows.
   function note(cell: Cell, rows: Signature[], left: number) {
     const words = cell_words(report, cell);
     const clear = h(
@@ -77,7 +77,7 @@ export function failure_sections(report: Report) {
     );
   }
 
-  // Kinds are found by what they are and by their lanes, signatures also by what their kinds are.
+  // A search for kinds looks at their properties and lanes; a search for signatures also looks at their kinds.
   const names_of = ({ kind }: Report['cards'][number]) => [kind.key, kind_words(kind), kind.line];
 
   function update() {
@@ -102,7 +102,7 @@ export function failure_sections(report: Report) {
     shown.textContent = `${count(rows.length)} shown, of ${listed} signatures.`;
     table.show(rows);
 
-    // A kind shows a cell when its lane fails so, in a signature with such pairs.
+    // A kind belongs to a cell if its lane fails in this way in a signature with such pairs.
     const of_cell = cell && new Set(rows.flatMap((s) => s.cards));
     const shows = (place: number) =>
       !of_cell ||
@@ -193,7 +193,7 @@ export function failure_sections(report: Report) {
   ];
   return {
     sections,
-    // Opens the card of that id, if it is one's.
+    // Opens the card with this id, if there is one.
     open: (id: string) => {
       const place = cards.findIndex((_, i) => kind_id(i) === id);
       if (place >= 0) open_card(place);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as a reader wants them. Fixed to English, so that a report reads the same everywhere.
+// Formats numbers for readers. Always English, so that a report reads the same everywhere.
 import type { Share } from './report';
 
 export const count = (n: number) => n.toLocaleString('en-US');
@@ -14,20 +14,20 @@ export const power_of_two = (exponent: number) => `2${raised(exponent)}`;
 // "1 pair", "2,048 pairs"
 export const counted = (n: number, what: string) => `${count(n)} ${what}${n === 1 ? '' : 's'}`;
 
-// A bucket of margins: "-2^-3" as "2⁻³ ulps deep", "2^4" as "2⁴ ulps".
+// A margin bucket in words: "-2^-3" as "2⁻³ ulps deep", "2^4" as "2⁴ ulps".
 export function margin_words(margin: string): string {
   const found = /^([-+]?)2\^(-?\d+)$/.exec(margin);
   if (!found) return margin;
   return `${power_of_two(Number(found[2]))} ulps${found[1] === '-' ? ' deep' : ''}`;
 }
 
-// "-2^-3" before "0" before "2^4", by size.
+// Sort key: "-2^-3" before "0" before "2^4", by size.
 export function margin_order(margin: string) {
   const found = /^([-+]?)2\^(-?\d+)$/.exec(margin);
   return found ? (found[1] === '-' ? -1 : 1) * (Number(found[2]) + 200) : 0;
 }
 
-// Three significant digits; powers of ten where there would be more than three zeros.
+// Three significant digits; a power of ten instead of more than three zeros.
 export function figure(value: number): string {
   if (value === 0 || !Number.isFinite(value)) return String(value);
   const exponent = Math.floor(Math.log10(Math.abs(value)));
@@ -39,10 +39,10 @@ export function figure(value: number): string {
 // "42 ns", "8.5 ns"
 export const nanoseconds = (value: number) => `${value.toFixed(value < 10 ? 1 : 0)} ns`;
 
-// Decimals of a share in per cent.
+// Decimals of a percentage.
 const places = (percent: number) => (percent >= 10 ? 1 : percent >= 1 ? 2 : 3);
 
-// A share in per cent, without the sign: 47.8, 0.156, <0.001.
+// A share as a percentage without the sign: 47.8, 0.156, <0.001.
 export function bare_percent(share: number): string {
   const percent = 100 * share;
   if (percent === 0 || percent === 100) return String(percent);
@@ -55,7 +55,7 @@ const small = (percent: number) => percent !== 0 && percent < 0.001;
 
 export const percent = (share: number) => `${small(100 * share) ? figure(100 * share) : bare_percent(share)} %`;
 
-// A bound in per cent, rounded outward: what is printed, read again, is not below an upper bound, nor above a lower one.
+// A bound in per cent, rounded outward: the printed number is not below an upper bound, nor above a lower one.
 export function percent_bound(share: number, bound: 'lower' | 'upper'): string {
   const value = 100 * share,
     step = bound === 'upper' ? 1 : -1;

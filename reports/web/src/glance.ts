@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture beside the answer: what each lane misses, by group of strata, and what it costs.
+// The picture beside the answer: each lane's errors by group of strata, and its cost.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { h, on_width } from './dom';
@@ -21,13 +21,13 @@ interface Dot {
 
 const kSymbols = ['circle', 'square', 'triangle', 'diamond2', 'star'] as const;
 
-// The group on whose pairs costs are compared, as the answer's sentences do; null: all strata.
+// The group whose pairs are used to compare costs, as in the answer's sentences; null: all strata.
 function cost_ground(report: Report) {
   const general = report.groups.findIndex((group) => group.id === 'general');
   return general < 0 ? null : general;
 }
 
-// One lane of each algorithm and precision, as the cpu rounds it where it ran there; the least wrong first.
+// One lane of each algorithm and precision, preferably the cpu lane; the least wrong first.
 export function glance_rows(report: Report, costs: Costs | null): Row[] {
   const total = new Map(
     report.rates.filter((rate) => rate.stratum === null).map((rate) => [rate.lane, rate.wrong.count]),

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The colours of shares: magma (van der Walt and Smith 2015), even to the eye and safe for the colour-blind. The scale is
-// the cube root: rates of one in 10^4 and of one in two have both to be told from their neighbours. Steps of it are
-// classes and custom properties, so that dark mode is a matter of CSS: on a white page the worst is darkest, on a dark
-// one brightest.
+// The colours of shares: magma (van der Walt and Smith 2015), perceptually uniform and safe for the colour-blind. The
+// scale is the cube root, because rates of one in 10^4 and of one in two must both be distinguishable from their
+// neighbours. Steps are classes and custom properties, so that dark mode needs only CSS: the worst share is darkest on
+// a white page and brightest on a dark one.
 import { interpolateMagma } from 'd3-scale-chromatic';
 import { h } from './dom';
 
 const kSteps = 26;
 
-// Which step a share has; null for none wrong, which has no colour.
+// The step of a share; null for a share of zero, which has no colour.
 export function heat_step(share: number): number | null {
   if (!(share > 0)) return null;
   return Math.round(Math.cbrt(share) * (kSteps - 1));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a kind of failure is: its title, its lanes, where its pairs come from, how close their calls are, and the worst.
+// Describes a kind of failure: its title, its lanes, the origins of its pairs, their margins, and the worst pair.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, code_block, h, on_width, type Child } from './dom';
@@ -8,7 +8,7 @@ import type { FailureKind, Report } from './report';
 
 type Card = Report['cards'][number];
 
-// File and number: "moller_1997.h:117".
+// File and line: "moller_1997.h:117".
 const place_of = (line: string) => line.slice(line.lastIndexOf('/') + 1);
 
 export const kind_words = ({ subject, cause, line, shape }: FailureKind) =>
@@ -21,10 +21,10 @@ export const kind_title = ({ subject, cause, line, shape }: FailureKind): Child[
   `, ${shape} pairs`,
 ];
 
-// "f32/cpu, f64/cpu", without the algorithm.
+// Lane names without the algorithm: "f32/cpu, f64/cpu".
 export const within = (ids: string[]) => ids.map((id) => id.split('/').slice(1).join('/')).join(', ');
 
-// The lanes that fail so, which of them do on the pair shown, and whether the cause is settled.
+// The lanes of the kind, those of them that are wrong on the pair shown, and whether the cause is settled.
 export function kind_lanes(report: Report, { kind, verdicts }: Card) {
   const wrong = new Set(verdicts.filter((verdict) => verdict.wrong).map((verdict) => report.lanes[verdict.lane].id));
   const here = kind.lanes.filter((id) => wrong.has(id)),
@@ -89,7 +89,7 @@ function strata_histogram({ strata }: FailureKind) {
   );
 }
 
-// Every power of two between the deepest and the shallowest, 0, and so for pairs that are apart.
+// Every power of two between the deepest and the shallowest overlap, 0, and the same for disjoint pairs.
 function buckets_of(margins: FailureKind['margins']): string[] {
   const side = (sign: string) => {
     const exponents = Object.keys(margins)
@@ -102,7 +102,7 @@ function buckets_of(margins: FailureKind['margins']): string[] {
   return [...side('-'), '0', ...side('+')].sort((l, r) => margin_order(l) - margin_order(r));
 }
 
-// The buckets that are named below their columns: 0, both ends, and between them those for which there is room.
+// The buckets whose names stand below their columns: 0, both ends, and others as far as there is room.
 function ticks_of(bars: Bar[], column: number): string[] {
   const named = (i: number) => Number(bars[i].name.slice(3)) % 4 === 0;
   const wanted = [bars.findIndex((bar) => bar.name === '0'), 0, bars.length - 1, ...bars.keys()].filter(
@@ -159,7 +159,7 @@ function worst({ kind, pair, commands }: Card) {
     margin_ulps === 0 ? 'margin 0' : `${figure(Math.abs(margin_ulps))} ulps ${margin_ulps < 0 ? 'deep' : 'apart'}`;
   if (kind.worst.pair === pair.hex.join(' '))
     return h('p', { class: 'worst' }, `The pair shown is also the worst one looked at: ${margin}.`);
-  // As the card's own: it says where foreign code is.
+  // Reuses the card's own command, which names the place of foreign code.
   const explain = commands
     .find(({ label }) => label === 'explain')!
     .text.replace(/^.*graze explain case.pairs/, 'graze explain worst.pairs');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the page together from the report that `graze report` wrote into it.
+// Builds the page from the report that `graze report` wrote into it.
 import './style.css';
 import { kind_id } from './card';
 import { follow_viewer } from './card_viewer';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold from which on no
-// error was seen.
+// Error against margin: the share of wrong verdicts by the exact margin in ulps, and the threshold from which no error
+// was seen.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
 import { breakable, choice, h, lazy_details, on_width, section } from './dom';
@@ -21,8 +21,8 @@ interface Dot {
   words: string;
 }
 
-const kNearest = -33; // below every exponent: the place of zero next to it
-const kGap = 3; // of the zero column to both sides
+const kNearest = -33; // below every exponent: position next to zero
+const kGap = 3; // on both sides of the zero column
 
 const kOutermost = [-32, 31]; // these buckets are open-ended
 
@@ -40,7 +40,7 @@ function side_words({ side, exponent }: Point) {
   return side === 'disjoint' ? `${bucket(exponent)} apart` : `${bucket(exponent)} deep`;
 }
 
-// "2³", or why there is none.
+// "2³", or the reason why there is none.
 const from_words = ({ exponent, largest }: Threshold) =>
   exponent !== null ? power_of_two(exponent) : largest === null ? 'no such pairs' : `wrong at ${power_of_two(largest)}`;
 
@@ -49,10 +49,10 @@ export function margins_section(report: Report) {
   const exponents = report.margins.flatMap((row) =>
     row.points.flatMap((p) => (p.exponent === null || !p.wrong.of ? [] : [p.exponent])),
   );
-  const some = exponents.length > 0 ? exponents : [0]; // where all pairs touch
+  const some = exponents.length > 0 ? exponents : [0]; // if all pairs touch
   const lowest = Math.max(kNearest + 1, Math.min(...some)),
     highest = Math.max(...some);
-  // Disjoint to the right of zero, intersecting to the left.
+  // Disjoint pairs are to the right of zero, intersecting ones to the left.
   const place = (side: string, exponent: number | null) =>
     exponent === null || side === 'zero' ? 0 : (side === 'disjoint' ? 1 : -1) * (exponent - lowest + kGap);
   const reach = highest - lowest + kGap + 1;
@@ -90,7 +90,7 @@ export function margins_section(report: Report) {
     { caption: 'Thresholds of the lanes chosen', class: 'plain thresholds' },
   );
 
-  // The strata that thresholds are of: a group, one stratum, or all.
+  // The strata of a threshold: a group, one stratum, or all.
   const kinds: { id: string; label: string; is: (t: Row) => boolean }[] = [
     ...report.groups.map(({ id }, g) => ({ id, label: `${id} pairs`, is: (t: Row) => t.group === g })),
     { id: 'all', label: 'all strata together', is: (t: Row) => t.group === null && t.stratum === null },
@@ -137,7 +137,7 @@ export function margins_section(report: Report) {
 
   const pooled = (lane: number) =>
     report.thresholds.find((t) => t.lane === lane && t.group === null && t.stratum === null);
-  const none = floor - 0.6; // where a share of zero stands on the log axis
+  const none = floor - 0.6; // position of a share of zero on the log axis
   const y = (share: number) => (!log ? 100 * share : share > 0 ? Math.max(none, Math.log10(share)) : none);
 
   function draw(width: number) {
@@ -262,7 +262,7 @@ export function margins_section(report: Report) {
     show_thresholds();
   }
 
-  // What the chart shows of a lane: where it is worst, at margin 0, and from where on it was right.
+  // Describes a lane's curve in words: where it is worst, at margin 0, and from where it is right.
   function lane_words(lane: number) {
     const points = (report.margins.find((row) => row.lane === lane)?.points ?? []).filter((p) => p.wrong.of > 0);
     const zero = points.find((p) => p.side === 'zero'),

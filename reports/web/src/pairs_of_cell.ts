@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a cell of the league table to the pairs that show it: those kept of a signature in whose marks the lane errs so.
+// Leads from a cell of the league table to pairs that show it: the kept pairs of signatures in which the lane fails
+// this way.
 import type { Report } from './report';
 
 type Signature = Report['signatures'][number];
@@ -18,11 +19,11 @@ export interface Cell {
   kind: Kind;
 }
 
-// As the URL keeps it: "moller_1997/f32/cpu,near_edge_edge,false_negative".
+// The cell as text for the URL: "moller_1997/f32/cpu,near_edge_edge,false_negative".
 export const cell_text = (report: Report, { lane, stratum, kind }: Cell) =>
   [report.lanes[lane].id, stratum === null ? 'all' : report.strata[stratum].id, kind].join(',');
 
-// Null for a text that names no cell of this report.
+// Null if the text does not name a cell of this report.
 export function cell_of(report: Report, text: string): Cell | null {
   const [id, where, kind] = text.split(',');
   const lane = report.lanes.findIndex((one) => one.id === id),
@@ -44,13 +45,13 @@ const cpu_lane = (report: Report, lane: number) =>
       one.scalar === report.lanes[lane].scalar,
   );
 
-// The ids of the lanes that a signature has as wrong.
+// The ids of the lanes that are wrong in a signature.
 export function wrong_lanes(report: Report, signature: Signature): string[] {
   const lanes = report.lanes.filter((lane) => lane.algorithm === signature.algorithm);
   return lanes.flatMap((lane, i) => ('+-?'.includes(signature.marks[i] ?? '_') ? [lane.id] : []));
 }
 
-// The pairs kept of the signature that show the cell.
+// The kept pairs of the signature that show the cell.
 export function kept_pairs(report: Report, { lane, stratum, kind }: Cell, signature: Signature): string[] {
   if (signature.algorithm !== report.lanes[lane].algorithm) return [];
   const lanes = lanes_beside(report, lane);
@@ -73,7 +74,7 @@ export function kept_pairs(report: Report, { lane, stratum, kind }: Cell, signat
 const twin = (report: Report, lane: number) =>
   report.lanes[lane].evidence?.startsWith('twin') ? ' --executor twin' : '';
 
-// What shows such a pair again, and what finds all of them.
+// The command that shows such a pair again, and the one that finds all of them.
 export const repro_command = (report: Report, { lane }: Cell, pair: string) =>
   `graze repro ${pair} --lanes '${report.lanes[lane].id}'${twin(report, lane)}`;
 

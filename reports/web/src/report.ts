@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What report.json holds, which reports/report.cpp writes; tests/types.spec.ts checks real reports against it. All
-// numbers are computed there, the page only renders. Lanes and strata are referred to by their place in `lanes` and
-// `strata`. What is absent is null or an empty array.
+// The contents of report.json, which reports/report.cpp writes; tests/types.spec.ts checks real reports against these
+// types. All numbers are computed there; the page only renders them. Lanes and strata are given by their index in
+// `lanes` and `strata`. Missing values are null or an empty array.
 
 export interface Share {
   count: number;
@@ -9,11 +9,11 @@ export interface Share {
   share: number;
   low: number;
   high: number;
-} // Wilson, 95 %; six significant digits are enough; the last three null of nothing
+} // Wilson, 95 %; six significant digits are enough; share, low and high are null if `of` is 0
 
-// Smallest margin (in ulps, a power of two) from which on no error was seen; `bound`: 95 % upper bound of the error rate
-// of the `above` pairs beyond it (1 - 0.05^(1/n)). null exponent: errors up to the largest margin seen, 2^largest; null
-// largest: no pair on that side of zero.
+// The smallest margin (in ulps, a power of two) from which no error was seen. `bound`: 95 % upper bound of the error
+// rate of the `above` pairs beyond it (1 - 0.05^(1/n)). If exponent is null, errors were seen up to the largest margin,
+// 2^largest. If largest is null, there is no pair on that side of zero.
 export interface Threshold {
   exponent: number | null;
   above: number;
@@ -21,8 +21,9 @@ export interface Threshold {
   largest: number | null;
 }
 
-// What lanes cost, in nanoseconds a pair on one core: costs.json, beside the report because it depends on the machine.
-// low, middle, high: quartiles of the passes. group null: all strata. answer: the report's, with costs.
+// costs.json: lane costs in nanoseconds a pair on one core. It is a separate file because it depends on the machine.
+// low, middle and high are the quartiles of the passes. A null group means all strata. answer: the report's, with
+// costs.
 export interface Costs {
   machine: string;
   passes: number;
@@ -36,14 +37,14 @@ export interface Errors {
   false_positive: number;
   declined: number;
 }
-// Under one policy; fixed and broken: against the lane without one.
+// Errors under one policy; fixed and broken are relative to the lane without a policy.
 export interface PolicyErrors extends Errors {
   policy: string;
   fixed: number;
   broken: number;
 }
 
-// tune.json and pareto.json, where they lie in the campaign's folder; docs/formats.md describes them.
+// tune.json and pareto.json, if they are in the campaign's folder; docs/formats.md describes them.
 export interface Tuned {
   lane: string;
   forbid: 'false_negative' | 'false_positive' | 'any';
@@ -69,8 +70,8 @@ export interface Pareto {
   pairs: number;
   seed: number;
   machine: string;
-  // in_cache and from_memory of one core, or resident, with_copies and what the kernels need of a device. failure: the
-  // smallest pair on which the lane is wrong, as `graze check` takes it.
+  // Of one core: in_cache and from_memory. Of a device: resident, with_copies and the resources of the kernels.
+  // failure: the smallest pair on which the lane is wrong, as input for `graze check`.
   lanes: {
     lane: string;
     errors: Errors;
@@ -115,8 +116,8 @@ export interface Report {
     evidence: string | null;
     exact: boolean;
   }[];
-  answer: string[]; // sentences, the most useful first; where costs are known, theirs are shown
-  groups: { id: string; describes: string; strata: number[] }[]; // strata that are asked after together, by place
+  answer: string[]; // sentences, the most useful first; used if costs are unknown
+  groups: { id: string; describes: string; strata: number[] }[]; // strata reported together, by index
   // One row for each lane and stratum that has pairs, and one for each lane over all strata (stratum null).
   rates: {
     lane: number;
@@ -128,23 +129,23 @@ export interface Report {
     differs_from_cpu: Share | null;
   }[];
   group_rates: { lane: number; group: number; wrong: Share }[];
-  // Side by side: left and right lane of one algorithm; `differs` is measured pair by pair where known, else null.
-  // Stratum null: all strata together (as in `rates`).
+  // Pairs of lanes of one algorithm. `differs` counts pair by pair if known, otherwise it is null. A null stratum means
+  // all strata together, as in `rates`.
   side_by_side: {
     kind: 'cpu-nofma' | 'nofma-fma' | 'f32-f64';
     left: number;
     right: number;
     strata: { stratum: number | null; left_wrong: Share; right_wrong: Share; differs: Share | null }[];
   }[];
-  // Error against margin, over all strata (stratum null; those of each stratum are in margins.csv). side: disjoint or
-  // intersecting pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have their own entry with
-  // exponent null. Only buckets that have pairs.
+  // Error against margin over all strata (stratum null; margins.csv has each stratum). side: disjoint or intersecting
+  // pairs. exponent e stands for margins in [2^e, 2^(e+1)) ulps; zero margins have an entry with exponent null. Only
+  // buckets that have pairs.
   margins: {
     lane: number;
     stratum: number | null;
     points: { side: 'disjoint' | 'zero' | 'intersects'; exponent: number | null; wrong: Share }[];
   }[];
-  // Of a group of strata, a stratum, or all (both null).
+  // For a group of strata, a stratum, or all strata (both null).
   thresholds: {
     lane: number;
     group: number | null;
@@ -155,9 +156,9 @@ export interface Report {
   // kind scale: by the exponent of the largest coordinate; offset: by log2(largest coordinate / extent of the pair). A
   // cell stands for exponents [exponent, exponent + step); cells without pairs are absent.
   extremes: { kind: 'scale' | 'offset'; step: number; lane: number; cells: { exponent: number; wrong: Share }[] }[];
-  signature_count: number; // all; `signatures` holds the first of them by pairs
+  signature_count: number; // of all; `signatures` has the most frequent ones
   signatures: {
-    // every signature listed that fits (table), commonest first
+    // one for each signature that fits, most frequent first
     key: string;
     algorithm: string;
     count: number;
@@ -167,53 +168,54 @@ export interface Report {
     coplanar: boolean;
     margin: string; // "-2^-3", "0", "2^4" ulps
     marks: string; // one character ('.' '+' '-' '?') for each lane of the algorithm, in the order of `lanes`
-    cards: number[]; // places in `cards` of the kinds that it belongs to, commonest first
-    pairs: string[]; // those kept of it, "near_edge_edge:1:42"
+    cards: number[]; // indices in `cards` of its kinds, most frequent first
+    pairs: string[]; // kept pairs, such as "near_edge_edge:1:42"
   }[];
-  sources: { [algorithm: string]: string }; // stands for "@SOURCE@" in the snippets of the algorithm's cards
+  sources: { [algorithm: string]: string }; // replaces "@SOURCE@" in the snippets of the algorithm's cards
   cards: {
-    // one for each kind of failure, the commonest first; the pair is its simplest case
+    // one for each kind of failure, most frequent first; the pair is its simplest case
     kind: FailureKind;
     file: string;
     minimised: boolean;
     from: string; // "near_edge_edge:1:42"
     pair: { decimal: string[]; hex: string[]; value: number[] }; // 18 each, a[0].x … b[2].z
     truth: { verdict: string; contact: string; margin: number; margin_ulps: number };
-    // For the drawing: points in double (from exact values), the common set and the line of both planes, clipped to it.
+    // For the drawing: points in double (from exact values), the common set, and the line of both planes, clipped to
+    // it.
     drawing: { contact: number[][]; planes_line: number[][] }; // 0, 1, 2 or more points; 0 or 2 points
-    verdicts: { lane: number; verdict: 'disjoint' | 'intersects' | 'declined'; wrong: boolean }[]; // all lanes run
-    sentences: string[]; // explain's, the first ones on lanes of the kind
-    // What `graze minimize DIR` stored; null where it did not, for another pair than the one shown, or for want of room.
+    verdicts: { lane: number; verdict: 'disjoint' | 'intersects' | 'declined'; wrong: boolean }[]; // all that ran
+    sentences: string[]; // explain's sentences; those on lanes of the kind come first
+    // The result of `graze minimize DIR`; null if it is missing, belongs to another pair, or does not fit the page.
     maps: {
       title: string;
       x: string;
       y: string;
-      size: number; // "b[0].x", "b[0].y", 256; y grows upwards
+      size: number; // "b[0].x", "b[0].y", 256; y points upwards
       legend: { colour: string; means: string }[]; // "#rrggbb" as in the panels, "disjoint", …
-      // name: "truth" or a lane id; shows: its counts in words, absent in maps stored before; png: base64
+      // name: "truth" or a lane id; shows: its counts in words, missing in old maps; png: base64
       panels: { name: string; shows?: string; png: string }[];
     } | null;
     commands: { label: string; text: string }[]; // "repro", "explain", "minimize"
-    snippets: { label: string; text: string }[]; // "cpp", "python", … may be empty to save room
+    snippets: { label: string; text: string }[]; // "cpp", "python", …; may be empty to save space
   }[];
   missing: string[]; // sentences on what this report lacks (not minimised, no maps, …)
   compare: Compare | null;
 }
 
-// What several signatures have in common (fuzz/minimise/kinds.h): a subject (algorithm), a cause, the source line of the
-// comparison that decides, and the shape of the pairs.
+// A kind of failure groups signatures (fuzz/minimise/kinds.h): a subject (algorithm), a cause, the source line of the
+// deciding comparison, and the shape of the pairs.
 export interface FailureKind {
   key: string; // "moller_1997/rounding/moller_1997.h:117/general"
   subject: string;
   cause: string;
-  line: string; // "core/algorithms/moller_1997.h:117"; empty where no comparison is to blame
+  line: string; // "core/algorithms/moller_1997.h:117"; empty if no comparison is to blame
   shape: 'general' | 'coplanar' | 'degenerate';
   pairs: number;
   signatures: number;
-  lanes: string[]; // ids of those that fail so, on some pair of the kind
-  settled: [number, number]; // lanes for which the audit of the cause passed, of those it could look at
-  strata: { [id: string]: number }; // of the pairs kept, at most four of each signature
-  margins: { [bucket: string]: number }; // of all its pairs; "-2^-3", "0", "+2^4" ulps
+  lanes: string[]; // ids of the lanes that fail in this way on some pair of the kind
+  settled: [number, number]; // lanes whose cause passed the audit, and lanes that it could check
+  strata: { [id: string]: number }; // kept pairs by stratum; at most four for each signature
+  margins: { [bucket: string]: number }; // all its pairs by margin; "-2^-3", "0", "+2^4" ulps
   worst: { case: string; pair: string; from: string; margin_ulps: number }; // pair: 18 hex floats
 }
 
@@ -222,8 +224,8 @@ export interface Compare {
   other: Report['run'];
   headline: string; // "Nothing changed: …", "Changed: …"
   differences: string[]; // sentences on how the campaigns differ
-  rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[]; // changed: more than by chance
+  rates: { lane: string; stratum: string; before: Share; after: Share; changed: boolean }[]; // changed: beyond chance
   gained: { key: string; signatures: number; count: number }[]; // kinds, with their signatures and pairs
   lost: { key: string; signatures: number; count: number }[];
-  kinds_compared: boolean; // false where `graze minimize` went not through both
+  kinds_compared: boolean; // false unless `graze minimize` ran on both
 }

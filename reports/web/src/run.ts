@@ -7,7 +7,7 @@ import { glance } from './glance';
 import type { Costs, Report, Pareto } from './report';
 import { sortable_table } from './sortable_table';
 
-// "20 lanes: twin, verified on …", one line an evidence word.
+// "20 lanes: twin, verified on …", one line for each kind of evidence.
 function executors(report: Report): Child[] {
   const by_evidence = new Map<string, number>();
   for (const lane of report.lanes) {
@@ -53,7 +53,7 @@ function lanes_table(report: Report) {
   return table.element;
 }
 
-// A row of a lane, a column of a group of strata.
+// A table with a row for each lane and a column for each group of strata.
 function costs_table(report: Report, costs: Costs) {
   const lanes = [...new Set(costs.rows.map((row) => row.lane))];
   const of = (lane: number, group: number | null) => costs.rows.find((row) => row.lane === lane && row.group === group);
@@ -144,14 +144,14 @@ export function run_section(report: Report, costs: Costs | null) {
   );
 }
 
-// What is said first stands out: "Use exact/f32/cpu: …".
+// Emphasises the start: "Use exact/f32/cpu: …".
 function advice(text: string): Child[] {
   const found = /^(Use|Avoid) [^:]*:/.exec(text);
   return found ? [h('b', {}, ...breakable(found[0])), text.slice(found[0].length)] : sentence(text);
 }
 
 const kFirst = 2,
-  kBeside = 4; // sentences above the picture on a phone, and beside it where there is room
+  kBeside = 4; // sentences above the picture on a phone, and beside it if there is room
 
 export function answer_section(report: Report, costs: Costs | null, pareto: Pareto | null) {
   const said = (costs?.answer ?? report.answer).map((text) => h('li', {}, advice(text)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the search fields understand: every word must be found; a word with an asterisk is a pattern of a whole name.
+// The syntax of the search fields: every word must match; a word with an asterisk is a pattern for a whole name.
 
 function test_of(word: string): (text: string) => boolean {
   if (!word.includes('*')) return (text) => text.includes(word);
@@ -11,7 +11,7 @@ function test_of(word: string): (text: string) => boolean {
   return (text) => whole.test(text);
 }
 
-// Whether each word of the query is found in one of a thing's names.
+// Whether each word of the query matches one of the names.
 export function matcher(query: string): (names: string[]) => boolean {
   const tests = query.toLowerCase().split(/\s+/).filter(Boolean).map(test_of);
   return (names) => {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How lanes look in charts: colour by algorithm (Okabe and Ito 2008, shades for light and dark pages in style.css),
-// dashes by target, width by scalar.
+// The appearance of lanes in charts: colour by algorithm (Okabe and Ito 2008; style.css has shades for light and dark
+// pages), dashes by target, width by scalar.
 import type { Report } from './report';
 
 export function series_colour(report: Report, algorithm: string): string {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two lanes of one algorithm beside each other: what the compiler's contraction and the precision change.
+// Compares two lanes of one algorithm: the effects of the compiler's contraction and of the precision.
 import { choice, h, section } from './dom';
 import { in_full, percent } from './format';
 import { heat_class } from './heat';
@@ -36,7 +36,7 @@ function differs_cell(differs: Share | null, must_be_equal: boolean) {
   );
 }
 
-// The part of a lane's name in which the two do not differ.
+// The part that the names of the two lanes have in common.
 const common = (report: Report, side: Side) => {
   const [left, right] = [report.lanes[side.left], report.lanes[side.right]];
   return side.kind === 'f32-f64' ? `${left.algorithm}, ${left.target}` : `${left.algorithm}/${right.scalar}`;

@@ -25,7 +25,7 @@ export function signature_words(signature: Signature): string {
   return `${hulls(dimensions, coplanar ? 'coplanar ' : '')} ${kContacts[contact] ?? contact}, margin ${margin_words(margin)}`;
 }
 
-// pair_of: the pair to show of a signature.
+// pair_of: returns the pair to show for a signature.
 export function signature_table(report: Report, pair_of: (signature: Signature) => string) {
   function marks({ algorithm, marks: text }: Signature) {
     const lanes = report.lanes.filter((lane) => lane.algorithm === algorithm);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table that sorts by any column, shows rows by the page, and walks its cells with the arrow keys.
+// A table that sorts by any column, shows rows in pages, and moves between cells with the arrow keys.
 import { h, type Child } from './dom';
 
 export interface Column<Row> {
   label: string;
   title?: string;
   numeric?: boolean;
-  heading?: Child[]; // in place of the label
+  heading?: Child[]; // instead of the label
   cell: (row: Row) => HTMLTableCellElement | Child;
-  order: (row: Row) => number | string; // what sorting compares
+  order: (row: Row) => number | string; // sort key
   descending_first?: boolean;
 }
 
@@ -21,8 +21,8 @@ export interface Table<Row> {
 interface Options {
   caption: string;
   class?: string;
-  page?: number; // rows shown at first; a button shows as many more
-  walk?: boolean; // cells take the focus, one tab stop for the table
+  page?: number; // rows shown at first; a button adds as many
+  walk?: boolean; // cells are focusable; the table is one tab stop
 }
 
 export function sortable_table<Row>(columns: Column<Row>[], options: Options): Table<Row> {

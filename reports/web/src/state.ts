@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is chosen on the page, kept in the URL's fragment, so that a link, a reload and Back have it again:
+// The page's choices, kept in the URL's fragment so that links, reloads and Back restore them.
 // "#kind-7&find=moller+f64" is a place and the filters. A link to a place alone keeps the filters. A pair in the viewer
-// (card_viewer.ts) is no filter: "#kind-7&p=…&by=…".
+// (card_viewer.ts) is not a filter: "#kind-7&p=…&by=…".
 
 let place = '';
-let entered = false; // the entry before the last one is where the viewer was opened
+let entered = false; // the viewer was opened from the history entry before this one
 let values = new URLSearchParams();
 const kOfTheViewer = ['p', 'by'];
 const listeners: (() => void)[] = [];
 
-// History entries of our own carry a state, which tells Back from a press on a link.
+// Our own history entries have a state, which distinguishes Back from a click on a link.
 const is_own = () => (history.state as { graze?: boolean } | null)?.graze === true;
 
 function read() {
@@ -28,17 +28,17 @@ function write(how: 'pushState' | 'replaceState') {
 
 export const chosen = (key: string) => values.get(key) ?? '';
 
-// An empty value is no choice.
+// An empty value removes the choice.
 export function choose(key: string, value: string) {
   if (value) values.set(key, value);
   else values.delete(key);
   write('replaceState');
 }
 
-// Calls back after a link, or Back, has changed what is chosen.
+// Calls back after a link or Back has changed the choices.
 export const when_chosen = (changed: () => void) => listeners.push(changed);
 
-// Shows the element of that id, as a press on a link does, with some more chosen.
+// Shows the element with that id, like a click on a link, with additional choices.
 export function go_to(id: string, more: Record<string, string> = {}) {
   place = id;
   Object.entries(more).forEach(([key, value]) => values.set(key, value));
@@ -49,7 +49,7 @@ export function go_to(id: string, more: Record<string, string> = {}) {
 
 export const place_of_address = () => place;
 
-// Leads to a pair in the viewer, over the element of that id; Back leads out of it again.
+// Opens a pair in the viewer over the element with that id; Back closes it.
 export function into_viewer(id: string, pair: string, lane: string) {
   place = id;
   [pair, lane].forEach((value, i) => values.set(kOfTheViewer[i], value));
@@ -65,7 +65,7 @@ export function out_of_viewer() {
   listeners.forEach((changed) => changed());
 }
 
-// Calls arrived(id) with the place that the fragment names, now and after every link.
+// Calls arrived(id) with the place in the fragment, now and after every link.
 export function follow_fragment(arrived: (id: string) => void) {
   write('replaceState');
   if (place) arrived(place);
@@ -76,7 +76,7 @@ export function follow_fragment(arrived: (id: string) => void) {
     entered = false;
     write('replaceState');
     listeners.forEach((changed) => changed());
-    if (place && !(in_viewer && place === before)) arrived(place); // what was read is where it was
+    if (place && !(in_viewer && place === before)) arrived(place); // closing the viewer keeps the scroll position
   });
 }
 

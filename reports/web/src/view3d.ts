@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawing by WebGL. One renderer serves all cards: a browser grants only about 16 contexts. It draws off screen, and
-// each card keeps a copy of its picture in a canvas of its own.
+// Draws with WebGL. All cards share one renderer, because a browser allows only about 16 contexts. It draws off screen,
+// and each card copies its picture to its own canvas.
 import {
   AmbientLight,
   BufferGeometry,
@@ -87,7 +87,7 @@ export function picture(shape: Shape): Picture {
     ['--triangle-a', shape.a, 1],
     ['--triangle-b', shape.b, 2],
   ] as const) {
-    // The shift keeps edges in front of faces, and coplanar faces from flickering into each other.
+    // The offset keeps edges in front of faces, and prevents coplanar faces from flickering.
     const material = new MeshLambertMaterial({
       side: DoubleSide,
       polygonOffset: true,
@@ -99,7 +99,7 @@ export function picture(shape: Shape): Picture {
     coloured.push({ material, name });
     made.push(geometry, material);
     add_line(segments([...points], true), `${name}-edge`, 2, 'shown');
-    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1; // also where the other hides it
+    add_line(segments([...points], true), `${name}-edge`, 1.2, 'faint').renderOrder = 1; // even if the other hides it
   }
   for (const { colour, triangles, opacity, lines, width, dashed } of shape.marks ?? []) {
     if (triangles?.length) {
@@ -164,7 +164,7 @@ export function picture(shape: Shape): Picture {
     overlay(context, view_of(camera), width, height, ratio);
   }
 
-  // Names of the vertices, and a contact that is a point.
+  // Draws the names of the vertices, and a contact that is a point.
   function overlay(context: CanvasRenderingContext2D, view: View, width: number, height: number, ratio: number) {
     context.save();
     context.scale(ratio, ratio);
@@ -182,7 +182,7 @@ export function picture(shape: Shape): Picture {
     context.textAlign = 'center';
     context.textBaseline = 'middle';
     context.fillStyle = style_colour('--ink');
-    context.strokeStyle = style_colour('--raised'); // lines do not strike names through
+    context.strokeStyle = style_colour('--raised'); // an outline, so that lines do not strike names through
     context.lineWidth = 3;
     context.lineJoin = 'round';
     for (const { x, y, text } of labels(shape, view, width, height)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A card's case in the viewer, over the report.
+// Tests a card's case in the viewer, over the report.
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -14,7 +14,7 @@ test.skip(() => !process.env.GRAZE_VIEW, 'this build has no viewer');
 const viewer = (page: Page) => page.locator('#viewer');
 const open_button = (page: Page, number: number) => page.locator(`#kind-${number} .in-viewer`);
 
-// What the viewer says of the card's pair is what the card says, of all lanes that both have.
+// The viewer agrees with the card on the verdicts of all lanes that both have.
 async function expect_verdicts_of(page: Page, report: Report, number: number) {
   const { truth, verdicts } = report.cards[number - 1];
   await expect(viewer(page).locator('h1')).toContainText(`Card ${number}: `);
@@ -52,7 +52,7 @@ test('a card opens in the viewer, says there what it says here, and back again',
     await viewer(page).locator('[data-lane][aria-pressed="true"]').getAttribute('data-lane'),
   );
   await expect.poll(() => page.url()).toMatch(new RegExp(`#kind-${first}&.*p=[0-9a-f]{144}`));
-  // Keys act in the viewer, and help closes alone.
+  // Keys work in the viewer, and Escape closes only the help.
   await page.keyboard.press('h');
   await expect(page.locator('#help')).toBeVisible();
   await page.keyboard.press('Escape');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is chosen reaches rows and cards, stands in the URL, and comes back with it.
+// Choices affect rows and cards, are stored in the URL, and are restored from it.
 import type { Page } from '@playwright/test';
 import { kept_pairs, type Cell } from '../src/pairs_of_cell';
 import type { Report } from '../src/report';
@@ -16,7 +16,7 @@ const cell_at = (page: Page, report: Report, { lane, stratum }: Cell) =>
     .locator('td')
     .nth(stratum === null ? 0 : stratum + 1);
 
-// The first cell of that kind of error of which `is` holds.
+// The first cell with this kind of error for which `is` holds.
 function find_cell(report: Report, is: (kept: number, count: number) => boolean): Cell | undefined {
   for (const { lane, stratum, false_negative } of report.rates) {
     const cell: Cell = { lane, stratum, kind: 'false_negative' };
@@ -54,7 +54,7 @@ test('the league table finds lanes by words and patterns, again after a reload',
   await expect(search).toHaveValue('*/f64/*');
   await expect(page.locator('#league select').first()).toHaveValue('false_negative');
   await expect(page.locator('.league thead th')).toHaveCount(3); // lane, all strata, one
-  await page.locator('nav a', { hasText: 'Extremes' }).click(); // a link to a place keeps what is chosen
+  await page.locator('nav a', { hasText: 'Extremes' }).click(); // a link within the page keeps the choices
   await expect(page).toHaveURL(/#extremes&/);
   await expect(names(page)).toHaveText(kept);
 });
@@ -75,7 +75,7 @@ test('the filters reach cards and signatures, again after a reload', async ({ pa
   await page.reload();
   await expect(shown).toHaveCount(own);
   await page.locator('#kinds select').first().selectOption('');
-  // By cause, source line, shape and lane; signatures by what their kinds are.
+  // Searches by cause, source line, shape and lane; signatures are also found by their kinds.
   const { cause, line, shape, lanes } = report.cards.find(({ kind }) => kind.line && kind.cause === 'rounding')!.kind;
   const place = line.split('/').at(-1)!;
   for (const [query, is] of [
@@ -181,7 +181,8 @@ test('where lanes of a device fail, a card has their program', async ({ report }
     );
   const has = (card: Report['cards'][number], program: string) => card.snippets.some(({ label }) => label === program);
   for (const card of report.cards) {
-    // On a pair shown with a second reason, lanes of the kind may fail for that one: then there may be no program.
+    // On the pair shown, some lanes of the subject may fail for another reason than the kind's. If the kind's own lanes
+    // are among them, the card may lack a program.
     const mixed = card.verdicts.some(
       ({ lane, wrong }) =>
         wrong && report.lanes[lane].algorithm === card.kind.subject && !card.kind.lanes.includes(report.lanes[lane].id),

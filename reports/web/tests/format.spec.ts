@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds are rounded outward: what is printed reads as no less than an upper bound, and as no more than a lower one.
+// Bounds are rounded outward: the printed number is not below an upper bound, nor above a lower one.
 import { expect, test } from '@playwright/test';
 import { interval, percent_bound } from '../src/format';
 
 const kSuperscripts = '⁰¹²³⁴⁵⁶⁷⁸⁹';
 
-// "0.021 %", "1.23·10⁻⁵ %" as a share.
+// Reads "0.021 %" or "1.23·10⁻⁵ %" as a share.
 function read(text: string): number {
   const [, digits, sign, power] = /^([\d.]+)(?:·10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+))? %$/.exec(text)!;
   const exponent = power ? [...power].map((c) => kSuperscripts.indexOf(c)).join('') : '0';

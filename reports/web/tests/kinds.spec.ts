@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a card says of its kind, in its title, sentence, lanes, table and histograms, is one story.
+// A card's title, sentence, lanes, table and histograms describe its kind without contradiction.
 import { expect, open_card, test } from './page';
 
 const place_of = (line: string) => line.split('/').at(-1)!;
 
-// Cards with and without a source line, with a cause that is not settled, and with lanes that are right on the pair shown.
+// There are cards with and without a source line, with an unsettled cause, and with lanes that are right on the pair
+// shown.
 test('the cards have all sorts of kinds', async ({ report }) => {
   const kinds = report.cards.map(({ kind }) => kind);
   expect(kinds.some(({ line }) => line) && kinds.some(({ line }) => !line)).toBe(true);
@@ -21,7 +22,7 @@ test('title, sentence, lanes and verdicts of a card do not contradict each other
   await expect(page.locator('.card .kind-lanes .all')).toHaveCount(report.cards.length);
   const cards = await page.locator('.card').evaluateAll((all) =>
     all.map((card) => {
-      // at once: a question for each text takes long
+      // all at once, because separate queries take long
       const texts = (where: string) =>
         [...card.querySelectorAll(where)].map((one) => one.textContent!.replace(/\s+/g, ' ').trim());
       return {
@@ -57,7 +58,7 @@ test('title, sentence, lanes and verdicts of a card do not contradict each other
     expect(first).toBe(sentences[0]);
     expect(first.startsWith(`${kind.subject}/`), first).toBe(true);
     expect(first).toContain(kind.line);
-    // Of the lanes that it names, those that it says are wrong on the pair shown are marked in the table.
+    // The table marks those of the named lanes that the card calls wrong on the pair shown.
     const said = card.all[0].split(', ').map((lane) => `${kind.subject}/${lane}`);
     expect(said).toEqual(kind.lanes);
     const claimed = card.here.length > 0 ? card.here[0].split(', ').map((lane) => `${kind.subject}/${lane}`) : said;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the page that the tests open: a real campaign, minimised, by the graze that GRAZE names; and a smaller one that
-// compares, with all the same parts but fewer rows. GRAZE_REPORT and GRAZE_COMPARE name pages made before instead.
+// Makes the pages under test with the graze that GRAZE names: a real minimised campaign, and a smaller comparison with
+// the same parts but fewer rows. GRAZE_REPORT and GRAZE_COMPARE name existing pages to use instead.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -46,7 +46,7 @@ export default function make_report() {
     run('view', 'thesis:1:0', '--out', 'view.html');
     process.env.GRAZE_VIEW = join(folder, 'view.html');
   } catch {
-    // a build without the viewer; cli/view.test.cpp says whether it should have one
+    // a build without the viewer; cli/view.test.cpp tests whether it should have one
     process.env.GRAZE_VIEW = '';
   }
   process.env.GRAZE_REPORT = join(folder, 'campaign', 'report.html');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page under test, watched: it must fetch nothing and leave the console clean, whatever a test does with it.
+// The page under test. In every test it must fetch nothing and leave the console clean.
 import { pathToFileURL } from 'node:url';
 import { expect, test as base, type Locator, type Page } from '@playwright/test';
 import type { Costs, Report } from '../src/report';
@@ -7,7 +7,7 @@ import type { Costs, Report } from '../src/report';
 export const url = () => pathToFileURL(process.env.GRAZE_REPORT!).href;
 export const compare_url = () => pathToFileURL(process.env.GRAZE_COMPARE || process.env.GRAZE_REPORT!).href;
 
-// Without WebGL, which takes most of the time where there is no GPU, but in the tests that ask for it.
+// Without WebGL, except in tests that ask for it, because it takes most of the time if there is no GPU.
 export const test = base.extend<{ webgl: boolean; report: Report; costs: Costs | null; watched: void }>({
   webgl: [false, { option: true }],
   watched: [
@@ -47,7 +47,7 @@ export function without_webgl() {
   } as typeof real;
 }
 
-// What is painted there, to be compared.
+// The painted pixels, for comparison.
 export async function pixels(element: Locator): Promise<string> {
   return (await element.screenshot({ animations: 'disabled' })).toString('base64');
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// node tests/picture.mjs REPORT.html CARD OUT.png: the league table's cpu lanes and a card, as the README shows them.
+// node tests/picture.mjs REPORT.html CARD OUT.png: the README's picture of the league table's cpu lanes and a card.
 import { execSync } from 'node:child_process';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node tests/screens.mjs PAGE.html DESKTOP.png PHONE.png: the first screen of a report or a viewer, as the docs show it.
+// node tests/screens.mjs PAGE.html DESKTOP.png PHONE.png: the docs' pictures of the first screen of a report or a
+// viewer.
 import { execSync } from 'node:child_process';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -18,7 +19,7 @@ for (const [path, width, height] of [
   const page = await browser.newPage({ viewport: { width, height } });
   await page.goto(pathToFileURL(resolve(report)).href);
   await page.waitForSelector('#glance svg, #replayed');
-  await page.waitForTimeout(1500); // the viewer's answer comes a moment later
+  await page.waitForTimeout(1500); // the viewer's result takes a moment
   await page.screenshot({ path });
 }
 await browser.close();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `graze view`, watched: it must fetch nothing, leave the console clean, and say what the native build says.
+// The page of `graze view` must fetch nothing, leave the console clean, and agree with the native build.
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
@@ -16,7 +16,7 @@ const kEndsApart =
 const kOverflow =
   'd01cb3ffcf1130a24fd0e03dd0111e894fc5fbfb4fb67a05cee82f564ea92d6bce58537dceb4244ccf02f27ccf8846bbcf581c374eb351f54dda496bcec4d16a4f5f9694ce41af95'; // extreme_scale:1:2
 
-// Without WebGL, which takes most of the time where there is no GPU, but in the tests that ask for it.
+// Without WebGL, except in tests that ask for it, because it takes most of the time if there is no GPU.
 const test = base.extend<{ webgl: boolean; viewer: Page }>({
   webgl: [false, { option: true }],
   viewer: async ({ page, webgl }, use) => {
@@ -91,7 +91,7 @@ test('it says what graze check says', async ({ viewer }) => {
     if (checked.truth.contact !== 'none')
       await expect(viewer.locator('#truth')).toContainText(`contact: ${checked.truth.contact}`);
     const before = await name(viewer);
-    await viewer.keyboard.press('Shift+n'); // one on which more is to be seen
+    await viewer.keyboard.press('Shift+n'); // a pair that shows more
     await expect.poll(() => name(viewer), { timeout: 30_000 }).not.toBe(before);
   }
 });
@@ -131,7 +131,7 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
     expect.stringMatching(/^GPU\s+2\.61·10⁻¹⁹\s+yes\s+goes on, says ✗ disjoint$/),
     expect.stringMatching(/^with 113 bits\s+0\s+no\s+as the CPU$/),
   ]);
-  await verdict(viewer, 'guigue_devillers_2003/f64/cpu').click(); // asked of the CPU it is the same question
+  await verdict(viewer, 'guigue_devillers_2003/f64/cpu').click(); // on the CPU lane the question is the same
   await expect(viewer.locator('#why-title')).toHaveText('Why do CPU and GPU differ?');
   await verdict(viewer, 'guigue_devillers_2003/f32/cpu').click();
   await expect(viewer.locator('#why-title')).toHaveText('Why does guigue_devillers_2003/f32/cpu say disjoint?');
@@ -157,7 +157,7 @@ test('what it says of a contraction is what graze explain finds', async ({ viewe
         encoding: 'utf8',
       }),
     ) as { lanes: { lane: string; cause: string; contractions: { at: string }[] }[] };
-    // A lane of the CPU that is wrong by logic is said to be so, and no other.
+    // A CPU lane that is wrong by logic is reported so, and no other lane is.
     const causes = JSON.parse(
       execFileSync(process.env.GRAZE!, ['explain', (await name(viewer))!, '--lanes', '*/cpu', '--json'], {
         encoding: 'utf8',
@@ -209,7 +209,7 @@ test('ranges on a line are those by which the lane decides, and the axis is the 
     });
     for (const { lane, verdict, text } of said) {
       const subject = lane.split('/')[0];
-      if (!text) continue; // decided before it came to ranges, or compares none
+      if (!text) continue; // decided before it computed ranges, or compares none
       expect(text).toContain(`In ${lane} the two ranges `);
       expect(/^In \S+ the two ranges are \S+ apart;/.test(text), `${lane} says ${verdict}: ${text}`).toBe(
         verdict === 'disjoint',
@@ -285,7 +285,7 @@ test('a query is shown with all triangles, its hits and what a lane gets wrong',
     `projected_sat/f32/cpu hits ${hits('projected_sat/f32/cpu').toLocaleString('en-US')}, wrong on `,
   );
   const wrong = Number(/wrong on ([\d,]+)/.exec((await page.locator('#field').textContent())!)![1].replace(',', ''));
-  expect(wrong).toBe(hits('projected_sat/f32/cpu') - exact); // it only ever says too often that they meet
+  expect(wrong).toBe(hits('projected_sat/f32/cpu') - exact); // its only errors are false positives
   await expect(page.locator('#board svg polyline[style*="--bad"]')).toHaveCount(Math.min(wrong, 500));
   await page.locator('button', { hasText: 'Take a wrong one' }).click();
   await expect(page.locator('#why')).toContainText('logic');
@@ -297,7 +297,7 @@ test('every key does what the help says', async ({ viewer }) => {
   await board.focus();
   const looks = () => board.locator('svg').innerHTML();
   const value = (c: number) => coordinate(viewer, c).inputValue();
-  // What was asked for before is drawn by now, or else two keys that undo each other would look like none.
+  // Waits until earlier requests are drawn; otherwise two keys that undo each other would seem to do nothing.
   const drawn = () =>
     viewer.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
   const changes = (of: () => Promise<unknown>) => async (key: string) => {
@@ -406,7 +406,7 @@ test.describe('by WebGL', () => {
     await expect(coordinate(viewer, 9)).toHaveValue('-2');
     const board = viewer.locator('#board'),
       box = (await board.boundingBox())!;
-    // A vertex is where the pointer takes hold of it: found by trying, as a person does by looking.
+    // Finds a vertex by trying where the pointer grabs one.
     let held = false;
     for (let x = 20; x < box.width - 20 && !held; x += 20) {
       for (let y = 20; y < box.height - 20 && !held; y += 20) {

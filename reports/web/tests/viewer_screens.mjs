@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// node tests/viewer_screens.mjs GRAZE FOLDER: the first screens of the viewer in docs/viewer.md, each on a desk and on a
-// phone: a special case of 2012, a contraction flip, an overflow, the simplest case of a mesh, and a query.
+// node tests/viewer_screens.mjs GRAZE FOLDER: the first screens of the viewer in docs/viewer.md, on desktop and phone:
+// a special case of 2012, a contraction flip, an overflow, the simplest case of a mesh, and a query.
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -45,7 +45,7 @@ for (const [name, ...what] of [
   try {
     for (const picture of pictures) execFileSync('convert', [picture, '+dither', '-colors', '64', `PNG8:${picture}`]);
   } catch {
-    // without ImageMagick they are larger
+    // they are larger without ImageMagick
   }
 }
 rmSync(folder, { recursive: true });

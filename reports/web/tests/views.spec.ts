@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page on a phone, in the dark, on paper, by keyboard, and for a screen reader.
+// The page on a phone, in dark mode, on paper, by keyboard, and with a screen reader.
 import AxeBuilder from '@axe-core/playwright';
 import type { Page } from '@playwright/test';
 import { nanoseconds, percent } from '../src/format';
@@ -120,7 +120,7 @@ test('the keyboard reaches the answer first, and shows where it is', async ({ pa
   expect(outline).toBe('solid');
 });
 
-// On the page that compares: it has all parts, and fewer rows, each of which costs axe its time.
+// Uses the comparison page: it has all parts but fewer rows, each of which takes axe some time.
 for (const [colorScheme, where] of [
   ['light', 'desk'],
   ['dark', 'phone'],

@@ -10,7 +10,7 @@
 
 namespace tbb {
 
-// A value of its own for each thread.
+// A separate value for each thread.
 template <class T>
 class enumerable_thread_specific {
  public:

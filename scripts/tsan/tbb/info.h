@@ -4,6 +4,6 @@
 
 namespace tbb::info {
 
-inline int default_concurrency() { return 4; }  // also on a machine of one core: races need several
+inline int default_concurrency() { return 4; }  // even on a machine with one core, because races need several threads
 
 }  // namespace tbb::info

@@ -13,7 +13,7 @@
 
 namespace tbb {
 
-// Calls body(i) for every i in [first, last), until one of them throws; that is then thrown here.
+// Calls body(i) for every i in [first, last) until a call throws; rethrows that exception.
 template <class Index, class Body>
 void parallel_for(Index first, Index last, const Body& body) {
   std::atomic<Index> next{first};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a lane of the GPU decides otherwise than the same source on the CPU: at which comparison the two part, what each
-// compares there, and which operations nvcc fused.
+// Explains why a GPU lane decides differently from the same source on the CPU: the comparison at which they part, the
+// values there, and the operations that nvcc fused.
 import { h, type Child } from '../dom';
 import { figure } from '../format';
 import type { Site, Step } from './graze.js';
@@ -18,12 +18,13 @@ export function show_why() {
 
 const bold = (text: string) => h('strong', {}, text);
 
-// The lane of the GPU to compare with the CPU's, if they differ: that lane, or the one that this lane of the CPU differs from.
+// The GPU lane that differs from the CPU's: `lane` itself, or the counterpart of a CPU lane.
 export function differing(model: Model, lane: string): string | undefined {
   return [lane, model.counterpart(lane, 'cuda-fma')].find((one) => one !== undefined && model.differs(one));
 }
 
-// Where two runs of one algorithm first decide differently, as places in both; up to it they take the same steps.
+// The indices, in both runs, of the first comparison that two runs decide differently; up to it they take the same
+// steps.
 function parting(run: Step[], other: Step[]): [number, number] | null {
   const places = (steps: Step[]) => steps.flatMap((step, i) => (step.relation ? [i] : []));
   const [mine, theirs] = [places(run), places(other)];
@@ -31,7 +32,7 @@ function parting(run: Step[], other: Step[]): [number, number] | null {
   return at < 0 ? null : [mine[at], theirs[at]];
 }
 
-// What is asked there, where that is known from what the algorithm asks its policy about.
+// Says what the comparison asks, if the values passed to the policy tell.
 function meaning(runs: [Step[], number][], scalar: string): Child {
   const [[run, at]] = runs,
     step = run[at];
@@ -68,11 +69,11 @@ function meaning(runs: [Step[], number][], scalar: string): Child {
   return false;
 }
 
-// Both sides of the comparison: on the CPU, on the GPU and with 113 bits.
+// Both sides of the comparison: on the CPU, on the GPU, and with 113 bits.
 const six = (mine: Step, theirs: Step) =>
   told_apart([theirs.left, mine.left, mine.exactLeft, theirs.right, mine.right, mine.exactRight]);
 
-// Of a comparison of two ranges' ends, whose they are.
+// For a comparison of two ranges' ends, the triangles that they belong to.
 function ends_of(run: Step[], { site, relation, left, right }: Step): [string, string] | null {
   if (site !== 'separation' || relation !== '<') return null;
   const line = intervals(run);
@@ -153,7 +154,7 @@ function places(sites: Site[]): Child {
   );
 }
 
-// brief: what each compares where they part, in one line.
+// brief: the values that each compares where they part, in one line.
 export function apart(model: Model, lane: string): { parts: Child[]; brief: Child } {
   const { graze, pair, decided } = model,
     [subject, scalar] = lane.split('/'),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawing: turned by dragging its ground, changed by dragging a vertex.
+// The drawing: dragging the background turns it, dragging a vertex changes the pair.
 import { orbit, view_of } from '../camera';
 import { choice, h } from '../dom';
 import { axes, framed_half_height, good_view, project, type Vec } from '../drawing';
@@ -8,15 +8,15 @@ import { has_webgl, picture, type Picture } from '../view3d';
 import { kCentres, type Centre, type Model } from './model';
 import { placed, type Field, type Placed } from './shape';
 
-const kReach = 16; // pixels around a vertex in which it is taken hold of
+const kReach = 16; // pixels around a vertex in which it can be grabbed
 const kTurn = Math.PI / 18;
-const kFine = 1 / 64; // of a drag with Shift
-const kGapSeen = 0.5; // half-widths of the board that "Show the gap" makes of it
+const kFine = 1 / 64; // factor of a drag with Shift
+const kGapSeen = 0.5; // half-widths of the board that the gap takes after "Show the gap"
 const kFlat: Vec[] = [
   [0, 0, 0],
   [1, 0, 0],
   [0, 1, 0],
-]; // where no triangle is
+]; // if there is no triangle
 
 export function board(model: Model, fields: () => Field | null) {
   let magnified = 1,
@@ -36,7 +36,7 @@ export function board(model: Model, fields: () => Field | null) {
   place();
   const { camera, set } = orbit(ground, best_view(), draw, draw);
 
-  // A direction from which what is shown is not seen edge-on.
+  // A direction from which the shown shapes are not edge-on.
   function best_view() {
     const seen = [now.shape.a, now.shape.b].filter((polygon) => polygon.length > 2);
     return good_view({ ...now.shape, a: seen[0] ?? kFlat, b: seen[1] ?? seen[0] ?? kFlat });
@@ -54,7 +54,7 @@ export function board(model: Model, fields: () => Field | null) {
       return paper.replaceChildren(svg_projection(now.shape, view_of(camera), ground.clientWidth, ground.clientHeight));
     drawn ??= picture(now.shape);
     drawn.draw(canvas, camera);
-    old?.dispose(); // only now: programs that nothing uses would be compiled anew
+    old?.dispose(); // only now: unused programs would have to be compiled again
     old = null;
   }
 
@@ -62,7 +62,7 @@ export function board(model: Model, fields: () => Field | null) {
   function update() {
     const { truth } = model.decided,
       name = model.name.replace(/, changed$/, '');
-    if (name !== last_name) magnified = 1; // another pair, seen from where there is most to see
+    if (name !== last_name) magnified = 1; // a new pair starts with its best view
     place();
     if (name !== last_name) set(best_view());
     last_name = name;
@@ -94,7 +94,7 @@ export function board(model: Model, fields: () => Field | null) {
     const view = view_of(camera);
     set({ azimuth: view.azimuth + azimuth * kTurn, elevation: view.elevation + elevation * kTurn });
   };
-  // The nearest points, or the shortest push, in the middle and so magnified that the distance is seen.
+  // Centres the nearest points, or the shortest translation, and magnifies them until the distance is visible.
   function show_gap() {
     const [p, q] = model.graze.drawing(model.pair).witness;
     magnified = Math.min(
@@ -114,7 +114,7 @@ export function board(model: Model, fields: () => Field | null) {
     const box = ground.getBoundingClientRect();
     return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height };
   };
-  // The vertex under the pointer; the foremost of several.
+  // The vertex under the pointer; the frontmost of several.
   function taken(event: PointerEvent): number | null {
     const { x, y, width, height } = local(event);
     let best: { v: number; away: number; depth: number } | null = null;
@@ -127,7 +127,7 @@ export function board(model: Model, fields: () => Field | null) {
     }
     return best && best.v;
   }
-  // Before the orbit's own listener: a press on a vertex moves that, in the plane of the screen.
+  // Runs before the orbit's own listener: a press on a vertex moves the vertex in the plane of the screen.
   surround.addEventListener(
     'pointerdown',
     (event) => {
@@ -173,7 +173,7 @@ export function board(model: Model, fields: () => Field | null) {
   ground.addEventListener(
     'wheel',
     (event) => {
-      if (document.activeElement !== ground) return; // else the page scrolls
+      if (document.activeElement !== ground) return; // otherwise the page scrolls
       event.preventDefault();
       magnify(2 ** (-event.deltaY / 200));
     },

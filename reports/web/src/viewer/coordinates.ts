@@ -9,9 +9,9 @@ export const kSteps = [
   ['256 ulps', 256],
   ['65,536 ulps', 65536],
 ] as const;
-export const kMove = 0.0625; // of the thesis's viewer
+export const kMove = 0.0625; // as in the thesis's viewer
 
-// 18 numbers in any notation, with whatever stands between them.
+// Finds numbers in any notation, whatever stands between them.
 export function numbers_in(text: string): string[] {
   return text.match(/[-+]?(?:0x[0-9a-f.]+(?:p[-+]?\d+)?|(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)/gi) ?? [];
 }
@@ -38,7 +38,7 @@ export function coordinates(model: Model, say: (text: string) => void) {
       },
       onpaste: (event: ClipboardEvent) => {
         const found = numbers_in(event.clipboardData?.getData('text') ?? '');
-        if (found.length < 2) return; // one number: an ordinary paste
+        if (found.length < 2) return; // a single number is an ordinary paste
         event.preventDefault();
         take(found);
       },
@@ -74,7 +74,7 @@ export function coordinates(model: Model, say: (text: string) => void) {
   }
   function update() {
     fields.forEach((field, c) => {
-      if (!Object.is(shown[c], model.pair[c])) show(c); // what is being typed stays
+      if (!Object.is(shown[c], model.pair[c])) show(c); // do not overwrite what is being typed
       field.classList.toggle('chosen', c === model.chosen);
     });
     exactly.replaceChildren(

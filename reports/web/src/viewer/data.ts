@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `graze view` writes into the page, and the pairs in it.
+// The data that `graze view` writes into the page, and its pairs.
 import type { Graze, Verdict } from './graze.js';
 import { kVerdicts } from './graze.js';
 
 export type Coordinates = Float32Array; // 18: a[0].x to b[2].z
 
-// Bits: 18 words of 8 hex digits. Verdicts: a digit for each lane, 0 disjoint, 1 intersects, 2 declined.
+// bits: 18 words of 8 hex digits. verdicts: a digit for each lane, 0 disjoint, 1 intersects, 2 declined.
 export interface Replay {
   lanes: string[];
   pairs: { bits: string; truth: Verdict; contact: string; verdicts: string }[];
@@ -13,13 +13,13 @@ export interface Replay {
 export interface Stored {
   evidence: string;
   replay: Replay;
-} // of the build; `graze report` writes these alone
+} // of the build; `graze report` writes only these
 export interface ViewData extends Stored {
   format: number;
   title: string;
   pairs: { name: string; bits: string }[];
   triangles: string[]; // of a mesh or a query, 9 words each; may be empty
-  opens?: 'pair' | 'triangles'; // with all of these at once, against the first of the pair
+  opens?: 'pair' | 'triangles'; // show all triangles at once, against the first triangle of the pair
 }
 
 export function from_bits(bits: string): Coordinates {
@@ -43,7 +43,7 @@ export function decimal(x: number): string {
   return String(Number(x.toPrecision(9)));
 }
 
-// As C's %a: 0x1.8p+1.
+// Hex floats as C's %a writes them: 0x1.8p+1.
 export function hex_float(x: number): string {
   if (!Number.isFinite(x)) return Number.isNaN(x) ? 'nan' : x > 0 ? 'inf' : '-inf';
   const sign = x < 0 || Object.is(x, -0) ? '-' : '';
@@ -59,7 +59,7 @@ export function hex_float(x: number): string {
 
 export const coordinate_name = (c: number) => `${c < 9 ? 'a' : 'b'}[${Math.floor(c / 3) % 3}].${'xyz'[c % 3]}`;
 
-// Decides the stored pairs again.   Returns: what is not as the native build has it, in words; empty where all is.
+// Decides the stored pairs again.   Returns: the differences from the native build, in words; empty if there are none.
 export function replay(graze: Graze, { lanes, pairs }: Replay): string[] {
   const apart: string[] = [];
   const say = (i: number, what: string, here: unknown, native: unknown) =>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many triangles against the reference, as in 2012: random ones by the thesis's generator, or those of a
-// mesh or a query.
+// Many triangles against the reference, as in 2012: random ones of the thesis's generator, or those of a mesh or a
+// query.
 import { h } from '../dom';
 import { count } from '../format';
 import { from_bits, type Coordinates, type ViewData } from './data';
@@ -25,7 +25,7 @@ export function field(model: Model, data: ViewData, changed: () => void) {
       : Array.from({ length: shown }, (_, i) => graze.generate('thesis', seed, BigInt(i)).slice(9));
   }
 
-  // By the chosen lane, and by the exact decision.
+  // Decides all triangles with the chosen lane and with the exact decision.
   function decide() {
     if (!shown) return (current = null);
     const { exports } = graze,

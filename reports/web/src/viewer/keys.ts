@@ -2,7 +2,8 @@
 // All keys, and the help that lists them.
 import { h } from '../dom';
 
-// keys: as KeyboardEvent.key, without Shift and Alt; shown: for people. of_2012: whether the thesis's viewer had it.
+// keys: as KeyboardEvent.key, without Shift and Alt; shown: for readers. of_2012: whether the thesis's viewer had the
+// key.
 export interface Key {
   keys: string[];
   shown: string;
@@ -14,9 +15,9 @@ export interface Key {
 }
 
 const kTyping = 'input:not([type=range]):not([type=checkbox]), textarea, select';
-const kPressed = 'button, summary, a, input'; // elements with a use of their own for Enter, space and arrows
+const kPressed = 'button, summary, a, input'; // elements that use Enter, space and arrows themselves
 
-// The key's own name, whatever Shift and Alt make of it.
+// The key's own name, independent of Shift and Alt.
 const base = (event: KeyboardEvent) =>
   ({ BracketLeft: '[', BracketRight: ']' })[event.code] ??
   (event.key.length === 1 ? event.key.toLowerCase() : event.key);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `graze view`: the viewer, with the pair in the address.
+// The page of `graze view`: the viewer; the address stores the pair.
 import '../style.css';
 import { h } from '../dom';
 import { from_bits, type ViewData } from './data';

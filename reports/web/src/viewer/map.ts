@@ -6,7 +6,7 @@ import type { Model } from './model';
 import { kSide, type MapPart, type MapRequest } from './map_worker';
 import MapWorker from './map_worker?worker&inline';
 
-// As `graze map` has them (reports/ulp_map_picture.cpp).
+// The colours of `graze map` (reports/ulp_map_picture.cpp).
 const kColours = {
   disjoint: '#eeeeee',
   intersects: '#aaaaaa',
@@ -23,9 +23,9 @@ const kCells = [
   ['4,096 ulps', 4096],
   ['65,536 ulps', 65536],
 ] as const;
-const kWait = 40; // milliseconds of rest before a map is drawn anew
+const kWait = 40; // milliseconds of rest before a map is drawn again
 
-// Place in kPalette of a lane's verdict where the truth is that.
+// The index in kPalette of a lane's verdict, given the truth.
 const cell_of = (verdict: number, truth: number) =>
   truth === 2 ? 5 : verdict === 2 ? 4 : verdict === truth ? truth : verdict === 1 ? 2 : 3;
 
@@ -71,7 +71,7 @@ export function map(model: Model, module: WebAssembly.Module) {
     }
   }
 
-  // Takes the pair of the cell that was pressed.
+  // Takes the pair of the cell that was clicked.
   function press(canvas: HTMLCanvasElement, event: MouseEvent) {
     const box = canvas.getBoundingClientRect();
     const column = Math.floor(((event.clientX - box.left) / box.width) * kSide),
@@ -183,7 +183,7 @@ export function map(model: Model, module: WebAssembly.Module) {
     element,
     update() {
       if (model.chosen !== last_chosen) {
-        // the chosen coordinate, and the next of its vertex
+        // the chosen coordinate, and the next one of its vertex
         last_chosen = x = model.chosen;
         y = model.vertex + ((model.chosen + 1) % 3);
         across.querySelector('select')!.value = String(x);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ulp maps, coarse to fine, beside the page's own thread.
+// Computes ulp maps, coarse to fine, off the page's main thread.
 import { load, type Graze } from './graze.js';
 
 export interface MapRequest {
@@ -20,8 +20,8 @@ export interface MapPart {
   last: boolean;
 }
 export const kSide = 256;
-const kLevels = [16, 4, 1]; // cells of so many columns and rows
-const kSlice = 12; // milliseconds, after which a newer request gets its turn
+const kLevels = [16, 4, 1]; // block sizes in columns and rows
+const kSlice = 12; // milliseconds, after which a newer request is served
 
 let wanted: MapRequest | null = null;
 let graze: Graze | undefined;

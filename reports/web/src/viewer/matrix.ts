@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdicts of all lanes, live: which changed is marked, and said aloud.
+// The live verdicts of all lanes; changed verdicts are marked and announced.
 import { h, breakable, type Child } from '../dom';
 import type { Model } from './model';
 

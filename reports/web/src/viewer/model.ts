@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the viewer shows: one pair, which coordinate and lane are chosen, and how it came to be so.
+// The viewer's state: one pair, the chosen coordinate and lane, and the history.
 import { coordinate_name, from_bits, to_bits, type Coordinates } from './data';
 import type { Graze, Margin, Truth, Verdict } from './graze.js';
 
@@ -34,7 +34,7 @@ export interface Decided {
 export class Model {
   pair: Coordinates;
   name: string;
-  chosen = 9; // coordinate
+  chosen = 9; // index of the coordinate
   lane: string;
   policy = '';
   centre: Centre = 'both triangles';
@@ -44,7 +44,7 @@ export class Model {
   private future: { pair: Coordinates; name: string }[] = [];
   private moving = false;
 
-  // changed: called after each change; `moved` says whether the pair or the policy did, not only what is shown of it.
+  // changed: called after each change; `moved` is true if the pair or the policy changed, not only what is shown.
   constructor(
     readonly graze: Graze,
     first: { name: string; pair: Coordinates },
@@ -66,7 +66,7 @@ export class Model {
     this.changed(true);
   }
 
-  // One step back undoes everything between start_moving and stop_moving.
+  // Undo reverts everything between start_moving and stop_moving in one step.
   start_moving() {
     this.remember();
     this.moving = true;
@@ -95,7 +95,7 @@ export class Model {
   step(ulps: number) {
     this.change((pair) => (pair[this.chosen] = this.graze.nudged(pair[this.chosen], ulps)));
   }
-  // The first triangle, the thesis's reference.
+  // Moves the first triangle, which is the thesis's reference.
   move_reference(axis: number, by: number) {
     this.change((pair) => [0, 3, 6].forEach((c) => (pair[c + axis] += by)));
   }
@@ -116,7 +116,7 @@ export class Model {
     this.policy = policy;
     this.settle();
   }
-  // Any of what is shown, not of what is decided.
+  // Sets what is shown, not what is decided.
   set(what: Partial<Pick<Model, 'chosen' | 'lane' | 'centre' | 'shows'>>) {
     Object.assign(this, what);
     this.changed(false);
@@ -127,18 +127,19 @@ export class Model {
       verdict = verdicts[lane];
     return verdict !== null && truth.verdict !== 'declined' && verdict !== truth.verdict;
   }
-  // The lane that a person will ask about first: of a GPU that differs from the CPU, or else wrong; or else the one chosen.
+  // Chooses the lane that is most likely of interest: a GPU lane that differs from the CPU, else a wrong one, else no
+  // change.
   choose_telling() {
     const { lanes } = this.graze;
     this.set({ lane: lanes.find((lane) => this.differs(lane)) ?? lanes.find((lane) => this.wrong(lane)) ?? this.lane });
   }
-  // The same subject and scalar in another variant; undefined for none.
+  // The same subject and scalar in another variant; undefined if there is none.
   counterpart(lane: string, variant: string) {
     const [subject, scalar] = lane.split('/'),
       other = `${subject}/${scalar}/${variant}`;
     return this.graze.lanes.includes(other) ? other : undefined;
   }
-  // Whether the lane decides otherwise than the CPU does with every operation rounded as written.
+  // Whether the lane decides differently from the CPU lane with every operation rounded as written.
   differs(lane: string) {
     const cpu = this.counterpart(lane, 'cpu'),
       { verdicts } = this.decided;
@@ -152,7 +153,7 @@ export class Model {
   }
 }
 
-// "#p=…&lane=…" of a link, if there is one and it holds a pair.
+// Parses a link's "#p=…&lane=…"; null if it holds no pair.
 export function from_fragment(url = location.href): { pair: Coordinates; lane: string } | null {
   const values = new URLSearchParams(new URL(url).hash.slice(1)),
     bits = values.get('p') ?? '';

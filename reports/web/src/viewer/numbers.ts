@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of a lane's steps, and the source lines that they come from.
+// Numbers of a lane's steps, and their source lines.
 import sources from 'graze.sources';
 import { h } from '../dom';
 import { figure } from '../format';
@@ -17,11 +17,11 @@ const number = (x: number) =>
 
 const in_full = (x: number) => (Object.is(x, -0) ? '-0' : String(Number(x.toPrecision(9))));
 
-// The distance of neighbouring numbers of that scalar near x.
+// The distance of neighbouring numbers of this scalar near x.
 export const ulp_of = (scalar: string) => (x: number) =>
   2 ** (Math.floor(Math.log2(Math.abs(x) || 2 ** -100)) - (scalar === 'f32' ? 23 : 52));
 
-// Numbers that differ, with as many digits as it takes to see that.
+// Writes different numbers with as many digits as it takes to tell them apart.
 export function told_apart(numbers: number[]): string[] {
   const distinct = new Set(numbers.map((x) => (x === 0 ? 0 : x))).size;
   const unlike = (texts: string[]) => new Set(texts.map((text) => (text === '-0' ? '0' : text))).size === distinct;
@@ -37,7 +37,7 @@ export function compared(step: Step, exact = false) {
   return step.relation ? `${left} ${step.relation} ${right}` : left;
 }
 
-// "core/vec3.h:48", and what stands there.
+// "core/vec3.h:48", and the code at that line.
 export function quoted(place: string) {
   const [file, line] = place.split(':'),
     lines = sources[file] ?? [];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the triangles come down to on a line: the intervals or projections that the chosen lane compared, beside 113 bits;
-// and the axis that the margin gives.
+// The ranges on a line that the test reduces to: the intervals or projections that the chosen lane compared, beside 113
+// bits, and those on the axis of the margin.
 import { choice, h, on_width, type Child } from '../dom';
 import { figure } from '../format';
 import { differing } from './apart';
@@ -48,7 +48,7 @@ export function on_a_line(model: Model) {
   };
   on_width(picture, redraw);
 
-  // beside: the same in the lane of the other processor, where the two differ.
+  // beside: the ranges of the same lane on the other processor, if the two differ.
   function show(ranges: Ranges, how: Child, beside: [string, Ranges | null | undefined] | null) {
     const { a, b, exact_a, exact_b } = ranges,
       name = h('code', {}, model.lane);
@@ -80,7 +80,7 @@ export function on_a_line(model: Model) {
     return gpu && (gpu === lane ? model.counterpart(lane, 'cpu') : gpu);
   };
 
-  // What the lane compared on a line, if it came to that.
+  // The ranges that the lane compared on a line, if it got that far.
   function of_the_lane() {
     const { lane, pair, graze } = model,
       run = graze.steps(pair, lane)?.steps ?? [],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One policy for all lanes: what they hold for zero.
+// One policy for all lanes: how they compare with zero.
 import { choice, h } from '../dom';
 import { figure } from '../format';
 import type { Model } from './model';

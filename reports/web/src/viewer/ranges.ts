@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a lane's steps, the ranges of both triangles on a line that it compared: intervals on the line of both planes, or
-// projections on axes. Beside them the same with 113 bits.
+// Extracts from a lane's steps the ranges of both triangles on a line that it compared: intervals on the line of both
+// planes, or projections on axes. Beside them the same ranges with 113 bits.
 import type { Step } from './graze.js';
 
 export type Ends = [number, number]; // low, high
@@ -14,7 +14,7 @@ export interface Ranges {
 
 const kEdges = ['[0] [1]', '[1] [2]', '[2] [0]'];
 const edge = (of: string, i: number) => `edge ${of}${kEdges[i]}`;
-// In the order in which the algorithms try them.
+// The axes in the order in which the algorithms try them.
 const kSeventeen = [
   'normal of a',
   'normal of b',
@@ -25,13 +25,13 @@ const kSix = [0, 1, 2]
   .flatMap((i) => [`across ${edge('a', i)}`, `across ${edge('b', i)}`])
   .map((name) => `${name}, in the plane of a`);
 
-// As the algorithms select them, also of what is not a number.
+// Orders as the algorithms do, even for NaN.
 const sorted = (x: number, y: number): Ends => (x < y ? [x, y] : [y, x]);
 const span = ([first, ...rest]: number[]): Ends =>
   rest.reduce(([low, high], t) => [t < low ? t : low, t > high ? t : high], [first, first]);
 const same = (x: number, y: number) => x === y || (Number.isNaN(x) && Number.isNaN(y));
 
-// The two triangles' ends, from the comparisons that ordered them; the other way round if only that fits the step.
+// The ends of both triangles, from the comparisons that ordered them; swapped if only that fits the step.
 function in_order(
   name: string,
   [one, other]: { lane: Ends; exact: Ends }[],
@@ -46,7 +46,7 @@ function in_order(
   return null;
 }
 
-// On the line of both planes.   Returns: null where the lane decided before it had them.
+// The intervals on the line of both planes.   Returns: null if the lane decided before it computed them.
 export function intervals(run: Step[]): Ranges | null {
   const at = run.findIndex((step) => step.site === 'separation' && step.relation);
   if (at < 0) return null;
@@ -57,7 +57,7 @@ export function intervals(run: Step[]): Ranges | null {
     .filter((step) => step.line === line)
     .slice(-2)
     .map((step) => ({ lane: sorted(step.left, step.right), exact: sorted(step.exactLeft, step.exactRight) }));
-  // moller_1997 asks whether a ends before b begins; interval_overlap whether a begins before b does.
+  // moller_1997 asks whether a ends before b begins; interval_overlap asks whether a begins before b does.
   return two.length < 2
     ? null
     : in_order(
@@ -67,14 +67,14 @@ export function intervals(run: Step[]): Ranges | null {
       );
 }
 
-// On each axis that the lane tried.
+// The projections on each axis that the lane tried.
 export function projections(run: Step[], subject: string): Ranges[] {
   const all: Ranges[] = [],
     names = subject === 'separating_axes' ? kSeventeen : kSix;
   let seen: Step[] = [];
   for (const step of run) {
     if (step.site === 'separation' && seen.length === 8) {
-      // four comparisons order the three vertices of each
+      // four comparisons order the three vertices of each triangle
       const two = [seen.slice(0, 4), seen.slice(4)].map((of) => ({
         lane: span([of[0].right, of[0].left, of[2].left]),
         exact: span([of[0].exactRight, of[0].exactLeft, of[2].exactLeft]),
@@ -94,12 +94,13 @@ export function projections(run: Step[], subject: string): Ranges[] {
   return all;
 }
 
-// How far apart two ranges are; negative where they overlap.
+// The gap between two ranges; negative if they overlap.
 export const gap = (a: Ends, b: Ends) => Math.max(b[0] - a[1], a[0] - b[1]);
 export const lane_gap = ({ a, b }: Ranges) => gap(a, b);
 export const exact_gap = ({ exact_a, exact_b }: Ranges) => gap(exact_a, exact_b);
 
-// The axis to be shown first: that which separates in the lane, or else with 113 bits, or else that on which they overlap least.
+// The axis to show first: one that separates in the lane, else one that separates with 113 bits, else that of least
+// overlap.
 export function telling(all: Ranges[]): number {
   const size = ({ a, b }: Ranges) => Math.max(a[1], b[1]) - Math.min(a[0], b[0]) || 1;
   for (const of of [lane_gap, exact_gap]) {

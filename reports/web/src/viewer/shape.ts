@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pair as a shape to draw: exact differences from the middle, magnified in double before they become float32, so that
-// a single ulp can be seen; what lies far outside is cut off first.
+// The pair as a shape to draw. Takes exact differences from the centre and magnifies them in double before they become
+// float32, so that a single ulp is visible. Parts far outside are cut off first.
 import type { Mark, Shape, Vec } from '../drawing';
 import { figure } from '../format';
 import { decimal, type Coordinates } from './data';
@@ -14,7 +14,7 @@ export interface Placed {
   shape: Shape;
   unit: Vec;
   middle: Vec;
-} // unit: of coordinates, that is 1 in the shape
+} // unit: length in coordinates that is 1 in the shape
 
 const vertex = (pair: Coordinates, v: number) => [pair[3 * v], pair[3 * v + 1], pair[3 * v + 2]] as Vec;
 
@@ -62,7 +62,7 @@ function plane(corners: Vec[]): Vec[] {
   ].map(([s, t]) => middle.map((c, k) => c + s * e[k] + t * f[k]) as Vec);
 }
 
-// b's vertices projected onto a's plane, which is all that projected_sat compares in the end; empty without a plane.
+// b's vertices projected onto a's plane, which is all that projected_sat finally compares; empty if a has no plane.
 function shadow_of(points: Vec[]): Vec[] {
   const [p, q, r] = points,
     u = q.map((c, k) => c - p[k]),
@@ -80,9 +80,9 @@ export interface Field {
   triangles: Coordinates[];
   hit: boolean[];
   wrong: boolean[];
-} // of 9 coordinates each
+} // 9 coordinates each
 
-// magnified: by how much, beyond what fits.
+// magnified: the factor beyond fitting the board.
 export function placed(model: Model, drawing: Drawing, magnified: number, field: Field | null): Placed {
   const { pair, centre, shows } = model,
     points = [0, 1, 2, 3, 4, 5].map((v) => vertex(pair, v));
@@ -107,7 +107,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
   const place = (p: readonly number[]) => [0, 1, 2].map((k) => (p[k] - middle[k]) / unit[k]) as Vec;
   const marks: Mark[] = [];
   const [a, b] = [points.slice(0, 3).map(place), points.slice(3).map(place)];
-  // So that all of it fits, however it is turned, before it is magnified.
+  // The radius at which all of it fits from every direction, before magnification.
   const radius =
     Math.max(
       0.6,
@@ -142,7 +142,7 @@ export function placed(model: Model, drawing: Drawing, magnified: number, field:
       marks.push({ colour: `--series-${k}`, lines: [cut([place(origin), place(end)])], width: 2 });
     }
   }
-  // Where the chosen coordinate can go next, once that can be seen.
+  // The next values of the chosen coordinate, if the distance is visible.
   const chosen = pair[model.chosen],
     at = points[model.vertex / 3],
     axis = model.chosen % 3;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where pairs come from: the file that the page was made of, the special cases of 2012, or a stratum.
+// Sources of pairs: the file from which the page was made, the special cases of 2012, or a stratum.
 import { choice, h } from '../dom';
 import { from_bits, type Coordinates, type ViewData } from './data';
 import { special_cases, type Model } from './model';
 
-const kSearched = 200_000; // pairs of a stratum, at most, in one search
-const kSearchSlice = 30; // milliseconds between signs of life
+const kSearched = 200_000; // most pairs of a stratum in one search
+const kSearchSlice = 30; // milliseconds between progress updates
 
 export type Wanted = 'any' | 'apart' | 'wrong';
 
@@ -20,7 +20,7 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
     at = Number(of_stratum?.[3] ?? 0),
     searching = 0;
 
-  // Next and Previous go on from there.
+  // Next and Previous continue from this pair.
   function find(pair: Coordinates) {
     const found = given.findIndex((one) => one.pair.every((x, c) => Object.is(x, pair[c])));
     if (found < 0 || of_stratum) return;
@@ -41,7 +41,7 @@ export function sources(model: Model, data: ViewData, say: (text: string) => voi
     model.choose_telling();
   }
 
-  // Whether some lane is wrong; or, for `apart`, some lane of a GPU says otherwise than the CPU's.
+  // Whether some lane is wrong; for `apart`, whether some GPU lane differs from the CPU's.
   function fits(wanted: Wanted, pair: Coordinates) {
     const verdicts = graze.decide(pair);
     if (wanted === 'wrong') {

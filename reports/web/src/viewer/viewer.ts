@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer: the module made ready and checked against the native build, and what is shown, put together.
+// The viewer: prepares the module, checks it against the native build, and assembles the display.
 import './viewer.css';
 import compressed from 'graze.wasm';
 import { h } from '../dom';
@@ -46,7 +46,7 @@ export interface Ready {
   said: string;
 }
 
-// The module, once it has decided the stored pairs.   Throws: what it decides otherwise than the native build, in words.
+// Returns the module after it has decided the stored pairs.   Throws: its differences from the native build, in words.
 export async function make_ready(stored: Replay): Promise<Ready> {
   const module = await module_of(compressed),
     graze = await load(module),
@@ -68,7 +68,7 @@ export const no_verdicts = (error: unknown) => [
   h('p', {}, 'The same pair in a terminal: ', h('code', {}, 'graze check FILE'), '.'),
 ];
 
-// The page around the viewer: its address keeps the pair; keys act while it is active.
+// The page around the viewer: its address stores the pair; keys work while it is active.
 export interface Around {
   keep: (model: Model) => void;
   link: (model: Model) => string;
@@ -81,7 +81,7 @@ export interface First {
   note?: string;
 }
 
-// The vertex nearest to the contact, or to the gap: what is worth moving, and mapping.
+// The vertex nearest to the contact or the gap, because moving and mapping it shows most.
 function nearest_vertex(pair: Coordinates, { contact, witness }: Drawing): number {
   const seen = contact.length ? contact : witness,
     away = [3, 4, 5, 0, 1, 2].map((v) => ({
@@ -119,7 +119,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
     truth = h('p', { class: 'truth', id: 'truth' }),
     summary = h('p', { id: 'summary' });
 
-  // At once: what is said. With the next frame: what is drawn. After a moment of rest: what takes longer.
+  // Updates text at once, drawings with the next frame, and slower parts after a moment of rest.
   function update_text() {
     verdicts.update();
     const { decided, policy: under } = model,
@@ -392,7 +392,7 @@ export function viewer(data: ViewData, { graze, module, said }: Ready, first: Fi
       model.show(next.pair, next.name);
       choose(next);
     },
-    // Once its elements are in the page.
+    // To be called once its elements are in the page.
     begin() {
       choose(first);
       if (data.opens === 'triangles') many.all();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why the chosen lane says what it says: where its run parts from that of the CPU, or from numbers of 113 bits.
+// Explains the chosen lane's verdict: where its run parts from that of the CPU, or from numbers of 113 bits.
 import { h, type Child } from '../dom';
 import { apart, differing } from './apart';
 import type { Graze, Step, Verdict } from './graze.js';
@@ -90,7 +90,7 @@ export function why(model: Model) {
     title = h('h2', { id: 'why-title' }),
     brief = h('p', { id: 'brief' });
 
-  // Of a lane alone.
+  // Explains a lane by itself.
   function alone(known: ReturnType<Graze['steps']>): Child[] {
     const { lane, decided, policy } = model,
       run = known?.steps,

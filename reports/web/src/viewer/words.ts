@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The words of the page that not everybody knows.
+// Explanations of technical words on the page.
 import { h } from '../dom';
 
 const kWords = [

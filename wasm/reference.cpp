@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The native build's side of the comparison with graze.wasm: prints, for blocks of pairs of every stratum, hashes of
-// what every lane says. graze.test.mjs computes the same with the module.   reference PAIRS
+// The native side of the comparison with graze.wasm. For blocks of pairs of every stratum, prints hashes of every
+// lane's results. graze.test.mjs computes the same with the module.   Usage: reference PAIRS
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +20,7 @@ constexpr std::uint64_t kSeed = 20120131;
 constexpr std::size_t kBlock = 1000;
 constexpr const char* kPolicies[] = {"abs:0.001", "rel:24", "bound", "filtered"};
 
-// FNV-1a of 32 bits, which JavaScript computes as quickly.
+// 32-bit FNV-1a, which JavaScript computes just as fast.
 struct Hash {
   std::uint32_t value = 0x811c9dc5u;
   void add(const void* bytes, std::size_t count) {
@@ -30,7 +30,7 @@ struct Hash {
   void add_value(Value value_of) {
     add(&value_of, sizeof value_of);
   }
-  void add_number(double x) { add_value(std::isnan(x) ? 0.25 : x); }  // of NaN the bits differ
+  void add_number(double x) { add_value(std::isnan(x) ? 0.25 : x); }  // the bits of NaN differ between platforms
 };
 
 void print(const char* what, const char* of, std::uint64_t block, Hash hash) {
@@ -61,8 +61,8 @@ Hash truths(const std::vector<Pair>& pairs) {
   return hash;
 }
 
-// What the viewer explains with, of one lane. Compilers evaluate the arguments of a call in different orders, so that
-// the steps' order does not count.
+// Hashes one lane's steps, which the viewer uses for explanations. Compilers evaluate the arguments of a call in
+// different orders, so the order of the steps does not count.
 Hash steps(const Lane& lane, const std::vector<Pair>& pairs) {
   Hash hash;
   for (const Pair& pair : pairs) {
@@ -103,7 +103,7 @@ void print_block(const std::string& of, std::uint64_t block, const std::vector<P
       hash.add(hashes.data(), hashes.size() * sizeof hashes[0]);
       print(("trace:" + lane.id).c_str(), of.c_str(), block, hash);
     }
-    if (block > 0) continue;  // once a stratum
+    if (block > 0) continue;  // once for each stratum
     if (lane.algorithm >= 0) print(("steps:" + lane.id).c_str(), of.c_str(), block, steps(lane, few));
     for (const char* policy : kPolicies) {
       const bool by_bounds = policy[0] == 'b' || policy[0] == 'f';

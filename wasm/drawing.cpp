@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same construction as oracle/common_set.cpp, one polygon clipped by the half-spaces of the other's hull, on
-// numbers that round: what is nearly on a plane counts as on it, and the exact decision says what kind of set it is.
-#include "reports/wasm/drawing.h"
+// The same construction as oracle/common_set.cpp: one polygon is clipped by the half-spaces of the other's hull.
+// Numbers are rounded, so a point near a plane counts as on it. The exact decision tells the kind of the common set.
+#include "wasm/drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,14 @@
 
 #include "core/relation_of.h"
 
-namespace graze::reports::wasm {
+namespace graze::wasm {
 namespace {
 
 using Real = long double;
 using Point = Vec3<Real>;
 using Polygon = std::vector<Point>;
 
-constexpr Real kNearly = 0x1p-90L;  // of the sum of a value's terms: below that it is taken for zero
+constexpr Real kNearly = 0x1p-90L;  // relative to the sum of a value's terms: smaller values count as zero
 
 Point widened(const Vec3<float>& v) { return {v.x, v.y, v.z}; }
 bool is_zero(const Point& v) { return v.x == 0 && v.y == 0 && v.z == 0; }
@@ -87,13 +87,13 @@ int write(const Polygon& points, Vec3<double>* out, int most) {
   return count;
 }
 
-// Where the hull meets the plane: nothing, a point, or a segment.
+// The intersection of the hull and the plane: empty, a point, or a segment.
 Polygon section(const Point (&p)[3], const HalfSpace& plane) {
   Polygon ends = clipped(clipped(hull_of(p), plane), {{-plane.normal.x, -plane.normal.y, -plane.normal.z}, plane.at});
-  return ends.size() > 2 ? Polygon{} : ends;  // all of it lies in the plane
+  return ends.size() > 2 ? Polygon{} : ends;  // the whole hull lies in the plane
 }
 
-// The part of the line of both planes within the box around the points, wider by half.
+// The part of the line of both planes within the box around the points, which is enlarged by half.
 Polygon line_of(const Point (&a)[3], const Point (&b)[3], const Point& na, const Point& nb) {
   const Point along = cross(na, nb);
   const Point at = (cross(nb, along) * dot(na, a[0]) + cross(along, na) * dot(nb, b[0])) * (1 / dot(along, along));
@@ -150,7 +150,7 @@ Connection of_edges(const Point (&a)[3], int i, const Point (&b)[3], int j) {
   return {square(q - p), p, q, feature_at(s, i), feature_at(t, j)};
 }
 
-// From the vertex to its foot in the face, where that is.
+// The connection from the vertex to its foot in the face, if the foot lies in the face.
 Connection to_face(const Point& vertex, const Point (&face)[3]) {
   const Point normal = normal_of(face);
   if (is_zero(normal)) return {};
@@ -173,7 +173,7 @@ Connection nearest(const Point (&a)[3], const Point (&b)[3]) {
   return best;
 }
 
-// The shortest of the pushes along the normals and the edges' cross products that part the two. p is the origin.
+// The shortest translation along a normal or a cross product of edges that separates the triangles. p is the origin.
 Connection push(const Point (&a)[3], const Point (&b)[3]) {
   Connection best;
   const auto along = [&](const Point& axis, int feature_a, int feature_b) {
@@ -229,11 +229,11 @@ Drawing drawing_of(const Pair& pair) {
   } else {
     Polygon common = hull_of(a);
     for (const HalfSpace& half : half_spaces(hull_of(b))) common = clipped(common, half);
-    const auto points = static_cast<std::size_t>(relation.contact);  // a point has one, a segment two
+    const auto points = static_cast<std::size_t>(relation.contact);  // a point has one vertex, a segment has two
     if (relation.contact != Contact::area && common.size() > points) common.resize(points);
     result.contact_count = write(common, result.contact, Drawing::kMost);
     if (relation.margin_sign < 0) {
-      if (common.empty()) common = hull_of(a);  // what rounding lost
+      if (common.empty()) common = hull_of(a);  // rounding lost the common points
       Point middle{};
       for (const Point& p : common) middle = middle + p * (Real(1) / static_cast<Real>(common.size()));
       add_witness(result, push(a, b), middle, a, b);
@@ -247,4 +247,4 @@ Drawing drawing_of(const Pair& pair) {
   return result;
 }
 
-}  // namespace graze::reports::wasm
+}  // namespace graze::wasm

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen for every compiler and for devices; see core/exact/screen.h. It computes for a and b at once, since their
-// parts are the same with a and b exchanged.
+// The filter for every compiler and for devices; see core/exact/filter.h. Exchanging a and b gives the same
+// computation, so it does both at once.
 #pragma once
 
 #include "core/exact/error_bound.h"
@@ -27,13 +27,13 @@ GRAZE_HD inline Vec<Two> both(const Vec<float>& l, const Vec<float>& r) {
   return {Two{double(l.x), double(r.x)}, Two{double(l.y), double(r.y)}, Two{double(l.z), double(r.z)}};
 }
 
-GRAZE_HD inline Finding screen(const float* a, const float* b) {
+GRAZE_HD inline Finding filter(const float* a, const float* b) {
   const double error = determinant_error(extent_of(a, b));
   const Two bound = {error, error};
   const Vec<Two> v[3] = {both(vertex(a, 0), vertex(b, 0)), both(vertex(a, 1), vertex(b, 1)),
                          both(vertex(a, 2), vertex(b, 2))};
   const Vec<Two> n = cross<Two>(v[1] - v[0], v[2] - v[0]);
-  unsigned above[3], below[3];  // of each vertex: bit 0 of b's, bit 1 of a's
+  unsigned above[3], below[3];  // for each vertex: bit 0 for b's, bit 1 for a's
   for (int i = 0; i < 3; ++i) {
     const Two height = dot<Two>(n, Vec<Two>{exchanged(v[i].x), exchanged(v[i].y), exchanged(v[i].z)} - v[0]);
     above[i] = exceeds(height, bound);

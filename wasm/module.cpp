@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze.wasm: what the viewer decides with. Its functions work on buffers of the module's own; graze.js knows them.
+// graze.wasm: the viewer's decisions. Its functions work on the module's own buffers; graze.js calls them.
 #include <cstring>
 #include <vector>
 
@@ -11,16 +11,16 @@
 #include "core/relation_of.h"
 #include "core/text.h"
 #include "cuda/twin/twin.h"
-#include "reports/wasm/drawing.h"
-#include "reports/wasm/quad.h"
 #include "strata/strata.h"
+#include "wasm/drawing.h"
+#include "wasm/quad.h"
 
 #define GRAZE_EXPORT(name) extern "C" [[clang::export_name(#name)]]
 
-namespace graze::reports::wasm {
+namespace graze::wasm {
 namespace {
 
-constexpr std::size_t kRoom = 1024;   // pairs at once
+constexpr std::size_t kRoom = 1024;   // pairs in one call
 constexpr std::size_t kText = 65536;  // bytes of a text
 
 Pair pairs_in[kRoom];
@@ -50,7 +50,7 @@ struct SiteOut {
 };
 std::vector<SiteOut> sites_out;
 
-// Those that the module can decide, and by what: under the policy that was set last.
+// The lanes that the module can run, with their functions under the policy that was set last.
 struct Decider {
   const Lane* lane;
   DecideBlock decide;
@@ -67,7 +67,7 @@ std::vector<Decider>& deciders() {
   return all;
 }
 
-// Null where the lane cannot have the policy. Exact lanes have none, and stay as they are.
+// Null if the lane cannot have the policy. Exact lanes have no policy and stay as they are.
 DecideBlock block_under(const Lane& lane, std::string_view policy) {
   if (policy.empty() || lane.exact) return cuda::block_on_host(lane);
   const bool by_bounds = policy == "bound" || policy == "filtered";
@@ -111,25 +111,26 @@ GRAZE_EXPORT(lane_id) const char* lane_id(int lane) { return deciders()[lane].la
 GRAZE_EXPORT(stratum_count) int stratum_count() { return strata::kStrataCount; }
 GRAZE_EXPORT(stratum_id) const char* stratum_id(int stratum) { return strata::kStrata[stratum].id.data(); }
 
-// The pairs with indices from `first` on.
+// Generates `count` pairs from the index `first`.
 GRAZE_EXPORT(generate) void generate(int stratum, std::uint64_t seed, std::uint64_t first, int count) {
   for (int i = 0; i < count; ++i)
     pairs_in[i] = strata::generate(seed, strata::kStrata[stratum].stratum, first + static_cast<std::uint64_t>(i));
 }
 
-// The number that the text spells, rounded once to float32.   Returns: whether it spells one.
+// Parses the number in the text, rounded once to float32.   Returns: whether the text is a number.
 GRAZE_EXPORT(parse) int parse(int coordinate) {
   const std::optional<float> value = parse_float32(text_in);
   if (value) coordinates(pairs_in[0])[coordinate] = *value;
   return value.has_value();
 }
 
-// The policy in the text for all lanes, until the next call; empty: zero.   Requires: abs:E, rel:K, bound or filtered.
+// Sets the policy in the text for all lanes until the next call; empty: none.   Requires: abs:E, rel:K, bound or
+// filtered.
 GRAZE_EXPORT(set_policy) void set_policy() {
   for (Decider& decider : deciders()) decider.decide = block_under(*decider.lane, text_in);
 }
 
-// Returns: whether the lane has the policy; then the verdicts of the pairs are written.
+// Writes the lane's verdicts on the pairs.   Returns: false if the lane cannot have the policy.
 GRAZE_EXPORT(decide) int decide(int lane, int count) {
   const DecideBlock& block = deciders()[lane].decide;
   if (!block) return 0;
@@ -137,22 +138,22 @@ GRAZE_EXPORT(decide) int decide(int lane, int count) {
   return 1;
 }
 
-// The exact verdicts of the pairs.
+// Writes the exact verdicts of the pairs.
 GRAZE_EXPORT(decide_truth) void decide_truth(int count) {
   for (int i = 0; i < count; ++i) verdicts_out[i] = static_cast<std::uint8_t>(truth_of(pairs_in[i]));
 }
 
-// Returns: whether the lane has trace hashes (cuda/lanes/trace.h); then those of the pairs are written.
+// Writes the lane's trace hashes (cuda/lanes/trace.h) of the pairs.   Returns: false if the lane has none.
 GRAZE_EXPORT(trace) int trace(int lane, int count) {
   const cuda::TraceBlock twin = cuda::twin_trace(*deciders()[lane].lane);
   if (twin) twin(pairs_in, count, hashes_out);
   return twin != nullptr;
 }
 
-// x y + z, rounded once, as the twins have it; for the test.
+// x y + z, rounded once, as in the twins; for the test.
 GRAZE_EXPORT(fused) float fused(float x, float y, float z) { return __builtin_fmaf(x, y, z); }
 
-// What is exactly so of the first pair.   Exact: but for the margin, of which these are bounds; 0 is exact.
+// The truth of the first pair. Exact, except for the margin's bounds; a bound of 0 is exact.
 GRAZE_EXPORT(truth) const TruthOut* truth() {
   const Pair& pair = pairs_in[0];
   truth_out = {};
@@ -168,11 +169,11 @@ GRAZE_EXPORT(truth) const TruthOut* truth() {
   return &truth_out;
 }
 
-// The coordinate of the first pair, so many ulps higher.
+// Raises a coordinate of the first pair by this many ulps.
 GRAZE_EXPORT(nudge) void nudge(int coordinate, int ulps) { nudge_in(pairs_in[0], coordinate, ulps); }
 
-// The pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`, one in `step` columns:
-// coordinate x goes up by so many ulps from pair to pair, y is `up` ulps above the centre's.
+// Writes the pairs of one row of an ulp map (analysis/ulp_map.h) around the pair in `centre`. Between neighbours, x
+// rises by `step` ulps; y is `up` ulps above the centre's.
 GRAZE_EXPORT(centre) Pair* centre() { return &map_centre; }
 GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) {
   for (int i = 0; i < columns; ++i) {
@@ -182,8 +183,9 @@ GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) 
   }
 }
 
-// The comparisons of the lane on the first pair, and the values that it asked its policy about; beside them the same
-// along the same path with 113 bits.   Returns: how many; -1 where they are not known to be the lane's own.
+// Computes the lane's comparisons on the first pair and the values passed to its policy, and beside them the same path
+// with 113 bits.
+// Returns: the number of steps; -1 if they are not known to be the lane's own.
 GRAZE_EXPORT(steps) int steps(int lane) {
   const Lane& of = *deciders()[lane].lane;
   steps_out.clear();
@@ -204,13 +206,13 @@ GRAZE_EXPORT(steps) int steps(int lane) {
   }
   return static_cast<int>(steps_out.size());
 }
-// How well they are known, as analysis::Evidence has it.
+// How sure it is that the steps are the lane's own, as analysis::Evidence.
 GRAZE_EXPORT(evidence) int evidence() { return steps_evidence; }
-// What the algorithm says with 113 bits throughout, on its own path.
+// The algorithm's verdict with 113 bits throughout, on its own path.
 GRAZE_EXPORT(with_113_bits) int with_113_bits() { return static_cast<int>(verdict_of_quads); }
 GRAZE_EXPORT(steps_at) const StepOut* steps_at() { return steps_out.data(); }
 
-// The contractions that make the lane's verdict on the first pair another one than that of the same source without
+// Finds the contractions that make the lane's verdict on the first pair differ from the same source without
 // contraction; see analysis/blame.h.   Returns: how many.
 GRAZE_EXPORT(contractions) int contractions(int lane) {
   sites_out.clear();
@@ -222,10 +224,10 @@ GRAZE_EXPORT(contractions) int contractions(int lane) {
 }
 GRAZE_EXPORT(contractions_at) const SiteOut* contractions_at() { return sites_out.data(); }
 
-// Of the first pair.
+// Draws the first pair.
 GRAZE_EXPORT(draw) const Drawing* draw() {
   drawing_out = drawing_of(pairs_in[0]);
   return &drawing_out;
 }
 
-}  // namespace graze::reports::wasm
+}  // namespace graze::wasm

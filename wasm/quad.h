@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The compiler's long double as a number for the algorithms, with a bound of its error. In WebAssembly it has 113 bits
-// and exponents to 2^16383, in software. What the bounds cannot tell from equal counts as equal, as in
-// oracle/multiprecision.h.
+// The compiler's long double as a number type for the algorithms, with an error bound. In WebAssembly it is implemented
+// in software, with 113 bits and exponents up to 2^16383. Numbers count as equal if the bounds cannot tell them apart,
+// as in oracle/multiprecision.h.
 #pragma once
 
 #include <cmath>
 #include <compare>
 
-namespace graze::reports::wasm {
+namespace graze::wasm {
 
 struct Quad {
-  static constexpr long double kUnit = 0x1p-112L;  // twice the unit roundoff, for the roundings of the bounds
+  static constexpr long double kUnit = 0x1p-112L;  // twice the unit roundoff, to cover the rounding of the bounds
 
   long double value = 0, error = 0;
 
@@ -43,4 +43,4 @@ struct Quad {
   }
 };
 
-}  // namespace graze::reports::wasm
+}  // namespace graze::wasm

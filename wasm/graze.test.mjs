@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module against the native build, and its interface.   node graze.test.mjs REFERENCE GRAZE.WASM PAIRS
+// Compares the module with the native build, and tests its interface.   node graze.test.mjs REFERENCE GRAZE.WASM PAIRS
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
@@ -13,7 +13,7 @@ const kSeed = 20120131n,
   kBlock = 1000,
   kFew = 5;
 
-// As reference.cpp has it.
+// The same hash as in reference.cpp.
 class Hash {
   value = 0x811c9dc5;
   scratch = new DataView(new ArrayBuffer(8));
@@ -79,7 +79,7 @@ function steps(lane, few) {
   });
 }
 
-// The same number as the native line's.
+// Computes the number that the native line has.
 function compute(what, stratum, block, count) {
   const draw = () => exports.generate(graze.strata.indexOf(stratum), kSeed, BigInt(block * kBlock), count);
   draw();
@@ -105,7 +105,7 @@ function compute(what, stratum, block, count) {
   return new Hash().add(bytes(exports.verdicts(), count)).value;
 }
 
-// The fused multiply-add on rationals: x, y and z are integers times 2^-149.
+// The fused multiply-add in exact arithmetic: x, y and z are integers times 2^-149.
 function fused_exactly(x, y, z) {
   const whole = (v) => BigInt(v * 2 ** 149); // exact: v < 2^128 stays a double
   let sum = whole(x) * whole(y) + (whole(z) << 149n); // times 2^-298
@@ -145,7 +145,7 @@ function check_fused() {
 function check_interface() {
   assert.equal(graze.parse('0.1'), Math.fround(0.1));
   assert.equal(graze.parse('-0x1.8p+1'), -3);
-  // Between two floats; rounded to double first, it would be the other one.
+  // Between two floats; rounding to double first would give the other one.
   assert.equal(graze.parse('1.000000059604644775390626'), 1 + 2 ** -23);
   for (const text of ['', 'x', '1e39', '1 2', '0x']) assert.equal(graze.parse(text), null, text);
   assert.equal(graze.nudged(0, -1), -(2 ** -149));
@@ -176,7 +176,7 @@ function check_interface() {
   assert.match(output, /cuda-fma: disjoint\n$/);
 }
 
-// The witness is as long as the margin, within its bounds and the rounding of its ends; what is nearest separates.
+// The witness is as long as the margin, up to the bounds and the rounding of its ends. The named features separate.
 function check_witness() {
   const found = { gap: 0, push: 0 };
   for (const stratum of graze.strata) {
@@ -205,7 +205,7 @@ function check_witness() {
         const along = Array.from({ length: 6 }, (_, v) =>
           axis.reduce((sum, x, k) => sum + (x / length) * (pair[3 * v + k] - p[k]), 0),
         );
-        const turned = (32 * 2 ** -52 * size * size) / most; // by the ends' rounding
+        const turned = (32 * 2 ** -52 * size * size) / most; // due to the rounding of the ends
         if (most > 1e-6 * size)
           assert.ok(Math.max(...along.slice(0, 3)) <= turned && Math.min(...along.slice(3)) >= least - turned, where);
         assert.ok(features.every(Boolean), where);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen exists with SSE2 and without: both must find the same in every pair, and only what is true.
+// The filter exists with SSE2 and without. Both must find the same for every pair, and only what is true.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/exact/exact.h"
-#include "core/exact/screen_portable.h"
+#include "core/exact/filter_portable.h"
 
 namespace graze::exact::detail {
 namespace {
@@ -43,13 +43,13 @@ Coordinates wide_pair(Random& random) {
   return draw(random, [&] { return std::ldexp(uniform(random), static_cast<int>(random() % 277) - 149); });
 }
 
-// Coordinates so small, or so large, that products of three leave the range of a float.
+// Coordinates so small or so large that products of three leave the range of float.
 Coordinates extreme_pair(Random& random) {
   const int exponent = random() % 2 == 0 ? -140 : 120;
   return draw(random, [&] { return std::ldexp(uniform(random), exponent); });
 }
 
-// b[0] lies on a's face up to rounding, or b's first edge crosses a's: determinants near their error bound.
+// b[0] lies on a's face up to rounding, or b's first edge crosses a's. Determinants are near their error bound.
 Coordinates near_pair(Random& random) {
   Coordinates c = uniform_pair(random);
   const float s = std::abs(uniform(random)) / 2, t = random() % 2 == 0 ? 0 : std::abs(uniform(random)) / 2;
@@ -73,12 +73,12 @@ struct Kind {
 constexpr Kind kKinds[] = {{"uniform", uniform_pair}, {"lattice", lattice_pair}, {"wide", wide_pair},
                            {"extreme", extreme_pair}, {"near", near_pair},       {"shared_vertex", shared_vertex_pair}};
 
-TEST(Screen, FindsNothingThatIsNotSo) {
+TEST(Filter, FindsNothingThatIsNotSo) {
   for (const Kind& kind : kKinds) {
     Random random(11);
     for (int i = 0; i < 20'000; ++i) {
       const Coordinates c = kind.draw(random);
-      const Finding found = portable::screen(c.a, c.b);
+      const Finding found = portable::filter(c.a, c.b);
       if (found == Finding::unsure) continue;
       const bool intersects = AllNumbers::visit(grid_of(c.a, c.b), [&](auto numbers) {
         return by_axes(triangles<decltype(numbers)>(c.a, c.b, grid_of(c.a, c.b).exponent)).intersects();
@@ -89,14 +89,14 @@ TEST(Screen, FindsNothingThatIsNotSo) {
 }
 
 #ifdef __SSE2__
-TEST(Screen, IsTheSameWithAndWithoutSse2) {
+TEST(Filter, IsTheSameWithAndWithoutSse2) {
   for (const Kind& kind : kKinds) {
     Random random(7);
     int count[5] = {};
     for (int i = 0; i < 200'000; ++i) {
       const Coordinates c = kind.draw(random);
-      const Finding found = portable::screen(c.a, c.b);
-      ASSERT_EQ(sse2::screen(c.a, c.b), found) << kind.name << ' ' << i;
+      const Finding found = portable::filter(c.a, c.b);
+      ASSERT_EQ(sse2::filter(c.a, c.b), found) << kind.name << ' ' << i;
       ++count[static_cast<int>(found)];
     }
     // A shared vertex is always in doubt, and pairs in general position never are.

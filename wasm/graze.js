@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// graze.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and what published algorithms say of
-// the same pair in float32 and float64, on the CPU and, by their twins, on the GPU. Needs nothing else: Node 18 or newer,
-// or any browser of 2021 or newer.
+// graze.wasm for JavaScript and TypeScript: exact triangle-triangle intersection, and the verdicts of published
+// algorithms on the same pair. The algorithms run in float32 and float64, on the CPU and, through their twins, on the
+// GPU. Has no dependencies; runs on Node 18 or newer, and in browsers since 2021.
 
 /** 18 coordinates, a[0] to a[2], then b[0] to b[2]; each is rounded to float32. @typedef {ArrayLike<number>} Pair */
 /** @typedef {'disjoint' | 'intersects' | 'declined'} Verdict declined: a coordinate is not finite, or a lane cannot decide. */
@@ -38,7 +38,7 @@ const feature_at = (of, feature) =>
 function graze_of(exports) {
   /** @type {WebAssembly.Memory} */
   const memory = exports.memory;
-  const view = () => new DataView(memory.buffer); // anew each time: memory that grows leaves views behind
+  const view = () => new DataView(memory.buffer); // made for each use, because a memory that grows detaches old views
 
   /** @param {number} at */
   function text_at(at) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The screen with SSE2; see core/exact/screen.h. It computes for a and b at once, since their parts are the same with a
-// and b exchanged.
+// The filter with SSE2; see core/exact/filter.h. Exchanging a and b gives the same computation, so it does both at
+// once.
 #pragma once
 
 #include <emmintrin.h>
@@ -45,15 +45,15 @@ struct Widened {
   }
 };
 
-// Coordinate i of both.
+// Coordinate i of both triangles.
 inline Two both(const Widened& l, const Widened& r, int i) {
   return i % 2 == 0 ? _mm_unpacklo_pd(l.two[i / 2], r.two[i / 2]) : _mm_unpackhi_pd(l.two[i / 2], r.two[i / 2]);
 }
 
-// Two vertices.
+// Two vertices, as one vector of two.
 inline Vec<Two> both(const double* l, const double* r) { return {Two{l[0], r[0]}, Two{l[1], r[1]}, Two{l[2], r[2]}}; }
 
-// determinant_error(extent_of(a, b)), twice.   Requires: the vertices of both.
+// determinant_error(extent_of(a, b)), in both parts.   Requires: the vertices of both triangles.
 inline Two determinant_error(const Vec<Two> (&v)[3]) {
   const Vec<Two> low{least(least(v[0].x, v[1].x), v[2].x), least(least(v[0].y, v[1].y), v[2].y),
                      least(least(v[0].z, v[1].z), v[2].z)};
@@ -65,8 +65,8 @@ inline Two determinant_error(const Vec<Two> (&v)[3]) {
   return 6 * kDeterminantError * xy * exchanged(xy) * z;
 }
 
-// lone_vertices as a table, for vertices of which none lies in the other's plane: bit 2 i says that vertex i of a is
-// below b, and bit 2 i + 1 that vertex i of b is below a. Each vertex by the place of its first coordinate.
+// lone_vertices as a table, for pairs with no vertex in the other's plane. Index: bit 2 i is set if vertex i of a is
+// below b, bit 2 i + 1 if vertex i of b is below a. Values: the indices of the vertices' first coordinates.
 struct Turns {
   std::uint8_t a[64][4] = {}, b[64][4] = {};
 
@@ -84,9 +84,9 @@ struct Turns {
 };
 inline constexpr Turns kTurns;
 
-// It branches only where most pairs of one kind take the same way: one mispredicted branch costs as much as everything
+// It branches only where most pairs of one kind take the same branch: a mispredicted branch costs as much as everything
 // after it.
-inline Finding screen(const float* a, const float* b) {
+inline Finding filter(const float* a, const float* b) {
   const Widened wide_a(a), wide_b(b);
   alignas(16) double at_a[10], at_b[10];
   wide_a.store(at_a);
@@ -95,7 +95,7 @@ inline Finding screen(const float* a, const float* b) {
   for (int i = 0; i < 3; ++i)
     v[i] = {both(wide_a, wide_b, 3 * i), both(wide_a, wide_b, 3 * i + 1), both(wide_a, wide_b, 3 * i + 2)};
   const Two bound = determinant_error(v);
-  // Of the other triangle: the heights are those of a's vertices over b, and of b's over a.
+  // Relative to the other triangle: the heights of a's vertices over b, and of b's over a.
   const Vec<Two> n = exchanged(cross<Two>(v[1] - v[0], v[2] - v[0])), from = exchanged(v[0]);
   const Two height[3] = {dot<Two>(n, v[0] - from), dot<Two>(n, v[1] - from), dot<Two>(n, v[2] - from)};
   const Two lowest = least(least(height[0], height[1]), height[2]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the module does not take from elsewhere: correct fused multiply-adds, lanes that it cannot build, and the parts
-// of twin.h that know of users' libraries.
+// Replacements for parts that the module does not take from elsewhere: correct fused multiply-adds, lanes that it
+// cannot build, and the parts of twin.h that concern users' libraries.
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -9,9 +9,9 @@
 #include "core/lanes/host_blocks.h"
 #include "cuda/twin/twin_table.h"
 
-// That of wasi-libc is wrong where the result is subnormal and lies halfway between two numbers. Here the product is
-// exact in double, and the sum rounded to odd (Boldo and Melquiond 2008): its last bit says whether anything was lost,
-// so that the second rounding rounds as one alone would.
+// wasi-libc's fmaf is wrong if the result is subnormal and halfway between two numbers. Here the product is exact in
+// double, and the sum is rounded to odd (Boldo and Melquiond 2008). The last bit of the sum tells whether anything was
+// lost, so the second rounding gives the same result as a single one.
 extern "C" float fmaf(float x, float y, float z) {
   const double product = double{x} * double{y}, addend = z;
   const double sum = product + addend, part = sum - product;
@@ -22,21 +22,21 @@ extern "C" float fmaf(float x, float y, float z) {
   return static_cast<float>(std::bit_cast<double>(bits));
 }
 
-// That of wasi-libc, but where z is zero: there it adds the rounded product, and the sign of one that rounds to -0 is
-// lost. The linker (--wrap) calls this for fma.
+// wasi-libc's fma, except if z is zero: there it adds the rounded product, and loses the sign of one that rounds to -0.
+// The linker (--wrap) calls this function for fma.
 extern "C" double __real_fma(double x, double y, double z);
 extern "C" double __wrap_fma(double x, double y, double z) {
   return z == 0 && x != 0 && y != 0 ? x * y : __real_fma(x, y, z);
 }
 
-// There are no exceptions: a throw ends the call with a trap, which JavaScript catches. The module's functions give
-// nothing to the parts it is made of at which they would throw.
+// There are no exceptions: a throw ends the call with a trap, which JavaScript catches. The module's functions never
+// pass arguments that would cause a throw.
 extern "C" void* __cxa_allocate_exception(std::size_t) { __builtin_trap(); }
 extern "C" void __cxa_throw(void*, void*, void (*)(void*)) { __builtin_trap(); }
 
 namespace graze {
 
-// Another compiler contracts otherwise, so that these lanes exist in the native build alone.
+// These lanes exist only in the native build, because another compiler contracts differently.
 namespace cpu_fma {
 extern const HostBlocks kHostBlocks{};
 extern const HostPolicyBlocks kHostPolicyBlocks{};

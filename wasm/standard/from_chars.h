@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// std::from_chars of floating-point numbers, which libc++ 14 does not have; included before everything else. By strtod
-// and strtof of wasi-libc, which round once.
+// std::from_chars for floating-point numbers, which libc++ 14 lacks. Included before everything else. Uses strtod and
+// strtof of wasi-libc, which round once.
 #pragma once
 
 #include <charconv>

@@ -149,7 +149,7 @@ void bench(const Options& options, int& status) {
     status = kInterrupted;
     return;
   }
-  if (!options.plot.empty()) write_result(options.plot, bench_plot(result, words(result.machine)));
+  if (!options.plot.empty()) write_result(options.plot, bench_plot(result, words(result.machine)), fuzz::NamedBy::user);
   if (options.json) {
     fmt::print("{}\n", json_of(result).dump(1));
     return;

@@ -5,12 +5,22 @@
 
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/sealed.h"
 #include "reports/ulp_map_picture.h"
 
 namespace graze::cli {
 
 using fuzz::Json;
 namespace {
+
+// The maps in the file; null if they are missing or damaged: then they are drawn again.
+Json stored(const std::filesystem::path& file) {
+  try {
+    return fuzz::read_sealed(file, "");
+  } catch (const corpus::FormatError&) {
+    return nullptr;
+  }
+}
 
 // Whether the stored maps belong to this pair and these lanes.
 bool is_current(const Json& maps, const Pair& pair, const std::vector<const Lane*>& lanes) {
@@ -33,9 +43,9 @@ bool map_case(const fuzz::SelectedLanes& under_test, const std::filesystem::path
   std::vector<const Lane*> lanes;
   std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
                [&](const Lane* lane) { return lane->info->id == subject; });
-  if (!again && is_current(Json::parse(fuzz::read_whole(file), nullptr, false), pair, lanes)) return false;
+  if (!again && is_current(stored(file), pair, lanes)) return false;
   const analysis::UlpMap map = analysis::ulp_map(pair, lanes, analysis::liveliest_coordinates(pair, lanes));
-  fuzz::write_whole(file, reports::to_json(map).dump(1) + "\n");
+  fuzz::write_whole(file, fuzz::sealed(reports::to_json(map)).dump(1) + "\n");
   return true;
 }
 

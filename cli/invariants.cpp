@@ -46,11 +46,14 @@ int invariants(const InvariantsOptions& options) {
   if (!options.scene.empty()) json["scene"] = options.scene;
   fuzz::add_left_out(json, under_test);
   json.update(reports::invariants_json(spec, found));
-  write_result(out / "invariants.json", json.dump(1) + "\n");
   const std::map<std::string, std::string> cases = reports::invariants_cases(spec, found);
-  for (const analysis::InvariantInfo& invariant : analysis::kInvariants)
-    remove_result(out / "cases" / (std::string(invariant.id) + ".pairs"), kPairs);
-  for (const auto& [file, text] : cases) write_result(out / "cases" / file, text);
+  std::vector<Result> results = {{"invariants.json", json.dump(1) + "\n"}};
+  for (const auto& [file, text] : cases) results.push_back({"cases/" + file, text});
+  write_results(out, results);
+  for (const analysis::InvariantInfo& invariant : analysis::kInvariants) {
+    if (const std::string file = std::string(invariant.id) + ".pairs"; !cases.contains(file))
+      remove_result(out / "cases" / file, kPairs);
+  }
   fmt::print("Wrote {0}/invariants.json{1}\n", out.string(),
              cases.empty() ? "" : fmt::format(", {}/cases/", out.string()));
   if (cases.empty()) return 0;

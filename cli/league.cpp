@@ -51,7 +51,7 @@ std::string trimmed(const std::string& text) {
 std::vector<reports::LeagueSubject> read_subjects(const fs::path& file, fuzz::MostPairs& most) {
   std::vector<reports::LeagueSubject> subjects;
   if (!fs::exists(file)) throw std::runtime_error(cannot("read", file, ENOENT));
-  std::istringstream in(fuzz::read_whole(file));
+  std::istringstream in(fuzz::read_whole(file, fuzz::NamedBy::user));
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
     const std::string text = trimmed(line);

@@ -93,7 +93,7 @@ void print_counts(const analysis::UlpMap& map) {
 // Writes one picture, or one for each panel if `out` is a directory.
 void write_pictures(const analysis::UlpMap& map, const fs::path& out) {
   if (out.extension() == ".png") {
-    write_result(out, reports::sheet_png(map));
+    write_result(out, reports::sheet_png(map), fuzz::NamedBy::user);
   } else {
     const ResultFolder folder(out, "truth.png");
     for (const analysis::UlpPanel& panel : map.panels) {

@@ -105,7 +105,7 @@ int minimize_case(const MinimizeOptions& options) {
   }
   std::string text;
   if (std::all_of(entries.begin(), entries.end(), [](auto& entry) { return entry.line != 0 && entry.lines == 1; })) {
-    text = fuzz::read_whole(options.name);
+    text = fuzz::read_whole(options.name, fuzz::NamedBy::user);
   } else {  // a stratum's pair or pasted numbers become a file of pairs
     std::ostringstream out;
     corpus::write_header(out);
@@ -138,7 +138,8 @@ int minimize_case(const MinimizeOptions& options) {
     throw std::runtime_error("there is nothing to minimise in " + options.name +
                              ": no lane is wrong on any of its pairs");
   for (const fuzz::MinimisedCase& found : results) print(found, options.name);
-  if (!options.out.empty()) write_result(options.out, with_header(fuzz::with_results(text, entries, results)));
+  if (!options.out.empty())
+    write_result(options.out, with_header(fuzz::with_results(text, entries, results)), fuzz::NamedBy::user);
   // A pipe or a device cannot be read again, and a link may lead to standard output.
   if (options.out.empty() || fs::is_regular_file(fs::symlink_status(options.out)))
     fmt::print("Next: graze explain {}\n", path_word(options.out.empty() ? options.name : options.out));
@@ -217,6 +218,8 @@ int minimize_directory(MinimizeOptions options) {
     if (i % options.shard.of == options.shard.number - 1) rows.push_back(summary["signatures"][i]);
   }
   expect_writable(directory);
+  fuzz::read_timings(directory);  // before the work, because its end adds to them
+  fuzz::expect_file(directory / "failures.json");
   if (whole) fuzz::expect_own(directory / "failures.json", Json{{"summary", ""}}.dump(1));
   const int threads = options.threads > 0 ? options.threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));

@@ -12,6 +12,7 @@
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimise.h"
+#include "fuzz/sealed.h"
 #include "reports/pareto.h"
 
 namespace graze::cli {
@@ -146,10 +147,11 @@ int pareto(ParetoOptions options) {
   nlohmann::ordered_json json = {{"pairs", pareto.offers.front().errors.pairs}, {"seed", options.seed}};
   fuzz::add_left_out(json, under_test);
   json.update(reports::pareto_json(pareto));
-  write_result(out / "pareto.json", json.dump(1) + "\n");
-  write_result(out / "front.svg", reports::pareto_figure(pareto));
+  std::vector<Result> results = {{"pareto.json", fuzz::sealed(json).dump(1) + "\n"},
+                                 {"front.svg", reports::pareto_figure(pareto)}};
   for (const analysis::Extreme extreme : analysis::kExtremes)
-    write_result(out / (std::string(name(extreme)) + ".svg"), reports::extreme_figure(pareto.curves, extreme));
+    results.push_back({std::string(name(extreme)) + ".svg", reports::extreme_figure(pareto.curves, extreme)});
+  write_results(out, results);
   fmt::print("Wrote {}/{{pareto.json,front.svg,scale.svg,offset.svg,flatness.svg,aspect.svg}}\n", out.string());
   if (fs::exists(out / "campaign.sqlite")) fmt::print("Next: graze report {}\n", path_word(out.string()));
   return 0;

@@ -33,7 +33,7 @@ cuda::ProofRecord record_of(const cuda::ProofOptions& options, const LaneOptions
 int prove(const cuda::ProofOptions& options, const LaneOptions& lanes, std::string out) {
   const cuda::ProofRecord record = record_of(options, lanes, out);
   if (out.empty()) out = "proof.json";
-  write_result(out, to_json(record).dump(1) + "\n");
+  write_result(out, to_json(record).dump(1) + "\n", fuzz::NamedBy::user);
   fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", "lane", "explicit PTX", "differences", "twin", "differences");
   for (const cuda::LaneProof& lane : record.lanes) {
     fmt::print("{:<36}{:>16}{:>13}{:>16}{:>13}\n", lane.lane, reports::grouped(lane.pairs()),

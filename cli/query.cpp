@@ -109,7 +109,7 @@ void write_pairs(const std::string& file, const std::vector<corpus::Entry>& entr
   std::ostringstream text;
   corpus::write_header(text);
   for (const corpus::Entry& entry : entries) corpus::write_entry(text, entry);
-  write_result(file, text.str());
+  write_result(file, text.str(), fuzz::NamedBy::user);
 }
 
 // Writes the hits of the first run to files.
@@ -125,7 +125,7 @@ void write_hits(const QueryOptions& options, const Run& run, const std::vector<q
     hits.triangles.push_back(triangles[triangle]);
   }
   if (!options.pairs.empty()) write_pairs(options.pairs, entries);
-  if (!options.obj.empty()) write_result(options.obj, obj_of({{"reference", references}, hits}));
+  if (!options.obj.empty()) write_result(options.obj, obj_of({{"reference", references}, hits}), fuzz::NamedBy::user);
 }
 
 Json json_of(const Run& run) {

@@ -74,8 +74,8 @@ void query_self(const SelfOptions& options) {
       std::copy_n(from, 9, piercing.triangles.back().begin());
     }
   }
-  if (!options.pairs.empty()) write_result(options.pairs, pairs.str());
-  if (!options.obj.empty()) write_result(options.obj, obj_of({piercing}));
+  if (!options.pairs.empty()) write_result(options.pairs, pairs.str(), fuzz::NamedBy::user);
+  if (!options.obj.empty()) write_result(options.obj, obj_of({piercing}), fuzz::NamedBy::user);
   if (options.json) {
     const nlohmann::ordered_json json = {{"triangles", mesh.triangles.size()},
                                          {"hits", count(kPiercing)},

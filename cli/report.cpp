@@ -3,6 +3,7 @@
 #include "reports/report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
@@ -13,6 +14,7 @@
 #include "core/text.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/kinds.h"
+#include "fuzz/sealed.h"
 #include "reports/comparison.h"
 #include "reports/csv.h"
 #include "reports/page.h"
@@ -39,20 +41,17 @@ void write_report(const fs::path& directory, const Json& report, const char* nam
   const Json costs = reports::make_costs(directory);
   const std::string html = reports::page(report, costs, reports::make_choices(directory));
   const fuzz::FolderLock alone(directory, fuzz::FolderLock::WhenTaken::refuse);
-  write_result(directory / fmt::format("{}.json", name), reports::report_text(report));
-  write_result(directory / fmt::format("{}.html", name), html);
-  std::string tables;
-  if (costs.is_null()) {
-    remove_result(directory / "costs.json", R"({"machine": "", "passes": 0})");
-  } else {
-    write_result(directory / "costs.json", reports::report_text(costs));
-    tables = ", costs.json";
-  }
-  for (const reports::CsvTable& table : reports::csv_tables(directory, report)) {
-    write_result(directory / table.name, table.text);
-    tables += fmt::format(", {}", table.name);
-  }
-  fmt::print("Wrote {0}/{1}.html, {1}.json{2}\n", directory.string(), name, tables);
+  std::vector<Result> results = {{fmt::format("{}.json", name), reports::report_text(fuzz::sealed(report))},
+                                 {fmt::format("{}.html", name), html}};
+  if (!costs.is_null()) results.push_back({"costs.json", reports::report_text(fuzz::sealed(costs))});
+  for (const reports::CsvTable& table : reports::csv_tables(directory, report))
+    results.push_back({table.name, table.text});
+  write_results(directory, results);
+  if (costs.is_null()) remove_result(directory / "costs.json", R"({"machine": "", "passes": 0})");
+  std::vector<std::string> names;
+  for (const Result& result : results) names.push_back(result.name);
+  std::swap(names[0], names[1]);  // the page first
+  fmt::print("Wrote {}/{}\n", directory.string(), fmt::join(names, ", "));
   for (const Json& sentence : report["missing"]) fmt::print("{}\n", sentence.get<std::string>());
   say_what_the_page_is();
 }
@@ -75,7 +74,7 @@ void report(const ReportOptions& options) {
   if (options.from.empty() != options.out.empty())
     throw UsageError("--from and --out need each other; add the other one");
   if (!options.from.empty()) {
-    write_result(options.out, page_of(options.from));
+    write_result(options.out, page_of(options.from), fuzz::NamedBy::user);
     fmt::print("Wrote {}\n", options.out);
     say_what_the_page_is();
   } else if (!options.compare.empty()) {

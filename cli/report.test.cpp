@@ -25,7 +25,8 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   expect_done(std::string(kFuzz) + "--out c > /dev/null && graze minimize c > /dev/null && graze report c");
   const nlohmann::ordered_json summary = nlohmann::ordered_json::parse(contents(shell.folder / "c/summary.json"));
   const auto write = [&](const char* file, const nlohmann::ordered_json& json) {
-    std::ofstream(shell.folder / file) << json.dump(1) << '\n';
+    const bool is_summary = file == std::string("c/summary.json");  // checked against the database
+    std::ofstream(shell.folder / file) << (is_summary ? json.dump(1) + '\n' : sealed(json));
   };
   const std::string readers[] = {"report c",   "report --compare c c",    "failures c",
                                  "minimize c", "corpus add c --corpus r", "dump c"};
@@ -69,6 +70,15 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   refused("damaged");
   write("c/failures.json", kinds);
   expect_done("graze failures c > /dev/null");
+  // What is no count: the checksum tells.
+  for (const std::string file : {"failures.json", "timings.json", "costs.json", "report.json"}) {
+    const std::string reader =
+        file == "failures.json" || file == "timings.json" ? "report c" : "report --from c/report.json --out r.html";
+    expect_done("cp c/" + file + " k && sed -i '0,/\": *\"/s//\": \"x/' c/" + file);  // in the first text
+    expect_done("! cmp -s k c/" + file);
+    expect_error("graze " + reader, 1, {"c/" + file, "changed or damaged"});
+    expect_done("cp k c/" + file);
+  }
 
   const std::string timed = contents(shell.folder / "c/timings.json");
   nlohmann::ordered_json timings = nlohmann::ordered_json::parse(timed), costs;
@@ -77,6 +87,17 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   }
   write("c/timings.json", timings);
   expect_error("graze report c", 1, {"c/timings.json", "exact/f32/cpu", "thesis"});
+  timings = nlohmann::ordered_json::parse(timed);
+  timings["runs"][0]["pairs"] = -1;
+  write("c/timings.json", timings);
+  expect_error("graze report c", 1, {"c/timings.json", "-1"});
+  // Damaged: nothing is removed or written over without a word.
+  std::ofstream(shell.folder / "c/timings.json") << timed.substr(0, timed.size() - 30);
+  for (const char* verb : {"report c", "minimize c", "merge c --out m"})
+    expect_error(std::string("graze ") + verb, 1, {"c/timings.json", "damaged", "remove it"});
+  expect_done(std::string(kFuzz) + "--out c 2>&1 | grep 'c/timings.json: it has been changed or damaged'");
+  EXPECT_EQ(contents(shell.folder / "c/timings.json"), timed.substr(0, timed.size() - 30));
+  EXPECT_TRUE(std::filesystem::exists(shell.folder / "c/costs.json"));
   std::ofstream(shell.folder / "c/timings.json") << timed;
   costs = nlohmann::ordered_json::parse(contents(shell.folder / "c/costs.json"));
   for (const auto& [field, value] : {std::pair("middle", -1), {"pairs", 1'000'000}}) {
@@ -116,6 +137,59 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
     expect_error("graze report c", 1, {"c/summary.json"});
     expect_error("graze failures c", 1, words);
   }
+}
+
+// No verb waits for a pipe at the name of a record, and none takes a file of another for its own.
+TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
+  const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata near_vertex_face --out c";
+  expect_done(fuzz + " > /dev/null && graze minimize c > /dev/null && graze report c");
+  const std::string first = shell("basename $(ls c/cases/*.maps.json | head -n 1) .maps.json").out,
+                    hash = first.substr(0, first.size() - 1);
+  const std::string verbs[] = {"graze report c", "graze minimize c", fuzz, "graze status c", "graze merge c --out m"};
+  std::size_t refused = 0;
+  for (const std::string& file :
+       {std::string("summary.json"), std::string("campaign.sqlite"), std::string("timings.json"),
+        std::string("failures.json"), std::string("costs.json"), std::string("status.json"), "cases/" + hash + ".pairs",
+        "cases/" + hash + ".maps.json"}) {
+    expect_done("mv c/" + file + " kept && mkfifo c/" + file);
+    bool named = false;
+    for (const std::string& verb : verbs) {
+      const Ran ran = shell("timeout 60 " + verb);
+      EXPECT_TRUE(ran.status <= 2) << verb << ' ' << file << ' ' << ran.status;  // 124: it waited
+      named = named || (ran.status != 0 && ran.err.find(file) != ran.err.npos);
+      refused += ran.status != 0;
+    }
+    EXPECT_TRUE(named) << file;
+    expect_done("rm -rf m && mv kept c/" + file);
+  }
+  EXPECT_GT(refused, 15u);
+
+  // Files of another below cases/.
+  const std::string pairs = "c/cases/" + hash + ".pairs", maps = "c/cases/" + hash + ".maps.json";
+  expect_done("cp " + pairs + " kept && echo mine > " + pairs);
+  expect_error(fuzz, 2, {pairs, "--force"});
+  EXPECT_EQ(contents(shell.folder / pairs), "mine\n");
+  expect_done("cp kept " + pairs + " && echo '{\"a\": 1}' > " + maps);
+  expect_error("graze minimize c --again", 2, {maps, "--force"});
+  EXPECT_EQ(contents(shell.folder / maps), "{\"a\": 1}\n");
+  expect_done("rm " + maps + " && graze minimize c");
+  // A result of Graze's that was cut off is known, and replaced.
+  expect_done("truncate -s -30 c/costs.json && graze report c && graze report --from c/report.json --out r.html");
+}
+
+// By its name in a campaign's folder the status is Graze's: a damaged one is replaced, and ends no campaign.
+TEST_F(Report, ADamagedStatusIsReplaced) {
+  const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";
+  expect_done(fuzz);
+  for (const char* text : {"{}", "[]", "plain text", ""}) {
+    std::ofstream(shell.folder / "c/status.json") << text;
+    expect_error("graze status c", 1, {"c/status.json", "damaged", "the next run"});
+    expect_done(fuzz);
+    expect_done("graze status c | grep ' done '");
+  }
+  expect_done("echo precious > theirs && ln -sf ../theirs c/status.json");
+  expect_error(fuzz, 2, {"c/status.json", "link"});
+  EXPECT_EQ(contents(shell.folder / "theirs"), "precious\n");
 }
 
 TEST_F(Report, SameBytesWhateverTheThreads) {

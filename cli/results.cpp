@@ -50,12 +50,20 @@ void add_force(CLI::App& app) {
 
 void expect_replaceable(const fs::path& file, const std::string& text) {
   if (!fuzz::may_replace_foreign && !fuzz::may_replace(file, text))
-    throw UsageError(cannot("replace", file, "graze did not write it; choose another name, or add --force"));
+    throw UsageError(cannot("replace", file, fuzz::kForeign));
 }
 
-void write_result(const fs::path& file, const std::string& text) {
+void write_result(const fs::path& file, const std::string& text, fuzz::NamedBy named_by) {
   expect_replaceable(file, text);
-  fuzz::write_whole(file, text);
+  fuzz::write_whole(file, text, named_by);
+}
+
+void write_results(const fs::path& folder, const std::vector<Result>& results) {
+  for (const Result& result : results) {
+    fuzz::expect_file(folder / result.name);
+    expect_replaceable(folder / result.name, result.text);
+  }
+  for (const Result& result : results) fuzz::write_whole(folder / result.name, result.text);
 }
 
 void remove_result(const fs::path& file, const std::string& text) {

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "fuzz/files.h"
 
@@ -20,7 +21,15 @@ void add_force(CLI::App& app);
 void expect_replaceable(const std::filesystem::path& file, const std::string& text);
 
 // Throws: as expect_replaceable and fuzz::write_whole.
-void write_result(const std::filesystem::path& file, const std::string& text);
+void write_result(const std::filesystem::path& file, const std::string& text,
+                  fuzz::NamedBy named_by = fuzz::NamedBy::graze);
+
+struct Result {
+  std::string name, text;
+};
+
+// Writes all of them into the folder, or none where one may not be replaced.   Throws: as write_result.
+void write_results(const std::filesystem::path& folder, const std::vector<Result>& results);
 
 // Removes the file of an earlier run; leaves it if it is not of the same kind as this text.
 void remove_result(const std::filesystem::path& file, const std::string& text);

@@ -12,11 +12,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/message_testing.h"
+#include "fuzz/sealed.h"
 
 namespace graze::cli {
 
@@ -26,6 +28,9 @@ inline std::string contents(const std::filesystem::path& file) {
   text << in.rdbuf();
   return text.str();
 }
+
+// As Graze would write the changed object: with the checksum that fits (fuzz/sealed.h).
+inline std::string sealed(const nlohmann::ordered_json& json) { return fuzz::sealed(json).dump(1) + '\n'; }
 
 struct Ran {
   int status;  // exit status; 128 + n for signal n

@@ -79,7 +79,7 @@ void scene(const SceneVerb& options) {
     std::cout << text;
     return;
   }
-  write_result(options.out, text);
+  write_result(options.out, text, fuzz::NamedBy::user);
   fmt::print("Wrote {}: {} triangles, {} pairs whose boxes overlap.\n", options.out,
              reports::grouped(sample.triangles.size()), reports::grouped(sample.pairs));
   fmt::print("Next: graze fuzz --scene {}\n", path_word(options.out));

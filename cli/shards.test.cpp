@@ -192,7 +192,7 @@ TEST_F(Shards, StatusTellsWhatRunsAndWhatNeedsHelp) {
   Json old = Json::parse(contents(shell.folder / "killed/status.json"));
   old["host"] = "elsewhere";
   old["updated"] = old["updated"].get<std::int64_t>() - 1000;
-  std::ofstream(shell.folder / "killed/status.json") << old;
+  std::ofstream(shell.folder / "killed/status.json") << sealed(old);
   const Ran stalled = shell("graze status killed");
   EXPECT_EQ(stalled.status, 1);
   EXPECT_NE(stalled.out.find(" stalled "), std::string::npos) << stalled.out;
@@ -223,12 +223,13 @@ TEST_F(Shards, StatusRefusesADamagedStatus) {
                                             {"updated", "x", "updated"}}) {
     Json other = whole;
     other[field] = value;
-    refused(other.dump(), found);
+    refused(sealed(other), found);
+    refused(other.dump(), "its checksum differs");
   }
   for (const char* field : {"state", "shard", "pairs", "done", "disagreements", "signatures", "updated"}) {
     Json other = whole;
     other.erase(field);
-    refused(other.dump(), damaged);
+    refused(sealed(other), damaged);
   }
   std::filesystem::remove(shell.folder / "c/status.json");
   expect_error("graze status c", 1, {"c/status.json", "missing"});

@@ -170,7 +170,7 @@ std::string prometheus(const Json& all) {
 
 int status_command(const StatusOptions& options) {
   const Json all = status_of(options);
-  if (!options.prometheus.empty()) write_result(options.prometheus, prometheus(all));
+  if (!options.prometheus.empty()) write_result(options.prometheus, prometheus(all), fuzz::NamedBy::user);
   std::cout << (options.json ? all.dump(1) + '\n' : table(all));
   for (const char* bad : {"failed", "killed", "stalled"}) {
     if (all["states"].contains(bad)) return 1;

@@ -3,6 +3,7 @@
 // hide.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "analysis/pareto.h"
@@ -17,6 +18,7 @@
 #include "cuda/twin/twin.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimise.h"
+#include "fuzz/sealed.h"
 #include "reports/snippet.h"
 #include "reports/terminal.h"
 #include "reports/tuning.h"
@@ -108,17 +110,20 @@ int tune(const TuneOptions& options) {
   const Lane chosen = tuned.chosen.empty() ? *lane : lane_under(*lane, tuned.chosen);
   if (const std::string cost = cost_sentence(*lane, chosen, spec.others, on_device); !cost.empty())
     fmt::print("{}", reports::wrapped(cost, screen.columns));
-  std::vector<std::string> written = {"tune.json", "curves.svg", "policy.h"};
-  write_result(out / "tune.json", reports::tuning_json(question, tuned).dump(1) + "\n");
-  write_result(out / "curves.svg", reports::tuning_figure(question, tuned));
-  write_result(out / "policy.h", reports::policy_header(chosen));
+  std::vector<Result> results = {{"tune.json", fuzz::sealed(reports::tuning_json(question, tuned)).dump(1) + "\n"},
+                                 {"curves.svg", reports::tuning_figure(question, tuned)},
+                                 {"policy.h", reports::policy_header(chosen)}};
   for (const auto& [place, name] :
        {std::pair{tuned.confirmed.first_fixed, "fixed.pairs"}, {tuned.confirmed.first_broken, "broken.pairs"}}) {
-    if (!place) remove_result(out / name, kPairs);
     if (!place) continue;
     const Pair pair = spec.others[static_cast<std::size_t>(place->source)].pair(place->index);
-    write_result(out / name, smallest(*lane, chosen, pair));
-    written.emplace_back(name);
+    results.push_back({name, smallest(*lane, chosen, pair)});
+  }
+  write_results(out, results);
+  std::vector<std::string> written;
+  for (const Result& result : results) written.push_back(result.name);
+  for (const char* name : {"fixed.pairs", "broken.pairs"}) {
+    if (std::find(written.begin(), written.end(), name) == written.end()) remove_result(out / name, kPairs);
   }
   fmt::print("Wrote {}/{{{}}}\n", out.string(), fmt::join(written, ","));
   if (written.back().ends_with(".pairs")) {

@@ -81,6 +81,16 @@ TEST_F(TuneCommand, AFreshCampaignConfirmsWhatItRecommends) {
   }
 }
 
+// Where one file of the folder is another's, none is written.
+TEST_F(TuneCommand, AForeignFileStopsItBeforeAnythingIsWritten) {
+  const std::string tune = "graze tune moller_1997/f32/cpu --strata near_vertex_face --pairs 1k --out t";
+  expect_done(tune + " > /dev/null && echo mine > t/policy.h && cp -r t before");
+  expect_error(tune + " --seed 2 > /dev/null", 2, {"t/policy.h", "--force"});
+  expect_done("diff -r t before && rm -r t/policy.h && mkfifo t/policy.h");
+  expect_error("timeout 60 " + tune + " --seed 2 > /dev/null", 1, {"t/policy.h", "pipe"});
+  expect_done("cmp t/tune.json before/tune.json");
+}
+
 TEST_F(TuneCommand, NextIsACommandThatRuns) {
   // First something is fixed and broken; then, in the same folder, nothing is.
   for (const char* lane : {"moller_1997/f32/cpu --strata near_vertex_face --forbid false-negative --max-rate 1e-2",

@@ -170,7 +170,7 @@ void view(const std::string& what, const std::string& mesh, const std::string& o
         "them and build");
   }
   const Viewed viewed = viewed_of(what, mesh);
-  write_result(out, reports::viewer_page(viewed));
+  write_result(out, reports::viewer_page(viewed), fuzz::NamedBy::user);
   const std::size_t count = viewed.pairs.size();
   fmt::print("Wrote {}: {}{}\n", path_word(out),
              count == 0 ? "the special cases of 2012" : fmt::format("{} pair{}", count, count == 1 ? "" : "s"),

@@ -84,31 +84,38 @@ void write_into(const fs::path& file, bool pipe, bool standard_output, const std
   if (own.number < 0 || !write_all(own.number, text)) fail("write", file, errno);
 }
 
-// Opens the file for this writer alone: other writers wait until this one has moved it to its place.
+// Makes a new file for this writer alone: other writers wait until this one has moved it to its place. A file that a
+// killed writer left is removed and never written to, because it may be a hard link to somebody else's file.
 // Returns: its descriptor; negative on failure, with the reason in errno.
-int opened_alone(const std::string& file) {
+int made_alone(const std::string& file) {
   while (true) {
-    const int number = open(file.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
-    if (number < 0) return number;
+    int number = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const bool made = number >= 0;
+    if (!made && errno != EEXIST) return number;
+    if (!made) number = open(file.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (number < 0 && errno == ENOENT) continue;  // its writer has just moved it
     struct stat opened {
     }, named{};
-    if (fstat(number, &opened) != 0 || !S_ISREG(opened.st_mode)) return number;
-    const bool locked = flock(number, LOCK_EX) == 0;
-    if (!locked && errno != EINTR) return number;  // a file system without locks
-    if (locked && lstat(file.c_str(), &named) == 0 && same_file(opened, named)) return number;
+    if (number < 0 || fstat(number, &opened) != 0 || !S_ISREG(opened.st_mode)) return number;
+    while (flock(number, LOCK_EX) != 0 && errno == EINTR) {
+    }  // a file system may have no locks
+    const bool there = lstat(file.c_str(), &named) == 0 && same_file(opened, named);
+    if (made && there) return number;
+    const int error = there && unlink(file.c_str()) != 0 ? errno : 0;
     close(number);
+    errno = error;
+    if (error != 0) return -1;
   }
 }
 
 void replace(const fs::path& file, const fs::path& asked, const std::string& text, mode_t mode) {
   const std::string beside = file.string() + kPart;
-  Handle part{opened_alone(beside)};
+  Handle part{made_alone(beside)};
   struct stat state {};
   if (part.number < 0) fail("write", asked, errno);
   if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode))
     throw std::runtime_error(cannot("write", asked, beside + " is in the way and is no file; remove it"));
-  bool done =
-      ftruncate(part.number, 0) == 0 && write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
+  bool done = write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
   // A full disk may show only on close. The file itself stays open, and so locked, until it is in its place.
   done = done && close(dup(part.number)) == 0;
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
@@ -117,7 +124,18 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
   fail("write", asked, error);
 }
 
+// Throws: std::runtime_error unless the mode is a file's.   act: "read".
+void expect_file(const char* act, const fs::path& file, mode_t mode) {
+  if (S_ISDIR(mode)) fail(act, file, EISDIR);
+  if (!S_ISREG(mode)) throw std::runtime_error(cannot(act, file, "it is a pipe or a device; remove it"));
+}
+
 }  // namespace
+
+void expect_file(const fs::path& file) {
+  struct stat there {};
+  if (stat(file.c_str(), &there) == 0) expect_file("use", file, there.st_mode);
+}
 
 fs::path behind_links(fs::path file) {
   for (int links = 0; links < 40 && fs::is_symlink(fs::symlink_status(file)); ++links)
@@ -125,11 +143,12 @@ fs::path behind_links(fs::path file) {
   return file;
 }
 
-std::string read_whole(const fs::path& file) {
+std::string read_whole(const fs::path& file, NamedBy named_by) {
   const Handle in{open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
   if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR)) return {};
   struct stat state {};
   if (in.number < 0 || fstat(in.number, &state) != 0) fail("read", file, errno);
+  if (named_by == NamedBy::graze) expect_file("read", file, state.st_mode);
   std::string text;
   char bytes[65536];
   while (true) {
@@ -146,11 +165,11 @@ std::string read_whole(const fs::path& file) {
   }
 }
 
-void write_whole(const fs::path& file, const std::string& text) {
+void write_whole(const fs::path& file, const std::string& text, NamedBy named_by) {
   struct stat there {};
   const bool exists = stat(file.c_str(), &there) == 0;
   if (!exists && errno != ENOENT) fail("write", file, errno);
-  if (exists && S_ISDIR(there.st_mode)) fail("write", file, EISDIR);
+  if (exists && (named_by == NamedBy::graze || S_ISDIR(there.st_mode))) expect_file("write", file, there.st_mode);
   // The standard output may be a file too. Replacing it would lose everything else that is printed.
   const bool standard_output = exists && is_standard_output(there);
   if (exists && (standard_output || !S_ISREG(there.st_mode)))

@@ -8,13 +8,19 @@
 
 namespace graze::fuzz {
 
-// The file's bytes; empty if it does not exist.   Throws: std::runtime_error if it cannot be read.
-std::string read_whole(const std::filesystem::path& file);
+// Who chose a file's name. A user may name a pipe or a device; Graze's own names stand for files alone.
+enum class NamedBy { graze, user };
 
-// Writes the file, through symbolic links; a device or a pipe is written into. On failure no partial file is left. Two
-// processes may write the same file at once: each writes a whole file, and the last one stays.
-// Throws: std::runtime_error for a folder, and if there is no room.
-void write_whole(const std::filesystem::path& file, const std::string& text);
+// Throws: std::runtime_error for a pipe, a device or a folder of this name, seen through symbolic links.
+void expect_file(const std::filesystem::path& file);
+
+// The file's bytes; empty where there is none.   Throws: std::runtime_error for one that cannot be read.
+std::string read_whole(const std::filesystem::path& file, NamedBy named_by = NamedBy::graze);
+
+// Writes the file, through symbolic links; a device or a pipe that a user named stays what it is. Nothing is left
+// beside it when this fails. Two may write the same file at once: each writes a whole one, and the last one stays.
+// Throws: std::runtime_error for a folder, and when there is no room.
+void write_whole(const std::filesystem::path& file, const std::string& text, NamedBy named_by = NamedBy::graze);
 
 // Follows symbolic links to the file or folder that they name, even if it does not exist yet.
 std::filesystem::path behind_links(std::filesystem::path file);

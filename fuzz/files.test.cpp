@@ -6,6 +6,7 @@
 #include "core/stop.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/own_files.h"
+#include "fuzz/sealed.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -35,7 +36,9 @@ class Files : public testing::Test {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
 
-  // The error of write_whole.
+  void TearDown() override { may_replace_foreign = false; }
+
+  // What write_whole throws.
   static std::string refusal(const fs::path& file) {
     try {
       write_whole(file, "text");
@@ -75,11 +78,74 @@ TEST_F(Files, LinksAreWrittenThrough) {
 TEST_F(Files, PipesStayPipes) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  auto reader = std::async(std::launch::async, [&] { return read_whole(pipe); });
-  write_whole(pipe, "through");
+  auto reader = std::async(std::launch::async, [&] { return read_whole(pipe, NamedBy::user); });
+  write_whole(pipe, "through", NamedBy::user);
   EXPECT_EQ(reader.get(), "through");
   EXPECT_TRUE(fs::is_fifo(pipe));
   EXPECT_EQ(count(), 1u);
+}
+
+// A name that Graze chose stands for a file: nobody waits for a pipe there.
+TEST_F(Files, RecordsThatAreNoFilesAreRefused) {
+  const fs::path pipe = folder_ / "summary.json";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", folder_ / "status.json");
+  for (const fs::path& file : {pipe, folder_ / "status.json"}) {
+    EXPECT_TRUE(names(refusal(file), {file.string(), "pipe or a device"}));
+    EXPECT_THROW(read_whole(file), std::runtime_error);
+    EXPECT_THROW(read_sealed(file, "remove it"), std::runtime_error);
+    EXPECT_THROW(may_hold_campaign(folder_), std::runtime_error);
+    EXPECT_THROW(expect_file(file), std::runtime_error);
+  }
+}
+
+// The part's name may be a hard link to another file, which must not change.
+TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
+  write_whole(folder_ / "theirs", "precious");
+  fs::create_hard_link(folder_ / "theirs", folder_ / "a.graze.part");
+  write_whole(folder_ / "a", "new");
+  EXPECT_EQ(read_whole(folder_ / "theirs"), "precious");
+  EXPECT_EQ(fs::hard_link_count(folder_ / "theirs"), 1u);
+  EXPECT_EQ(read_whole(folder_ / "a"), "new");
+  EXPECT_EQ(count(), 2u);
+  // A long file that a killed writer left is no obstacle.
+  write_whole(folder_ / "a.graze.part", std::string(100'000, 'x'));
+  write_whole(folder_ / "a", "newer");
+  EXPECT_EQ(read_whole(folder_ / "a"), "newer");
+  EXPECT_EQ(count(), 2u);
+}
+
+TEST_F(Files, AChangeOfASealedFileIsNoticed) {
+  const fs::path file = folder_ / "result.json";
+  EXPECT_TRUE(read_sealed(file, "remove it").is_null());
+  const Json json = {{"text", "\u00e4 \"x\""}, {"numbers", {1, -2, 0.1, 1e300, 18446744073709551615u, nullptr}}};
+  const std::string text = sealed(json).dump(1) + "\n";
+  write_whole(file, text);
+  EXPECT_EQ(read_sealed(file, "remove it"), json);
+  EXPECT_EQ(sealed(sealed(json)), sealed(json));
+  EXPECT_EQ(std::prev(sealed(json).end()).key(), "checksum");
+  write_whole(file, sealed(json).dump());  // in another layout
+  EXPECT_EQ(read_sealed(file, "remove it"), json);
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    std::string other = text;
+    other[at] = other[at] == '7' ? '8' : '7';
+    for (const std::string& changed : {other, text.substr(0, at)}) {
+      std::ofstream(file) << changed;
+      try {
+        if (read_sealed(file, "remove it") == json) continue;  // a space, or what follows the object
+        ADD_FAILURE() << changed;
+      } catch (const std::runtime_error& error) {
+        ++refused;
+        EXPECT_TRUE(names(error.what(), {file.string(), "changed or damaged", "remove it"})) << error.what();
+      }
+    }
+  }
+  EXPECT_GT(refused, 200u);
+  // Deeply nested: no stack overflows.
+  std::ofstream(file) << R"({"a":)" << std::string(1'000'000, '[') << std::string(1'000'000, ']')
+                      << R"(,"checksum":""})";
+  EXPECT_THROW(read_sealed(file, "remove it"), std::runtime_error);
 }
 
 // The other end may never open: the request to stop ends the wait.
@@ -87,10 +153,10 @@ TEST_F(Files, WaitingForAPipeStops) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   stop_requested = true;
-  EXPECT_THROW(read_whole(pipe), Stopped);
-  EXPECT_THROW(write_whole(pipe, "text"), Stopped);
+  EXPECT_THROW(read_whole(pipe, NamedBy::user), Stopped);
+  EXPECT_THROW(write_whole(pipe, "text", NamedBy::user), Stopped);
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  EXPECT_THROW(write_whole(pipe, std::string(1 << 20, 'x')), Stopped);  // more than the pipe holds
+  EXPECT_THROW(write_whole(pipe, std::string(1 << 20, 'x'), NamedBy::user), Stopped);  // more than the pipe holds
   close(reader);
   stop_requested = false;
 }
@@ -102,10 +168,10 @@ TEST_F(Files, DevicesStayDevices) {
   const int opened = open(device.c_str(), O_WRONLY | O_CLOEXEC);
   if (opened < 0) GTEST_SKIP() << "device nodes do not work in " << folder_;
   close(opened);
-  write_whole(device, "text");
+  write_whole(device, "text", NamedBy::user);
   EXPECT_TRUE(fs::is_character_file(device));
   fs::create_symlink("null", folder_ / "link");
-  write_whole(folder_ / "link", "text");
+  write_whole(folder_ / "link", "text", NamedBy::user);
   EXPECT_TRUE(fs::is_character_file(device));
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
   EXPECT_EQ(count(), 2u);
@@ -179,7 +245,8 @@ TEST_F(Files, GrazeKnowsItsOwn) {
   EXPECT_TRUE(replaces("lane,group\n1,2\n", "lane,group\n"));
   EXPECT_FALSE(replaces("a,b\n1,2\n", "lane,group\n"));
   EXPECT_TRUE(replaces(R"({"pairs": 1, "seed": 2})", R"({"pairs": 3, "seed": 4, "invariants": []})"));
-  for (const char* other : {R"({"seed": 1, "pairs": 2})", R"({"pairs": 1})", "[1]", "{", "{}"})
+  EXPECT_TRUE(replaces(R"({"pairs": 1, "see)", R"({"pairs": 3, "seed": 4, "invariants": []})"));  // damaged, our own
+  for (const char* other : {R"({"seed": 1, "pairs": 2})", R"({"pairs": 1})", "[1]", "{", "{}", R"({"seed": 1, "pa)"})
     EXPECT_FALSE(replaces(other, R"({"pairs": 3, "seed": 4, "invariants": []})")) << other;
   EXPECT_TRUE(replaces("<!doctype html>\n<title>Graze: viewer</title>",
                        "<!DOCTYPE html>\n<title>Graze: discrepancy report</title>"));
@@ -210,6 +277,13 @@ TEST_F(Files, ACampaignsFilesDoNotReplaceThoseOfAnother) {
   std::ofstream(folder_ / "summary.json") << "{\n \"spec\": damaged";
   write_whole(folder_ / "summary.json", summary);
   EXPECT_EQ(read_whole(folder_ / "summary.json"), summary);
+  fs::create_directories(folder_ / "cases");
+  for (const auto& [name, text] :
+       {std::pair{"1.pairs", "graze-pairs 1\n"}, {"1.maps.json", R"({"title": "", "pair": 1})"}}) {
+    std::ofstream(folder_ / "cases" / name) << R"({"a": 1})";
+    EXPECT_THROW(write_whole(folder_ / "cases" / name, text), UsageError) << name;
+    EXPECT_EQ(read_whole(folder_ / "cases" / name), R"({"a": 1})");
+  }
   may_replace_foreign = true;
   write_whole(folder_ / "linked/status.json", status);
   may_replace_foreign = false;

@@ -14,26 +14,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first keys of the object, at most two; empty if the text is not an object.
-std::vector<std::string> first_keys(const std::string& text) {
+// The first keys of the object, at most two.
+std::vector<std::string> first_keys(const nlohmann::ordered_json& object) {
   std::vector<std::string> keys;
-  const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
-  if (!json.is_object()) return keys;
-  for (const auto& [key, unused] : json.items()) {
+  for (const auto& [key, unused] : object.items()) {
     keys.push_back(key);
     if (keys.size() == 2) break;
   }
   return keys;
 }
 
-// The mark that all files of this kind share. The line ends before `>`, because what follows differs between pictures.
+// The mark that all files of this kind share: a JSON object up to the end of its first key, else the first line. The
+// line ends before `>`, because what follows differs between pictures.
 std::string mark_of(const std::string& text) {
   constexpr std::string_view kTitle = "<title>Graze: ", kPalette = "PLTE";
   constexpr std::size_t kColours = 24;  // bytes: the first eight colours, which all ulp maps share
   if (text.starts_with("\x89PNG"))
     return text.substr(std::min(text.find(kPalette), text.size()), kPalette.size() + kColours);
+  const std::size_t key = text.find('"');
+  if (text.starts_with('{') && key != text.npos) return text.substr(0, text.find('"', key + 1) + 1);
   if (text.find(kTitle) != text.npos) return std::string(kTitle);
   return text.substr(0, text.find_first_of(">\n"));
+}
+
+// Whether both are objects with the same first two keys; `there` may be damaged behind the first.
+bool same_kind_of_object(const std::string& there, const std::string& text) {
+  const auto theirs = nlohmann::ordered_json::parse(there, nullptr, false),
+             ours = nlohmann::ordered_json::parse(text, nullptr, false);
+  if (theirs.is_discarded()) return there.starts_with(mark_of(text));
+  return theirs.is_object() && ours.is_object() && first_keys(theirs) == first_keys(ours);
 }
 
 bool is_nothing(const fs::path& entry) {
@@ -50,7 +59,7 @@ bool may_replace(const fs::path& file, const std::string& text) {
   if (!fs::is_regular_file(file, none)) return true;  // write_whole rejects folders
   const std::string there = read_whole(file);
   if (there.empty()) return true;
-  if (text.starts_with('{')) return there.starts_with('{') && first_keys(there) == first_keys(text);
+  if (text.starts_with('{')) return same_kind_of_object(there, text);
   const std::string mark = mark_of(text);
   const bool at_the_start = text.starts_with(mark);
   return !mark.empty() && (at_the_start ? there.starts_with(mark) : there.find(mark) != there.npos);
@@ -61,14 +70,11 @@ void expect_own(const fs::path& file, const std::string& text) {
                                            "failures.json", "hunt.json",   "margins.svg"};
   std::error_code none;
   const bool in_question =
-      fs::is_symlink(fs::symlink_status(file, none)) ||
+      fs::is_symlink(fs::symlink_status(file, none)) || file.parent_path().filename() == "cases" ||
       std::find(std::begin(kResults), std::end(kResults), file.filename().string()) != std::end(kResults);
   if (may_replace_foreign || !in_question || !fs::is_regular_file(file, none) || fs::file_size(file, none) == 0) return;
-  const std::size_t key = text.find('"');  // the mark ends after the object's first key
-  const std::string mark =
-      text.starts_with('{') && key != text.npos ? text.substr(0, text.find('"', key + 1) + 1) : mark_of(text);
-  if (read_whole(file).find(mark) != 0 && !may_replace(file, text))
-    throw UsageError(cannot("replace", file, "graze did not write it; choose another name, or add --force"));
+  if (!read_whole(file).starts_with(mark_of(text)) && !may_replace(file, text))
+    throw UsageError(cannot("replace", file, kForeign));
 }
 
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {

@@ -15,11 +15,15 @@ namespace graze::fuzz {
 // Throws: std::runtime_error for a file that cannot be read.
 bool may_replace(const std::filesystem::path& file, const std::string& text);
 
+// Why a file may not be replaced, and what to do.
+inline constexpr const char* kForeign =
+    "it does not begin as the file that graze writes there; move it away, choose another name, or add --force";
+
 // Set by --force for the whole process: files that Graze did not write may be replaced.
 inline bool may_replace_foreign = false;
 
-// Throws: UsageError if Graze did not write the file: it belongs to a campaign's folder or is behind a link, and its
-// beginning differs from this text's. A file that is damaged further on may be replaced.
+// Throws: UsageError if Graze did not write the file: it belongs to a campaign's folder or its cases/, or is behind a
+// link, and its beginning differs from this text's. A file that is damaged further on may be replaced.
 void expect_own(const std::filesystem::path& file, const std::string& text);
 
 // Whether results may go into the folder: it is missing, holds nothing but empty folders and leftovers of a killed

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "fuzz/campaign/lane_costs.h"
-#include "fuzz/files.h"
+#include "fuzz/campaign/result_files.h"
 #include "reports/findings.h"
 
 namespace graze::reports {
@@ -25,16 +25,18 @@ std::optional<Cost> Costs::of(std::size_t lane, const std::vector<std::size_t>& 
   return Cost{sum.pairs, sum.low / pairs, sum.middle / pairs, sum.high / pairs};
 }
 
-std::optional<Costs> costs_of(const Json& timings, const CampaignCounts& counts) {
-  if (!timings.is_object()) return std::nullopt;
+std::optional<Costs> costs_of(const Json& runs, const CampaignCounts& counts) {
   std::optional<Costs> costs;
-  std::vector<std::string> lanes, sources;
+  std::vector<std::string> lanes;
+  std::map<std::string, std::uint64_t> sources;
   for (const ReportLane& lane : counts.lanes) lanes.push_back(lane.id);
-  for (const StratumCounts& stratum : counts.strata) sources.push_back(stratum.id);
-  for (const Json& run : timings.value("runs", Json::array())) {
+  // The costs of an unfinished campaign may be of pairs that it has not judged.
+  for (const StratumCounts& stratum : counts.strata)
+    sources[stratum.id] = counts.complete ? stratum.pairs : counts.pairs;
+  for (const Json& run : runs) {
+    fuzz::expect_possible_run(run, lanes, sources, counts.pairs);
     if (!run.contains("costs")) continue;
     const Json& found = run["costs"];
-    fuzz::expect_possible_costs(found, lanes, sources, counts.pairs);
     costs = Costs{run.value("machine", "an unknown machine"), found.at("passes"), {}};
     for (const ReportLane& lane : counts.lanes) {
       auto& row = costs->of_stratum.emplace_back(counts.strata.size());
@@ -50,7 +52,7 @@ std::optional<Costs> costs_of(const Json& timings, const CampaignCounts& counts)
 }
 
 std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts) {
-  return costs_of(Json::parse(fuzz::read_whole(directory / "timings.json"), nullptr, false), counts);
+  return costs_of(fuzz::read_timings(directory), counts);
 }
 
 Json to_json(const Costs& costs, const CampaignCounts& counts) {

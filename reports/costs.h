@@ -30,7 +30,7 @@ struct Costs {
 std::optional<Costs> read_costs(const std::filesystem::path& directory, const CampaignCounts& counts);
 
 // Throws: std::runtime_error for impossible costs; Json::exception for another shape.
-std::optional<Costs> costs_of(const nlohmann::ordered_json& timings, const CampaignCounts& counts);
+std::optional<Costs> costs_of(const nlohmann::ordered_json& runs, const CampaignCounts& counts);
 
 // The contents of costs.json: {"machine", "passes", "rows": [{"lane", "group", "pairs", "low", "middle", "high"}],
 // "answer"}, as reports/web/src/report.ts describes it. A null group means all strata together.

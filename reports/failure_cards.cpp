@@ -14,6 +14,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/kinds.h"
+#include "fuzz/sealed.h"
 #include "reports/plain_figures.h"
 #include "reports/snippet.h"
 #include "reports/ulp_map_picture.h"
@@ -139,7 +140,8 @@ struct Lacking {
 // The maps stored with a case if there is room for them; otherwise null.
 Json maps_of(const std::filesystem::path& case_file, const Pair& pair, std::size_t& room, Lacking& lacking) {
   const std::filesystem::path file = std::filesystem::path(case_file).replace_extension(".maps.json");
-  Json maps = Json::parse(fuzz::read_whole(file), nullptr, false);
+  const std::string directory = case_file.parent_path().parent_path().string();
+  Json maps = fuzz::read_sealed(file, "remove it, then run: graze minimize " + path_word(directory));
   if (!is_map_of(maps, pair)) {
     ++lacking.mapped;
     return nullptr;

@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "core/text.h"
 #include "corpus/pair_format.h"
+#include "fuzz/sealed.h"
 #include "oracle/truth.h"
 #include "reports/report.h"
 #include "reports/snippet.h"
@@ -160,9 +162,23 @@ TEST_F(FailureCards, HaveTheirProgramsAndTheStoredMaps) {
     for (int i = 0; i < kCoordinates; ++i) pair.push_back(fmt::format("{:a}", coordinates(shown)[i]));
     fuzz::write_whole(
         fs::path(root_ / "mapped" / kind["simplest"]["case"].get<std::string>()).replace_extension(".maps.json"),
-        Json({{"pair", pair}, {"title", "t"}}).dump());
+        fuzz::sealed({{"pair", pair}, {"title", "t"}}).dump());
   }
   const Json report = make_report(root_ / "mapped");
+  const fs::path one =
+      root_ / "mapped" / fs::path(report["cards"][0]["file"].get<std::string>()).replace_extension(".maps.json");
+  const std::string maps = fuzz::read_whole(one);
+  for (const std::string& text : {std::string("{}"), std::string(maps).replace(maps.find("\"t\""), 3, "\"u\"")}) {
+    std::ofstream(one) << text;
+    try {
+      make_report(root_ / "mapped");
+      ADD_FAILURE() << text;
+    } catch (const corpus::FormatError& error) {
+      EXPECT_TRUE(contains(error.what(), one.string() + ": it has been changed or damaged")) << error.what();
+      EXPECT_TRUE(contains(error.what(), "graze minimize")) << error.what();
+    }
+  }
+  std::ofstream(one) << maps;
   std::set<std::string> files;
   for (const Json& card : report["cards"]) {
     if (files.insert(card["file"]).second) {

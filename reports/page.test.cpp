@@ -11,6 +11,7 @@
 #include "core/fnv1a.h"
 #include "core/margin/bucket.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/sealed.h"
 #include "oracle/truth.h"
 #include "reports/comparison.h"
 #include "reports/failure_cards.h"
@@ -155,7 +156,7 @@ TEST(Page, OfManySignaturesIsUnderTenMebibytes) {
   Json pair_hex = Json::array(), kinds = Json::array();
   for (int i = 0; i < kCoordinates; ++i) pair_hex.push_back(fmt::format("{:a}", coordinates(pair)[i]));
   const std::string maps =
-      Json({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump();
+      fuzz::sealed({{"pair", pair_hex}, {"panels", Json::array({{{"png", std::string(100'000, 'A')}}})}}).dump();
   for (int i = 0; i < kSignatures; ++i) {
     const std::string key = fmt::format("{}/22/skew/{}/guigue_devillers_2003:{};{}f64/cuda-fma/abs:{}",
                                         name(truth.contact), bucket, wrong, marks, i);

@@ -127,18 +127,25 @@ TEST(Costs, AreThoseOfTheLastTimedRunAndCountPairs) {
     return Json{{"pairs", pairs}, {"low", ns - 1}, {"middle", ns}, {"high", ns + 1}};
   };
   const Json lanes = {{"exact/f32/cpu", {{"uniform", cost(100, 40)}, {"degenerate", cost(300, 80)}}}};
-  const Json timings = {{"runs",
-                         {{{"machine", "old"}, {"costs", {{"passes", 9}, {"lanes", Json::object()}}}},
-                          {{"machine", "new"}, {"costs", {{"passes", 9}, {"lanes", lanes}}}},
-                          {{"machine", "untimed"}}}}};
-  const std::optional<Costs> costs = costs_of(timings, counts);
+  const Json runs = {{{"machine", "old"}, {"costs", {{"passes", 9}, {"lanes", Json::object()}}}},
+                     {{"machine", "new"}, {"costs", {{"passes", 9}, {"lanes", lanes}}}},
+                     {{"machine", "untimed"}}};
+  const std::optional<Costs> costs = costs_of(runs, counts);
   ASSERT_TRUE(costs);
   EXPECT_EQ(costs->machine, "new");
   EXPECT_EQ(costs->of(0, {0, 1})->middle, 70);  // (100 · 40 + 300 · 80) / 400
   EXPECT_EQ(costs->of(0, {0})->high, 41);
   EXPECT_FALSE(costs->of(1, {0}));
-  EXPECT_FALSE(costs_of({{"runs", {{{"machine", "untimed"}}}}}, counts));
-  EXPECT_FALSE(costs_of(nullptr, counts));
+  // A stratum has no costs of more pairs than it has.
+  CampaignCounts fewer = counts;
+  fewer.strata[0].pairs = 100;
+  EXPECT_TRUE(costs_of(runs, fewer));
+  fewer.strata[0].pairs = 99;
+  EXPECT_THROW(costs_of(runs, fewer), std::runtime_error);
+  fewer.complete = false;  // then the costs may be of pairs that it has not judged
+  EXPECT_TRUE(costs_of(runs, fewer));
+  EXPECT_FALSE(costs_of(Json::array({{{"machine", "untimed"}}}), counts));
+  EXPECT_FALSE(costs_of(Json::array(), counts));
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/result_files.h"
+#include "fuzz/sealed.h"
 #include "reports/costs.h"
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
@@ -28,11 +29,9 @@ namespace {
 
 // The machines that the campaign ran on, if their names are known.
 Json machines(const std::filesystem::path& directory) {
-  const Json timings = Json::parse(fuzz::read_whole(directory / "timings.json"), nullptr, false);
-  if (!timings.is_object() || !timings.value("runs", Json()).is_array()) return nullptr;
   std::set<std::string> names;
-  for (const Json& run : timings["runs"]) {
-    const Json machine = run.is_object() ? run.value("machine", Json()) : Json();
+  for (const Json& run : fuzz::read_timings(directory)) {
+    const Json machine = run.value("machine", Json());
     if (machine.is_string() && run.value("pairs", Json()) > Json(0)) names.insert(machine.get<std::string>());
   }
   return names.empty() ? Json() : Json(fmt::format("{}", fmt::join(names, "; ")));
@@ -141,6 +140,8 @@ Json make_report(const std::filesystem::path& directory) {
 
 namespace {
 
+constexpr const char* kAgain = "make it again: graze report DIR";
+
 // Checks a file that Graze wrote.   Throws: FormatError that names it.
 template <class Check>
 void checked(const std::filesystem::path& file, const char* what, Check check) {
@@ -167,8 +168,8 @@ Json make_costs(const std::filesystem::path& directory) {
 Json make_choices(const std::filesystem::path& directory) {
   const auto read = [&](const char* name, void (*expect_possible)(const Json&)) -> Json {
     const std::filesystem::path file = directory / name;
-    if (!std::filesystem::exists(file)) return nullptr;
-    Json found = Json::parse(fuzz::read_whole(file), nullptr, false);
+    Json found = fuzz::read_sealed(file, "remove it, or make it again");
+    if (found.is_null()) return found;
     checked(file, "what graze writes into it", [&] { expect_possible(found); });
     return found;
   };
@@ -190,7 +191,7 @@ std::string report_text(const Json& report) {
 }
 
 Json read_report(const std::filesystem::path& file) {
-  Json report = Json::parse(fuzz::read_whole(file), nullptr, false);
+  Json report = fuzz::read_sealed(file, kAgain, fuzz::NamedBy::user);
   if (!report.is_object() || report.value("format", Json()) != 2)
     throw corpus::FormatError(cannot("use", file, "it is not a report of `graze report`"));
   checked(file, "a report of `graze report`", [&] { expect_possible_report(report); });
@@ -198,8 +199,8 @@ Json read_report(const std::filesystem::path& file) {
 }
 
 Json stored_costs(const std::filesystem::path& file, const Json& report) {
-  if (!std::filesystem::exists(file)) return nullptr;
-  Json costs = Json::parse(fuzz::read_whole(file), nullptr, false);
+  Json costs = fuzz::read_sealed(file, kAgain);
+  if (costs.is_null()) return costs;
   checked(file, "costs of `graze report`", [&] { expect_possible_costs(costs, report); });
   return costs;
 }

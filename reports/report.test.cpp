@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/message_testing.h"
 #include "corpus/pair_format.h"
+#include "fuzz/sealed.h"
 #include "reports/comparison.h"
 #include "reports/csv.h"
 #include "reports/failure_cards.h"
@@ -112,13 +113,14 @@ TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
     other["signatures"][0]["case"] = outside;
     EXPECT_EQ(blamed(summary_file, other.dump()), "the file") << outside;
   }
-  for (const char* other : {"[]", R"({"runs": 1})", R"({"runs": [1, {"machine": 1, "pairs": 2}, {"pairs": {}}]})"})
-    EXPECT_EQ(blamed(timings, other), "nothing");  // only names the machine
+  for (const char* other : {"", "[]", "{}", R"({"runs": []})"}) EXPECT_EQ(blamed(timings, other), "the file") << other;
+  for (const char* other : {R"({"runs": 1})", R"({"runs": [1]})"})
+    EXPECT_EQ(blamed(timings, fuzz::sealed(Json::parse(other)).dump()), "the file") << other;
   const std::string timed = fuzz::read_whole(timings);
-  for (const auto& [part, value] : {std::pair("middle", -1), {"pairs", 1'000'000}, {"low", 1'000'000}}) {
+  for (const auto& [part, value] : {std::pair("middle", -1), {"pairs", 1025}, {"low", 1'000'000}}) {
     Json other = Json::parse(timed);
     other["runs"].back()["costs"]["lanes"]["moller_1997/f32/cpu"]["thesis"][part] = value;
-    std::ofstream(timings) << other;
+    std::ofstream(timings) << fuzz::sealed(other);
     try {
       make_costs(folder);
       ADD_FAILURE() << part;
@@ -136,7 +138,7 @@ TEST_F(ReportTest, DamageIsBlamedOnItsFile) {
     Json other = stored;
     const Json::json_pointer place("/kinds/0" + std::string(part));
     other[place.parent_pointer()].erase(place.back());
-    EXPECT_EQ(blamed(folder / "failures.json", other.dump()), "the file") << part;
+    EXPECT_EQ(blamed(folder / "failures.json", fuzz::sealed(other).dump()), "the file") << part;
   }
   for (const char* other : {"", "[]", R"({"kinds": []})", R"({"summary": 1, "kinds": 2})"})
     EXPECT_EQ(blamed(folder / "failures.json", other), "the file") << other;
@@ -214,7 +216,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   const fs::path file = root_ / "forged" / "report.json";
   fs::create_directories(file.parent_path());
   const auto error_of = [&](const auto& read, const fs::path& forged, const Json& json) -> std::string {
-    fuzz::write_whole(forged, json.dump());
+    fuzz::write_whole(forged, json.is_object() ? fuzz::sealed(json).dump() : json.dump());
     try {
       read();
     } catch (const corpus::FormatError& error) {
@@ -302,6 +304,17 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
     other[Json::json_pointer(place)] = value;
     EXPECT_NE(tune_error(other), "") << place;
   }
+  const auto unsealed = [&](const fs::path& choice, Json json, const char* text) {
+    fuzz::write_whole(choice, json.dump());
+    EXPECT_THROW(make_choices(root_ / "forged"), corpus::FormatError) << choice;
+    json = fuzz::sealed(json);
+    fuzz::write_whole(choice, json.dump());
+    EXPECT_NO_THROW(make_choices(root_ / "forged")) << choice;
+    json[Json::json_pointer(text)] = "another text";
+    fuzz::write_whole(choice, json.dump());
+    EXPECT_THROW(make_choices(root_ / "forged"), corpus::FormatError) << choice;
+  };
+  unsealed(tune_file, tune, "/sentences/0");
   fs::remove(tune_file);
 
   analysis::Pareto pareto{"a machine", false, 0, {}, {}};
@@ -316,6 +329,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
     return error_of([&] { make_choices(root_ / "forged"); }, pareto_file, json);
   };
   expect_all_refused(traded, {"seed", "log2"}, pareto_error);
+  unsealed(pareto_file, traded, "/machine");
   const Json row = traded["lanes"][0];
   for (const auto& [place, value] : {std::pair<const char*, Json>("/lanes/0/bound", 0.01),
                                      {"/pairs", 401},

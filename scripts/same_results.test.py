@@ -37,7 +37,8 @@ class SameResults(unittest.TestCase):
         return ran.returncode, ran.stdout
 
     def test_the_same_but_for_build_and_timings(self):
-        status, said = self.run_script(summary='{"pairs": 3, "build": {"commit": "b"}}', clock="2")
+        summary = '{"pairs": 3, "build": {"commit": "b"}, "checksum": "of the build too"}'
+        status, said = self.run_script(summary=summary, clock="2")
         self.assertEqual((status, said), (0, "20 files compared, 0 differences\n"))
 
     def test_a_difference_is_shown_where_it_is(self):

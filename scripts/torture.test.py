@@ -226,6 +226,7 @@ class Torture(unittest.TestCase):
             ("forged_summaries", f'{real} "$@" || exit 0', "to be refused, found status 0"),
             ("forged_cases", f'{real} "$@" || exit 0', "to be refused, found status 0"),
             ("forged_kinds", f'{real} "$@" || exit 0', "to refuse a forged "),
+            ("unsealed", f'{real} "$@" || exit 0', "to be refused, found status 0"),
             (
                 "kill_results",
                 f'exec 9< "$0"; flock 9; setpriv --pdeathsig KILL {real} "$@" && find . -name "*.json" -newer "$0" -exec truncate -s 9 {{}} +',

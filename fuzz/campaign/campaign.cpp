@@ -130,6 +130,7 @@ Outcome run(const Campaign& campaign, const std::atomic<bool>& stop, RunStatus& 
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
   Store store(store_spec(campaign));
+  expect_usable_records(campaign.directory);
   take_in_ranks(campaign, store);
   GpuEngine device(campaign);
   Confirmation confirmation(campaign);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "analysis/pareto.h"
@@ -54,20 +55,20 @@ Json measure_costs(const Campaign& campaign) {
 }
 
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
-                           const std::vector<std::string>& sources, std::uint64_t pairs) {
-  const auto expect_one_of = [](const std::vector<std::string>& known, const std::string& name, const char* what) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw std::runtime_error(fmt::format("it has costs of {}, which is no {} of the campaign", shown(name), what));
+                           const std::map<std::string, std::uint64_t>& sources) {
+  const auto refuse_name = [](const std::string& name, const char* what) {
+    throw std::runtime_error(fmt::format("it has costs of {}, which is no {} of the campaign", shown(name), what));
   };
-  const std::uint64_t most = std::min(kPairsTimed, pairs);
   const auto is_one_to = [](const Json& count, std::uint64_t limit) {
     return count.is_number_integer() && count >= 1 && count <= limit;
   };
   if (!is_one_to(costs.at("passes"), kMostPasses)) throw std::runtime_error("it has costs of no passes");
   for (const auto& [lane, rows] : costs.at("lanes").get_ref<const Json::object_t&>()) {
-    expect_one_of(lanes, lane, "lane");
+    if (std::find(lanes.begin(), lanes.end(), lane) == lanes.end()) refuse_name(lane, "lane");
     for (const auto& [source, row] : rows.get_ref<const Json::object_t&>()) {
-      expect_one_of(sources, source, "stratum");
+      const auto found = sources.find(source);
+      if (found == sources.end()) refuse_name(source, "stratum");
+      const std::uint64_t most = std::min(kPairsTimed, found->second);
       const double low = row.at("low").get<double>(), middle = row.at("middle").get<double>(),
                    high = row.at("high").get<double>();
       if (!is_one_to(row.at("pairs"), most) || !(0 < low && low <= middle && middle <= high))
@@ -75,6 +76,19 @@ void expect_possible_costs(const Json& costs, const std::vector<std::string>& la
                                              source, most, shown(row.dump())));
     }
   }
+}
+
+void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
+                         const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs) {
+  if (run.contains("pairs")) {
+    // The parts of a merged campaign may have judged pairs again, after damage.
+    const Json& judged = run["pairs"];
+    if (!judged.is_number_integer() || judged < 0 || (judged > pairs && !run.contains("merged")))
+      throw std::runtime_error(fmt::format("it has a run of {} pairs, of at most {}", shown(judged.dump()), pairs));
+  }
+  if (run.contains("seconds") && !(run["seconds"].is_number() && run["seconds"] >= 0))
+    throw std::runtime_error(fmt::format("it has a run of {} seconds", shown(run["seconds"].dump())));
+  if (run.contains("costs")) expect_possible_costs(run["costs"], lanes, sources);
 }
 
 }  // namespace graze::fuzz

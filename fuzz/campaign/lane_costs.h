@@ -3,6 +3,8 @@
 // depends on the machine and on its load.
 #pragma once
 
+#include <map>
+
 #include "fuzz/campaign/campaign.h"
 
 namespace graze::fuzz {
@@ -16,9 +18,13 @@ inline constexpr int kPassesTimed = 9;
 // Returns: {"passes", "lanes": {lane: {source: {"pairs", "low", "middle", "high"}}}}, with the quartiles of the passes.
 Json measure_costs(const Campaign& campaign);
 
-// Checks costs from a file: lanes and sources must belong to a campaign of this many pairs, and times must be possible.
+// Checks costs from a file: lanes and sources (by id, with their pairs) must be the campaign's, and times possible.
 // Throws: std::runtime_error that says what is wrong; Json::exception for another shape.
 void expect_possible_costs(const Json& costs, const std::vector<std::string>& lanes,
-                           const std::vector<std::string>& sources, std::uint64_t pairs);
+                           const std::map<std::string, std::uint64_t>& sources);
+
+// Checks a run of timings.json, with its costs if it has any.   pairs: of the whole campaign.   Throws: the same.
+void expect_possible_run(const Json& run, const std::vector<std::string>& lanes,
+                         const std::map<std::string, std::uint64_t>& sources, std::uint64_t pairs);
 
 }  // namespace graze::fuzz

@@ -28,7 +28,9 @@ TEST(LaneCosts, ThatCannotBeAreRefused) {
   const Json whole = {
       {"passes", 9},
       {"lanes", {{"a/f32/cpu", {{"uniform", {{"pairs", 200}, {"low", 1.5}, {"middle", 2}, {"high", 3}}}}}}}};
-  const auto check = [](const Json& costs) { expect_possible_costs(costs, {"a/f32/cpu"}, {"uniform"}, 200); };
+  const auto check = [](const Json& costs) {
+    expect_possible_costs(costs, {"a/f32/cpu"}, {{"uniform", 200}, {"thesis", 1000}});
+  };
   EXPECT_NO_THROW(check(whole));
   for (const auto& [place, value] : {std::pair<const char*, Json>("middle", -1),
                                      {"middle", 4},
@@ -47,8 +49,18 @@ TEST(LaneCosts, ThatCannotBeAreRefused) {
   Json other = whole;
   other["passes"] = 0;
   EXPECT_ANY_THROW(check(other));
-  EXPECT_ANY_THROW(expect_possible_costs(whole, {"b/f32/cpu"}, {"uniform"}, 200));
-  EXPECT_ANY_THROW(expect_possible_costs(whole, {"a/f32/cpu"}, {"thesis"}, 200));
+  EXPECT_ANY_THROW(expect_possible_costs(whole, {"b/f32/cpu"}, {{"uniform", 200}}));
+  EXPECT_ANY_THROW(expect_possible_costs(whole, {"a/f32/cpu"}, {{"thesis", 200}}));
+}
+
+TEST(LaneCosts, RunsThatCannotBeAreRefused) {
+  const auto check = [](const Json& run) { expect_possible_run(run, {"a/f32/cpu"}, {{"uniform", 200}}, 200); };
+  for (const Json& run : {Json{{"machine", "m"}}, Json{{"pairs", 200}, {"seconds", 1.5}},
+                          Json{{"pairs", 300}, {"merged", 2}}, Json{{"pairs", 0}, {"seconds", 0}}})
+    EXPECT_NO_THROW(check(run)) << run;
+  for (const Json& run : {Json{{"pairs", -1}}, Json{{"pairs", 201}}, Json{{"pairs", "x"}}, Json{{"seconds", -1}},
+                          Json{{"seconds", "x"}}, Json{{"costs", {{"passes", 0}}}}})
+    EXPECT_ANY_THROW(check(run)) << run;
 }
 
 TEST_F(CampaignFiles, CostsStandInTimingsOnceTheCampaignIsComplete) {

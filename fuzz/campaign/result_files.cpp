@@ -16,7 +16,9 @@
 #include "fuzz/campaign/checked_summary.h"
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/recorded.h"
+#include "fuzz/campaign/run_status.h"
 #include "fuzz/own_files.h"
+#include "fuzz/sealed.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -193,13 +195,28 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   return entries;
 }
 
+Json read_timings(const std::filesystem::path& directory) {
+  const std::filesystem::path file = directory / "timings.json";
+  const Json timings = read_sealed(file, "remove it; only times are lost");
+  if (timings.is_null()) return Json::array();
+  const Json runs = timings.value("runs", Json());
+  if (!runs.is_array() || !std::all_of(runs.begin(), runs.end(), [](const Json& run) { return run.is_object(); }))
+    throw corpus::FormatError(cannot("use", file, "it does not hold the timings of a campaign; remove it"));
+  return runs;
+}
+
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle) {
   const std::filesystem::path file = directory / "timings.json";
-  Json timings = Json::parse(read_whole(file), nullptr, false);
-  if (!timings.is_object() || !timings["runs"].is_array()) timings = {{"runs", Json::array()}};
-  timings["runs"].push_back(run);
+  Json runs = read_timings(directory), timings = read_sealed(file, "");
+  runs.push_back(run);
+  timings["runs"] = std::move(runs);
   if (!oracle.is_null()) timings["oracle"] = oracle;
-  write_whole(file, timings.dump(1) + "\n");
+  write_whole(file, sealed(std::move(timings)).dump(1) + "\n");
+}
+
+void expect_usable_records(const std::filesystem::path& directory) {
+  read_timings(directory);
+  remove_damaged_status(directory);
 }
 
 bool is_minimised_from(const std::string& text, const std::string& fresh) {

@@ -48,6 +48,13 @@ corpus::FormatError wrong_cases(const std::filesystem::path& directory, const Js
 // `merge` for a campaign or a shard.
 bool may_hold_campaign(const std::filesystem::path& folder);
 
+// Returns the runs in timings.json, each an object; none without such a file.   Throws: FormatError for a damaged one.
+Json read_timings(const std::filesystem::path& directory);
+
+// Checks before a run that the records it adds to do not end it: timings.json must be readable, and a damaged
+// status.json is removed.   Throws: as read_timings and remove_damaged_status.
+void expect_usable_records(const std::filesystem::path& directory);
+
 // Adds a run to timings.json, the only file that depends on when, where and with which engine the campaign ran.
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle = {});
 

@@ -10,9 +10,12 @@
 #include <set>
 
 #include "core/cannot.h"
+#include "core/error.h"
 #include "core/fnv1a.h"
 #include "core/text.h"
 #include "fuzz/files.h"
+#include "fuzz/own_files.h"
+#include "fuzz/sealed.h"
 
 namespace graze::fuzz {
 namespace {
@@ -85,7 +88,7 @@ RunStatus::RunStatus(const Campaign& campaign) : file_(campaign.directory / kFil
 void RunStatus::write() {
   status_["updated"] = now();
   try {
-    write_whole(file_, status_.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    write_whole(file_, sealed(status_).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
   } catch (const std::runtime_error&) {
   }
 }
@@ -111,6 +114,7 @@ void RunStatus::end(const std::string& state, const std::string& why) {
 }
 
 std::string file_hash(const fs::path& file) {
+  expect_file(file);
   errno = 0;
   std::ifstream in(file, std::ios::binary);
   std::uint64_t hash = fnv1a("");
@@ -122,20 +126,39 @@ std::string file_hash(const fs::path& file) {
 }
 
 void seal(const fs::path& directory) {
-  Json status = read_status(directory);
+  Json status;
+  try {
+    status = read_status(directory);
+  } catch (const std::runtime_error&) {  // changed since the run wrote it; the run is done all the same
+  }
   if (status.is_null()) return;
   status["hash"] = file_hash(directory / kDatabase);
-  write_whole(directory / kFile, status.dump(1) + "\n");
+  write_whole(directory / kFile, sealed(std::move(status)).dump(1) + "\n");
+}
+
+void remove_damaged_status(const fs::path& directory) {
+  const fs::path file = directory / kFile;
+  expect_file(file);
+  try {
+    read_status(directory);
+  } catch (const std::runtime_error&) {
+    if (may_replace_foreign) return;
+    if (fs::is_symlink(file))
+      throw UsageError(cannot("replace", file, "it is a link to a file that is no status; remove the link"));
+    std::error_code later;  // where it cannot be removed, it cannot be written
+    fs::remove(file, later);
+  }
 }
 
 Json read_status(const fs::path& directory) {
   const fs::path file = directory / kFile;
-  if (!fs::exists(file)) return nullptr;
-  const Json status = Json::parse(read_whole(file), nullptr, false);
+  constexpr const char* kRemedy = "the next run of the campaign replaces it";
+  Json status = read_sealed(file, kRemedy);
+  if (status.is_null()) return status;
   try {
     expect_possible_status(status);
   } catch (const Json::exception&) {
-    throw std::runtime_error(cannot("use", file, "it is damaged; the next status of the run replaces it"));
+    throw std::runtime_error(cannot("use", file, std::string("it is damaged; ") + kRemedy));
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(cannot("use", file, error.what()));
   }

@@ -39,6 +39,10 @@ std::string file_hash(const std::filesystem::path& file);
 // more.
 void seal(const std::filesystem::path& directory);
 
+// Removes a status that is damaged or has impossible counts. In a campaign's folder this name is Graze's own.
+// Throws: std::runtime_error if it is not a file; UsageError if it is behind a link.
+void remove_damaged_status(const std::filesystem::path& directory);
+
 // Returns the directory's status; null if there is none.
 // Throws: std::runtime_error that names the file if it is damaged or its counts are impossible.
 Json read_status(const std::filesystem::path& directory);

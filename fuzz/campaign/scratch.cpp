@@ -19,6 +19,7 @@ namespace fs = std::filesystem;
 // Copies the file so that its target is whole or missing, even after a crash of the machine.
 void copy_whole(const fs::path& from, const fs::path& to) {
   const fs::path part = to.string() + ".part";
+  expect_file(from);
   std::error_code error;
   fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
   const int file = error ? -1 : open(part.c_str(), O_RDONLY | O_CLOEXEC);

@@ -223,6 +223,7 @@ struct OpenedToRead {
   }
 
   static std::string as_uri(const fs::path& file) {
+    expect_file(file);  // SQLite would wait for a pipe
     std::string uri = "file:";
     for (const char c : fs::absolute(file).string()) {
       const bool plain =
@@ -232,13 +233,19 @@ struct OpenedToRead {
     return uri + "?immutable=1";
   }
 
-  static SQLite::Database opened(const fs::path& file) { return {file.string(), SQLite::OPEN_READWRITE}; }
+  static SQLite::Database opened(const fs::path& file) {
+    expect_file(file);
+    return {file.string(), SQLite::OPEN_READWRITE};
+  }
 
   std::unique_ptr<FolderLock> lock;
   SQLite::Database database;
 };
 
-SQLite::Database opened(const fs::path& file) { return {file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE}; }
+SQLite::Database opened(const fs::path& file) {
+  expect_file(file);
+  return {file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE};
+}
 
 struct KeptRow {
   PairRange range;

@@ -81,6 +81,7 @@ class Hunter {
     if (fs::exists(merged_rounds_file(hunt.campaign.directory)))
       throw UsageError(
           cannot("resume", hunt.campaign.directory, "it is a finished hunt, merged from shards; choose another --out"));
+    expect_usable_records(hunt.campaign.directory);
     checksum_ = hunt_checksum(hunt.campaign.spec, hunt.campaign.build);
     fs::create_directories(folder());
     for (const auto& file : fs::directory_iterator(folder())) {

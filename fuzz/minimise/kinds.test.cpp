@@ -15,6 +15,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/files.h"
+#include "fuzz/sealed.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -149,14 +150,19 @@ TEST_F(Kinds, StoredOnesAgreeWithTheCampaign) {
   ASSERT_EQ(error_of(whole.dump()), "");
   for (const char* text : {"", "{", "[]", "7", R"({"kinds": []})", R"({"summary": 1, "cases": 2, "kinds": []})"}) {
     const std::string error = error_of(text);
-    EXPECT_TRUE(error.starts_with("cannot use " + file.string() + ": it is damaged")) << text << error;
+    EXPECT_TRUE(error.starts_with("cannot use " + file.string() + ": it has been changed or damaged")) << text << error;
     EXPECT_TRUE(error.ends_with("; remove it, then run: graze minimize " + directory_.string())) << error;
   }
   const auto refused = [&](const char* place, const Json& value) {
     Json other = whole;
     other[Json::json_pointer(place)] = value;
-    EXPECT_NE(error_of(other.dump()), "") << place << " was taken as " << value;
+    EXPECT_NE(error_of(sealed(other).dump()), "") << place << " was taken as " << value;
   };
+  Json other_sentence = whole;
+  other_sentence["kinds"][0]["simplest"]["sentences"][0] = "It is right.";
+  EXPECT_NE(error_of(other_sentence.dump()).find("its checksum differs"), std::string::npos);
+  const std::string damaged = error_of(sealed({{"summary", 1}, {"cases", 2}, {"kinds", Json::array()}}).dump());
+  EXPECT_TRUE(damaged.starts_with("cannot use " + file.string() + ": it is damaged; remove it")) << damaged;
   const auto at = [&](const char* place) -> const Json& { return whole.at(Json::json_pointer(place)); };
   const std::uint64_t pairs = at("/kinds/0/pairs");
   const std::string subject = at("/kinds/0/subject");

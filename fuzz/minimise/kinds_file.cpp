@@ -19,6 +19,7 @@
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/kinds.h"
+#include "fuzz/sealed.h"
 #include "subjects/subjects.h"
 
 namespace graze::fuzz {
@@ -249,12 +250,12 @@ std::string hash_of_cases(const fs::path& directory, const Json& summary) {
 
 Json read_kinds(const fs::path& directory) {
   const fs::path file = directory / "failures.json";
-  if (!fs::exists(file)) return nullptr;
+  const std::string remedy = "remove it, then run: graze minimize " + path_word(directory.string());
   const auto refused = [&](const std::string& why) {
-    return corpus::FormatError(
-        cannot("use", file, why + "; remove it, then run: graze minimize " + path_word(directory.string())));
+    return corpus::FormatError(cannot("use", file, why + "; " + remedy));
   };
-  const Json stored = Json::parse(read_whole(file), nullptr, false);
+  const Json stored = read_sealed(file, remedy);
+  if (stored.is_null()) return nullptr;
   try {
     const std::string of_summary = stored.at("summary"), of_cases = stored.at("cases");
     if (of_summary != hash_of_summary(directory)) return nullptr;
@@ -291,7 +292,7 @@ void write_kinds(const fs::path& directory, const SelectedLanes& under_test, con
                        {"cases", hash_of_cases(directory, summary_in(directory))},
                        {"lanes", lanes},
                        {"kinds", kinds}};
-  write_whole(directory / "failures.json", stored.dump(1) + "\n");
+  write_whole(directory / "failures.json", sealed(stored).dump(1) + "\n");
 }
 
 std::size_t signatures_without_kind(const Json& summary, const Json& kinds) {

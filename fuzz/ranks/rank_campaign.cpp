@@ -68,6 +68,7 @@ std::optional<Outcome> run_on_ranks(Campaign& campaign, Ranks& ranks, const std:
   if (ranks.rank == 0) {
     try {
       store.emplace(store_spec(campaign));
+      expect_usable_records(campaign.directory);
       take_in_ranks(campaign, *store);
       plan = plan_of(campaign, *store, ranks.size);
     } catch (const std::exception& error) {

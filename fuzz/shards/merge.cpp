@@ -147,18 +147,19 @@ fs::path folder_beside(const fs::path& place) {
   return part;
 }
 
-// Adds the part's runs to those of the same machine.   Throws: as expect_possible_costs.
+// Adds the part's runs to those of the same machine.   Throws: as expect_possible_run.
 void add_timings(const StoreSpec& part, const Json& runs, std::size_t parts, std::map<std::string, Json>& by_machine) {
+  std::map<std::string, std::uint64_t> sources;
+  for (const strata::PairSource& source : part.sources) sources[source.id] = source.pairs;
   for (const Json& of_part : runs) {
-    if (!of_part.is_object() || !of_part.contains("machine")) continue;
+    expect_possible_run(of_part, part.spec.at("lanes"), sources, part.spec.at("pairs"));
+    if (!of_part.contains("machine")) continue;
     const std::string machine = of_part["machine"];
     Json& run = by_machine[machine];
     if (run.is_null()) run = {{"merged", parts}, {"pairs", 0}, {"seconds", 0.0}, {"machine", machine}};
     run["pairs"] = run["pairs"].get<std::uint64_t>() + of_part.value("pairs", std::uint64_t{0});
     run["seconds"] = run["seconds"].get<double>() + of_part.value("seconds", 0.0);
-    if (!of_part.contains("costs")) continue;
-    expect_possible_costs(of_part["costs"], part.spec.at("lanes"), part.spec.at("strata"), part.spec.at("pairs"));
-    run["costs"] = of_part["costs"];
+    if (of_part.contains("costs")) run["costs"] = of_part["costs"];
   }
 }
 
@@ -168,10 +169,9 @@ std::map<std::string, Json> timings_of(const std::vector<StoreSpec>& stores) {
   std::map<std::string, Json> by_machine;
   for (const StoreSpec& store : stores) {
     const fs::path file = store.directory / "timings.json";
-    const Json timings = Json::parse(read_whole(file), nullptr, false);
-    if (!timings.is_object() || !timings.contains("runs") || !timings["runs"].is_array()) continue;
+    const Json runs = read_timings(store.directory);
     try {
-      add_timings(store, timings["runs"], stores.size(), by_machine);
+      add_timings(store, runs, stores.size(), by_machine);
     } catch (const Json::exception&) {
       throw std::runtime_error(cannot("use", file, "it does not hold the timings of a campaign"));
     } catch (const std::runtime_error& error) {

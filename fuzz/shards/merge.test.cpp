@@ -15,6 +15,7 @@
 #include "fuzz/campaign/rank_stores.h"
 #include "fuzz/campaign/recorded.h"
 #include "fuzz/ranks/rank_campaign.h"
+#include "fuzz/sealed.h"
 #include "strata/mesh.h"
 
 namespace graze::fuzz {
@@ -165,8 +166,9 @@ TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   };
   Json timings = Json::parse(read_whole(parts[0] / "timings.json"));
   timings["runs"].back()["costs"]["passes"] = 0;
-  with_other(parts[0] / "timings.json", timings.dump(), "it has costs of no passes");
-  with_other(parts[1] / "status.json", "{", "it is damaged");
+  with_other(parts[0] / "timings.json", sealed(timings).dump(), "it has costs of no passes");
+  with_other(parts[0] / "timings.json", timings.dump(), "it has been changed or damaged since graze wrote it");
+  with_other(parts[1] / "status.json", "{", "it has been changed or damaged since graze wrote it");
   fs::remove(parts[1] / "status.json");
   SQLite::Database(database("of3-2").string(), SQLite::OPEN_READWRITE).exec("UPDATE batch SET first = first + 1");
   expect(parts, {database("of3-2").string(), "damaged", "--shard 2/3", "--discard-damaged"});

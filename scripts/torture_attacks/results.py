@@ -3,10 +3,13 @@
 end the bytes must be those of an undisturbed run, except for timings, and no file may be partial. Also files that the
 verbs must not replace."""
 import json
+import os
 import shutil
+import stat
 import subprocess
 import time
 
+from torture_attacks import seal
 from torture_attacks.bench import Violation
 from torture_attacks.interruptions import small_disk
 
@@ -279,7 +282,8 @@ def forged_summaries(turn):
         campaign = turn.folder / f"campaign-{attempt}"
         shutil.copytree(reported, campaign)
         name = turn.random.choice(["summary.json", "summary.json", "failures.json", "report.json"])
-        value = json.loads((campaign / name).read_text())
+        is_summary = name == "summary.json"  # checked against the database instead
+        value = json.loads((campaign / name).read_text()) if is_summary else seal.read(campaign / name)
         part = {
             "summary.json": ["strata", "signatures", "disagreements", "spec"],
             "failures.json": ["kinds"],
@@ -310,7 +314,7 @@ def forged_summaries(turn):
             stratum = turn.random.choice(list(value["strata"].values()))
             lane = turn.random.choice(list(stratum["lanes"].values()))
             lane[turn.random.choice(["false_negative", "false_positive", "declined"])] = stratum["pairs"] + 1
-        (campaign / name).write_text(json.dumps(value, indent=1) + "\n")
+        (campaign / name).write_text(json.dumps(value, indent=1) + "\n" if is_summary else seal.text(value))
         ran = turn.run(*turn.random.choice(readers))
         if not turn.is_refused(ran, name):
             raise Violation(f"expected {name} with another number at {place} to be refused, found status {ran.status}")
@@ -358,9 +362,9 @@ def forged_kinds(turn):
     for attempt, (name, edit, readers) in enumerate(turn.random.sample(edits, 4)):
         campaign = turn.folder / f"campaign-{attempt}"
         shutil.copytree(reported, campaign)
-        value = json.loads((campaign / name).read_text())
+        value = seal.read(campaign / name)
         edit(value)
-        text = json.dumps(value, indent=1) + "\n"
+        text = seal.text(value)
         (campaign / name).write_text(
             text[: len(text) // 2] if turn.random.random() < 0.2 and name != "timings.json" else text
         )
@@ -370,6 +374,46 @@ def forged_kinds(turn):
             raise Violation(
                 f"expected {reader} to refuse a forged {name}, found status {ran.status}: {ran.out[-200:]!r}"
             )
+        turn.count("refused")
+        shutil.rmtree(campaign)
+
+
+def texts(value, place=()):
+    """The places of all texts."""
+    for key, inner in value.items() if isinstance(value, dict) else enumerate(value):
+        if isinstance(inner, str):
+            yield (*place, key)
+        elif isinstance(inner, (dict, list)):
+            yield from texts(inner, (*place, key))
+
+
+def unsealed(turn):
+    """A text that another changes, which no count contradicts: the checksum tells, whatever the file."""
+    reported = turn.bench.reference("tiny", minimised=True, reported=True)
+    maps = turn.random.choice(sorted((reported / "cases").glob("*.maps.json"))).relative_to(reported).as_posix()
+    page = ["report", "--from", "report.json", "--out", "page.html"]
+    attacks = [
+        (maps, ["report"]),
+        ("failures.json", ["report"]),
+        ("failures.json", ["failures"]),
+        ("timings.json", ["report"]),
+        ("timings.json", ["minimize"]),
+        ("status.json", ["status"]),
+        ("costs.json", page),
+        ("report.json", page),
+    ]
+    for attempt, (name, reader) in enumerate(attacks):
+        campaign = turn.folder / f"campaign-{attempt}"
+        shutil.copytree(reported, campaign)
+        file = campaign / name
+        value = json.loads(file.read_text())
+        place = turn.random.choice([place for place in texts(value) if place != ("checksum",)])
+        changed(value, place, "x")
+        file.write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n")
+        words = [campaign / word if "." in word else word for word in reader[1:]] or [campaign]
+        ran = turn.run(reader[0], *words)
+        if not turn.is_refused(ran, file.name):
+            raise Violation(f"expected {name} with another text at {place} to be refused, found status {ran.status}")
         turn.count("refused")
         shutil.rmtree(campaign)
 
@@ -408,6 +452,32 @@ def forged_cases(turn):
         shutil.rmtree(campaign)
 
 
+def pipes(turn):
+    """A pipe at the name of a record: no verb waits for it, and what is refused is named."""
+    reported = turn.bench.reference("tiny", minimised=True, reported=True)
+    records = ["summary.json", "campaign.sqlite", "timings.json", "status.json", "failures.json", "costs.json"]
+    records += [file.relative_to(reported).as_posix() for file in sorted((reported / "cases").iterdir())]
+    for attempt in range(6):
+        campaign = turn.folder / f"campaign-{attempt}"
+        shutil.copytree(reported, campaign)
+        record = campaign / turn.random.choice([*records[:6], turn.random.choice(records[6:])])
+        record.unlink()
+        os.mkfifo(record)
+        verbs = [
+            ["report", campaign],
+            ["minimize", campaign],
+            ["status", campaign],
+            ["merge", campaign, "--out", turn.folder / "m"],
+        ]
+        ran = turn.run(*turn.random.choice([*verbs, [*turn.bench.campaign("tiny"), "--out", campaign]]))
+        refused = turn.is_refused(ran, record.name)
+        if not stat.S_ISFIFO(os.lstat(record).st_mode):
+            raise Violation(f"expected the pipe {record.name} to stay one, found another file")
+        turn.count("refused" if refused else "read")
+        shutil.rmtree(campaign)
+        shutil.rmtree(turn.folder / "m", ignore_errors=True)
+
+
 def foreign_places(turn):
     """Results in a folder with a person's own files. graze must refuse in one line and keep them; --force writes
     there."""
@@ -439,6 +509,21 @@ def foreign_places(turn):
             if theirs.read_bytes() == b"kept":
                 raise Violation(f"expected {verb[0]} --force to replace the file, found it as it was")
             turn.count("same")
+    theirs = turn.folder / "theirs.txt"
+    theirs.write_text("kept")
+    os.link(theirs, turn.folder / "linked.html.graze.part")
+    turn.run("view", pair, "--out", turn.folder / "linked.html")
+    if theirs.read_text() != "kept":
+        raise Violation("expected a file that another name leads to to stay, found that view wrote into it")
+    turn.count("same")
+    campaign = turn.folder / "campaign"
+    shutil.copytree(turn.bench.reference("tiny"), campaign)
+    case = turn.random.choice(sorted((campaign / "cases").glob("*.pairs")))
+    case.write_text("kept")
+    ran = turn.run(*turn.bench.campaign("tiny"), "--out", campaign)
+    if not turn.is_refused(ran, case.name) or case.read_text() != "kept":
+        raise Violation(f"expected a case that is not of graze to stay, found status {ran.status}")
+    turn.count("refused")
     tiny = [*turn.bench.campaign("tiny"), "--out"]
     for verb in [
         tiny,

@@ -9,7 +9,15 @@ import type { Costs, Report } from '../src/report';
 
 const here = dirname(fileURLToPath(import.meta.url));
 
-const read = (page: string) => JSON.parse(readFileSync(page.replace(/html$/, 'json'), 'utf8')) as Report;
+// What the page gets of a file: all but its checksum.
+function parsed(file: string) {
+  const value = JSON.parse(readFileSync(file, 'utf8'));
+  expect(value.checksum).toMatch(/^[0-9a-f]{16}$/);
+  delete value.checksum;
+  return value;
+}
+
+const read = (page: string) => parsed(page.replace(/html$/, 'json')) as Report;
 
 // The compiler's errors for each value, checked against its type. Checks all in one run, because a run takes seconds.
 function complaints(values: Record<string, [type: string, value: unknown]>, info: TestInfo): Record<string, string> {
@@ -53,8 +61,7 @@ function complaints(values: Record<string, [type: string, value: unknown]>, info
   return found;
 }
 
-const beside = (name: string) =>
-  JSON.parse(readFileSync(process.env.GRAZE_REPORT!.replace(/report.html$/, name), 'utf8'));
+const beside = (name: string) => parsed(process.env.GRAZE_REPORT!.replace(/report.html$/, name));
 
 test('real reports, costs and choices are what report.ts says', ({}, info) => {
   const { GRAZE_REPORT, GRAZE_COMPARE } = process.env;

@@ -119,9 +119,9 @@ TEST_F(Shards, WrongUseIsOneLine) {
 
 TEST_F(Shards, WhatCannotBeCopiedFromScratchIsSaidWithItsReason) {
   expect_error(
-      "mkdir out; ln -s none/part out/campaign.sqlite.part; graze fuzz --pairs 900 --strata uniform "
+      "mkdir -p out/campaign.sqlite.part/full; graze fuzz --pairs 900 --strata uniform "
       "--lanes 'moller*/f32/cpu' --shard 1/3 --scratch here --out out",
-      1, {"out/campaign.sqlite", "No such file or directory"});
+      1, {"out/campaign.sqlite", "Directory not empty"});
 }
 
 TEST_F(Shards, TwoProcessesOfOneShardAreRefused) {

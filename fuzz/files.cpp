@@ -125,7 +125,7 @@ void replace(const fs::path& file, const fs::path& asked, const std::string& tex
 }
 
 // Throws: std::runtime_error unless the mode is a file's.   act: "read".
-void expect_file(const char* act, const fs::path& file, mode_t mode) {
+void expect_mode_of_file(const char* act, const fs::path& file, mode_t mode) {
   if (S_ISDIR(mode)) fail(act, file, EISDIR);
   if (!S_ISREG(mode)) throw std::runtime_error(cannot(act, file, "it is a pipe or a device; remove it"));
 }
@@ -134,7 +134,7 @@ void expect_file(const char* act, const fs::path& file, mode_t mode) {
 
 void expect_file(const fs::path& file) {
   struct stat there {};
-  if (stat(file.c_str(), &there) == 0) expect_file("use", file, there.st_mode);
+  if (stat(file.c_str(), &there) == 0) expect_mode_of_file("use", file, there.st_mode);
 }
 
 fs::path behind_links(fs::path file) {
@@ -148,7 +148,7 @@ std::string read_whole(const fs::path& file, NamedBy named_by) {
   if (in.number < 0 && (errno == ENOENT || errno == ENOTDIR)) return {};
   struct stat state {};
   if (in.number < 0 || fstat(in.number, &state) != 0) fail("read", file, errno);
-  if (named_by == NamedBy::graze) expect_file("read", file, state.st_mode);
+  if (named_by == NamedBy::graze) expect_mode_of_file("read", file, state.st_mode);
   std::string text;
   char bytes[65536];
   while (true) {
@@ -169,7 +169,8 @@ void write_whole(const fs::path& file, const std::string& text, NamedBy named_by
   struct stat there {};
   const bool exists = stat(file.c_str(), &there) == 0;
   if (!exists && errno != ENOENT) fail("write", file, errno);
-  if (exists && (named_by == NamedBy::graze || S_ISDIR(there.st_mode))) expect_file("write", file, there.st_mode);
+  if (exists && (named_by == NamedBy::graze || S_ISDIR(there.st_mode)))
+    expect_mode_of_file("write", file, there.st_mode);
   // The standard output may be a file too. Replacing it would lose everything else that is printed.
   const bool standard_output = exists && is_standard_output(there);
   if (exists && (standard_output || !S_ISREG(there.st_mode)))

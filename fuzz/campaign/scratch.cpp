@@ -21,7 +21,8 @@ void copy_whole(const fs::path& from, const fs::path& to) {
   const fs::path part = to.string() + ".part";
   expect_file(from);
   std::error_code error;
-  fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
+  fs::remove(part, error);  // of a killed run; a link of this name may lead to a foreign file
+  if (!error) fs::copy_file(from, part, error);
   const int file = error ? -1 : open(part.c_str(), O_RDONLY | O_CLOEXEC);
   if (!error && (file < 0 || fsync(file) != 0)) error = {errno, std::generic_category()};
   if (file >= 0) close(file);

@@ -3,6 +3,8 @@
 // nothing.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "cli/run_graze.h"
 
 namespace graze::cli {
@@ -92,6 +94,38 @@ TEST_F(ForeignCode, ACampaignWhoseProgramChangesFailsAndGoesOnWithTheOldOne) {
   EXPECT_EQ(shell(run + "whole").status, 2);  // the new code is not the campaign's
   EXPECT_EQ(shell("cp old.sh m.sh; " + run + "whole && " + run + "straight").status, 0);
   EXPECT_EQ(shell("cmp whole/summary.json straight/summary.json").status, 0);
+}
+
+// What minimize writes is published as the campaign's.
+TEST_F(ForeignCode, MinimizeRefusesCodeThatTheCampaignDidNotRun) {
+  const std::string always = "echo 'int meet(const float a[9], const float b[9]) { return 1; }' > a.c";
+  expect_done(always +
+              " && graze fuzz --subject m=./a.c:meet --lanes m/f32/cpu --strata uniform --pairs 200 --out c "
+              "&& sed 's/1;/a[0] == 0;/' a.c > b.c && mv b.c a.c && cp -r c before");
+  const Ran refused = shell("graze minimize c --subject m=./a.c:meet");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("cannot minimise c: "), std::string::npos) << refused.err;
+  expect_done("diff -r before c && " + always + " && graze minimize c");
+}
+
+// NVRTC compiles this for minutes, and catches signals itself.
+TEST_F(ForeignCode, ACompilationByNvrtcStops) {
+  std::ofstream(shell.folder / "small.cu")
+      << "__device__ bool meet(const float a[9], const float b[9]) { return a[0] > b[0]; }\n";
+  if (shell("graze lanes --subject s=./small.cu:meet").status != 0) GTEST_SKIP() << "no NVRTC";
+  std::ofstream(shell.folder / "heavy.cu")
+      << "template <int N, int M> struct T { static __device__ float f(float x) {\n"
+         "  return T<N - 1, 2 * M>::f(x * 1.01f) + T<N - 1, 2 * M + 1>::f(x - 0.5f); } };\n"
+         "template <int M> struct T<0, M> { static __device__ float f(float x) { return x * M; } };\n"
+         "__device__ bool meet(const float a[9], const float b[9]) { return T<15, 1>::f(a[0]) > b[0]; }\n";
+  for (const char* signal : {"TERM", "INT"}) {
+    const Ran ran =
+        shell(std::string("set -m; graze check pair.txt --subject s=./heavy.cu:meet & p=$!; until [ $(pgrep -c -P $p) "
+                          "-gt 0 ]; do sleep 0.02; kill -0 $p || exit 99; done; kill -") +
+              signal + " $p; wait $p");
+    EXPECT_EQ(ran.status, 130) << ran.err;
+    EXPECT_EQ(ran.err, "graze: interrupted\n");
+  }
 }
 
 TEST_F(ForeignCode, OptionsOfSubjectsAreWithinBounds) {

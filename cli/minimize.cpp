@@ -34,6 +34,7 @@
 #include "fuzz/minimise/minimised_cases.h"
 #include "fuzz/own_files.h"
 #include "reports/terminal.h"
+#include "subjects/subjects.h"
 
 namespace graze::cli {
 
@@ -206,6 +207,10 @@ int minimize_directory(MinimizeOptions options) {
   const Json summary = fuzz::checked_summary(directory);
   if (options.lanes.globs.empty()) options.lanes.globs = summary["spec"]["lanes"].get<std::vector<std::string>>();
   fuzz::SelectedLanes under_test = selected_lanes(options.lanes, options.name);
+  if (!subjects::open_recorded(summary["spec"]).empty())
+    throw UsageError(
+        cannot("minimise", options.name,
+               "its results go into the campaign, and this is not the code that it ran; leave out --subject"));
   const auto ran = summary["spec"]["lanes"].get<std::set<std::string>>();
   leave_out(under_test, [&](const Lane& lane) { return ran.contains(lane.id) ? "" : "the campaign did not run it"; });
   const fuzz::FolderLock held(directory,

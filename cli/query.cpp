@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "cli/commands.h"
@@ -196,6 +198,12 @@ void query_mesh(const QueryOptions& options, int& status) {
         fmt::format("graze query needs two files, a reference and a mesh, and got {}", options.files.size()));
   if (options.any && (!options.obj.empty() || !options.pairs.empty()))
     throw UsageError("--any does not go with --obj or --pairs, which hold all hits");
+  const std::string* outputs[] = {&options.obj, &options.pairs, &options.mismatches};
+  std::set<std::filesystem::path> files;
+  for (const std::string* file : outputs) {
+    if (!file->empty() && !files.insert(std::filesystem::weakly_canonical(std::filesystem::absolute(*file))).second)
+      throw UsageError("--obj, --pairs and --mismatches need a file each; two are " + shown_path(*file));
+  }
   const std::vector<query::Triangle> references = read_references(options.files[0]),
                                      triangles = read_mesh(options.files[1]);
   const std::vector<Run> runs = runs_of(options, references, triangles, status);

@@ -103,6 +103,7 @@ TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
             std::string::npos)
       << kept;
   expect_done("graze explain mismatches.pairs --lanes '*/f32/cpu'");
+  expect_error("graze query ref.txt mesh.obj --pairs x --mismatches ./x", 2, {"--pairs", "--mismatches", "./x"});
   expect_done("graze minimize mismatches.pairs --lanes 'guigue*/f32/cpu' --out small.pairs");
   const Json found = json("graze query ref.txt mesh.obj --lanes exact --executor one-core,all-cores --json");
   EXPECT_EQ(found["mismatches"], 0);

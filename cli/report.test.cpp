@@ -177,6 +177,38 @@ TEST_F(Report, PipesAndForeignFilesAmongTheRecordsAreRefused) {
   expect_done("truncate -s -30 c/costs.json && graze report c && graze report --from c/report.json --out r.html");
 }
 
+// SQLite would write into what bears these names, or delete it.
+TEST_F(Report, ForeignFilesBesideTheDatabaseStay) {
+  const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";
+  expect_done(fuzz);
+  for (const char* suffix : {"-wal", "-shm", "-journal"}) {
+    const std::string file = std::string("c/campaign.sqlite") + suffix;
+    for (const char* make : {"echo mine > mine && cp mine ", "echo mine > mine && ln mine ", ": > mine && ln mine "}) {
+      expect_done(make + file);
+      expect_error(fuzz, 1, {file, "move it away"});
+      if (suffix == std::string_view("-wal")) {
+        expect_error("graze report c", 1, {file, "move it away"});
+      }
+      expect_done("cmp mine " + file + " && rm " + file);
+    }
+  }
+  expect_done(fuzz);
+}
+
+// A trigger could drop what is stored, and the run would say that it is done.
+TEST_F(Report, OtherTablesAndTriggersAreRefused) {
+  const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";
+  for (const char* edit : {"delete from batch; create trigger t after insert on batch begin delete from batch; end",
+                           "create table more(x)", "create view v as select 1", "drop table batch"}) {
+    expect_done("rm -rf c; " + fuzz +
+                " > /dev/null && python3 -c 'import sqlite3; sqlite3.connect(\"c/campaign.sqlite\")"
+                ".executescript(\"" +
+                edit + "\")'");
+    for (const std::string& verb : {fuzz, std::string("graze report c"), std::string("graze merge c --out m")})
+      expect_error(verb, 1, {"campaign.sqlite", "tables"});
+  }
+}
+
 // By its name in a campaign's folder the status is Graze's: a damaged one is replaced, and ends no campaign.
 TEST_F(Report, ADamagedStatusIsReplaced) {
   const std::string fuzz = "graze fuzz --pairs 300 --lanes moller_1997/f32/cpu --strata uniform --out c";

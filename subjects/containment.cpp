@@ -20,13 +20,16 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <sstream>
 #include <string>
@@ -165,7 +168,11 @@ void limit_tasks() {
   int major = 0, minor = 0;
   if (uname(&system) == 0 && std::sscanf(system.release, "%d.%d", &major, &minor) == 2 &&
       (major > 6 || (major == 6 && minor >= 14)))
-    std::ofstream("/proc/sys/kernel/pid_max") << 300 + kMostTasks;  // the first 300 ids are used only once
+    std::ofstream("/proc/sys/kernel/pid_max") << kMostTasks;
+  // Root could raise it again.
+  constexpr const char* kSettings = "/proc/sys";
+  if (mount(kSettings, kSettings, nullptr, MS_BIND, nullptr) == 0)
+    mount("none", kSettings, nullptr, MS_BIND | MS_REMOUNT | MS_RDONLY | MS_NOSUID | MS_NODEV | MS_NOEXEC, nullptr);
   const rlimit most{kMostTasks, kMostTasks};
   if (geteuid() != 0) setrlimit(RLIMIT_NPROC, &most);
 }
@@ -302,28 +309,42 @@ bool end_children(pid_t except) {
   }
 }
 
+namespace {
+
+// Of one table of system calls. A filter reads numbers and arguments, so calls that hide theirs in memory are missing.
+struct Calls {
+  std::uint32_t prlimit, clone, clone3;
+  std::array<std::uint32_t, 3> forbidden;  // memfd_create, unshare, setns
+};
+
+void append_rules(std::vector<sock_filter>& steps, const Calls& calls) {
+  constexpr std::uint32_t kX32 = 0x40000000, kArgument = offsetof(seccomp_data, args);
+  constexpr std::uint32_t kNamespaces =
+      CLONE_NEWUSER | CLONE_NEWNS | CLONE_NEWPID | CLONE_NEWNET | CLONE_NEWIPC | CLONE_NEWUTS | CLONE_NEWCGROUP;
+  const auto add = [&](std::initializer_list<sock_filter> more) { steps.insert(steps.end(), more); };
+  const sock_filter refuse = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM),
+                    allow = BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
+  add({BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)), BPF_STMT(BPF_ALU | BPF_AND | BPF_K, ~kX32)});
+  for (const std::uint32_t number : calls.forbidden) add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, number, 0, 1), refuse});
+  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.prlimit, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
+       BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 1, 0), refuse, allow});
+  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone, 0, 4), BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArgument),
+       BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, kNamespaces, 0, 1), refuse, allow});
+  // The C library then uses clone.
+  add({BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, calls.clone3, 0, 1), BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | ENOSYS),
+       allow});
+}
+
+}  // namespace
+
+// In a user namespace of its own, code could mount file systems: memory that is not counted, and control groups.
 void forbid_calls() {
-  // prlimit64 with a process id, and memfd_create, for each system call table of the processor. i386 has other numbers
-  // for them, and x32 sets an additional bit.
-  constexpr std::uint32_t kI386Prlimit = 340, kI386MemfdCreate = 356, kX32 = 0x40000000;
-  constexpr std::uint32_t kArch = offsetof(seccomp_data, arch), kNumber = offsetof(seccomp_data, nr);
-  constexpr std::uint32_t kProcess = offsetof(seccomp_data, args);
-  sock_filter steps[] = {
-      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kArch),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, 3),
-      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kNumber),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kI386MemfdCreate, 8, 0),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, kI386Prlimit, 4, 6),
-      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kNumber),
-      BPF_STMT(BPF_ALU | BPF_AND | BPF_K, ~kX32),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_memfd_create, 4, 0),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_prlimit64, 0, 2),
-      BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kProcess),
-      BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, 0, 0, 1),
-      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
-      BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EPERM),
-  };
-  const sock_fprog program{std::size(steps), steps};
+  std::vector<sock_filter> i386, steps{BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch))};
+  append_rules(i386, {340, 120, 435, {356, 310, 346}});
+  steps.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, AUDIT_ARCH_I386, 0, static_cast<std::uint8_t>(i386.size())));
+  steps.insert(steps.end(), i386.begin(), i386.end());
+  append_rules(steps, {SYS_prlimit64, SYS_clone, SYS_clone3, {SYS_memfd_create, SYS_unshare, SYS_setns}});
+  const sock_fprog program{static_cast<unsigned short>(steps.size()), steps.data()};
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
 }

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -17,6 +18,7 @@
 #include <sys/shm.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -257,4 +259,17 @@ static int stretch_waits(void) {
   return done;
 }
 ATTACK(stretches_waits, if (!stretch_waits()) abort(); for (;;) pause())
+static void make_namespaces(void) {
+  if (unshare(CLONE_NEWUSER | CLONE_NEWNS) == 0) return;  // then the pair has an answer, and the test fails
+  const long child = syscall(SYS_clone, CLONE_NEWUSER | SIGCHLD, 0, 0, 0, 0);
+  if (child == 0) _exit(0);
+  if (child > 0) return;
+  abort();
+}
+ATTACK(makes_namespaces, make_namespaces())
+static void raise_task_limit(void) {
+  if (alone() && put("/proc/sys/kernel", "pid_max", "9000")) return;
+  abort();
+}
+ATTACK(raises_task_limit, raise_task_limit())
 ATTACK(kills_all, if (alone()) kill(-1, SIGKILL); abort())

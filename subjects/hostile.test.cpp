@@ -222,6 +222,8 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"freezes_supervisor", false},
                                {"writes_to_cache", false},
                                {"stretches_waits"},
+                               {"makes_namespaces"},
+                               {"raises_task_limit", false},
                                {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {

@@ -189,13 +189,20 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   const Scratch scratch(folder);
   int status = 0;
   const std::string version = output_of(compiler + " --version", scratch, status);
-  const std::string identity = version.substr(0, version.find('\n'));  // the lines below contain paths
+  std::string identity = version.substr(0, version.find('\n'));  // the lines below contain paths
   if (status != 0)
     throw std::runtime_error(
         cannot("compile", name,
                status == 127  // as a shell reports it
                    ? fmt::format("there is no compiler '{}'; install one, or name it in {}", compiler, c ? "CC" : "CXX")
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
+  // One version of a compiler may find other parts on another machine's PATH, and may itself be a script.
+  identity += output_of(
+      fmt::format(
+          "for part in as ld cc1 cc1plus; do file=$(command -v \"$({} -print-prog-name=$part 2>/dev/null)\") && "
+          "cksum < \"$file\"; done; cksum < \"$(command -v {})\"",
+          compiler, compiler.substr(0, compiler.find(' '))),
+      scratch, status);
   std::string command =
       fmt::format("{} {} -O2 -fPIC -shared {}", compiler, c ? "-std=gnu11" : "-std=c++20", variant.flags);
   for (const std::string& flag : flags) command += ' ' + shell_word(flag);

@@ -574,6 +574,35 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
   }
 }
 
+// A compiler of one version may find another assembler or linker on the PATH, and may be a script.
+TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
+  const fs::path source =
+      write("by_parts.c", "int intersects(const float a[9], const float b[9]) { return a[0] < b[0]; }");
+  const auto hash = [&] { return build_source(source, "intersects", kVariants[0], {}).file.string(); };
+  const std::string plain = hash();
+  EXPECT_EQ(hash(), plain);
+  const auto tool = [&](const char* name, const std::string& text) {
+    const fs::path file = write(name, "#!/bin/sh\n" + text + " \"$@\"\n");
+    fs::permissions(file, fs::perms::owner_all);
+    return file;
+  };
+  const std::string path = std::getenv("PATH");
+  std::set<std::string> hashes{plain};
+  for (const char* part : {"as", "ld"}) {
+    const fs::path file = tool(part, std::string("exec /usr/bin/") + part);
+    setenv("PATH", (folder.string() + ":" + path).c_str(), 1);
+    EXPECT_TRUE(hashes.insert(hash()).second) << part;
+    setenv("PATH", path.c_str(), 1);
+    fs::remove(file);
+  }
+  setenv("CC", tool("my_cc", "exec cc").c_str(), 1);
+  EXPECT_TRUE(hashes.insert(hash()).second);
+  tool("my_cc", "exec cc -funsigned-char");
+  EXPECT_TRUE(hashes.insert(hash()).second);
+  unsetenv("CC");
+  EXPECT_EQ(hash(), plain);
+}
+
 TEST_F(Subjects, FlagsThatMayBringInAnythingAreNotCovered) {
   const auto not_covered = [](const std::vector<std::string>& flags) { return hash_of_flags(flags, 0).not_covered; };
   EXPECT_EQ(not_covered({"-O3", "-Iinclude", "-I", "include", "-DX=/a/b", "-isystem", "include", "-include", "a.h",

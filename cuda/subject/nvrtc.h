@@ -20,7 +20,8 @@ class Nvrtc {
   // Throws: std::runtime_error when there is none; one line that says what to install.
   static const Nvrtc& get();
 
-  // Compiles the source to PTX. `name` is the source's name in messages and line tables.   Throws: CompileError.
+  // Compiles the source to PTX, in a process of its own. `name` is the source's name in messages and line tables.
+  // Throws: CompileError; Stopped; std::runtime_error if NVRTC crashes.
   std::string ptx(const std::string& source, const std::string& name, const std::vector<std::string>& options) const;
 
   const std::string& version() const { return version_; }  // "13.0"
@@ -28,6 +29,8 @@ class Nvrtc {
 
  private:
   Nvrtc();
+  std::string compiled(const std::string& source, const std::string& name,
+                       const std::vector<std::string>& options) const;
   using Program = void*;
   int (*create_)(Program*, const char*, const char*, int, const char* const*, const char* const*) = nullptr;
   int (*destroy_)(Program*) = nullptr;

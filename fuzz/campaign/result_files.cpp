@@ -182,8 +182,14 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   const std::string head = signature_line(key, count);
   if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
   std::size_t kept = 0;
-  for (const corpus::Entry& entry : entries) {
+  const auto kind_of = [&](std::size_t e) { return e < entries.size() ? corpus::text_of(entries[e], "kind") : ""; };
+  for (std::size_t e = 0; e < entries.size(); ++e) {
+    const corpus::Entry& entry = entries[e];
     const bool result = corpus::field(entry, "kind") != nullptr;
+    // Results come first: each time the minimised pair, then the worst one.
+    if (kind_of(e) == "minimised" ? kind_of(e + 1) != "worst" || kept > 0
+                                  : result && (kind_of(e) != "worst" || e == 0 || kind_of(e - 1) != "minimised"))
+      throw refuse(fmt::format("line {} is out of its order: minimised and worst pairs, then the cases", entry.line));
     const std::optional<analysis::Signature> own = analysis::parse_signature(corpus::text_of(entry, "signature"));
     kept += !result;
     if (!own || own->subject != recorded->subject || (!result && *own != *recorded))

@@ -4,12 +4,16 @@
 #include <SQLiteCpp/VariadicBind.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <memory>
+#include <string_view>
 
 #include "core/cannot.h"
 #include "core/error.h"
@@ -24,11 +28,10 @@ namespace fs = std::filesystem;
 constexpr int kApplicationId = 0x67726173;  // "gras"
 constexpr int kFormat = 5;
 
-constexpr const char* kSchema = R"(
-CREATE TABLE campaign(text TEXT NOT NULL, checksum INTEGER NOT NULL);
-CREATE TABLE batch(id INTEGER PRIMARY KEY, source INTEGER NOT NULL, first INTEGER NOT NULL, pairs INTEGER NOT NULL,
-  counts BLOB NOT NULL, checksum INTEGER NOT NULL);
-)";
+constexpr const char* kTables[] = {
+    "CREATE TABLE campaign(text TEXT NOT NULL, checksum INTEGER NOT NULL)",
+    R"(CREATE TABLE batch(id INTEGER PRIMARY KEY, source INTEGER NOT NULL, first INTEGER NOT NULL, pairs INTEGER NOT NULL,
+  counts BLOB NOT NULL, checksum INTEGER NOT NULL))"};
 constexpr const char* kColumns = "SELECT id, source, first, pairs, counts, checksum FROM batch ";
 
 // SQLite's messages quote the offending text, including line breaks.
@@ -80,7 +83,19 @@ std::string text_of(const StoreSpec& spec) {
 
 std::int64_t number(SQLite::Database& database, const char* sql) { return database.execAndGet(sql).getInt64(); }
 
-// Whether the database is empty.   Throws: std::runtime_error if it belongs to another program or has another format.
+// Throws: Damaged unless the database has our two tables and nothing else. A trigger could drop what is stored.
+void expect_our_tables(SQLite::Database& database) {
+  SQLite::Statement query(database, "SELECT sql FROM sqlite_schema ORDER BY rowid");
+  std::size_t count = 0;
+  for (; query.executeStep(); ++count) {
+    if (count >= std::size(kTables) || query.getColumn(0).getString() != kTables[count])
+      throw Damaged("it has other tables, triggers or views than those of graze");
+  }
+  if (count != std::size(kTables)) throw Damaged("one of its tables is missing");
+}
+
+// Whether the database is empty.   Throws: std::runtime_error if it belongs to another program or has another format;
+// Damaged if it has other tables.
 bool is_fresh(SQLite::Database& database, const fs::path& file) {
   const std::int64_t application = number(database, "PRAGMA application_id");
   if (application == 0 && number(database, "SELECT count(*) FROM sqlite_schema") == 0) return true;
@@ -90,12 +105,13 @@ bool is_fresh(SQLite::Database& database, const fs::path& file) {
     throw std::runtime_error(
         cannot("use", file,
                fmt::format("it has format {}, and this build reads format {}; choose another --out", format, kFormat)));
+  expect_our_tables(database);
   return false;
 }
 
 void begin(SQLite::Database& database, const std::string& text) {
   SQLite::Transaction transaction(database);
-  database.exec(kSchema);
+  for (const char* table : kTables) database.exec(table);
   SQLite::Statement put(database, "INSERT INTO campaign VALUES(?, ?)");
   SQLite::bind(put, text, static_cast<std::int64_t>(fnv1a(text)));
   put.exec();
@@ -210,6 +226,24 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
+// Throws: std::runtime_error for a file beside the database that SQLite would use, but did not write, or that is also
+// another file: a foreign file of this name, or a link to one.
+void expect_own_files_of(const fs::path& database) {
+  constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
+                             kIndex = "\x18\xe2\x2d";
+  for (const auto& [suffix, begins] : {std::pair{"-wal", kLog}, {"-shm", kIndex}, {"-journal", kJournal}}) {
+    const fs::path file = database.string() + suffix;
+    struct stat there {};
+    if (lstat(file.c_str(), &there) != 0) continue;
+    expect_file(file);
+    std::string begin(begins.size(), '\0');
+    std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    const bool is_empty = begin.find_first_not_of('\0') == begin.npos;  // SQLite clears the beginning of an old one
+    if (!S_ISREG(there.st_mode) || there.st_nlink != 1 || (begin != begins && !is_empty))
+      throw std::runtime_error(cannot("use", file, "graze did not write it, or it is a link; move it away"));
+  }
+}
+
 // Opens a store for reading only. If its last run ended normally, it is one file that nobody writes to. A killed run
 // leaves a log beside the file; the next reader merges the log, under an exclusive lock.
 struct OpenedToRead {
@@ -235,6 +269,7 @@ struct OpenedToRead {
 
   static SQLite::Database opened(const fs::path& file) {
     expect_file(file);
+    expect_own_files_of(file);
     return {file.string(), SQLite::OPEN_READWRITE};
   }
 
@@ -244,6 +279,7 @@ struct OpenedToRead {
 
 SQLite::Database opened(const fs::path& file) {
   expect_file(file);
+  expect_own_files_of(file);
   return {file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE};
 }
 
@@ -309,7 +345,8 @@ Salvage salvage(const StoreSpec& spec) {
     }
     transaction.commit();
   }
-  fs::copy_file(file, result.damaged, fs::copy_options::overwrite_existing);
+  fs::remove(result.damaged);  // which might be a link to another file
+  fs::copy_file(file, result.damaged);
   fs::remove(file.string() + "-wal");  // log of the old database, already read
   fs::rename(fresh, file);
   return result;

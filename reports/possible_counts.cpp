@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "analysis/pareto.h"
@@ -75,6 +77,7 @@ Drawn drawn_of(const Json& report, const Json& stratum, const Json& group = {}) 
 }
 
 void expect_possible_rates(const Json& report) {
+  std::map<std::string, std::pair<Counts, Counts>> of_lanes;  // of all strata together, and the sum of theirs
   for (const Json& row : report.at("rates")) {
     const Drawn of = drawn_of(report, row.at("stratum"));
     Counts counts{row.at("false_positive").at("count"), row.at("false_negative").at("count")};
@@ -90,7 +93,11 @@ void expect_possible_rates(const Json& report) {
                (differs.is_null() || differs.at("of") == of.pairs) &&
                counts.not_right() + counts.by_convention <= of.pairs,
            fmt::format("rates of {} pairs that add up", of.pairs), row);
+    auto& [together, sum] = of_lanes[row.at("lane").dump()];
+    (row.at("stratum").is_null() ? together : sum) += counts;
   }
+  for (const auto& [lane, counts] : of_lanes)
+    expect(counts.first == counts.second, "rates of all strata together that are the sum of theirs", lane);
   for (const Json& row : report.at("group_rates"))
     expect(row.at("wrong").at("of") == drawn_of(report, nullptr, row.at("group")).pairs, "the pairs of its group", row);
   for (const Json& rows : report.at("side_by_side")) {

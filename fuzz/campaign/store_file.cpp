@@ -226,11 +226,12 @@ std::int64_t insert(SQLite::Database& database, std::uint64_t campaign, const Pa
   return database.getLastInsertRowid();
 }
 
-// Throws: std::runtime_error for a file beside the database that SQLite would use, but did not write, or that is also
-// another file: a foreign file of this name, or a link to one.
-void expect_own_files_of(const fs::path& database) {
+// The files beside the database that SQLite would use, but did not write, or that are also another file: damaged ones,
+// foreign ones of this name, and links.   Throws: std::runtime_error for a pipe or a device.
+std::vector<fs::path> unusable_files_of(const fs::path& database) {
   constexpr std::string_view kJournal = "\xd9\xd5\x05\xf9\x20\xa1\x63\xd7", kLog = "\x37\x7f\x06",
                              kIndex = "\x18\xe2\x2d";
+  std::vector<fs::path> found;
   for (const auto& [suffix, begins] : {std::pair{"-wal", kLog}, {"-shm", kIndex}, {"-journal", kJournal}}) {
     const fs::path file = database.string() + suffix;
     struct stat there {};
@@ -239,9 +240,17 @@ void expect_own_files_of(const fs::path& database) {
     std::string begin(begins.size(), '\0');
     std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
     const bool is_empty = begin.find_first_not_of('\0') == begin.npos;  // SQLite clears the beginning of an old one
-    if (!S_ISREG(there.st_mode) || there.st_nlink != 1 || (begin != begins && !is_empty))
-      throw std::runtime_error(cannot("use", file, "graze did not write it, or it is a link; move it away"));
+    if (!S_ISREG(there.st_mode) || there.st_nlink != 1 || (begin != begins && !is_empty)) found.push_back(file);
   }
+  return found;
+}
+
+// Throws: DamagedStore if there are any.
+void expect_usable_files_of(const fs::path& database) {
+  for (const fs::path& file : unusable_files_of(database))
+    throw DamagedStore(cannot("use", file,
+                              "it is damaged, a link, or not of graze; move it away, or add --discard-damaged, which "
+                              "renames it"));
 }
 
 // Opens a store for reading only. If its last run ended normally, it is one file that nobody writes to. A killed run
@@ -269,7 +278,7 @@ struct OpenedToRead {
 
   static SQLite::Database opened(const fs::path& file) {
     expect_file(file);
-    expect_own_files_of(file);
+    expect_usable_files_of(file);
     return {file.string(), SQLite::OPEN_READWRITE};
   }
 
@@ -279,7 +288,7 @@ struct OpenedToRead {
 
 SQLite::Database opened(const fs::path& file) {
   expect_file(file);
-  expect_own_files_of(file);
+  expect_usable_files_of(file);
   return {file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE};
 }
 
@@ -319,6 +328,7 @@ Salvage salvage(const StoreSpec& spec) {
   const std::string text = text_of(spec);
   std::vector<KeptRow> kept;
   std::size_t seen = 0;
+  for (const fs::path& left : unusable_files_of(file)) fs::rename(left, left.string() + ".damaged");
   try {
     SQLite::Database database = opened(file);
     bool known = false;

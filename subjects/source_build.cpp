@@ -198,10 +198,9 @@ Built build_source(const fs::path& source, const std::string& function, const Va
                    : fmt::format("'{} --version' ended with exit status {}", compiler, status)));
   // One version of a compiler may find other parts on another machine's PATH, and may itself be a script.
   identity += output_of(
-      fmt::format(
-          "for part in as ld cc1 cc1plus; do file=$(command -v \"$({} -print-prog-name=$part 2>/dev/null)\") && "
-          "cksum < \"$file\"; done; cksum < \"$(command -v {})\"",
-          compiler, compiler.substr(0, compiler.find(' '))),
+      fmt::format("for part in as ld {1}; do file=$(command -v \"$({0} -print-prog-name=$part 2>/dev/null)\") && "
+                  "cksum < \"$file\"; done; cksum < \"$(command -v {2})\"",
+                  compiler, c ? "cc1" : "cc1plus", compiler.substr(0, compiler.find(' '))),
       scratch, status);
   std::string command =
       fmt::format("{} {} -O2 -fPIC -shared {}", compiler, c ? "-std=gnu11" : "-std=c++20", variant.flags);

@@ -2,22 +2,16 @@
 #include "cuda/subject/nvrtc.h"
 
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <memory>
 
-#include "core/cannot.h"
+#include "core/programs/child.h"
 #include "core/stop.h"
 #include "cuda/subject/headers.h"
 
@@ -40,17 +34,11 @@ std::vector<fs::path> places() {
   return all;
 }
 
-// Runs the work in a child of this process. NVRTC may compile without end, crash, or catch signals itself.
+// What the work says in a child of this process: NVRTC may compile without end, crash, or catch signals itself.
 // Throws: what the work throws, as CompileError or std::runtime_error; Stopped, within 0.1 s of the request.
 std::string in_child(const std::function<std::string()>& work) {
   const StopSignals stops;
-  int pipe[2];
-  if (pipe2(pipe, O_CLOEXEC) != 0) throw std::runtime_error(cannot("start", "NVRTC", errno));
-  std::fflush(nullptr);
-  const pid_t parent = getpid(), child = fork();
-  if (child == 0) {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);
+  Child child([&](int pipe) {
     std::string said;
     try {
       said = "r" + work();
@@ -59,30 +47,19 @@ std::string in_child(const std::function<std::string()>& work) {
     } catch (const std::exception& error) {
       said = std::string("e") + error.what();
     }
-    for (std::size_t at = 0; at < said.size();) {
-      const ssize_t written = write(pipe[1], said.data() + at, said.size() - at);
-      if (written <= 0 && errno != EINTR) _exit(1);
-      at += written > 0 ? static_cast<std::size_t>(written) : 0;
-    }
-    _exit(0);
-  }
-  close(pipe[1]);
+    write_all(pipe, said.data(), said.size());
+  });
   std::string said;
   char bytes[65536];
-  ssize_t count = 1;
-  while (child > 0 && count > 0 && !stop_requested) {
-    pollfd news{pipe[0], POLLIN, 0};
+  for (ssize_t count = 1; count > 0;) {
+    if (stop_requested) throw Stopped{};
+    pollfd news{child.pipe(), POLLIN, 0};
     if (poll(&news, 1, 50) <= 0) continue;
-    count = read(pipe[0], bytes, sizeof bytes);
+    count = read(child.pipe(), bytes, sizeof bytes);
     if (count > 0) said.append(bytes, static_cast<std::size_t>(count));
   }
-  close(pipe[0]);
-  if (child < 0) throw std::runtime_error(cannot("start", "NVRTC", errno));
-  if (stop_requested) kill(child, SIGKILL);
-  int status = 0;
-  waitpid(child, &status, 0);
   if (stop_requested) throw Stopped{};
-  if (status != 0 || said.empty()) throw std::runtime_error("NVRTC crashed on this source");
+  if (!child.succeeded() || said.empty()) throw std::runtime_error("NVRTC crashed on this source");
   if (said[0] == 'c') throw CompileError(said.substr(1));
   if (said[0] == 'e') throw std::runtime_error(said.substr(1));
   return said.substr(1);

@@ -182,13 +182,13 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   const std::string head = signature_line(key, count);
   if (text.compare(text.find('\n') + 1, head.size(), head) != 0) throw refuse("its head is not that of this signature");
   std::size_t kept = 0;
-  const auto kind_of = [&](std::size_t e) { return e < entries.size() ? corpus::text_of(entries[e], "kind") : ""; };
   for (std::size_t e = 0; e < entries.size(); ++e) {
     const corpus::Entry& entry = entries[e];
     const bool result = corpus::field(entry, "kind") != nullptr;
     // Results come first: each time the minimised pair, then the worst one.
-    if (kind_of(e) == "minimised" ? kind_of(e + 1) != "worst" || kept > 0
-                                  : result && (kind_of(e) != "worst" || e == 0 || kind_of(e - 1) != "minimised"))
+    const char* const turn = e % 2 == 0 ? "minimised" : "worst";
+    const bool in_order = result ? kept == 0 && corpus::text_of(entry, "kind") == turn : kept > 0 || e % 2 == 0;
+    if (!in_order)
       throw refuse(fmt::format("line {} is out of its order: minimised and worst pairs, then the cases", entry.line));
     const std::optional<analysis::Signature> own = analysis::parse_signature(corpus::text_of(entry, "signature"));
     kept += !result;
@@ -201,21 +201,26 @@ std::vector<corpus::Entry> read_cases(const std::filesystem::path& directory, co
   return entries;
 }
 
-Json read_timings(const std::filesystem::path& directory) {
-  const std::filesystem::path file = directory / "timings.json";
-  const Json timings = read_sealed(file, "remove it; only times are lost");
-  if (timings.is_null()) return Json::array();
+namespace {
+
+// The whole of timings.json, with runs that are objects.
+Json timings_in(const std::filesystem::path& file) {
+  Json timings = read_sealed(file, "remove it; only times are lost");
+  if (timings.is_null()) return {{"runs", Json::array()}};
   const Json runs = timings.value("runs", Json());
   if (!runs.is_array() || !std::all_of(runs.begin(), runs.end(), [](const Json& run) { return run.is_object(); }))
     throw corpus::FormatError(cannot("use", file, "it does not hold the timings of a campaign; remove it"));
-  return runs;
+  return timings;
 }
+
+}  // namespace
+
+Json read_timings(const std::filesystem::path& directory) { return timings_in(directory / "timings.json")["runs"]; }
 
 void append_timing(const std::filesystem::path& directory, const Json& run, const Json& oracle) {
   const std::filesystem::path file = directory / "timings.json";
-  Json runs = read_timings(directory), timings = read_sealed(file, "");
-  runs.push_back(run);
-  timings["runs"] = std::move(runs);
+  Json timings = timings_in(file);
+  timings["runs"].push_back(run);
   if (!oracle.is_null()) timings["oracle"] = oracle;
   write_whole(file, sealed(std::move(timings)).dump(1) + "\n");
 }

@@ -253,6 +253,12 @@ void expect_usable_files_of(const fs::path& database) {
                               "renames it"));
 }
 
+SQLite::Database opened(const fs::path& file, int how = SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
+  expect_file(file);  // SQLite would wait for a pipe
+  expect_usable_files_of(file);
+  return {file.string(), how};
+}
+
 // Opens a store for reading only. If its last run ended normally, it is one file that nobody writes to. A killed run
 // leaves a log beside the file; the next reader merges the log, under an exclusive lock.
 struct OpenedToRead {
@@ -260,7 +266,7 @@ struct OpenedToRead {
       : lock(fs::exists(directory / (std::string(kDatabase) + "-wal"))
                  ? std::make_unique<FolderLock>(directory, FolderLock::WhenTaken::refuse)
                  : nullptr),
-        database(lock ? opened(directory / kDatabase)
+        database(lock ? opened(directory / kDatabase, SQLite::OPEN_READWRITE)
                       : SQLite::Database(as_uri(directory / kDatabase), SQLite::OPEN_READONLY | SQLite::OPEN_URI)) {
     if (lock) database.exec("PRAGMA locking_mode = EXCLUSIVE");
   }
@@ -276,21 +282,9 @@ struct OpenedToRead {
     return uri + "?immutable=1";
   }
 
-  static SQLite::Database opened(const fs::path& file) {
-    expect_file(file);
-    expect_usable_files_of(file);
-    return {file.string(), SQLite::OPEN_READWRITE};
-  }
-
   std::unique_ptr<FolderLock> lock;
   SQLite::Database database;
 };
-
-SQLite::Database opened(const fs::path& file) {
-  expect_file(file);
-  expect_usable_files_of(file);
-  return {file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE};
-}
 
 struct KeptRow {
   PairRange range;

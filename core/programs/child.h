@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// A child of this process for work that may crash or never end. What it writes arrives through a pipe.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <functional>
+
+namespace graze {
+
+class Child {
+ public:
+  // Runs work(pipe) in the child, which then exits with 0, or with 1 if the work throws. It ends with this process.
+  // Throws: std::system_error.
+  explicit Child(const std::function<void(int pipe)>& work);
+  ~Child();  // kills it, unless it was waited for
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  // The end to read from. Its end of file says that the child has closed the other one.
+  int pipe() const { return pipe_; }
+  void kill() const;
+  // Waits for its end.   Returns: whether it exited with 0.
+  bool succeeded();
+
+ private:
+  int pipe_ = -1;
+  pid_t process_ = -1;
+};
+
+// In a child: writes all bytes, or exits with 1.
+void write_all(int pipe, const void* data, std::size_t size);
+
+}  // namespace graze

@@ -31,6 +31,7 @@ void add_dump(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
 void add_scene(CLI::App& app, int& status);
 void add_lanes(CLI::App& app, int& status);
+void add_discrepancy(CLI::App& app, int& status);
 void add_invariants(CLI::App& app, int& status);
 void add_strata(CLI::App& app, int& status);
 void add_pareto(CLI::App& app, int& status);

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <iostream>
 
+#include "analysis/discrepancy.h"
 #include "cli/commands.h"
 #include "core/cannot.h"
 #include "core/error.h"
@@ -30,6 +31,7 @@ struct DumpOptions {
   Format format = Format::csv;
   std::uint64_t pairs = 0;  // 0: 1000 of a stratum, all of a campaign
   LaneOptions lanes;
+  std::vector<std::string> values;  // two lanes
 };
 
 struct Dumped {
@@ -126,6 +128,51 @@ void dump(const DumpOptions& options) {
   }
 }
 
+// The lanes of --values.
+analysis::LanesCompared compared_lanes(const std::vector<std::string>& ids) {
+  const auto lane = [](const std::string& id) -> const Lane& {
+    const Lane* found = find_lane(id);
+    if (!found) throw UsageError("there is no lane '" + printable(id) + "'; `graze lanes` lists them");
+    return *found;
+  };
+  if (ids.size() != 2) throw UsageError("--values takes two lanes, separated by a comma");
+  return {lane(ids[0]), lane(ids[1])};
+}
+
+// A row for each pair, with both verdicts and choices, and one for each value that a comparison of both lanes or of one
+// sees, as hexadecimal numbers. Rows of pairs have no question.
+void dump_values(const DumpOptions& options) {
+  const analysis::LanesCompared lanes = compared_lanes(options.values);
+  const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
+  const bool is_path = fs::is_directory(options.name) || options.name.find('/') != std::string::npos;
+  const Dumped dumped = is_path ? of_campaign(options) : of_stratum(options);
+  std::cout << "stratum,seed,index,question,value,first,second,compared,exact_high,exact_low,bound,size\n";
+  const auto number = [](const std::optional<double>& x) { return x ? fmt::format("{:a}", *x) : ""; };
+  for (const strata::PairSource& source : dumped.sources) {
+    for (std::uint64_t index = 0; index < source.pairs && std::cout; ++index) {
+      const Pair pair = source.pair(index);
+      if (!is_finite(pair)) continue;
+      const analysis::RunsBeside runs = analysis::runs_beside(lanes, pair);
+      const std::string place = fmt::format("{},{},{}", source.id, dumped.seed, index);
+      std::cout << fmt::format("{},,,{} {:x},{} {:x},,,,,\n", place, name(recorded_verdict(runs.first.path)),
+                               runs.first.path & kChoices, name(recorded_verdict(runs.second.path)),
+                               runs.second.path & kChoices);
+      for (const analysis::ValueBeside& value : runs.values) {
+        const Question& question = questions[static_cast<std::size_t>(value.question)];
+        std::cout << fmt::format("{},\"{}\",\"{}\",{},{},{},", place, question.name,
+                                 question.of[static_cast<std::size_t>(value.which)], number(value.first),
+                                 number(value.second), value.compared ? 1 : 0);
+        if (value.exact) {
+          std::cout << fmt::format("{:a},{:a},{:a},{:a}\n", value.exact->hi, value.exact->lo, value.exact->bound,
+                                   value.exact->size);
+        } else {
+          std::cout << ",,,\n";
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void add_dump(CLI::App& app, int&) {
@@ -151,7 +198,12 @@ void add_dump(CLI::App& app, int&) {
   add_lane_options(*command, options->lanes);
   command->get_option("--lanes")->description("Patterns of the lanes whose verdicts are added")->default_str("none");
   for (const char* of_lanes : {"--executor", "--subject"}) command->get_option(of_lanes)->needs("--lanes");
-  command->callback([options] { dump(*options); });
+  add_globs(*command, "--values", options->values,
+            "Two lanes of one algorithm and scalar: write every value that their comparisons see, and the exact ones")
+      ->option_text("LANE,LANE")
+      ->excludes("--lanes")
+      ->excludes("--format");
+  command->callback([options] { options->values.empty() ? dump(*options) : dump_values(*options); });
 }
 
 }  // namespace graze::cli

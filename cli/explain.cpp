@@ -14,7 +14,9 @@
 #include "cli/commands.h"
 #include "cli/screen.h"
 #include "core/text.h"
+#include "cuda/twin/twin.h"
 #include "fuzz/minimise/kinds.h"
+#include "reports/side_by_side.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
@@ -138,6 +140,15 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
   print_surroundings(lane, line);
 }
 
+// The runs of two lanes beside each other, where the user asked for two that record their values.
+void print_side_by_side(const std::vector<const Lane*>& lanes, const Pair& pair, const reports::Screen& screen) {
+  if (lanes.size() != 2 || !is_finite(pair) || lanes[0]->algorithm < 0 || lanes[0]->algorithm != lanes[1]->algorithm ||
+      lanes[0]->scalar != lanes[1]->scalar || !analysis::record_on_host(*lanes[0]) ||
+      !analysis::record_on_host(*lanes[1]))
+    return;
+  fmt::print("\n{}", reports::side_by_side({*lanes[0], *lanes[1]}, pair, screen));
+}
+
 struct ExplainOptions {
   std::string name;
   LaneOptions lanes;
@@ -183,6 +194,7 @@ void explain_cases(const ExplainOptions& options) {
       print_lane(lane, before, screen);
       if (lane.lane->variant == Variant::cpu) before = &lane;
     }
+    print_side_by_side(under_test.lanes, entry.pair, screen);
     wrong = wrong || !explanation.lanes.empty();
   }
   if (wrong) fmt::print("Next: graze map {}\n", path_word(options.name));

@@ -19,6 +19,7 @@ void add_hunt(CLI::App& app, int&) { add_left_out(app, "hunt"); }
 void add_league(CLI::App& app, int&) { add_left_out(app, "league"); }
 void add_view(CLI::App& app, int&) { add_left_out(app, "view"); }
 void add_dump(CLI::App& app, int&) { add_left_out(app, "dump"); }
+void add_discrepancy(CLI::App& app, int&) { add_left_out(app, "discrepancy"); }
 void add_invariants(CLI::App& app, int&) { add_left_out(app, "invariants"); }
 void add_pareto(CLI::App& app, int&) { add_left_out(app, "pareto"); }
 void add_tune(CLI::App& app, int&) { add_left_out(app, "tune"); }

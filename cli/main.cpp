@@ -29,7 +29,7 @@ const Task kTasks[] = {
       graze::cli::add_strata, graze::cli::add_scene}},
     {"Understand failures",
      {graze::cli::add_repro, graze::cli::add_minimize, graze::cli::add_explain, graze::cli::add_failures,
-      graze::cli::add_map, graze::cli::add_view}},
+      graze::cli::add_map, graze::cli::add_discrepancy, graze::cli::add_view}},
     {"Choose algorithms and tolerances",
      {graze::cli::add_lanes, graze::cli::add_tune, graze::cli::add_pareto, graze::cli::add_league,
       graze::cli::add_query, graze::cli::add_bench}},

@@ -22,7 +22,39 @@ constexpr std::string_view name(Site site) {
   return kNames[static_cast<int>(site)];
 }
 
+// What a policy is asked: the site, and the number of the question among those of the algorithm. The same place of the
+// source asks it of the same quantities, see AlgorithmInfo and core/algorithms/questions.h.
+struct At {
+  Site site;
+  int question;
+  GRAZE_HD constexpr At(Site s, int q) : site(s), question(q) {}
+  GRAZE_HD constexpr operator Site() const { return site; }
+};
+
 inline namespace GRAZE_FP {
+
+// A value that the source compares itself, without an epsilon. Only policies that record see it.
+template <class Policy, class Real>
+GRAZE_HD void see([[maybe_unused]] const Policy& policy, [[maybe_unused]] int question, [[maybe_unused]] Real& x) {
+  if constexpr (requires { policy.seen(question, x); }) x = policy.seen(question, x);
+}
+
+// A choice that decides which quantities the source computes next, such as an axis. Only policies that record see it.
+// Requires: 0 <= value < 15, which < 15.
+template <class Policy, class Choice>
+GRAZE_HD Choice chosen(const Policy& policy, int which, Choice value) {
+  if constexpr (requires { policy.chosen(which, 0); }) {
+    return static_cast<Choice>(policy.chosen(which, static_cast<int>(value)));
+  } else {
+    return value;
+  }
+}
+
+// The same of a choice that depends on recorded values alone.
+template <class Policy>
+GRAZE_HD void choose([[maybe_unused]] const Policy& policy, [[maybe_unused]] int which, [[maybe_unused]] int value) {
+  if constexpr (requires { policy.chosen(which, 0); }) policy.chosen(which, value);
+}
 
 // The default policy: exact comparison. Other policies treat small values as zero; a tracing policy records.
 struct ExactZero {

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "cuda/engine/discrepancy.h"
 #include "cuda/engine/engine.h"
 #include "cuda/engine/sweep.h"
 #include "cuda/lanes/device_costs.h"
@@ -23,6 +24,16 @@ std::vector<std::unique_ptr<DeviceEngine>> open_engines(std::span<const Lane* co
 
 std::vector<ErrorCounts> count_errors(const Lane&, std::span<const Lane>, const strata::PairSource&) {
   throw std::runtime_error("a sweep on a device needs one: built without CUDA");
+}
+
+bool records_on_device(const Lane&) { return false; }
+
+void count_discrepancies(const Lane&, const Lane&, const strata::PairSource&, const DiscrepancySums&) {
+  throw std::runtime_error("a comparison on a device needs one: built without CUDA");
+}
+
+std::uint64_t count_different_runs(const Lane&, const Lane&, const strata::PairSource&) {
+  throw std::runtime_error("a comparison on a device needs one: built without CUDA");
 }
 
 DeviceCosts measure_on_device(std::span<const Lane* const>, const std::vector<Pair>&, int) {

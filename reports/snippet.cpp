@@ -187,6 +187,19 @@ bool shows(SnippetKind kind, const Lane& lane) {
   return shows_lanes(kind) && lane.is_cuda() == (kind == SnippetKind::cuda);
 }
 
+std::string source_line(const std::string& place) {
+  const std::size_t colon = place.rfind(':');
+  const auto file = std::find_if(std::begin(kEmbedded), std::end(kEmbedded), [&](const Embedded& f) {
+    return colon != place.npos && f.path == place.substr(0, colon);
+  });
+  if (file == std::end(kEmbedded)) return "";
+  std::istringstream lines{std::string(file->text)};
+  std::string line;
+  for (int n = std::stoi(place.substr(colon + 1)); n > 0 && std::getline(lines, line); --n) {
+  }
+  return line.substr(std::min(line.find_first_not_of(' '), line.size()));
+}
+
 std::string amalgamated_source(std::string_view algorithm_id, bool with_policy) {
   Amalgamation all;
   all.add(header_of(algorithm_id));

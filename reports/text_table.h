@@ -30,6 +30,7 @@ class TextTable {
 
   // Requires: a cell for each column.
   void add(std::vector<Cell> cells) { rows_.push_back(std::move(cells)); }
+  std::size_t rows() const { return rows_.size(); }
 
   // Each line starts with `indent` spaces and ends with a newline, without trailing spaces.
   std::string text(const Screen& screen, int indent = 0) const;

@@ -19,14 +19,15 @@ struct Line {
 
 // The common line of two planes; `direction` is the cross product of their normals.
 // Reference: Geometric Tools for Computer Graphics, section 11.5.1.
-template <class Real>
-GRAZE_HD Line<Real> common_line(const Plane<Real>& p, const Plane<Real>& q, const Vec3<Real>& direction) {
+template <class Real, class Policy>
+GRAZE_HD Line<Real> common_line(const Plane<Real>& p, const Plane<Real>& q, const Vec3<Real>& direction,
+                                const Policy& policy) {
   const Real n_dot = dot(p.normal, q.normal);
   const Real p_square = dot(p.normal, p.normal);
   const Real q_square = dot(q.normal, q.normal);
   const Real denominator = n_dot * n_dot - p_square * q_square;
   Real s(0), t(0);
-  if (denominator != Real(0)) {
+  if (chosen(policy, 0, denominator != Real(0))) {
     s = (q.d * n_dot - p.d * q_square) / denominator;
     t = (p.d * n_dot - q.d * p_square) / denominator;
   }
@@ -59,9 +60,10 @@ GRAZE_HD int vertex_to_put_last(const Real (&distance)[3]) {
 }
 
 // The part of the line within a triangle whose vertices have these signed distances to the other plane.
-template <class Real>
-GRAZE_HD Range<Real> section(const Line<Real>& line, const Vec3<Real> (&v)[3], const Real (&distance)[3]) {
-  const int last = vertex_to_put_last(distance);
+template <class Real, class Policy>
+GRAZE_HD Range<Real> section(const Line<Real>& line, const Vec3<Real> (&v)[3], const Real (&distance)[3],
+                             const Policy& policy, int choice) {
+  const int last = chosen(policy, choice, vertex_to_put_last(distance));
   Vec3<Real> on_line[3];
   Real d[3];
   for (int i = 0; i < 3; ++i) {
@@ -72,15 +74,16 @@ GRAZE_HD Range<Real> section(const Line<Real>& line, const Vec3<Real> (&v)[3], c
   Real t[2];
   for (int i = 0; i < 2; ++i) {
     const Real difference = d[i] - d[2];
-    const Real share = difference == Real(0) ? Real(0) : d[i] / difference;
+    const Real share = chosen(policy, choice + 1 + i, difference == Real(0)) ? Real(0) : d[i] / difference;
     t[i] = dot(line.direction, on_line[i] + (on_line[2] - on_line[i]) * share - line.point);
   }
   return t[0] < t[1] ? Range<Real>{t[0], t[1]} : Range<Real>{t[1], t[0]};
 }
 
 template <class Real, class Policy>
-GRAZE_HD bool contains(const Range<Real>& range, const Real& t, const Policy& policy) {
-  return policy.at_most(Site::separation, range.lo, t) && policy.at_most(Site::separation, t, range.hi);
+GRAZE_HD bool contains(const Range<Real>& range, const Real& t, const Policy& policy, int question) {
+  return policy.at_most(At(Site::separation, question), range.lo, t) &&
+         policy.at_most(At(Site::separation, question + 1), t, range.hi);
 }
 
 struct IntervalOverlap {
@@ -96,23 +99,32 @@ struct IntervalOverlap {
   GRAZE_HD static Verdict decide(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Policy& policy = {}) {
     Real distance_a[3], distance_b[3];
     const Plane<Real> plane_a(a);
-    plane_distances(plane_a, b, policy, distance_b);
+    plane_distances(plane_a, b, policy, 0, distance_b);
     if (strictly_one_side(distance_b)) return Verdict::disjoint;
 
     const Plane<Real> plane_b(b);
     const Vec3<Real> direction = cross(plane_a.normal, plane_b.normal);
     const Real zero(0);
-    if (policy.snap(Site::parallel, direction.x) == zero && policy.snap(Site::parallel, direction.y) == zero &&
-        policy.snap(Site::parallel, direction.z) == zero) {
-      return verdict_of(projections_intersect(a, b, plane_a, policy));
+    if (policy.snap(At(Site::parallel, 6), direction.x) == zero &&
+        policy.snap(At(Site::parallel, 7), direction.y) == zero &&
+        policy.snap(At(Site::parallel, 8), direction.z) == zero) {
+      return verdict_of(projections_intersect(a, b, plane_a, policy, 17));
     }
 
-    plane_distances(plane_b, a, policy, distance_a);
+    plane_distances(plane_b, a, policy, 3, distance_a);
     if (strictly_one_side(distance_a)) return Verdict::disjoint;
-    const Line<Real> line = common_line(plane_a, plane_b, direction);
-    const Range<Real> s = section(line, a, distance_a), t = section(line, b, distance_b);
-    return verdict_of(contains(s, t.lo, policy) || contains(s, t.hi, policy) || contains(t, s.lo, policy) ||
-                      contains(t, s.hi, policy));
+    const Line<Real> line = common_line(plane_a, plane_b, direction, policy);
+    const Range<Real> s = section(line, a, distance_a, policy, 1), t = section(line, b, distance_b, policy, 4);
+    return verdict_of(contains(s, t.lo, policy, 9) || contains(s, t.hi, policy, 11) || contains(t, s.lo, policy, 13) ||
+                      contains(t, s.hi, policy, 15));
+  }
+
+  template <class Questions>
+  static void list(Questions& questions) {
+    questions.plane_distances();
+    for (const char* of : {"direction.x", "direction.y", "direction.z"}) questions.value(Site::parallel, 4, of);
+    for (const char* of : {"b.low in a", "b.high in a", "a.low in b", "a.high in b"}) questions.contained(1, of);
+    questions.projections(2);
   }
 };
 

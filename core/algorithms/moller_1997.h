@@ -11,14 +11,18 @@ inline namespace GRAZE_FP {
 namespace moller_1997 {
 
 // Whether segments pq and rs share a point. Parallel segments never do; edges that cross them are found instead.
-template <class Real>
-GRAZE_HD bool segments_cross(Vec2<Real> p, Vec2<Real> q, Vec2<Real> r, Vec2<Real> s) {
+template <class Real, class Policy>
+GRAZE_HD bool segments_cross(Vec2<Real> p, Vec2<Real> q, Vec2<Real> r, Vec2<Real> s, const Policy& policy,
+                             int question) {
   const Real zero(0);
   const Real ax = q.x - p.x, ay = q.y - p.y, bx = r.x - s.x, by = r.y - s.y, cx = p.x - r.x, cy = p.y - r.y;
-  const Real f = ay * bx - ax * by;
-  const Real d = by * cx - bx * cy;
+  Real f = ay * bx - ax * by;
+  see(policy, question, f);
+  Real d = by * cx - bx * cy;
+  see(policy, question + 1, d);
   if ((f > zero && d >= zero && d <= f) || (f < zero && d <= zero && d >= f)) {
-    const Real e = ax * cy - ay * cx;
+    Real e = ax * cy - ay * cx;
+    see(policy, question + 2, e);
     return f > zero ? e >= zero && e <= f : e <= zero && e >= f;
   }
   return false;
@@ -32,23 +36,29 @@ GRAZE_HD Real line_side(Vec2<Real> q, Vec2<Real> r, Vec2<Real> p) {
   return a * p.x + b * p.y + c;
 }
 
-template <class Real>
-GRAZE_HD bool strictly_inside(Vec2<Real> p, const Vec2<Real> (&t)[3]) {
-  const Real d0 = line_side(t[0], t[1], p), d1 = line_side(t[1], t[2], p), d2 = line_side(t[2], t[0], p);
+template <class Real, class Policy>
+GRAZE_HD bool strictly_inside(Vec2<Real> p, const Vec2<Real> (&t)[3], const Policy& policy, int question) {
+  Real d0 = line_side(t[0], t[1], p);
+  see(policy, question, d0);
+  Real d1 = line_side(t[1], t[2], p);
+  see(policy, question + 1, d1);
+  Real d2 = line_side(t[2], t[0], p);
+  see(policy, question + 2, d2);
   return d0 * d1 > Real(0) && d0 * d2 > Real(0);
 }
 
-template <class Real>
-GRAZE_HD bool coplanar_intersect(const Vec3<Real>& normal, const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
-  const int axis = dominant_axis(normal);
+template <class Real, class Policy>
+GRAZE_HD bool coplanar_intersect(const Vec3<Real>& normal, const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3],
+                                 const Policy& policy) {
+  const int axis = chosen(policy, 3, dominant_axis(normal));
   const Vec2<Real> u[3] = {drop(a[0], axis), drop(a[1], axis), drop(a[2], axis)};
   const Vec2<Real> v[3] = {drop(b[0], axis), drop(b[1], axis), drop(b[2], axis)};
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      if (segments_cross(u[i], u[(i + 1) % 3], v[j], v[(j + 1) % 3])) return true;
+      if (segments_cross(u[i], u[(i + 1) % 3], v[j], v[(j + 1) % 3], policy, 8 + 9 * i + 3 * j)) return true;
     }
   }
-  return strictly_inside(u[0], v) || strictly_inside(v[0], u);
+  return strictly_inside(u[0], v, policy, 35) || strictly_inside(v[0], u, policy, 38);
 }
 
 // A triangle's section of the common line, scaled: it ends at `at + p / x0` and at `at + q / x1`.
@@ -93,19 +103,21 @@ struct Moller1997 {
     Real du[3], dv[3];
     const Vec3<Real> n1 = cross(a[1] - a[0], a[2] - a[0]);
     const Real d1 = -dot(n1, a[0]);
-    for (int i = 0; i < 3; ++i) du[i] = policy.snap(Site::plane_distance, dot(n1, b[i]) + d1);
+    for (int i = 0; i < 3; ++i) du[i] = policy.snap(At(Site::plane_distance, i), dot(n1, b[i]) + d1);
     if (du[0] * du[1] > zero && du[0] * du[2] > zero) return Verdict::disjoint;
 
     const Vec3<Real> n2 = cross(b[1] - b[0], b[2] - b[0]);
     const Real d2 = -dot(n2, b[0]);
-    for (int i = 0; i < 3; ++i) dv[i] = policy.snap(Site::plane_distance, dot(n2, a[i]) + d2);
+    for (int i = 0; i < 3; ++i) dv[i] = policy.snap(At(Site::plane_distance, 3 + i), dot(n2, a[i]) + d2);
     if (dv[0] * dv[1] > zero && dv[0] * dv[2] > zero) return Verdict::disjoint;
 
-    const int axis = dominant_axis(cross(n1, n2));
+    const int axis = chosen(policy, 0, dominant_axis(cross(n1, n2)));
     const Real ta[3] = {component(a[0], axis), component(a[1], axis), component(a[2], axis)};
     const Real tb[3] = {component(b[0], axis), component(b[1], axis), component(b[2], axis)};
     const int alone_a = alone_vertex(dv), alone_b = alone_vertex(du);
-    if (alone_a < 0 || alone_b < 0) return verdict_of(coplanar_intersect(n1, a, b));
+    choose(policy, 1, alone_a + 1);
+    choose(policy, 2, alone_b + 1);
+    if (alone_a < 0 || alone_b < 0) return verdict_of(coplanar_intersect(n1, a, b, policy));
 
     // Scales both sections by x0 x1 of each, which avoids division.
     const Section<Real> s = section_from(ta, dv, alone_a), t = section_from(tb, du, alone_b);
@@ -113,9 +125,23 @@ struct Moller1997 {
     const Real s_at = s.at * xxyy, t_at = t.at * xxyy;
     const Real s0 = s_at + s.p * s.x1 * yy, s1 = s_at + s.q * s.x0 * yy;
     const Real t0 = t_at + t.p * xx * t.x1, t1 = t_at + t.q * xx * t.x0;
-    const bool apart = policy.less(Site::separation, s0 < s1 ? s1 : s0, t0 < t1 ? t0 : t1) ||
-                       policy.less(Site::separation, t0 < t1 ? t1 : t0, s0 < s1 ? s0 : s1);
+    const bool apart = policy.less(At(Site::separation, 6), s0 < s1 ? s1 : s0, t0 < t1 ? t0 : t1) ||
+                       policy.less(At(Site::separation, 7), t0 < t1 ? t1 : t0, s0 < s1 ? s0 : s1);
     return verdict_of(!apart);
+  }
+
+  template <class Questions>
+  static void list(Questions& questions) {
+    questions.plane_distances();
+    questions.overlap(13, "sections");  // each is multiplied by four differences of distances
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        for (const char* of : {"f", "d", "e"}) questions.own(2, "edges", i, j, of);
+      }
+    }
+    for (const char* of : {"a[0] in b", "b[0] in a"}) {
+      for (int i = 0; i < 3; ++i) questions.own(2, of, i);
+    }
   }
 };
 

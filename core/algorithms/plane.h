@@ -37,11 +37,11 @@ GRAZE_HD bool strictly_one_side(const Real (&distance)[3]) {
          (distance[0] < zero && distance[1] < zero && distance[2] < zero);
 }
 
-// Signed distances of the vertices v to the plane, times |normal|, each after the policy's snap.
+// Signed distances of the vertices v to the plane, times |normal|, each after the policy's snap. Asks three questions.
 template <class Real, class Policy>
-GRAZE_HD void plane_distances(const Plane<Real>& plane, const Vec3<Real> (&v)[3], const Policy& policy,
+GRAZE_HD void plane_distances(const Plane<Real>& plane, const Vec3<Real> (&v)[3], const Policy& policy, int question,
                               Real (&distance)[3]) {
-  for (int i = 0; i < 3; ++i) distance[i] = policy.snap(Site::plane_distance, plane.distance(v[i]));
+  for (int i = 0; i < 3; ++i) distance[i] = policy.snap(At(Site::plane_distance, question + i), plane.distance(v[i]));
 }
 
 }  // namespace GRAZE_FP

@@ -22,11 +22,17 @@ struct ProjectedSat {
   GRAZE_HD static Verdict decide(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Policy& policy = {}) {
     Real distance[3];
     const Plane<Real> plane_a(a);
-    plane_distances(plane_a, b, policy, distance);
+    plane_distances(plane_a, b, policy, 0, distance);
     if (strictly_one_side(distance)) return Verdict::disjoint;
-    plane_distances(Plane<Real>(b), a, policy, distance);
+    plane_distances(Plane<Real>(b), a, policy, 3, distance);
     if (strictly_one_side(distance)) return Verdict::disjoint;
-    return verdict_of(projections_intersect(a, b, plane_a, policy));
+    return verdict_of(projections_intersect(a, b, plane_a, policy, 6));
+  }
+
+  template <class Questions>
+  static void list(Questions& questions) {
+    questions.plane_distances();
+    questions.projections(2);
   }
 };
 

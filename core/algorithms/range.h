@@ -26,9 +26,11 @@ GRAZE_HD Range<Real> project(const Vec3<Real>& direction, const Vec3<Real> (&v)[
   return range;
 }
 
+// Asks the policy two questions, `question` and the next one.
 template <class Real, class Policy>
-GRAZE_HD bool overlap(const Range<Real>& s, const Range<Real>& t, const Policy& policy) {
-  return !policy.less(Site::separation, s.hi, t.lo) && !policy.less(Site::separation, t.hi, s.lo);
+GRAZE_HD bool overlap(const Range<Real>& s, const Range<Real>& t, const Policy& policy, int question) {
+  return !policy.less(At(Site::separation, question), s.hi, t.lo) &&
+         !policy.less(At(Site::separation, question + 1), t.hi, s.lo);
 }
 
 }  // namespace GRAZE_FP

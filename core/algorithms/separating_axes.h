@@ -22,14 +22,15 @@ struct SeparatingAxes {
     const Vec3<Real> ea[3] = {a[1] - a[0], a[2] - a[1], a[0] - a[2]};
     const Vec3<Real> eb[3] = {b[1] - b[0], b[2] - b[1], b[0] - b[2]};
     const Vec3<Real> na = cross(ea[0], ea[1]), nb = cross(eb[0], eb[1]);
-    if (separates(na, a, b, policy) || separates(nb, a, b, policy)) return Verdict::disjoint;
+    if (separates(na, a, b, policy, 0) || separates(nb, a, b, policy, 2)) return Verdict::disjoint;
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
-        if (separates(cross(ea[i], eb[j]), a, b, policy)) return Verdict::disjoint;
+        if (separates(cross(ea[i], eb[j]), a, b, policy, 4 + 6 * i + 2 * j)) return Verdict::disjoint;
       }
     }
     for (int i = 0; i < 3; ++i) {
-      if (separates(cross(na, ea[i]), a, b, policy) || separates(cross(nb, eb[i]), a, b, policy))
+      if (separates(cross(na, ea[i]), a, b, policy, 22 + 4 * i) ||
+          separates(cross(nb, eb[i]), a, b, policy, 24 + 4 * i))
         return Verdict::disjoint;
     }
     return Verdict::intersects;
@@ -38,11 +39,22 @@ struct SeparatingAxes {
  private:
   template <class Real, class Policy>
   GRAZE_HD static bool separates(const Vec3<Real>& axis, const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3],
-                                 const Policy& policy) {
-    return !overlap(project(axis, a), project(axis, b), policy);
+                                 const Policy& policy, int question) {
+    return !overlap(project(axis, a), project(axis, b), policy, question);
   }
 
  public:
+  template <class Questions>
+  static void list(Questions& questions) {
+    for (const char* axis : {"normal_a", "normal_b"}) questions.overlap(3, axis);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) questions.overlap(3, "edges", i, j);
+    }
+    for (int i = 0; i < 3; ++i) {
+      for (const char* axis : {"in_plane_a", "in_plane_b"}) questions.overlap(4, axis, i);
+    }
+  }
+
   // A verdict of disjoint depends only on the comparisons along the axis that separates.
   static constexpr bool kDisjointByOneAxis = true;
 };

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/algorithms/algorithms.h"
-#include "core/lanes/lanes.h"
+#include "core/lanes/records.h"
 
 namespace graze {
 
@@ -20,10 +20,11 @@ struct PolicyBlocks {
 };
 using HostPolicyBlocks = BlockTable<PolicyBlocks>;
 
-#define GRAZE_DECLARE_host(name)                   \
-  namespace name {                                 \
-  extern const HostBlocks kHostBlocks;             \
-  extern const HostPolicyBlocks kHostPolicyBlocks; \
+#define GRAZE_DECLARE_host(name)                     \
+  namespace name {                                   \
+  extern const HostBlocks kHostBlocks;               \
+  extern const HostPolicyBlocks kHostPolicyBlocks;   \
+  extern const BlockTable<RecordBlock> kHostRecords; \
   }
 #define GRAZE_DECLARE_device(name)
 #define GRAZE_VARIANT(name, id, runs_on, ...) GRAZE_DECLARE_##runs_on(name)

@@ -16,6 +16,7 @@ namespace graze::cuda {
   extern const VariantKernels kKernels;                    \
   extern const DeviceKernels<LaunchWithin> kPolicyKernels; \
   extern const DeviceKernels<LaunchDecide> kBoundKernels;  \
+  extern const DeviceKernels<LaunchValues> kRecordKernels; \
   }
 #define GRAZE_DECLARE_host_rounded(name)
 #define GRAZE_DECLARE_host_contracted(name)
@@ -34,6 +35,7 @@ namespace {
 struct KernelTables {
   const VariantKernels* kernels = nullptr;
   const DeviceKernels<LaunchWithin>* within = nullptr;
+  const DeviceKernels<LaunchValues>* record = nullptr;
   const DeviceKernels<LaunchDecide>* bound = nullptr;  // null for fast math, which has no error bound
 };
 
@@ -49,10 +51,10 @@ const KernelTables& tables_of(Variant variant) {
 #define GRAZE_KERNELS_device_flushed(name) \
   KernelTables {}
 #define GRAZE_KERNELS_device_rounded(name) \
-  KernelTables { &name::kKernels, &name::kPolicyKernels, &name::kBoundKernels }
+  KernelTables { &name::kKernels, &name::kPolicyKernels, &name::kRecordKernels, &name::kBoundKernels }
 #define GRAZE_KERNELS_device_contracted(name) GRAZE_KERNELS_device_rounded(name)
 #define GRAZE_KERNELS_device_fast(name) \
-  KernelTables { &name::kKernels, &name::kPolicyKernels, nullptr }
+  KernelTables { &name::kKernels, &name::kPolicyKernels, &name::kRecordKernels, nullptr }
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, ...) GRAZE_KERNELS_##runs_on##_##arithmetic(name),
   static constexpr KernelTables kBuilt[] = {
 #include "core/variants.inc"
@@ -88,6 +90,11 @@ void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::u
     check(cudaGetLastError());
     if (lane.under->kind == Policy::Kind::filtered) exact.decide_declined(pairs, intersects, declined, stream);
   }
+  check(cudaGetLastError());
+}
+
+void launch_record(const Lane& lane, DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths) {
+  of_lane(*tables_of(lane.variant).record, lane)(pairs, values, stride, paths, nullptr);
   check(cudaGetLastError());
 }
 

@@ -4,6 +4,8 @@
 
 #include <cuda_runtime.h>
 
+#include "core/algorithms/recording.h"
+
 #include <cstdint>
 
 #include "core/exact/exact.h"
@@ -41,5 +43,8 @@ class DeviceExact {
 // Starts the kernels of a CUDA lane. They write the same words as DeviceExact::decide.
 void launch_lane(const Lane& lane, DeviceExact& exact, DevicePairs pairs, std::uint32_t* intersects,
                  std::uint32_t* declined, cudaStream_t stream);
+
+// Starts the kernel of a published CUDA lane that records its values; see core/lanes/records.h.
+void launch_record(const Lane& lane, DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths);
 
 }  // namespace graze::cuda

@@ -9,6 +9,7 @@
 #include <cstdint>
 
 #include "core/algorithms/algorithms.h"
+#include "core/algorithms/recording.h"
 #include "core/lanes/tolerances.h"
 #include "core/variants.h"
 #include "cuda/lanes/device_pairs.h"
@@ -27,6 +28,10 @@ using LaunchTrace = void (*)(DevicePairs pairs, std::uint64_t* hashes, cudaStrea
 // As LaunchDecide, for lanes with tolerances.
 using LaunchWithin = void (*)(const Epsilons& epsilons, DevicePairs pairs, std::uint32_t* intersects,
                               std::uint32_t* declined, cudaStream_t stream);
+
+// Starts a kernel that records the values of each pair; see core/lanes/records.h. `values` are the lane's scalars.
+using LaunchValues = void (*)(DevicePairs pairs, void* values, std::uint64_t stride, RecordedPath* paths,
+                              cudaStream_t stream);
 
 template <class Launch>
 using DeviceKernels = std::array<std::array<Launch, 2>, kAlgorithmCount>;

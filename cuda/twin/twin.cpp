@@ -20,7 +20,7 @@ constexpr ProofRow kProofs[] = {
 
 // A variant's tables: for processors with and without FMA instructions, and for policies. Null without a twin.
 struct TwinTables {
-  const TwinTable *table = nullptr, *portable = nullptr, *policies = nullptr;
+  const TwinTable *table = nullptr, *portable = nullptr, *policies = nullptr, *records = nullptr;
 };
 
 #define GRAZE_TABLES_no_twin_rounded(name) \
@@ -40,17 +40,22 @@ constexpr bool kHasPolicyTwins = false;
 constexpr bool kHasPolicyTwins = true;
 #define GRAZE_POLICIES(name) &policy_twin_##name::kTwinTable
 #endif
+#if defined(GRAZE_WITHOUT_POLICY_TWINS) || defined(__wasm__)
+#define GRAZE_RECORDS(name) nullptr
+#else
+#define GRAZE_RECORDS(name) &record_twin_##name::kTwinTable
+#endif
 #define GRAZE_TABLES_twin_rounded(name) \
-  { &twin_##name::kTwinTable, &twin_##name::kTwinTable, GRAZE_POLICIES(name) }
+  { &twin_##name::kTwinTable, &twin_##name::kTwinTable, GRAZE_POLICIES(name), GRAZE_RECORDS(name) }
 #ifdef __wasm__  // wasm has no FMA instructions, so there is one table
 #define GRAZE_TABLES_twin_contracted(name) \
-  { nullptr, &twin_##name##_portable::kTwinTable, GRAZE_POLICIES(name) }
+  { nullptr, &twin_##name##_portable::kTwinTable, GRAZE_POLICIES(name), GRAZE_RECORDS(name) }
 #elif defined(GRAZE_WITHOUT_PORTABLE_TWINS)
 #define GRAZE_TABLES_twin_contracted(name) \
-  { &twin_##name::kTwinTable, nullptr, GRAZE_POLICIES(name) }
+  { &twin_##name::kTwinTable, nullptr, GRAZE_POLICIES(name), GRAZE_RECORDS(name) }
 #else
 #define GRAZE_TABLES_twin_contracted(name) \
-  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, GRAZE_POLICIES(name) }
+  { &twin_##name::kTwinTable, &twin_##name##_portable::kTwinTable, GRAZE_POLICIES(name), GRAZE_RECORDS(name) }
 #endif
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_TABLES_##twin##_##arithmetic(name),
 constexpr TwinTables kTables[] = {
@@ -105,6 +110,24 @@ DecideBlock block_on_host(const Lane& lane) {
   if (!lane.exact) return twin_block(lane);
   const Lane* on_cpu = counterpart(lane, Variant::cpu);
   return on_cpu ? on_cpu->decide : nullptr;
+}
+
+namespace {
+
+// The row of the twin that records; without functions if there is none.
+const TwinRow& record_row(const Lane& lane) {
+  static const TwinRow kNone;
+  const TwinTable* table = kTables[static_cast<int>(lane.variant)].records;
+  return table && lane.algorithm >= 0 && !lane.under ? row_of(*table, lane) : kNone;
+}
+
+}  // namespace
+
+RecordBlock twin_record(const Lane& lane) { return record_row(lane).record; }
+std::span<const ContractionSite> record_sites(const Lane& lane) { return record_row(lane).sites; }
+void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records& to,
+                   std::span<const std::uint64_t> fused) {
+  record_row(lane).record_fusing(pairs.data(), pairs.size(), to, fused.data());
 }
 
 bool has_policy_twins() { return kHasPolicyTwins; }

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "core/lanes/lanes.h"
+#include "core/lanes/records.h"
 
 namespace graze::cuda {
 
@@ -21,6 +21,9 @@ DecideBlock block_on_host(const Lane& lane);
 // Writes each pair's trace hash (see cuda/lanes/trace.h), which includes the verdict.
 using TraceBlock = void (*)(const Pair* pairs, std::size_t count, std::uint64_t* hashes);
 TraceBlock twin_trace(const Lane& lane);
+
+// The twin's records; null when there is none, and in builds of scripts/campaign.
+RecordBlock twin_record(const Lane& lane);
 
 // Whether lanes with tolerances have twins; they have none in builds of scripts/campaign.
 bool has_policy_twins();
@@ -72,5 +75,11 @@ double most_seconds(const Lane& lane);  // for one verdict.   Requires: a foreig
 // process and may crash or not return.
 // Requires: (sites + 63) / 64 words.
 Verdict decide_fusing(const Lane& lane, const Pair& pair, std::span<const std::uint64_t> fused);
+
+// The contraction sites of the twin that records, and its records when sites whose bit is not set round twice; see
+// decide_fusing.
+std::span<const ContractionSite> record_sites(const Lane& lane);
+void record_fusing(const Lane& lane, std::span<const Pair> pairs, const Records& to,
+                   std::span<const std::uint64_t> fused);
 
 }  // namespace graze::cuda

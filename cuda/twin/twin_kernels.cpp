@@ -71,6 +71,29 @@ void trace_block(const Pair* pairs, std::size_t count, u64* hashes) {
   }
 }
 
+template <class Kernel, class Fuse>
+void record_each(const Pair* pairs, std::size_t count, const Records& to, const Fuse& fuse) {
+  constexpr std::size_t kSize = Kernel::kScalar == Scalar::f32 ? sizeof(float) : sizeof(double);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Block block(pairs[i]);
+    to.paths[i] = {};
+    const struct { u64 values, stride; } where{address(static_cast<char*>(to.values) + i * kSize), to.stride};
+    const u64 path_at = address(to.paths + i);
+    const unsigned char* const parameters[] = {bytes(&block), bytes(&where), bytes(&path_at)};
+    Kernel::run(parameters, fuse);
+  }
+}
+
+template <class Kernel>
+void record_block(const Pair* pairs, std::size_t count, const Records& to) {
+  record_each<Kernel>(pairs, count, to, AllFused{});
+}
+
+template <class Kernel>
+void record_fusing(const Pair* pairs, std::size_t count, const Records& to, const u64* fused) {
+  record_each<Kernel>(pairs, count, to, SomeFused{fused});
+}
+
 template <class Kernel>
 Verdict decide_fusing(const Pair& pair, const u64* fused) {
   return decide_one<Kernel>(pair, SomeFused{fused});
@@ -85,6 +108,12 @@ constexpr void enter(TwinTable& table) {
     row.symbol = Kernel::kSymbol;
     if constexpr (Kernel::kSiteCount > 0) {
       row.decide_fusing = decide_fusing<Kernel>;
+      row.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
+    }
+  } else if constexpr (Kernel::kName == "record_pairs") {
+    row.record = record_block<Kernel>;
+    if constexpr (Kernel::kSiteCount > 0) {
+      row.record_fusing = record_fusing<Kernel>;
       row.sites = std::span<const ContractionSite>(Kernel::kSites, Kernel::kSiteCount);
     }
   } else if constexpr (Kernel::kName == "absolute_pairs") {

@@ -21,6 +21,8 @@ struct TwinRow {
   const char* trace_symbol = "";
   std::span<const ContractionSite> sites = {};
   DecideBlock::Within absolute = nullptr, relative = nullptr;  // with tolerances: absolute; also relative
+  RecordBlock record = nullptr;                                // its sites are `sites`
+  void (*record_fusing)(const Pair* pairs, std::size_t count, const Records& to, const std::uint64_t* fused) = nullptr;
 };
 
 struct TwinTable {
@@ -28,8 +30,8 @@ struct TwinTable {
   std::array<std::array<TwinRow, 2>, kAlgorithmCount> rows;
 };
 
-// twin_NAME for the variants with a twin; twin_NAME_portable for those with contraction; policy_twin_NAME for lanes
-// with tolerances, on all processors.
+// twin_NAME for the variants with a twin; twin_NAME_portable for those with contraction. On all processors:
+// policy_twin_NAME for lanes with tolerances, record_twin_NAME for those that record.
 #define GRAZE_DECLARE(name)          \
   namespace name {                   \
   extern const TwinTable kTwinTable; \
@@ -39,9 +41,9 @@ struct TwinTable {
 #define GRAZE_DECLARE_no_twin_fast(name)
 #define GRAZE_DECLARE_no_twin_flushed(name)
 #define GRAZE_DECLARE_no_twin_exact(name)
-#define GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(policy_twin_##name)
-#define GRAZE_DECLARE_twin_contracted(name) \
-  GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(twin_##name##_portable) GRAZE_DECLARE(policy_twin_##name)
+#define GRAZE_DECLARE_twin_rounded(name) \
+  GRAZE_DECLARE(twin_##name) GRAZE_DECLARE(policy_twin_##name) GRAZE_DECLARE(record_twin_##name)
+#define GRAZE_DECLARE_twin_contracted(name) GRAZE_DECLARE_twin_rounded(name) GRAZE_DECLARE(twin_##name##_portable)
 #define GRAZE_VARIANT(name, id, runs_on, arithmetic, twin, ...) GRAZE_DECLARE_##twin##_##arithmetic(name)
 #include "core/variants.inc"
 #undef GRAZE_VARIANT

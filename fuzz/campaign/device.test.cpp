@@ -7,7 +7,9 @@
 #include <cstring>
 #include <string_view>
 
+#include "analysis/discrepancy.h"
 #include "analysis/sweep.h"
+#include "cuda/engine/discrepancy.h"
 #include "cuda/lanes/device_costs.h"
 #include "fuzz/campaign/campaign_testing.h"
 
@@ -45,6 +47,35 @@ class DeviceTest : public CampaignFiles {
   SelectedLanes twins_ = select_lanes(kWithTwins, Executor::twin);
   SelectedLanes on_device_;
 };
+
+TEST_F(DeviceTest, DiscrepanciesAreThoseOfTheHost) {
+  std::uint64_t verdicts = 0;
+  for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma}) {
+    analysis::DiscrepancySpec spec;
+    spec.sources = strata::stratum_sources(8, 19 * 700, {});
+    for (const Lane& lane : published_lanes()) {
+      if (lane.variant == Variant::cpu) spec.lanes.emplace_back(lane, *counterpart(lane, second));
+    }
+    const analysis::Discrepancies on_host = analysis::discrepancies(spec);
+    spec.on_device = true;
+    EXPECT_EQ(analysis::discrepancies(spec), on_host) << name(second);
+    for (const auto& of_lanes : on_host) {
+      for (const analysis::DiscrepancyCounts& counts : of_lanes) verdicts += counts.counts[5];  // pair_counts::verdict
+    }
+  }
+  EXPECT_GT(verdicts, 1000u);
+}
+
+// A host lane's values are those of cuda-nofma, and the check that says so finds others.
+TEST_F(DeviceTest, RunsThatDifferAreFound) {
+  const strata::PairSource source = strata::stratum_sources(8, 50'000, {"thesis"})[0];
+  const auto lane = [](const char* id) -> const Lane& { return *find_lane(id); };
+  EXPECT_EQ(
+      cuda::count_different_runs(lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-nofma"), source),
+      0u);
+  EXPECT_GT(cuda::count_different_runs(lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma"), source),
+            20'000u);
+}
 
 TEST_F(DeviceTest, GpuEngineCpuEngineAndTwinsLeaveTheSameBytesOverAllStrata) {
   for (const std::uint64_t seed : {1, 20, 333}) {

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/discrepancy.h"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "analysis/sweep.h"
+#include "core/discrepancy/count.h"
+#include "core/error.h"
+#include "core/lanes/verdicts.h"
+#include "cuda/engine/discrepancy.h"
+#include "cuda/twin/twin.h"
+
+namespace graze::analysis {
+namespace {
+
+constexpr std::uint64_t kBlock = 256;  // pairs
+
+struct CountingSink {
+  DiscrepancyCounts& to;
+  void add(int index) { ++to.counts[static_cast<std::size_t>(index)]; }
+  void most(int question, int which, double size) {
+    std::uint64_t& kept = to.maxima[static_cast<std::size_t>(question * band_maxima::kFields + which)];
+    kept = std::max(kept, std::bit_cast<std::uint64_t>(size));
+  }
+};
+
+template <class Algorithm, class Real>
+void compare_block(std::span<const Pair> pairs, const Records& first, const Records& second,
+                   const std::uint8_t* degrees, DiscrepancyCounts& to) {
+  CountingSink sink{to};
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!is_finite(pairs[i])) continue;
+    const auto run = [i](const Records& of) {
+      return Run<Real>{{static_cast<const Real*>(of.values) + i, of.stride}, of.paths[i]};
+    };
+    decide_widened<Real>(pairs[i], [&](const auto& a, const auto& b) {
+      compare_runs<Algorithm>(a, b, run(first), run(second), degrees, sink);
+      return Verdict::declined;
+    });
+  }
+}
+
+using CompareBlock = decltype(&compare_block<ProjectedSat, float>);
+
+template <class... Algorithm>
+constexpr std::array<std::array<CompareBlock, 2>, kAlgorithmCount> compare_blocks(const std::tuple<Algorithm...>*) {
+  return {std::array<CompareBlock, 2>{compare_block<Algorithm, float>, compare_block<Algorithm, double>}...};
+}
+
+// The records of one lane on a block of pairs.
+struct Kept {
+  std::vector<double> values;  // room for doubles or floats
+  std::vector<RecordedPath> paths;
+  Records records;
+
+  Kept(const Lane& lane, std::span<const Pair> pairs)
+      : values(2 * questions_of(lane.algorithm).size() * pairs.size()),
+        paths(pairs.size()),
+        records{values.data(), pairs.size(), paths.data()} {
+    record_on_host(lane)(pairs.data(), pairs.size(), records);
+  }
+};
+
+// Pairs on which the lane's own verdict is not the recorded one.
+std::uint64_t unlike(const Lane& lane, std::span<const Pair> pairs, const Kept& kept) {
+  const std::vector<Verdict> verdicts = verdicts_of(cuda::block_on_host(lane), pairs);
+  std::uint64_t count = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    count += is_finite(pairs[i]) && verdicts[i] != recorded_verdict(kept.paths[i].path);
+  return count;
+}
+
+// Collects the values of both runs with the certified ones.
+template <class Real>
+struct Beside {
+  const Run<Real>& first;
+  const Run<Real>& second;
+  std::vector<ValueBeside>& values;
+
+  void add(int question, int which, int site, const Certified& exact) {
+    ValueBeside value{question, which, first.value(question, which), {}, false, exact};
+    if (second.path.asked >> question & 1) value.second = second.value(question, which);
+    value.compared = have_both(first.path, second.path, question, site);
+    values.push_back(value);
+  }
+  void one(int question, int site, const Certified& exact) { add(question, 0, site, exact); }
+  void two(int question, int site, const Certified& left, const Certified& right, bool) {
+    add(question, 0, site, left);
+    add(question, 1, site, right);
+  }
+};
+
+template <class Algorithm, class Real>
+void values_beside(const Pair& pair, const Records& first, const Records& second, std::vector<ValueBeside>& values) {
+  const auto run = [](const Records& of) {
+    return Run<Real>{{static_cast<const Real*>(of.values), of.stride}, *of.paths};
+  };
+  const Run<Real> l = run(first), r = run(second);
+  Beside<Real> beside{l, r, values};
+  decide_widened<Real>(pair, [&](const auto& a, const auto& b) {
+    run_led<Algorithm>(a, b, l.values, l.path, beside);
+    return Verdict::declined;
+  });
+  for (int question = 0; question < kMostQuestions; ++question) {
+    if ((r.path.asked & ~l.path.asked) >> question & 1) {
+      for (int which = 0; which < 2; ++which)
+        values.push_back({question, which, {}, r.value(question, which), false, {}});
+    }
+  }
+}
+
+using ValuesBeside = decltype(&values_beside<ProjectedSat, float>);
+
+template <class... Algorithm>
+constexpr std::array<std::array<ValuesBeside, 2>, kAlgorithmCount> values_of_both(const std::tuple<Algorithm...>*) {
+  return {std::array<ValuesBeside, 2>{values_beside<Algorithm, float>, values_beside<Algorithm, double>}...};
+}
+
+}  // namespace
+
+RunsBeside runs_beside(const LanesCompared& lanes, const Pair& pair) {
+  static constexpr auto kBeside = values_of_both(static_cast<const Algorithms*>(nullptr));
+  const Lane& lane = *lanes.first;
+  const Kept first(lane, {&pair, 1}), second(*lanes.second, {&pair, 1});
+  RunsBeside runs{{}, first.paths[0], second.paths[0]};
+  kBeside[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](pair, first.records,
+                                                                                           second.records, runs.values);
+  const std::vector<Question>& questions = questions_of(lane.algorithm);
+  std::erase_if(runs.values, [&](const ValueBeside& value) {  // questions about one value have no other
+    return static_cast<std::size_t>(value.which) >= questions[static_cast<std::size_t>(value.question)].of.size();
+  });
+  return runs;
+}
+
+std::string error_bucket_name(int bucket) {
+  using namespace value_counts;
+  if (bucket == kErrorNotFinite) return "not finite";
+  if (bucket == kErrorUnknown) return "unknown";
+  return bucket == 0 ? "0" : bucket == 1 ? "1/2" : fmt::format("2^{}", bucket - 2);
+}
+
+std::string error_bucket_of(Scalar scalar, double value, const Certified& exact) {
+  return error_bucket_name(scalar == Scalar::f32 ? error_bucket(static_cast<float>(value), exact)
+                                                 : error_bucket(value, exact));
+}
+
+std::uint64_t ulps_apart(Scalar scalar, double first, double second) {
+  return scalar == Scalar::f32 ? apart(static_cast<float>(first), static_cast<float>(second)) : apart(first, second);
+}
+
+DiscrepancyCounts::DiscrepancyCounts(int algorithm) {
+  const std::size_t questions = questions_of(algorithm).size();
+  counts.resize(static_cast<std::size_t>(counts_of(static_cast<int>(questions))));
+  maxima.resize(questions * band_maxima::kFields);
+}
+
+DiscrepancyCounts& DiscrepancyCounts::operator+=(const DiscrepancyCounts& other) {
+  for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += other.counts[i];
+  for (std::size_t i = 0; i < maxima.size(); ++i) maxima[i] = std::max(maxima[i], other.maxima[i]);
+  for (int lane = 0; lane < 2; ++lane) unlike[lane] += other.unlike[lane];
+  return *this;
+}
+
+RecordBlock record_on_host(const Lane& lane) {
+  const RecordBlock own = host_record(lane);
+  return own ? own : cuda::twin_record(lane);
+}
+
+LanesCompared::LanesCompared(const Lane& l, const Lane& r) : first(&l), second(&r) {
+  if (l.algorithm < 0 || l.algorithm != r.algorithm || l.scalar != r.scalar)
+    throw UsageError(
+        fmt::format("{} and {} cannot be compared value by value: they are not lanes of one published "
+                    "algorithm and scalar",
+                    l.id, r.id));
+  for (const Lane* lane : {first, second}) {
+    if (!record_on_host(*lane))
+      throw UsageError(lane->id + " does not record its values: " +
+                       (lane->under ? "it has a policy" : "it has neither a host lane nor a twin in this build"));
+    if (!lane->is_cuda() && !runs_on_this_cpu(*lane)) throw UsageError(lane->id + " does not run on this processor");
+  }
+}
+
+void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, DiscrepancyCounts& to) {
+  static constexpr auto kCompare = compare_blocks(static_cast<const Algorithms*>(nullptr));
+  const Lane& lane = *lanes.first;
+  const Kept first(lane, pairs), second(*lanes.second, pairs);
+  const std::vector<std::uint8_t> degrees = degrees_of(lane.algorithm);
+  kCompare[static_cast<std::size_t>(lane.algorithm)][static_cast<std::size_t>(lane.scalar)](
+      pairs, first.records, second.records, degrees.data(), to);
+  to.unlike[0] += unlike(*lanes.first, pairs, first);
+  to.unlike[1] += unlike(*lanes.second, pairs, second);
+}
+
+namespace {
+
+bool is_rounded(const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; }
+
+// Compares on a device.   Returns: false if it cannot, or if the host's values are others than the device's.
+bool compare_on_device(const LanesCompared& lanes, const strata::PairSource& source, DiscrepancyCounts& to) {
+  const Lane &first = *lanes.first, &second = *lanes.second;
+  if (!cuda::records_on_device(first) || !cuda::records_on_device(second)) return false;
+  if (is_rounded(first) && is_rounded(second) && first.is_cuda() != second.is_cuda()) {
+    const Lane &host = first.is_cuda() ? second : first, &device = first.is_cuda() ? first : second;
+    if (cuda::count_different_runs(host, device, source) > 0) return false;
+  }
+  cuda::count_discrepancies(first, second, source, {to.counts, to.maxima, to.unlike});
+  return true;
+}
+
+}  // namespace
+
+Discrepancies discrepancies(const DiscrepancySpec& spec) {
+  const std::vector<SourceBlock> blocks = blocks_of(spec.sources, kBlock);
+  const auto threads = static_cast<std::size_t>(spec.threads > 0 ? spec.threads : tbb::info::default_concurrency());
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  const auto nothing_yet = [&] {
+    Discrepancies nothing;
+    for (const LanesCompared& lanes : spec.lanes)
+      nothing.emplace_back(spec.sources.size(), DiscrepancyCounts(lanes.first->algorithm));
+    return nothing;
+  };
+  Discrepancies all = nothing_yet();
+  std::vector<std::vector<bool>> done(spec.lanes.size(), std::vector<bool>(spec.sources.size()));
+  for (std::size_t l = 0; l < spec.lanes.size() && spec.on_device; ++l) {
+    for (std::size_t s = 0; s < spec.sources.size(); ++s)
+      done[l][s] = compare_on_device(spec.lanes[l], spec.sources[s], all[l][s]);
+  }
+  tbb::enumerable_thread_specific<Discrepancies> results(nothing_yet);
+  tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    const SourceBlock& block = blocks[b];
+    const auto source = static_cast<std::size_t>(block.source);
+    if (std::all_of(done.begin(), done.end(), [source](const auto& of) { return of[source]; })) return;
+    std::vector<Pair> pairs;
+    for (std::uint64_t i = 0; i < block.count; ++i) pairs.push_back(spec.sources[source].pair(block.first + i));
+    Discrepancies& result = results.local();
+    for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+      if (!done[l][source]) count_discrepancies(spec.lanes[l], pairs, result[l][source]);
+    }
+  });
+  for (const Discrepancies& some : results) {
+    for (std::size_t l = 0; l < all.size(); ++l) {
+      for (std::size_t s = 0; s < all[l].size(); ++s) all[l][s] += some[l][s];
+    }
+  }
+  return all;
+}
+
+}  // namespace graze::analysis

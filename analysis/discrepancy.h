@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares the values of two lanes of one algorithm and scalar: by how much they differ, which is nearer to the exact
+// value, and whether a sign, a comparison or the verdict differs. core/discrepancy/count.h says what is counted.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/discrepancy/certified.h"
+#include "core/discrepancy/questions.h"
+#include "core/lanes/records.h"
+#include "strata/pair_source.h"
+
+namespace graze::analysis {
+
+// Counts by the layout of core/discrepancy/count.h. Pairs that are not finite are not counted.
+struct DiscrepancyCounts {
+  std::vector<std::uint64_t> counts;
+  std::vector<std::uint64_t> maxima;  // band_maxima::kFields for each question, bits of doubles
+  // Pairs on which a lane's verdict is not that of its recorded run: the compiler built them differently.
+  std::uint64_t unlike[2] = {0, 0};
+
+  explicit DiscrepancyCounts(int algorithm = 0);
+  DiscrepancyCounts& operator+=(const DiscrepancyCounts& other);
+  friend bool operator==(const DiscrepancyCounts&, const DiscrepancyCounts&) = default;
+};
+
+// Records of a lane on the host: its own, or those of its twin. Null if there is none.
+RecordBlock record_on_host(const Lane& lane);
+
+// Two lanes to compare. Their values are recorded on the host.
+struct LanesCompared {
+  const Lane *first, *second;
+
+  // Throws: UsageError unless both are lanes of one algorithm and scalar that can record their values.
+  LanesCompared(const Lane& l, const Lane& r);
+};
+
+// A value that a comparison of at least one of two lanes sees, in the order of the first lane's run; those that only
+// the second lane saw come last.
+struct ValueBeside {
+  int question, which;                  // which: of Question::of
+  std::optional<double> first, second;  // nothing if the lane was not asked
+  bool compared = false;                // both were asked about the same quantity
+  std::optional<Certified> exact;       // along the first lane's path; nothing for values of the second lane alone
+};
+
+// The runs of two lanes on one pair. Their choices are in the layout of RecordedPath.
+struct RunsBeside {
+  std::vector<ValueBeside> values;
+  RecordedPath first, second;
+};
+
+// Requires: a finite pair.
+RunsBeside runs_beside(const LanesCompared& lanes, const Pair& pair);
+
+// The bucket of a lane's error in ulps, "0", "1/2", "2^k", "not finite" or "unknown"; as in core/discrepancy/count.h.
+std::string error_bucket_of(Scalar scalar, double value, const Certified& exact);
+std::string error_bucket_name(int bucket);
+
+// How many ulps of the scalar two finite values are apart.
+std::uint64_t ulps_apart(Scalar scalar, double first, double second);
+
+struct DiscrepancySpec {
+  std::vector<LanesCompared> lanes;
+  std::vector<strata::PairSource> sources;
+  int threads = 0;         // 0: one for each core
+  bool on_device = false;  // comparisons whose lanes a device can record run there
+};
+
+// counts[comparison][source]. The same counts on host and device, for any number of threads. A host lane's values on a
+// device are those of cuda-nofma. If that is what it is compared with, the host records its own values too, and
+// where they differ in any bit, the comparison runs on the host.
+using Discrepancies = std::vector<std::vector<DiscrepancyCounts>>;
+Discrepancies discrepancies(const DiscrepancySpec& spec);
+
+// Counts one block of pairs, for tests and for engines.
+void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, DiscrepancyCounts& to);
+
+}  // namespace graze::analysis

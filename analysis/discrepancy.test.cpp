@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/discrepancy.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <set>
+
+#include "analysis/lane_trace.h"
+#include "core/discrepancy/count.h"
+#include "core/error.h"
+#include "core/lanes/verdicts.h"
+#include "cuda/twin/twin.h"
+#include "oracle/precise.h"
+#include "strata/strata.h"
+
+namespace graze::analysis {
+namespace {
+
+const Lane& lane(const std::string& id) { return *find_lane(id); }
+
+std::vector<LanesCompared> published(Variant first, Variant second) {
+  std::vector<LanesCompared> lanes;
+  for (const Lane& l : published_lanes()) {
+    if (l.variant == first) lanes.emplace_back(l, *counterpart(l, second));
+  }
+  return lanes;
+}
+
+Discrepancies counted(const std::vector<LanesCompared>& lanes, std::uint64_t seed, std::uint64_t pairs,
+                      const std::vector<std::string>& strata = {}, int threads = 0) {
+  return discrepancies({lanes, strata::stratum_sources(seed, pairs, strata), threads, false});
+}
+
+std::uint64_t count(const DiscrepancyCounts& of, int at) { return of.counts[static_cast<std::size_t>(at)]; }
+
+// Keeps the questions in the order in which they are asked.
+struct InOrder {
+  std::vector<At>* asked;
+
+  template <class Real>
+  Real snap(const At& at, const Real& x) const {
+    asked->push_back(at);
+    return x;
+  }
+  template <class Real>
+  bool less(const At& at, const Real& l, const Real& r) const {
+    asked->push_back(at);
+    return l < r;
+  }
+  template <class Real>
+  bool at_most(const At& at, const Real& l, const Real& r) const {
+    asked->push_back(at);
+    return l <= r;
+  }
+};
+
+template <std::size_t... algorithm>
+std::vector<At> asked_in_order(int wanted, const Pair& pair, Scalar scalar, std::index_sequence<algorithm...>) {
+  std::vector<At> asked;
+  const auto run = [&](auto real, auto of) {
+    using Real = decltype(real);
+    decide_widened<Real>(pair, [&](const auto& a, const auto& b) {
+      return std::tuple_element_t<decltype(of)::value, Algorithms>::decide(a, b, InOrder{&asked});
+    });
+  };
+  const auto in = [&](auto of) {
+    if (static_cast<int>(decltype(of)::value) != wanted) return;
+    scalar == Scalar::f32 ? run(0.0f, of) : run(0.0, of);
+  };
+  (in(std::integral_constant<std::size_t, algorithm>()), ...);
+  return asked;
+}
+
+std::vector<At> asked_in_order(const Lane& of, const Pair& pair) {
+  return asked_in_order(of.algorithm, pair, of.scalar, std::make_index_sequence<kAlgorithmCount>());
+}
+
+TEST(Discrepancy, EveryQuestionIsListedWithItsSiteAndIsAsked) {
+  for (const Lane& of : published_lanes()) {
+    if (of.variant != Variant::cpu || of.scalar != Scalar::f32) continue;
+    const std::vector<Question>& questions = questions_of(of.algorithm);
+    ASSERT_LE(questions.size(), static_cast<std::size_t>(kMostQuestions)) << of.id;
+    std::set<std::string> names;
+    std::uint64_t seen = 0;
+    for (const Question& question : questions) EXPECT_TRUE(names.insert(question.name).second) << question.name;
+    for (const strata::PairSource& source : strata::stratum_sources(5, 38'000, {})) {
+      for (std::uint64_t i = 0; i < source.pairs; ++i) {
+        const Pair pair = source.pair(i);
+        for (const At& at : asked_in_order(of, pair)) {
+          const Question& question = questions.at(static_cast<std::size_t>(at.question));
+          EXPECT_EQ(question.site, static_cast<int>(at.site)) << question.name;
+        }
+        std::vector<double> values(2 * questions.size());
+        RecordedPath path;
+        record_on_host(of)(&pair, 1, {values.data(), 1, &path});
+        seen |= path.asked;
+      }
+    }
+    for (std::size_t q = 0; q < questions.size(); ++q) EXPECT_TRUE(seen >> q & 1) << questions[q].name;
+  }
+}
+
+// The published algorithms without contraction give the same bits on every processor: this is the claim that a device
+// run with the kernels of cuda-nofma stands for a host lane.
+TEST(Discrepancy, WithoutContractionNoBitDiffers) {
+  const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_nofma);
+  ASSERT_EQ(lanes.size(), 2u * kAlgorithmCount);
+  const Discrepancies found = counted(lanes, 11, 19 * 400);
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    std::uint64_t compared = 0;
+    for (const DiscrepancyCounts& of : found[l]) {
+      EXPECT_EQ(count(of, pair_counts::pairs), 400u);
+      EXPECT_EQ(count(of, pair_counts::differs), 0u) << lanes[l].second->id;
+      EXPECT_EQ(count(of, pair_counts::choice), 0u);
+      EXPECT_EQ(count(of, pair_counts::verdict), 0u);
+      EXPECT_EQ(of.unlike[0] + of.unlike[1], 0u);
+      for (std::size_t q = 0; q < questions_of(lanes[l].first->algorithm).size(); ++q) {
+        const int at = value_at(static_cast<int>(q), 0);
+        compared += count(of, at + value_counts::compared);
+        EXPECT_EQ(count(of, at + value_counts::compared), count(of, at + value_counts::equal));
+      }
+    }
+    EXPECT_GT(compared, 10'000u) << lanes[l].second->id;
+  }
+}
+
+// Measured by hand on 10^6 pairs of the thesis: some signed distance differs on 59.7 % of the pairs, its sign on 1 in
+// 532 and the verdict on 1 in 3,330. That was of all six distances, of which the algorithm computes the last three only
+// if the first three do not separate; here they are the first three of the pair with its triangles swapped.
+TEST(Discrepancy, FindsTheSharesThatWereMeasuredByHand) {
+  const LanesCompared lanes{lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma")};
+  const strata::PairSource source = strata::stratum_sources(2012, 200'000, {"thesis"})[0];
+  double differs = 0, signs = 0, verdicts = 0;
+  for (std::uint64_t i = 0; i < source.pairs; ++i) {
+    const Pair pair = source.pair(i), swapped{{pair.b[0], pair.b[1], pair.b[2]}, {pair.a[0], pair.a[1], pair.a[2]}};
+    DiscrepancyCounts of(lanes.first->algorithm), of_swapped = of;
+    count_discrepancies(lanes, {&pair, 1}, of);
+    count_discrepancies(lanes, {&swapped, 1}, of_swapped);
+    bool value = false, sign = false;
+    for (int q = 0; q < 3; ++q) {
+      for (const DiscrepancyCounts* counts : {&of, &of_swapped}) {
+        value = value || count(*counts, question_at(q) + question_counts::differs);
+        sign = sign || count(*counts, question_at(q) + question_counts::sign);
+      }
+    }
+    differs += value;
+    signs += sign;
+    verdicts += static_cast<double>(count(of, pair_counts::verdict));
+  }
+  const auto expect = [](double counted, double share, const char* what) {
+    EXPECT_NEAR(counted, 200'000 * share, 4 * std::sqrt(200'000 * share * (1 - share)) + 1) << what;
+  };
+  expect(differs, 0.597, "a distance differs");
+  expect(signs, 1.0 / 532, "its sign differs");
+  expect(verdicts, 1.0 / 3330, "the verdict differs");
+}
+
+TEST(Discrepancy, EachCountIsPartOfTheOneBefore) {
+  const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_fma);
+  const Discrepancies found = counted(lanes, 3, 19 * 300);
+  std::uint64_t verdicts = 0;
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    for (const DiscrepancyCounts& of : found[l]) {
+      using namespace pair_counts;
+      EXPECT_LE(count(of, differs), count(of, pairs));
+      EXPECT_LE(count(of, sign), count(of, differs) + count(of, choice));
+      EXPECT_LE(count(of, outcome), count(of, sign));
+      EXPECT_LE(count(of, pair_counts::verdict), count(of, outcome)) << lanes[l].first->id;
+      verdicts += count(of, pair_counts::verdict);
+      std::uint64_t by_question = 0;
+      for (std::size_t q = 0; q < questions_of(lanes[l].first->algorithm).size(); ++q) {
+        using namespace question_counts;
+        const int at = question_at(static_cast<int>(q));
+        EXPECT_LE(count(of, at + question_counts::differs), count(of, at + asked));
+        EXPECT_LE(count(of, at + question_counts::sign), count(of, at + question_counts::differs));
+        EXPECT_LE(count(of, at + zero_on_one_side), count(of, at + question_counts::sign));
+        EXPECT_LE(count(of, at + question_counts::outcome), count(of, at + question_counts::sign));
+        EXPECT_LE(count(of, at + question_counts::verdict), count(of, at + question_counts::outcome));
+        std::uint64_t bands = count(of, at + band_unknown);
+        for (int k = 0; k < kBands; ++k) bands += count(of, at + band + k);
+        EXPECT_EQ(bands, count(of, at + question_counts::sign));
+        by_question += count(of, at + question_counts::verdict);
+        for (int which = 0; which < 2; ++which) {
+          const int value = value_at(static_cast<int>(q), which);
+          std::uint64_t parts = 0, errors = 0;
+          for (int f = value_counts::equal; f < value_counts::first_error; ++f) parts += count(of, value + f);
+          for (int f = 0; f < value_counts::kErrors; ++f) errors += count(of, value + value_counts::first_error + f);
+          EXPECT_EQ(parts, count(of, value + value_counts::compared));
+          EXPECT_EQ(errors, count(of, value + value_counts::compared));
+        }
+      }
+      EXPECT_LE(by_question, count(of, pair_counts::verdict));
+    }
+  }
+  EXPECT_GT(verdicts, 100u);
+}
+
+TEST(Discrepancy, CountsTheVerdictsThatTheLanesGive) {
+  const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_fma);
+  const auto sources = strata::stratum_sources(9, 19 * 200, {});
+  const Discrepancies found = discrepancies({lanes, sources, 0, false});
+  std::uint64_t all = 0;
+  for (std::size_t l = 0; l < lanes.size(); ++l) {
+    for (std::size_t s = 0; s < sources.size(); ++s) {
+      std::vector<Pair> pairs;
+      for (std::uint64_t i = 0; i < sources[s].pairs; ++i) pairs.push_back(sources[s].pair(i));
+      const std::vector<Verdict> first = verdicts_of(lanes[l].first->decide, pairs),
+                                 second = verdicts_of(cuda::block_on_host(*lanes[l].second), pairs);
+      std::uint64_t differ = 0;
+      for (std::size_t i = 0; i < pairs.size(); ++i) differ += first[i] != second[i];
+      EXPECT_EQ(count(found[l][s], pair_counts::verdict), differ) << lanes[l].second->id << ", " << sources[s].id;
+      EXPECT_EQ(found[l][s].unlike[0] + found[l][s].unlike[1], 0u);
+      all += differ;
+    }
+  }
+  EXPECT_GT(all, 100u);
+}
+
+TEST(Discrepancy, IsTheSameForAnyNumberOfThreadsAndInParts) {
+  const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_fma);
+  const Discrepancies one = counted(lanes, 4, 4'000, {"near_*", "coplanar_wide"}, 1);
+  EXPECT_EQ(one, counted(lanes, 4, 4'000, {"near_*", "coplanar_wide"}, 3));
+  const auto sources = strata::stratum_sources(4, 4'000, {"near_*", "coplanar_wide"});
+  DiscrepancyCounts sum(lanes[2].first->algorithm);
+  for (std::uint64_t first = 0; first < sources[0].pairs; first += 100) {
+    std::vector<Pair> part;
+    for (std::uint64_t i = first; i < std::min(first + 100, sources[0].pairs); ++i) part.push_back(sources[0].pair(i));
+    DiscrepancyCounts counts(lanes[2].first->algorithm);
+    count_discrepancies(lanes[2], part, counts);
+    sum += counts;
+  }
+  EXPECT_EQ(sum, one[2][0]);
+}
+
+// Keeps the places of what is counted.
+struct Places {
+  std::vector<int> added;
+  std::vector<double> largest;
+  void add(int at) { added.push_back(at); }
+  void most(int, int which, double size) {
+    if (which == band_maxima::in_bounds) largest.push_back(size);
+  }
+  bool has(int at) const { return std::find(added.begin(), added.end(), at) != added.end(); }
+};
+
+// Each error's bucket is that of MPFR's error, where it is known.
+TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
+  std::uint64_t checked = 0, unknown = 0, others = 0;
+  for (const auto& [first, second] : published(Variant::cpu, Variant::cuda_nofma)) {
+    const std::vector<Question>& questions = questions_of(first->algorithm);
+    const std::vector<std::uint8_t> degrees = degrees_of(first->algorithm);
+    for (const strata::PairSource& source : strata::stratum_sources(6, 19 * 12, {})) {
+      if (source.id == "extreme_scale") continue;  // MPFR's ulps ignore the limits of the exponents
+      for (std::uint64_t i = 0; i < source.pairs; ++i) {
+        const Pair pair = source.pair(i);
+        DiscrepancyCounts of(first->algorithm);
+        count_discrepancies({*first, *second}, {&pair, 1}, of);
+        const std::vector<At> asked = asked_in_order(*first, pair);
+        const RunsBeside runs = runs_beside({*first, *second}, pair);
+        const Replay run = replay(*first, pair);
+        const std::vector<oracle::ExactStep> steps =
+            oracle::exact_steps(first->algorithm, first->scalar, pair, run.run);
+        std::size_t next = 0;
+        for (std::size_t k = 0; k < steps.size(); ++k) {
+          if (!run.run.seen[k].site) continue;
+          const int question = asked.at(next++).question;
+          for (int which = 0; which < (run.run.seen[k].compared ? 2 : 1); ++which) {
+            const oracle::Beside& beside = which ? steps[k].right : steps[k].left;
+            const auto certified = std::find_if(runs.values.begin(), runs.values.end(), [&](const ValueBeside& value) {
+              return value.question == question && value.which == which;
+            });
+            ASSERT_NE(certified, runs.values.end());
+            // Of several values MPFR follows the one that the lane took for the least; the counts want the least.
+            const bool other = std::fabs(certified->exact->hi - beside.exact) > 1e-12 * std::fabs(beside.exact);
+            const bool subnormal = std::fabs(beside.exact) < (first->scalar == Scalar::f32 ? 0x1p-126 : 0x1p-1022);
+            const int at = value_at(question, which) + value_counts::first_error;
+            int bucket = 0;
+            while (bucket < value_counts::kErrors && !count(of, at + bucket)) ++bucket;
+            ASSERT_LT(bucket, value_counts::kErrors) << questions[static_cast<std::size_t>(question)].name;
+            ++checked;
+            if (bucket == value_counts::kErrorUnknown) {
+              ++unknown;
+              continue;
+            }
+            others += other;
+            if (bucket == value_counts::kErrorNotFinite || other || subnormal) continue;
+            const double ulps = std::fabs(beside.ulps), most = bucket < 2 ? 0.5 * bucket : std::ldexp(1.0, bucket - 2),
+                         least = bucket < 2    ? 0
+                                 : bucket == 2 ? 0.5
+                                               : std::ldexp(1.0, bucket - 3);
+            const bool last = bucket == value_counts::kErrorNotFinite - 1;
+            EXPECT_TRUE(ulps >= least * (1 - 1e-9) && (last || ulps <= most * (1 + 1e-9)))
+                << first->id << ' ' << source.id << ' ' << i << ' '
+                << questions[static_cast<std::size_t>(question)].name << ": " << ulps << " in bucket " << bucket;
+          }
+        }
+        EXPECT_EQ(next, asked.size());
+      }
+    }
+  }
+  EXPECT_GT(checked, 20'000u);
+  EXPECT_LT(unknown * 10, checked);
+  EXPECT_LT(others * 10, checked);
+}
+
+// A lane whose one value is off by an ulp is found at that value, with its side and its band.
+TEST(Discrepancy, FindsAPlantedUlp) {
+  const Pair pair{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0.25f, 0.25f, 1}, {0.25f, 0.25f, 2}, {1, 1, 2}}};
+  const Lane& of = lane("moller_1997/f32/cpu");
+  const std::vector<Question>& questions = questions_of(of.algorithm);
+  std::vector<float> first(2 * questions.size());
+  RecordedPath path;
+  host_record(of)(&pair, 1, {first.data(), 1, &path});
+  std::vector<float> second = first;
+  ASSERT_EQ(questions[0].name, "plane_distance.b[0]");
+  ASSERT_EQ(first[0], 0);  // that vertex lies in the plane
+  second[0] = -std::numeric_limits<float>::denorm_min();
+  second[2] = std::nextafter(first[2], 2.0f);
+  Places places;
+  decide_widened<float>(pair, [&](const auto& a, const auto& b) {
+    compare_runs<Moller1997>(a, b, graze::Run<float>{{first.data(), 1}, path},
+                             graze::Run<float>{{second.data(), 1}, path}, degrees_of(of.algorithm).data(), places);
+    return Verdict::declined;
+  });
+  EXPECT_TRUE(places.has(value_at(0, 0) + value_counts::below));
+  EXPECT_TRUE(places.has(value_at(0, 0) + value_counts::first_error));  // no error
+  EXPECT_TRUE(places.has(value_at(0, 0) + value_counts::nearer_first));
+  EXPECT_TRUE(places.has(question_at(0) + question_counts::sign));
+  EXPECT_TRUE(places.has(question_at(0) + question_counts::zero_on_one_side));
+  EXPECT_TRUE(places.has(value_at(1, 0) + value_counts::above));
+  EXPECT_FALSE(places.has(question_at(1) + question_counts::sign));
+  EXPECT_TRUE(places.has(value_at(2, 0) + value_counts::equal));
+  EXPECT_TRUE(places.has(pair_counts::outcome));
+  EXPECT_FALSE(places.has(pair_counts::verdict));
+  ASSERT_EQ(places.largest.size(), 1u);
+  EXPECT_LT(places.largest[0], 1e-30);
+}
+
+TEST(Discrepancy, RefusesLanesThatCannotBeCompared) {
+  EXPECT_THROW(LanesCompared(lane("moller_1997/f32/cpu"), lane("moller_1997/f64/cpu")), UsageError);
+  EXPECT_THROW(LanesCompared(lane("moller_1997/f32/cpu"), lane("interval_overlap/f32/cpu")), UsageError);
+  EXPECT_THROW(LanesCompared(lane("exact/f32/cpu"), lane("exact/f32/cuda")), UsageError);
+  EXPECT_THROW(LanesCompared(lane("moller_1997/f32/cpu"), lane("moller_1997/f32/cuda-fast")), UsageError);
+}
+
+}  // namespace
+}  // namespace graze::analysis

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the values of a contracted CUDA lane begin to differ from those of the same source without contraction, how
+// much a difference grows until a comparison sees it, and which source line decides verdicts. Everything is counted by
+// running the lane's twin with the products of one line fused, or with all others.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "analysis/discrepancy.h"
+#include "cuda/twin/twin.h"
+
+namespace graze::analysis {
+
+// The contractions of one source line.
+struct FusedLine {
+  cuda::SourceLine at, from;  // as in cuda::ContractionSite
+  std::vector<std::uint64_t> mask;
+  std::uint64_t values = 0;          // fusing it alone changes this many values
+  std::uint64_t verdicts_alone = 0;  // …and this many verdicts
+  std::uint64_t verdicts_fixed = 0;  // of the verdicts that all contractions together change: rounding this line's
+                                     // products gives back the verdict without contraction
+  std::optional<Pair> simplest;      // of the pairs of the two counts before
+};
+
+// A value that differs, and the first line that makes it differ if it alone is fused.
+struct Start {
+  std::vector<std::uint64_t> by_line;  // [line]; the last one counts values that no line alone makes differ
+  // growth[k]: fusing the line, which changes its result by at most an ulp, moves the value by 2^k to 2^(k+1) ulps.
+  // Products, quotients and roots pass a relative error on; only sums whose terms cancel make it grow.
+  std::array<std::uint64_t, 64> growth = {};
+};
+
+struct Origins {
+  std::vector<FusedLine> lines;                 // in program order
+  std::map<std::pair<int, int>, Start> starts;  // of values: question, and 0 or 1
+  std::uint64_t pairs = 0, verdicts = 0;        // asked, and those on which contraction changes the verdict
+};
+
+// Whether the lane has contractions whose lines are known.
+bool has_origins(const Lane& lane);
+
+// Examines the first `pairs` pairs of each source. `simpler` orders pairs for FusedLine::simplest.
+// The same for any number of threads.   Requires: has_origins.
+Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources, std::uint64_t pairs, int threads,
+                const std::function<bool(const Pair&, const Pair&)>& simpler);
+
+}  // namespace graze::analysis

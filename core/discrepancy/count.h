@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compares what two lanes of one algorithm and scalar recorded of a pair, value by value, and counts. The same code
+// runs on host and device. Every count is an integer, so that counts of parts add up to those of the whole.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "core/algorithms/algorithms.h"
+#include "core/discrepancy/led.h"
+#include "core/margin/bucket.h"
+
+namespace graze {
+
+// A value's counts. A value is compared if both lanes recorded it and it has the same meaning for both: distances and
+// normals always, others if both lanes made the same choices.
+namespace value_counts {
+inline constexpr int kOctaves = 64, kErrors = 40;
+enum : int {
+  compared,
+  equal,                           // the same bits, or NaN both times
+  zero_sign,                       // zeros of different sign
+  not_finite,                      // others, of which at least one is not finite
+  below,                           // kOctaves: finite, the second lane's is lower by 2^k to 2^(k+1) ulps
+  above = below + kOctaves,        // kOctaves: higher
+  first_error = above + kOctaves,  // kErrors: the first lane's error, see error_bucket
+  second_error = first_error + kErrors,
+  nearer_first = second_error + kErrors,  // of different values: the first lane's is nearer to the exact one
+  nearer_second,
+  equally_near,
+  nearer_unknown,  // the bounds do not tell, or one is not finite
+  kFields
+};
+
+// A value's error in ulps of the exact value (no smaller than the least subnormal number): 0 if there is none; 1 up to
+// half an ulp; 2 + k above 2^(k-1) and up to 2^k ulps, the last one without end; then the two others.
+inline constexpr int kErrorNotFinite = kErrors - 2, kErrorUnknown = kErrors - 1;
+}  // namespace value_counts
+
+// A question's counts. Its sign is that of its value, or of the left value minus the right one.
+namespace question_counts {
+inline constexpr int kBands = 64, kLowestBand = -16;
+enum : int {
+  asked,    // of both lanes, and compared
+  differs,  // some value's bits differ
+  sign,     // the sign differs
+  zero_on_one_side,
+  outcome,  // the comparison goes the other way; of a question about one value: the sign differs
+  verdict,  // of pairs with different verdicts: this is the first question with another outcome
+  band,     // kBands: where the sign differs, the larger size of the two values, in bounds of the error, is
+            // 2^(k + kLowestBand) to the next power; the first and the last without end
+  band_unknown = band + kBands,  // the size has no finite bound
+  kFields
+};
+}  // namespace question_counts
+
+// Counts of pairs by the site of a question; the last site is that of comparisons without an epsilon.
+namespace site_counts {
+enum : int { asked, differs, sign, kFields };
+}
+
+namespace pair_counts {
+enum : int {
+  pairs,
+  differs,  // some value differs
+  sign,     // some sign or choice differs
+  outcome,  // some outcome or choice differs
+  choice,   // some choice differs
+  verdict,  // the recorded verdicts differ
+  kFields
+};
+}
+
+// The layout of an algorithm's counts.
+inline constexpr int kValuesAt = pair_counts::kFields + (kSiteCount + 1) * site_counts::kFields;
+GRAZE_HD constexpr int site_at(int site) { return pair_counts::kFields + site * site_counts::kFields; }
+GRAZE_HD constexpr int question_at(int question) {
+  return kValuesAt + question * (2 * value_counts::kFields + question_counts::kFields);
+}
+GRAZE_HD constexpr int value_at(int question, int which) {
+  return question_at(question) + question_counts::kFields + which * value_counts::kFields;
+}
+GRAZE_HD constexpr int counts_of(int questions) { return question_at(questions); }
+
+// Of each question the largest size at which a sign differs: in bounds of the error, and as a length in the unit of the
+// coordinates. Bits of nonnegative doubles, whose order is that of integers.
+namespace band_maxima {
+enum : int { in_bounds, length, kFields };
+}
+
+inline namespace GRAZE_FP {
+
+// A float's bits, so that the order of values is that of integers and neighbours differ by 1. Both zeros give 0.
+GRAZE_HD inline std::int64_t ordered_bits(float x) {
+  std::int32_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits < 0 ? -std::int64_t{bits & 0x7fffffff} : bits;
+}
+GRAZE_HD inline std::int64_t ordered_bits(double x) {
+  std::int64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits < 0 ? -(bits & 0x7fffffffffffffff) : bits;
+}
+template <class Real>
+GRAZE_HD bool same_bits(Real x, Real y) {
+  std::uint64_t of_x = 0, of_y = 0;
+  memcpy(&of_x, &x, sizeof x);
+  memcpy(&of_y, &y, sizeof y);
+  return (x != x && y != y) || of_x == of_y;
+}
+template <class Real>
+GRAZE_HD bool is_finite_value(Real x) {
+  return x - x == 0;
+}
+template <class Real>
+GRAZE_HD int sign_of_value(Real x) {
+  return x != x ? 2 : (x > 0) - (x < 0);
+}
+template <class Real>
+GRAZE_HD int order_of(Real x, Real y) {
+  return x < y ? -1 : x > y ? 1 : x == y ? 0 : 2;
+}
+
+// floor(log2(x)) of a positive number; of zero, less than of any other.
+GRAZE_HD inline int log2_of(const DoubleDouble& x) {
+  const int k = floor_log2(x.hi);
+  return x.lo < 0 && x.hi == scalbn(1.0, k) ? k - 1 : k;
+}
+
+// log2 of the ulp of numbers of this size.
+template <class Real>
+GRAZE_HD int log2_ulp_of(const DoubleDouble& size) {
+  constexpr int kDigits = sizeof(Real) == sizeof(float) ? 24 : 53,
+                kLeast = sizeof(Real) == sizeof(float) ? -149 : -1074;
+  const int k = size.hi > 0 ? log2_of(size) - (kDigits - 1) : kLeast;
+  return k < kLeast ? kLeast : k;
+}
+
+// The least and the greatest that a size may be.
+struct SizeRange {
+  DoubleDouble least, most;
+};
+
+// That of |x|. It rounds outward, and not at all where the bound is zero.
+GRAZE_HD inline SizeRange size_range(const Certified& x) {
+  const double sign = x.hi < 0 ? -1 : 1;
+  const DoubleDouble size(sign * x.hi, sign * x.lo);
+  if (x.bound == 0) return {size, size};
+  const double slack = x.bound + size.hi * 0x1p-100;
+  const DoubleDouble least = size - DoubleDouble(slack);
+  return {least.hi > 0 ? least : DoubleDouble(0), size + DoubleDouble(slack)};
+}
+
+template <class Real>
+GRAZE_HD SizeRange error_range(Real value, const Certified& exact) {
+  return size_range(Certified(static_cast<double>(value)) - exact);
+}
+
+// The bucket of an error of `size`, in ulps of 2^ulp.
+GRAZE_HD inline int error_bucket(const DoubleDouble& size, int ulp) {
+  if (!(size.hi > 0)) return 0;
+  const int k = log2_of(size), up = k - ulp + (size.hi != scalbn(1.0, k) || size.lo != 0);  // ceil(log2)
+  const int bucket = up <= -1 ? 1 : 2 + up;
+  return bucket < value_counts::kErrorNotFinite ? bucket : value_counts::kErrorNotFinite - 1;
+}
+
+// The bucket of the error, if its range lies within one bucket, whichever ulp the exact value has.
+template <class Real>
+GRAZE_HD int error_bucket(Real value, const Certified& exact) {
+  using namespace value_counts;
+  if (!is_finite_value(value)) return kErrorNotFinite;
+  if (!exact.settled()) return kErrorUnknown;
+  const SizeRange error = error_range(value, exact), size = size_range(exact);
+  if (!(error.most.hi < HUGE_VAL)) return kErrorUnknown;
+  const int bucket = error_bucket(error.least, log2_ulp_of<Real>(size.most));
+  return bucket == error_bucket(error.most, log2_ulp_of<Real>(size.least)) ? bucket : kErrorUnknown;
+}
+
+// How many ulps two finite numbers are apart.
+template <class Real>
+GRAZE_HD std::uint64_t apart(Real x, Real y) {
+  const std::int64_t first = ordered_bits(x), second = ordered_bits(y);
+  return second < first ? static_cast<std::uint64_t>(first) - static_cast<std::uint64_t>(second)
+                        : static_cast<std::uint64_t>(second) - static_cast<std::uint64_t>(first);
+}
+
+// Whether both runs made some choice, and made it otherwise. A run that ended earlier made fewer.
+GRAZE_HD inline bool chose_otherwise(std::uint64_t first, std::uint64_t second) {
+  for (int c = 0; c < kMostChoices; ++c) {
+    const std::uint64_t x = first >> 4 * c & 15, y = second >> 4 * c & 15;
+    if (x != 0 && y != 0 && x != y) return true;
+  }
+  return false;
+}
+
+// Whether both runs were asked the question about the same quantities. Distances and normals do not depend on choices.
+GRAZE_HD inline bool have_both(const RecordedPath& first, const RecordedPath& second, int question, int site) {
+  if (((first.asked & second.asked) >> question & 1) == 0) return false;
+  return site == static_cast<int>(Site::plane_distance) || site == static_cast<int>(Site::parallel) ||
+         !chose_otherwise(first.path, second.path);
+}
+
+// What the counting of one pair needs to know of a lane's run.
+template <class Real>
+struct Run {
+  Recorded<const Real> values;
+  RecordedPath path;
+
+  GRAZE_HD Real value(int question, int which) const {
+    return values.values[(2 * static_cast<unsigned>(question) + static_cast<unsigned>(which)) * values.stride];
+  }
+};
+
+// Sink: add(index) counts one more, most(question, which, size) keeps the largest. `degrees`: of each question, in
+// lengths.
+template <class Real, class Sink>
+class PairComparison {
+ public:
+  GRAZE_HD PairComparison(const Run<Real>& first, const Run<Real>& second, const std::uint8_t* degrees, double extent,
+                          Sink& sink)
+      : lane_{first, second}, degrees_(degrees), extent_(extent), sink_(sink) {
+    choice_differs_ = chose_otherwise(first.path.path, second.path.path);
+    verdict_differs_ = (first.path.path ^ second.path.path) >> 60 != 0;
+  }
+
+  // The policy's `found`.
+  GRAZE_HD void one(int question, int site, const Certified& exact) {
+    if (!compared(question, site)) return;
+    const Real x = lane_[0].value(question, 0), y = lane_[1].value(question, 0);
+    const bool differs = compare(question, 0, exact);
+    const int sign = sign_of_value(x), other = sign_of_value(y);
+    conclude(question, site, differs, sign, other, sign != other, larger(fabs(x), fabs(y)), exact.size);
+  }
+  GRAZE_HD void two(int question, int site, const Certified& left, const Certified& right, bool at_most) {
+    if (!compared(question, site)) return;
+    const bool left_differs = compare(question, 0, left), right_differs = compare(question, 1, right);
+    const Real x[2] = {lane_[0].value(question, 0), lane_[0].value(question, 1)};
+    const Real y[2] = {lane_[1].value(question, 0), lane_[1].value(question, 1)};
+    const int order = order_of(x[0], x[1]), other = order_of(y[0], y[1]);
+    const bool outcome =
+        at_most ? (order == -1 || order == 0) != (other == -1 || other == 0) : (order == -1) != (other == -1);
+    const double size = larger(fabs(static_cast<double>(x[0]) - static_cast<double>(x[1])),
+                               fabs(static_cast<double>(y[0]) - static_cast<double>(y[1])));
+    conclude(question, site, left_differs || right_differs, order, other, outcome, size, left.size + right.size);
+  }
+
+  // Counts the pair. Call it once, after all questions.
+  GRAZE_HD void finish() {
+    using namespace pair_counts;
+    sink_.add(pairs);
+    if (some_differs_) sink_.add(pair_counts::differs);
+    if (some_sign_ || choice_differs_) sink_.add(pair_counts::sign);
+    if (some_outcome_ || choice_differs_) sink_.add(pair_counts::outcome);
+    if (choice_differs_) sink_.add(pair_counts::choice);
+    if (verdict_differs_) sink_.add(pair_counts::verdict);
+    for (int s = 0; s <= kSiteCount; ++s) {
+      for (int f = 0; f < site_counts::kFields; ++f) {
+        if (sites_ >> (s * site_counts::kFields + f) & 1) sink_.add(site_at(s) + f);
+      }
+    }
+  }
+
+ private:
+  GRAZE_HD static double larger(double x, double y) { return x < y ? y : x; }
+
+  GRAZE_HD bool compared(int question, int site) const {
+    if (!choice_differs_) return ((lane_[0].path.asked & lane_[1].path.asked) >> question & 1) != 0;
+    return have_both(lane_[0].path, lane_[1].path, question, site);
+  }
+
+  // Counts one value of both lanes. Returns: whether its bits differ.
+  GRAZE_HD bool compare(int question, int which, const Certified& exact) {
+    using namespace value_counts;
+    const int at = value_at(question, which);
+    const Real x = lane_[0].value(question, which), y = lane_[1].value(question, which);
+    const auto count = [&](int field) { sink_.add(at + field); };
+    count(value_counts::compared);
+    count(first_error + error_bucket(x, exact));
+    count(second_error + error_bucket(y, exact));
+    if (same_bits(x, y)) return count(equal), false;
+    if (x == y) {
+      count(zero_sign);
+      count(equally_near);
+      return true;
+    }
+    if (!is_finite_value(x) || !is_finite_value(y)) {
+      count(not_finite);
+      count(nearer_unknown);
+      return true;
+    }
+    count((y < x ? below : above) + highest_bit(apart(x, y)));
+    count(nearer(x, y, exact));
+    return true;
+  }
+
+  GRAZE_HD static int highest_bit(std::uint64_t x) {
+    int k = 0;
+    for (int step = 32; step > 0; step /= 2) {
+      if (x >> step) {
+        x >>= step;
+        k += step;
+      }
+    }
+    return k;
+  }
+
+  GRAZE_HD static int nearer(Real x, Real y, const Certified& exact) {
+    using namespace value_counts;
+    if (!exact.settled()) return nearer_unknown;
+    const SizeRange first = error_range(x, exact), second = error_range(y, exact);
+    if (first.most < second.least) return nearer_first;
+    if (second.most < first.least) return nearer_second;
+    return first.most == second.least && second.most == first.least ? equally_near : nearer_unknown;
+  }
+
+  GRAZE_HD void conclude(int question, int site, bool differs, int sign, int other, bool outcome, double size,
+                         double of_operands) {
+    using namespace question_counts;
+    const int at = question_at(question);
+    sink_.add(at + asked);
+    mark(site, site_counts::asked);
+    if (differs) {
+      sink_.add(at + question_counts::differs);
+      mark(site, site_counts::differs);
+      some_differs_ = true;
+    }
+    if (sign == other) return;
+    sink_.add(at + question_counts::sign);
+    mark(site, site_counts::sign);
+    some_sign_ = true;
+    if (sign == 0 || other == 0) sink_.add(at + zero_on_one_side);
+    count_band(question, size, of_operands);
+    if (!outcome) return;
+    sink_.add(at + question_counts::outcome);
+    if (verdict_differs_ && !some_outcome_) sink_.add(at + question_counts::verdict);
+    some_outcome_ = true;
+  }
+
+  GRAZE_HD void count_band(int question, double size, double of_operands) {
+    using namespace question_counts;
+    constexpr double kUnit = sizeof(Real) == sizeof(float) ? 0x1p-24 : 0x1p-53;
+    const int at = question_at(question);
+    const double in_bounds = size / (of_operands * kUnit);
+    if (!(in_bounds < HUGE_VAL) || !(size < HUGE_VAL)) return sink_.add(at + band_unknown);
+    int k = in_bounds > 0 ? floor_log2(in_bounds) - kLowestBand : 0;
+    k = k < 0 ? 0 : k >= kBands ? kBands - 1 : k;
+    sink_.add(at + band + k);
+    double length = size;
+    for (int d = 1; d < degrees_[question]; ++d) length /= extent_;
+    sink_.most(question, band_maxima::in_bounds, in_bounds);
+    if (length < HUGE_VAL) sink_.most(question, band_maxima::length, length);
+  }
+
+  GRAZE_HD void mark(int site, int field) { sites_ |= 1u << (site * site_counts::kFields + field); }
+
+  Run<Real> lane_[2];
+  const std::uint8_t* degrees_;
+  double extent_;
+  Sink& sink_;
+  bool choice_differs_ = false, verdict_differs_;
+  bool some_differs_ = false, some_sign_ = false, some_outcome_ = false;
+  std::uint32_t sites_ = 0;  // bit site * kFields + field
+};
+
+// A hash of everything that a run recorded. All NaNs count as one value, because processors differ in their payloads.
+template <class Real>
+GRAZE_HD std::uint64_t run_hash(const Real* values, std::uint64_t stride, const RecordedPath& path,
+                                std::uint64_t two_values) {
+  std::uint64_t hash = path.asked ^ path.path * 0x9e3779b97f4a7c15u;  // as in Knuth's multiplicative hash
+  for (int question = 0; question < kMostQuestions; ++question) {
+    if ((path.asked >> question & 1) == 0) continue;
+    for (unsigned which = 0; which <= (two_values >> question & 1); ++which) {
+      const Real x = values[(2 * static_cast<unsigned>(question) + which) * stride];
+      std::uint64_t bits = 0;
+      memcpy(&bits, &x, sizeof x);
+      if (x != x) bits = 0x7fffffffu;
+      const std::uint64_t mixed = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+      hash = mixed ^ mixed >> 32;
+    }
+  }
+  return hash;
+}
+
+// The largest extent of the pair along an axis.
+template <class Real>
+GRAZE_HD double extent_of(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int i = 0; i < 6; ++i) {
+      const double x = static_cast<double>(component(i < 3 ? a[i] : b[i - 3], axis));
+      low = x < low ? x : low;
+      high = x > high ? x : high;
+    }
+    largest = high - low > largest ? high - low : largest;
+  }
+  return largest;
+}
+
+// Compares the runs of two lanes on one pair.
+template <class Algorithm, class Real, class Sink>
+GRAZE_HD void compare_runs(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Run<Real>& first,
+                           const Run<Real>& second, const std::uint8_t* degrees, Sink& sink) {
+  PairComparison<Real, Sink> comparison(first, second, degrees, extent_of(a, b), sink);
+  run_led<Algorithm>(a, b, first.values, first.path, comparison);
+  comparison.finish();
+}
+
+}  // namespace GRAZE_FP
+}  // namespace graze

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The questions of each algorithm to its policy, by number, with stable names. Each algorithm lists its own in the
+// order of their numbers, see `list` at its end.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/epsilon_sites.h"
+
+namespace graze {
+
+struct Question {
+  std::string
+      name;    // "plane_distance.b[1]", "separation.normal_a: a.high < b.low", "separation.b.low in a: b.low <= a.high"
+  int site;    // of Site; kSiteCount: the source compares itself
+  int degree;  // the unit of its values: lengths to this power
+  std::vector<std::string> of;  // the names of its values: one, or the left and the right one
+  bool at_most = false;         // of two values: whether it asks left <= right; else left < right
+};
+
+// The name of a question's site; "own" for kSiteCount.
+std::string_view site_name(int site);
+
+// By number.   Requires: an index into Algorithms.
+const std::vector<Question>& questions_of(int algorithm);
+
+// Of each question, for core/discrepancy/count.h.
+std::vector<std::uint8_t> degrees_of(int algorithm);
+
+}  // namespace graze

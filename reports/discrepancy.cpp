@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/discrepancy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <functional>
+#include <span>
+
+#include "core/discrepancy/count.h"
+#include "reports/plain_figures.h"
+#include "reports/terminal.h"
+#include "reports/text_table.h"
+
+namespace graze::reports {
+namespace {
+
+using analysis::Discrepancies;
+using analysis::DiscrepancyCounts;
+using analysis::DiscrepancySpec;
+using analysis::LanesCompared;
+using Json = nlohmann::ordered_json;
+
+// A count's name and place. `bucket`: of a histogram; empty for a single count.
+struct Field {
+  std::string name;
+  int at;
+  std::string bucket;
+};
+
+std::string octave(int k) { return fmt::format("2^{}", k); }
+
+void add_octaves(std::vector<Field>& fields, const char* name, int at, int count, int lowest) {
+  for (int k = 0; k < count; ++k) fields.push_back({name, at + k, octave(lowest + k)});
+}
+
+std::vector<Field> value_fields() {
+  using namespace value_counts;
+  std::vector<Field> fields = {
+      {"compared", compared, ""}, {"equal", equal, ""}, {"zero_sign", zero_sign, ""}, {"not_finite", not_finite, ""}};
+  add_octaves(fields, "below", below, kOctaves, 0);
+  add_octaves(fields, "above", above, kOctaves, 0);
+  for (const auto& [name, at] : {std::pair{"first_error", first_error}, std::pair{"second_error", second_error}}) {
+    for (int bucket = 0; bucket < kErrors; ++bucket)
+      fields.push_back({name, at + bucket, analysis::error_bucket_name(bucket)});
+  }
+  fields.push_back({"nearer", nearer_first, "first"});
+  fields.push_back({"nearer", nearer_second, "second"});
+  fields.push_back({"nearer", equally_near, "equal"});
+  fields.push_back({"nearer", nearer_unknown, "unknown"});
+  return fields;
+}
+
+std::vector<Field> question_fields() {
+  using namespace question_counts;
+  std::vector<Field> fields = {{"asked", asked, ""},     {"differs", differs, ""},
+                               {"sign", sign, ""},       {"zero_on_one_side", zero_on_one_side, ""},
+                               {"outcome", outcome, ""}, {"verdict", verdict, ""}};
+  add_octaves(fields, "band", band, kBands, kLowestBand);
+  fields.push_back({"band", band_unknown, "unknown"});
+  return fields;
+}
+
+const std::vector<Field> kPairFields = {{"pairs", pair_counts::pairs, ""},   {"differs", pair_counts::differs, ""},
+                                        {"sign", pair_counts::sign, ""},     {"outcome", pair_counts::outcome, ""},
+                                        {"choice", pair_counts::choice, ""}, {"verdict", pair_counts::verdict, ""}};
+const std::vector<Field> kSiteFields = {
+    {"asked", site_counts::asked, ""}, {"differs", site_counts::differs, ""}, {"sign", site_counts::sign, ""}};
+
+// Counts as an object; histograms as objects of the buckets that are not zero.
+Json object_of(const std::vector<Field>& fields, const DiscrepancyCounts& of, int at) {
+  Json object = Json::object();
+  for (const Field& field : fields) {
+    const std::uint64_t count = of.counts[static_cast<std::size_t>(at + field.at)];
+    if (field.bucket.empty()) {
+      object[field.name] = count;
+    } else {
+      if (!object.contains(field.name)) object[field.name] = Json::object();
+      if (count) object[field.name][field.bucket] = count;
+    }
+  }
+  return object;
+}
+
+double largest(const DiscrepancyCounts& of, std::size_t question, int which) {
+  return std::bit_cast<double>(of.maxima[question * band_maxima::kFields + static_cast<std::size_t>(which)]);
+}
+
+Json counts_json(const DiscrepancyCounts& of, const std::vector<Question>& questions) {
+  static const std::vector<Field> kQuestion = question_fields(), kValue = value_fields();
+  Json json = object_of(kPairFields, of, 0);
+  json["unlike"] = {of.unlike[0], of.unlike[1]};
+  for (int site = 0; site <= kSiteCount; ++site)
+    json["sites"][std::string(site_name(site))] = object_of(kSiteFields, of, site_at(site));
+  for (std::size_t q = 0; q < questions.size(); ++q) {
+    const int question = static_cast<int>(q);
+    Json row = {{"question", questions[q].name}};
+    row.update(object_of(kQuestion, of, question_at(question)));
+    row["largest_in_bounds"] = largest(of, q, band_maxima::in_bounds);
+    row["largest_length"] = largest(of, q, band_maxima::length);
+    for (std::size_t v = 0; v < questions[q].of.size(); ++v) {
+      Json value = {{"value", questions[q].of[v]}};
+      value.update(object_of(kValue, of, value_at(question, static_cast<int>(v))));
+      row["values"].push_back(std::move(value));
+    }
+    json["questions"].push_back(std::move(row));
+  }
+  return json;
+}
+
+DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<DiscrepancyCounts>& of_sources) {
+  DiscrepancyCounts sum(lanes.first->algorithm);
+  for (const DiscrepancyCounts& counts : of_sources) sum += counts;
+  return sum;
+}
+
+// "1 in 532" for rare events, else a percentage.
+std::string rare(std::uint64_t part, std::uint64_t whole) {
+  if (part == 0) return "0";
+  if (part * 20 >= whole) return bare_percent(part, whole) + " %";
+  return "1 in " + grouped((whole + part / 2) / part);
+}
+
+// The sum of both values' counts of different values in each octave.
+std::vector<std::uint64_t> octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
+  using namespace value_counts;
+  std::vector<std::uint64_t> octaves(kOctaves);
+  for (std::size_t v = 0; v < values; ++v) {
+    const int at = value_at(question, static_cast<int>(v));
+    for (int k = 0; k < kOctaves; ++k) {
+      for (const int side : {below, above})
+        octaves[static_cast<std::size_t>(k)] += of.counts[static_cast<std::size_t>(at + side + k)];
+    }
+  }
+  return octaves;
+}
+
+// The most ulps of the smallest share of differing values, "1", "≤ 63"; "-" if none differs.
+std::string quantile(std::span<const std::uint64_t> octaves, double share) {
+  std::uint64_t all = 0, so_far = 0;
+  for (const std::uint64_t count : octaves) all += count;
+  if (all == 0) return "-";
+  for (std::size_t k = 0; k < octaves.size(); ++k) {
+    so_far += octaves[k];
+    if (static_cast<double>(so_far) >= share * static_cast<double>(all))
+      return k == 0 ? "1" : k < 20 ? fmt::format("≤ {}", (std::uint64_t{2} << k) - 1) : fmt::format("< 2^{}", k + 1);
+  }
+  return "-";
+}
+
+std::uint64_t sum_of(const DiscrepancyCounts& of, int question, std::size_t values, int field) {
+  std::uint64_t sum = 0;
+  for (std::size_t v = 0; v < values; ++v)
+    sum += of.counts[static_cast<std::size_t>(value_at(question, static_cast<int>(v)) + field)];
+  return sum;
+}
+
+std::string line_of(const cuda::SourceLine& line) {
+  return *line.file == '\0' ? "" : fmt::format("{}:{}", line.file, line.line);
+}
+
+// The lines in the order of what they decide: verdicts, then values.
+std::vector<const analysis::FusedLine*> by_weight(const analysis::Origins& origins) {
+  std::vector<const analysis::FusedLine*> lines;
+  for (const analysis::FusedLine& line : origins.lines) lines.push_back(&line);
+  std::stable_sort(lines.begin(), lines.end(), [](const analysis::FusedLine* l, const analysis::FusedLine* r) {
+    return std::pair(l->verdicts_fixed, l->values) > std::pair(r->verdicts_fixed, r->values);
+  });
+  return lines;
+}
+
+constexpr std::size_t kMostLines = 10;
+
+std::string origins_table(const analysis::Origins& origins, const Screen& screen) {
+  TextTable table(
+      {{"fused line", Align::left}, {"within", Align::left}, {"values"}, {"verdicts alone"}, {"verdicts fixed"}});
+  for (const analysis::FusedLine* line : by_weight(origins)) {
+    if (line->values + line->verdicts_alone + line->verdicts_fixed == 0) continue;
+    table.add({line_of(line->at), line_of(line->from), grouped(line->values),
+               Cell(grouped(line->verdicts_alone), line->verdicts_alone > 0),
+               Cell(grouped(line->verdicts_fixed), line->verdicts_fixed > 0)});
+    if (table.rows() == kMostLines) break;
+  }
+  return wrapped(
+             fmt::format("Contraction changes the verdict on {} of {} pairs that were examined. Source lines whose "
+                         "products are fused, by what each does (values, verdicts alone: that change if it alone is "
+                         "fused; verdicts fixed: changed ones that return if it alone is not fused):",
+                         grouped(origins.verdicts), grouped(origins.pairs)),
+             screen.columns) +
+         table.text(screen);
+}
+
+Json origins_json(const analysis::Origins& origins, const std::vector<Question>& questions) {
+  Json lines = Json::array(), starts = Json::array();
+  for (const analysis::FusedLine& line : origins.lines) {
+    lines.push_back({{"line", line_of(line.at)},
+                     {"within", line_of(line.from)},
+                     {"values", line.values},
+                     {"verdicts_alone", line.verdicts_alone},
+                     {"verdicts_fixed", line.verdicts_fixed},
+                     {"simplest", line.simplest ? coordinates_of(*line.simplest) : Json()}});
+  }
+  for (const auto& [place, start] : origins.starts) {
+    Json by_line = Json::object(), growth = Json::object();
+    for (std::size_t l = 0; l < origins.lines.size(); ++l) {
+      if (start.by_line[l]) by_line[std::to_string(l)] = start.by_line[l];
+    }
+    for (std::size_t k = 0; k < start.growth.size(); ++k) {
+      if (start.growth[k]) growth[octave(static_cast<int>(k))] = start.growth[k];
+    }
+    starts.push_back(
+        {{"value", questions[static_cast<std::size_t>(place.first)].of[static_cast<std::size_t>(place.second)]},
+         {"question", questions[static_cast<std::size_t>(place.first)].name},
+         {"by_line", by_line},
+         {"by_several_lines", start.by_line.back()},
+         {"growth", growth}});
+  }
+  return {{"pairs", origins.pairs}, {"verdicts", origins.verdicts}, {"lines", lines}, {"starts", starts}};
+}
+
+}  // namespace
+
+std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& screen) {
+  const auto& [spec, found, origins] = results;
+  std::string text;
+  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+    const LanesCompared& lanes = spec.lanes[l];
+    const DiscrepancyCounts sum = total(lanes, found[l]);
+    const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
+    TextTable table({{"question", Align::left},
+                     {"asked"},
+                     {"differs"},
+                     {"median"},
+                     {"99 %"},
+                     {"largest"},
+                     {"2nd nearer"},
+                     {"sign"},
+                     {"outcome"},
+                     {"verdict"},
+                     {"band"}});
+    bool any = false;
+    for (std::size_t q = 0; q < questions.size(); ++q) {
+      const int question = static_cast<int>(q);
+      const auto of = [&](int field) { return sum.counts[static_cast<std::size_t>(question_at(question) + field)]; };
+      using namespace question_counts;
+      if (of(differs) == 0) continue;
+      any = true;
+      const std::size_t values = questions[q].of.size();
+      const std::vector<std::uint64_t> octaves = octaves_of(sum, question, values);
+      const std::uint64_t second = sum_of(sum, question, values, value_counts::nearer_second),
+                          first = sum_of(sum, question, values, value_counts::nearer_first);
+      table.add({questions[q].name, grouped(of(asked)), rare(of(differs), of(asked)), quantile(octaves, 0.5),
+                 quantile(octaves, 0.99), quantile(octaves, 1),
+                 first + second == 0 ? "-" : bare_percent(second, first + second) + " %",
+                 Cell(rare(of(sign), of(asked)), of(sign) > 0), Cell(rare(of(outcome), of(asked)), of(outcome) > 0),
+                 Cell(grouped(of(verdict)), of(verdict) > 0),
+                 of(sign) == 0 ? "-" : fmt::format("{:.3g}", largest(sum, q, band_maxima::in_bounds))});
+    }
+    text += wrapped(fmt::format("{} against {}{}", lanes.first->id, lanes.second->id,
+                                any ? ":" : ": no value of any question differs in any bit."),
+                    screen.columns);
+    if (any) text += table.text(screen);
+    if (origins[l]) text += origins_table(*origins[l], screen);
+  }
+  return text;
+}
+
+std::vector<std::string> discrepancy_sentences(const DiscrepancyResults& results) {
+  const auto& [spec, found, origins] = results;
+  std::vector<std::string> sentences;
+  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+    const LanesCompared& lanes = spec.lanes[l];
+    const DiscrepancyCounts sum = total(lanes, found[l]);
+    const auto of = [&](int field) { return sum.counts[static_cast<std::size_t>(field)]; };
+    const std::uint64_t pairs = of(pair_counts::pairs);
+    const int distances = site_at(static_cast<int>(Site::plane_distance));
+    std::string text = fmt::format("{} against {}, {} pairs: ", lanes.first->id, lanes.second->id, grouped(pairs));
+    if (of(pair_counts::differs) == 0) {
+      text += fmt::format("all values that a comparison sees have the same bits, and {} verdicts differ.",
+                          grouped(of(pair_counts::verdict)));
+    } else {
+      text += fmt::format(
+          "some value differs on {} of the pairs, some sign on {}, some comparison on {}, the verdict on {}.",
+          rare(of(pair_counts::differs), pairs), rare(of(pair_counts::sign), pairs),
+          rare(of(pair_counts::outcome), pairs), rare(of(pair_counts::verdict), pairs));
+      if (of(distances + site_counts::differs))
+        text += fmt::format(" A signed distance differs on {}, its sign on {}.",
+                            rare(of(distances + site_counts::differs), pairs),
+                            rare(of(distances + site_counts::sign), pairs));
+    }
+    for (int lane = 0; lane < 2; ++lane) {
+      if (sum.unlike[lane])
+        text += fmt::format(" On {} pairs the recorded run of {} has another verdict than the lane.",
+                            grouped(sum.unlike[lane]), (lane ? lanes.second : lanes.first)->id);
+    }
+    sentences.push_back(text);
+  }
+  return sentences;
+}
+
+Json discrepancy_json(const DiscrepancyResults& results) {
+  const auto& [spec, found, origins] = results;
+  Json all = Json::array();
+  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+    const LanesCompared& lanes = spec.lanes[l];
+    const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
+    Json list = Json::array(), strata = Json::object();
+    for (const Question& question : questions) {
+      list.push_back({{"question", question.name},
+                      {"site", site_name(question.site)},
+                      {"degree", question.degree},
+                      {"values", question.of}});
+    }
+    for (std::size_t s = 0; s < spec.sources.size(); ++s)
+      strata[spec.sources[s].id] = counts_json(found[l][s], questions);
+    all.push_back({{"first", lanes.first->id},
+                   {"second", lanes.second->id},
+                   {"questions", list},
+                   {"total", counts_json(total(lanes, found[l]), questions)},
+                   {"strata", strata},
+                   {"origins", origins[l] ? origins_json(*origins[l], questions) : Json()}});
+  }
+  return {{"lanes", all}};
+}
+
+std::string discrepancy_csv(const DiscrepancyResults& results) {
+  const auto& [spec, found, origins] = results;
+  std::string text = "first,second,stratum,question,value,count,bucket,pairs\n";
+  for (std::size_t l = 0; l < spec.lanes.size(); ++l) {
+    const std::vector<Question>& questions = questions_of(spec.lanes[l].first->algorithm);
+    for (std::size_t s = 0; s < spec.sources.size(); ++s) {
+      const auto rows = [&](const std::vector<Field>& fields, int at, const std::string& question,
+                            const std::string& value) {
+        for (const Field& field : fields) {
+          if (const std::uint64_t count = found[l][s].counts[static_cast<std::size_t>(at + field.at)])
+            text += fmt::format("{},{},{},\"{}\",\"{}\",{},{},{}\n", spec.lanes[l].first->id, spec.lanes[l].second->id,
+                                spec.sources[s].id, question, value, field.name, field.bucket, count);
+        }
+      };
+      rows(kPairFields, 0, "", "");
+      for (int site = 0; site <= kSiteCount; ++site) rows(kSiteFields, site_at(site), std::string(site_name(site)), "");
+      for (std::size_t q = 0; q < questions.size(); ++q) {
+        rows(question_fields(), question_at(static_cast<int>(q)), questions[q].name, "");
+        for (std::size_t v = 0; v < questions[q].of.size(); ++v)
+          rows(value_fields(), value_at(static_cast<int>(q), static_cast<int>(v)), questions[q].name,
+               questions[q].of[v]);
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace graze::reports

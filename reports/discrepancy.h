@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Presents how the values of two lanes differ: sentences, tables, discrepancy.json and discrepancy.csv.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "analysis/discrepancy_origins.h"
+#include "reports/screen.h"
+
+namespace graze::reports {
+
+// What `graze discrepancy` found: counts, and for each comparison where the differences start, if that is known.
+struct DiscrepancyResults {
+  const analysis::DiscrepancySpec& spec;
+  analysis::Discrepancies counts;
+  std::vector<std::optional<analysis::Origins>> origins;
+};
+
+// For each comparison, a table of its questions over all sources, and one of the source lines that differ most.
+std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& screen);
+
+// For each comparison: which share of values, signs and verdicts differs, which lane is nearer to the exact values, and
+// how near to zero a sign differs.
+std::vector<std::string> discrepancy_sentences(const DiscrepancyResults& results);
+
+// {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md says what the counts are.
+nlohmann::ordered_json discrepancy_json(const DiscrepancyResults& results);
+
+// A row for each count that is not zero: first,second,stratum,question,value,count,bucket,pairs.
+std::string discrepancy_csv(const DiscrepancyResults& results);
+
+}  // namespace graze::reports

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/side_by_side.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "reports/terminal.h"
+#include "reports/text_table.h"
+
+namespace graze::reports {
+namespace {
+
+using analysis::ValueBeside;
+
+std::string value_text(const std::optional<double>& value, Scalar scalar) {
+  if (!value) return "-";
+  return scalar == Scalar::f32 ? fmt::format("{}", static_cast<float>(*value)) : fmt::format("{}", *value);
+}
+
+std::string apart_text(const ValueBeside& value, Scalar scalar) {
+  if (!value.compared || !value.first || !value.second) return "-";
+  if (std::isnan(*value.first) && std::isnan(*value.second)) return "0";
+  if (!std::isfinite(*value.first) || !std::isfinite(*value.second)) return *value.first == *value.second ? "0" : "?";
+  return grouped(analysis::ulps_apart(scalar, *value.first, *value.second));
+}
+
+std::string exact_text(const ValueBeside& value) {
+  if (!value.exact || !value.exact->settled()) return "-";
+  return value.exact->is_exactly_zero() ? "0" : fmt::format("{:.9g}", value.exact->hi);
+}
+
+std::string error_text(const std::optional<double>& value, const ValueBeside& of, Scalar scalar) {
+  if (!value || !of.exact || !of.compared) return "-";
+  const std::string bucket = analysis::error_bucket_of(scalar, *value, *of.exact);
+  return bucket == "0" || bucket == "unknown" || bucket == "not finite" ? bucket : "≤ " + bucket;
+}
+
+int sign_of(double x) { return std::isnan(x) ? 2 : (x > 0) - (x < 0); }
+
+// Whether the comparison that sees this value goes the other way. `left`: the value before, of a question about two.
+bool goes_otherwise(const Question& question, const ValueBeside* left, const ValueBeside& value) {
+  if (!value.compared || !value.first || !value.second) return false;
+  if (question.of.size() == 1) return sign_of(*value.first) != sign_of(*value.second);
+  if (value.which == 0 || !left) return false;
+  return question.at_most ? (*left->first <= *value.first) != (*left->second <= *value.second)
+                          : (*left->first < *value.first) != (*left->second < *value.second);
+}
+
+}  // namespace
+
+std::string side_by_side(const analysis::LanesCompared& lanes, const Pair& pair, const Screen& screen) {
+  const analysis::RunsBeside runs = analysis::runs_beside(lanes, pair);
+  const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
+  const Scalar scalar = lanes.first->scalar;
+  TextTable table({{"value", Align::left},
+                   {"first"},
+                   {"second"},
+                   {"ulps apart"},
+                   {"exact"},
+                   {"error, first"},
+                   {"error, second"},
+                   {"", Align::left}});
+  bool differs = false, otherwise = false;
+  for (std::size_t v = 0; v < runs.values.size(); ++v) {
+    const ValueBeside& value = runs.values[v];
+    const Question& question = questions[static_cast<std::size_t>(value.question)];
+    const std::string apart = apart_text(value, scalar);
+    const bool other = goes_otherwise(question, v > 0 ? &runs.values[v - 1] : nullptr, value);
+    std::string note = other ? question.of.size() == 1 ? "other sign" : "goes the other way" : "";
+    if (note.empty() && !value.compared) note = value.first && value.second ? "another quantity" : "one lane alone";
+    differs = differs || (apart != "0" && apart != "-");
+    otherwise = otherwise || other;
+    table.add({question.of[static_cast<std::size_t>(value.which)], value_text(value.first, scalar),
+               value_text(value.second, scalar), Cell(apart, apart != "0" && apart != "-"), exact_text(value),
+               error_text(value.first, value, scalar), error_text(value.second, value, scalar), Cell(note, other)});
+  }
+  const Verdict first = recorded_verdict(runs.first.path), second = recorded_verdict(runs.second.path);
+  const std::string values = differs
+                                 ? otherwise ? "a comparison goes the other way" : "values differ, no comparison does"
+                                 : "every value has the same bits";
+  return wrapped(fmt::format("first: {}, {}; second: {}, {}: {}. Errors in ulps of the exact value along the first "
+                             "lane's path.",
+                             lanes.first->id, name(first), lanes.second->id, name(second), values),
+                 screen.columns, 2, 4) +
+         table.text(screen, 2);
+}
+
+}  // namespace graze::reports

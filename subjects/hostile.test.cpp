@@ -632,6 +632,50 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
   expect_nothing_left();
 }
 
+// A tracee stops at each signal. Its tracer is the process that forks the workers, which must not take this for an end:
+// it would fork another worker too early, and the code would be loaded again.
+TEST_F(Hostile, AWorkerThatIsTracedByItsParentIsAVerdictAndTheCodeStaysLoaded) {
+  const fs::path loads = folder / "loads";
+  const struct {
+    const char *name, *does;
+    Verdict expected;
+  } kCases[] = {{"traced_stop", "raise(SIGSTOP)", Verdict::timed_out},
+                {"traced_signal", "raise(SIGUSR1)", Verdict::crashed},
+                {"traced_abort", "abort()", Verdict::crashed},
+                {"traced_exec", "execl(\"/bin/sleep\", \"sleep\", \"1000\", (char*)0)", Verdict::crashed},
+                {"traced_kill", "raise(SIGKILL)", Verdict::crashed},
+                {"traced_exit", "_exit(0)", Verdict::crashed},
+                {"traced_loop", "for (;;)", Verdict::timed_out},
+                {"traced_return", "", Verdict::disjoint}};
+  for (const auto& c : kCases) {
+    const fs::path file = built_from(c.name,
+                                     "#include <fcntl.h>\n#include <signal.h>\n#include <stdlib.h>\n"
+                                     "#include <sys/ptrace.h>\n#include <unistd.h>\n"
+                                     "__attribute__((constructor)) static void f(void) {\n  write(open(\"" +
+                                         loads.string() + "\", O_WRONLY | O_CREAT | O_APPEND, 0600), \"l\", 1); }\n" +
+                                         "int intersects(const float a[9], const float b[9]) {\n  if (a[0] > 0.9f) { "
+                                         "ptrace(PTRACE_TRACEME, 0, 0, 0); " +
+                                         c.does + "; return 0; }\n  return a[0] < b[0]; }");
+    for (const bool namespaces : {true, false}) {
+      SCOPED_TRACE(c.name);
+      fs::remove(loads);
+      Code code{"library", file.string(), "intersects", "f32", 0.1, 256};
+      code.namespaces = namespaces;
+      {
+        ForeignProcesses subject(code, Scalar::f32);
+        const std::vector<Verdict> found = verdicts(subject);
+        EXPECT_EQ(text_of(loads), "l");
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+          const bool fails = is_bad(pairs[i]) && c.expected != Verdict::disjoint;
+          EXPECT_EQ(found[i], fails ? Verdict::crashed : is_bad(pairs[i]) ? c.expected : left_of(pairs[i])) << i;
+          EXPECT_TRUE(!fails || subject.failure(pairs[i]) == c.expected) << i;
+        }
+      }
+      expect_nothing_left();
+    }
+  }
+}
+
 // An unexpected line shifts all later answers. Asking about single pairs shows which pair caused it.
 TEST_F(Hostile, LinesThatWereNotAskedForAreVerdictsOfTheirPairs) {
   std::ofstream(folder / "extra.c") << R"(#include <stdio.h>

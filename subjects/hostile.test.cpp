@@ -15,6 +15,7 @@
 #include <sstream>
 #include <thread>
 
+#include "core/programs/process_state.h"
 #include "core/programs/run_program.h"
 #include "core/stop.h"
 #include "strata/strata.h"
@@ -201,6 +202,7 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"stops_parent"},
                                {"kills_grandparent", false},
                                {"kills_group"},
+                               {"stops_group"},
                                {"stops_itself"},
                                {"ends_itself_quietly"},
                                {"pretends_not_ready"},
@@ -630,6 +632,34 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
     for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
   }
   expect_nothing_left();
+}
+
+// The processes between it and graze are in other groups, also the guardian outside of its namespace.
+TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
+  const auto bad = std::find_if(pairs.begin(), pairs.end(), is_bad);
+  ASSERT_NE(bad, pairs.end());
+  for (const bool namespaces : {true, false}) {
+    Code code{"library", (folder / "libhostile.so").string(), "stops_group", "f32", 0.1, 256};
+    code.namespaces = namespaces;
+    // Would be crashed if its supervisor or guardian stopped.
+    EXPECT_EQ(ForeignProcesses(code, Scalar::f32).failure(*bad), Verdict::timed_out);
+    expect_nothing_left();
+
+    code.timeout = 3600;
+    const pid_t asking = fork();
+    if (asking == 0) {
+      ForeignProcesses(code, Scalar::f32).failure(*bad);
+      _exit(0);
+    }
+    const auto one_is_stopped = [] {
+      const std::set<pid_t> all = left_over();
+      return std::any_of(all.begin(), all.end(), is_stopped);
+    };
+    while (!one_is_stopped()) usleep(1000);
+    EXPECT_EQ(kill(asking, SIGKILL), 0);
+    EXPECT_EQ(waitpid(asking, nullptr, 0), asking);
+    expect_nothing_left();
+  }
 }
 
 // A tracee stops at each signal. Its tracer is the process that forks the workers, which must not take this for an end:

@@ -598,6 +598,7 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run("setsid sleep 1000 & echo one; echo two >&2; exit 3", 600), 3);
     EXPECT_EQ(said, "one\ntwo\n");
     EXPECT_EQ(run("kill -9 $$", 600), 128 + SIGKILL);
+    EXPECT_EQ(run("kill -9 0", 600), 128 + SIGKILL);  // its process group
     EXPECT_EQ(run("echo $TMPDIR", 600), 0);
     EXPECT_EQ(said, scratch.path().string() + '\n');
     EXPECT_EQ(run("echo 4000000000000 2>&1 > /proc/$PPID/timerslack_ns || echo refused", 600), 0);

@@ -77,6 +77,10 @@ void expect_own(const fs::path& file, const std::string& text) {
     throw UsageError(cannot("replace", file, kForeign));
 }
 
+bool is_left_over(const fs::path& file) {
+  return file.string().ends_with(kPart) && fs::is_regular_file(fs::symlink_status(file));
+}
+
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {
   std::error_code none;
   if (!fs::is_directory(folder, none)) return true;  // creating the folder will report what is wrong

@@ -173,6 +173,36 @@ TEST(FirstDifference, NamesThePlaceAndBothValues) {
   EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"b", true}}), "b is true, not none");
 }
 
+// SQLite would read the log beside the file to which the link leads.
+TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
+  const std::string whole = run(campaign("whole"));
+  const Campaign c = in_seven_rows("linked");
+  fs::create_directory(root_ / "disk");
+  fs::rename(file(c), root_ / "disk/store");
+  fs::create_symlink("../disk/store", file(c));
+  const std::string bytes = read_whole(file(c));
+  write_whole(root_ / "disk/store", bytes.substr(0, bytes.size() / 2));
+  const auto salvage = discard_damaged(store_spec(c));
+  ASSERT_TRUE(salvage);
+  EXPECT_EQ(salvage->damaged.filename(), "store.damaged");
+  EXPECT_EQ(run(c), whole);
+  EXPECT_TRUE(fs::is_symlink(file(c)));
+}
+
+TEST_F(StoreTest, RemovingAStoreLeavesWhatOthersPutBesideIt) {
+  const Campaign c = in_seven_rows("scratch");
+  const fs::path left = file(c).string() + kPart;
+  write_whole(left, "of a killed run");
+  write_whole(file(c).string() + ".part", "precious");
+  remove_store(c.directory);
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_FALSE(fs::exists(file(c)));
+  fs::create_directory(left);
+  remove_store(c.directory);
+  EXPECT_TRUE(fs::exists(left));
+  EXPECT_EQ(read_whole(file(c).string() + ".part"), "precious");
+}
+
 TEST_F(StoreTest, DamageOfAnotherCampaignIsNoReasonToDiscardIt) {
   in_seven_rows("taken");
   Campaign other = campaign("taken", 1500);

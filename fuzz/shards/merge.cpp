@@ -136,14 +136,18 @@ fs::path place_of(const fs::path& out) {
   return place;
 }
 
-// The folder beside the target in which the campaign is built. A killed merge may have left it.
+constexpr std::string_view kCampaignPart = "campaign.graze.part";
+
+// The folder beside the target in which the campaign is built, as kCampaignPart. A killed merge may have left it.
 fs::path folder_beside(const fs::path& place) {
   std::error_code error;
   fs::path part = place;
-  part += ".part";
+  part += kPart;
   fs::create_directories(part, error);
   if (error) throw std::runtime_error(cannot("make the directory", part, error.message()));
-  if (!may_fill(part, {})) throw UsageError(cannot("use", part, "it holds files that no merge left; remove it"));
+  const auto is_ours = [](const fs::directory_entry& entry) { return entry.path().filename() == kCampaignPart; };
+  if (fs::is_symlink(part) || !std::all_of(fs::directory_iterator(part), fs::directory_iterator(), is_ours))
+    throw UsageError(cannot("use", part, "it is not what a killed merge leaves; remove it"));
   return part;
 }
 
@@ -275,7 +279,7 @@ Outcome merge(const MergeOptions& options) {
   const std::map<std::string, Json> timings = timings_of(stores);
   const fs::path place = place_of(options.out), beside = folder_beside(place);
   const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // held to the end; other merges must not empty it
-  campaign.directory = beside / "campaign.part";
+  campaign.directory = beside / kCampaignPart;
 
   Sums sums(campaign.sources, static_cast<int>(under_test.lanes.size()));
   std::vector<std::uint64_t> held(stores.size());

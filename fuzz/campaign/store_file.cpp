@@ -317,6 +317,13 @@ std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec
   return kept;
 }
 
+// The first of FILE.damaged, FILE.damaged-2, … that does not exist.
+fs::path place_of_damaged(const fs::path& file) {
+  fs::path place = file.string() + ".damaged";
+  for (int n = 2; fs::exists(fs::symlink_status(place)); ++n) place = fmt::format("{}.damaged-{}", file.string(), n);
+  return place;
+}
+
 // The bytes of a database file with these rows.
 std::string bytes_of_store(const std::string& text, const std::vector<KeptRow>& rows) {
   SQLite::Database database(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
@@ -338,7 +345,7 @@ Salvage salvage(const StoreSpec& spec) {
   const std::string text = text_of(spec);
   std::vector<KeptRow> kept;
   std::size_t seen = 0;
-  for (const fs::path& left : unusable_files_of(file)) fs::rename(left, left.string() + ".damaged");
+  for (const fs::path& left : unusable_files_of(file)) fs::rename(left, place_of_damaged(left));
   try {
     SQLite::Database database = opened(file);
     bool known = false;
@@ -353,7 +360,7 @@ Salvage salvage(const StoreSpec& spec) {
       throw std::runtime_error(cannot("recover", file, "no batch of this campaign can be read; choose another --out"));
   } catch (const SQLite::Exception&) {  // nothing is readable
   }
-  Salvage result{kept.size(), 0, file.string() + ".damaged"};
+  Salvage result{kept.size(), 0, place_of_damaged(file)};
   for (const KeptRow& row : kept) result.pairs += row.range.pairs;
   const std::string bytes = bytes_of_store(text, kept);
   copy_whole(file, result.damaged);

@@ -325,6 +325,17 @@ TEST_F(Files, ResultsGoIntoFoldersThatAreTheirOwnOrEmpty) {
   write_whole(out / "tune.json.graze.part", "what a killed write left");
   EXPECT_TRUE(may_fill(out, {"tune.json"}));
   EXPECT_TRUE(may_hold_campaign(out));
+  for (const char* theirs : {"movie.mkv.part", "thesis.part/chapter", "thesis.graze.part/chapter"}) {
+    fs::create_directories((out / theirs).parent_path());
+    write_whole(out / theirs, "text");
+    EXPECT_FALSE(may_fill(out, {"tune.json"})) << theirs;
+    EXPECT_FALSE(may_hold_campaign(out)) << theirs;
+    fs::remove(out / theirs);
+  }
+  fs::create_symlink("cases", out / "link.graze.part");
+  EXPECT_FALSE(may_fill(out, {"tune.json"}));
+  fs::remove(out / "link.graze.part");
+  EXPECT_TRUE(may_fill(out, {"tune.json"}));
   write_whole(out / "cases/of/mine", "text");
   EXPECT_FALSE(may_fill(out, {"tune.json"}));
   EXPECT_FALSE(may_hold_campaign(out));

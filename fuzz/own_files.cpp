@@ -45,8 +45,9 @@ bool same_kind_of_object(const std::string& there, const std::string& text) {
   return theirs.is_object() && ours.is_object() && first_keys(theirs) == first_keys(ours);
 }
 
+// Whether it is left over, or a folder of nothing.
 bool is_nothing(const fs::path& entry) {
-  if (entry.string().ends_with(".part")) return true;
+  if (is_left_over(entry)) return true;
   return fs::is_directory(fs::symlink_status(entry)) &&
          std::all_of(fs::directory_iterator(entry), fs::directory_iterator(),
                      [](const auto& e) { return is_nothing(e.path()); });

@@ -239,6 +239,17 @@ TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
   EXPECT_TRUE(fs::is_symlink(file(c)));
 }
 
+// A reader that may not write leaves an index and an empty log.
+TEST_F(StoreTest, ReadingRemovesWhatOtherReadersOfTheDatabaseLeft) {
+  const Campaign c = campaign("read");
+  run(c);
+  SQLite::Database(file(c).string(), SQLite::OPEN_READONLY).execAndGet("SELECT count(*) FROM batch");
+  const std::string name = file(c).string();
+  ASSERT_TRUE(fs::exists(name + "-shm") && fs::exists(name + "-wal"));
+  EXPECT_EQ(recorded_store(c.directory).spec, c.spec);
+  EXPECT_FALSE(fs::exists(name + "-shm") || fs::exists(name + "-wal"));
+}
+
 TEST_F(StoreTest, RemovingAStoreLeavesWhatOthersPutBesideIt) {
   const Campaign c = in_seven_rows("scratch");
   const fs::path left = file(c).string() + kPart;

@@ -270,7 +270,9 @@ struct OpenedToRead {
                  : nullptr),
         database(lock ? opened(directory / kDatabase, SQLite::OPEN_READWRITE)
                       : SQLite::Database(as_uri(directory / kDatabase), SQLite::OPEN_READONLY | SQLite::OPEN_URI)) {
-    if (lock) database.exec("PRAGMA locking_mode = EXCLUSIVE");
+    // An exclusive reader needs no index file, and would not remove one that another program's reader left.
+    if (lock && !fs::exists(directory / (std::string(kDatabase) + "-shm")))
+      database.exec("PRAGMA locking_mode = EXCLUSIVE");
   }
 
   static std::string as_uri(const fs::path& file) {

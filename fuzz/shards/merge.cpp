@@ -113,18 +113,30 @@ void expect_sealed(const StoreSpec& store) {
                            printable(status["hash"].get<std::string>()))));
 }
 
-void expect_new(const fs::path& out) {
-  if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
-    throw UsageError(cannot("use", out, "it holds other files; choose a new or an empty directory as --out"));
+// Whether the folder holds the whole campaign, for example because a merge into it has ended.
+bool holds_whole(const fs::path& out, const Json& spec) {
+  try {
+    const StoreSpec found = recorded_store(out);
+    const Json summary = Json::parse(read_whole(out / "summary.json"));
+    return found.shard.whole() && found.spec == spec && summary.at("complete") == true;
+  } catch (const std::exception&) {  // it holds something else
+    return false;
+  }
+}
+
+void expect_new(const fs::path& out, const Json& spec) {
+  if (!fs::exists(out) || (fs::is_directory(out) && fs::is_empty(out))) return;
+  const std::string why = holds_whole(out, spec) ? "it holds this campaign already, complete" : "it holds other files";
+  throw UsageError(cannot("use", out, why + "; choose a new or an empty directory as --out"));
 }
 
 // The folder that `out` names, without links; the finished campaign is renamed to it.
 // Throws: UsageError if that is impossible.
-fs::path place_of(const fs::path& out) {
+fs::path place_of(const fs::path& out, const Json& spec) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(behind_links(out), error);
   if (error) throw UsageError(cannot("use", out, error.message()));
-  expect_new(out);
+  expect_new(out, spec);
   if (!place.has_filename()) place = place.parent_path();
   if (place == fs::current_path(error))
     throw UsageError(cannot("replace", out, "it is the working directory; run the command elsewhere"));
@@ -277,7 +289,7 @@ Outcome merge(const MergeOptions& options) {
   const SelectedLanes under_test = recorded_lanes(campaign.spec);
   campaign.under_test = &under_test;
   const std::map<std::string, Json> timings = timings_of(stores);
-  const fs::path place = place_of(options.out), beside = folder_beside(place);
+  const fs::path place = place_of(options.out, campaign.spec), beside = folder_beside(place);
   const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // held to the end; other merges must not empty it
   campaign.directory = beside / kCampaignPart;
 
@@ -286,7 +298,7 @@ Outcome merge(const MergeOptions& options) {
   std::optional<Store> partial;
   std::error_code unimportant;
   try {
-    expect_new(options.out);  // again, because another merge may just have ended
+    expect_new(options.out, campaign.spec);  // again, because another merge may just have ended
     fs::remove_all(campaign.directory);
     fs::create_directory(campaign.directory);
     if (options.partial) partial.emplace(store_spec(campaign));

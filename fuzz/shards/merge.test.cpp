@@ -144,6 +144,24 @@ TEST_F(MergeTest, OnlyWhatAKilledMergeLeftIsReplaced) {
     EXPECT_EQ(read_whole(theirs), "precious");
 }
 
+TEST_F(MergeTest, AMergeThatIsDoneIsSaidToBe) {
+  const std::vector<fs::path> parts = run_shards(2);
+  const auto refused = [&](const fs::path& out) -> std::string {
+    try {
+      merge({parts, out, false});
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  merge({parts, root_ / "all", false});
+  EXPECT_TRUE(names(refused(root_ / "all"), {(root_ / "all").string(), "already"}));
+  merge({{parts[0]}, root_ / "half", true});
+  run(campaign("other", {1, 3}));
+  for (const char* name : {"half", "other"})
+    EXPECT_TRUE(names(refused(root_ / name), {(root_ / name).string(), "other files"})) << name;
+}
+
 TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {
   const std::vector<fs::path> parts = run_shards(3);
   run(campaign("whole"));

@@ -52,10 +52,10 @@ void print(const Json& kind, std::size_t number, const reports::Screen& screen) 
       fmt::format("kind-{}  {}: {}{}, {} pairs", number, subject, kind["cause"].get<std::string>(),
                   where.empty() ? "" : " at " + where, kind["shape"].get<std::string>());
   fmt::print("{}", reports::bold(screen, line(0, title)));
-  fmt::print("{}", line(2, fmt::format("{} pairs of {} signatures; wrong: {}",
-                                       reports::grouped(kind["pairs"].get<std::uint64_t>()),
-                                       reports::grouped(kind["signatures"].get<std::uint64_t>()),
-                                       lanes_within(kind["lanes"], subject))));
+  fmt::print("{}",
+             line(2, fmt::format("{} of {}; wrong: {}", reports::counted(kind["pairs"].get<std::uint64_t>(), "pair"),
+                                 reports::counted(kind["signatures"].get<std::uint64_t>(), "signature"),
+                                 lanes_within(kind["lanes"], subject))));
   const std::uint64_t settled = kind["settled"][0], of = kind["settled"][1];
   if (settled < of)
     fmt::print("{}", line(2, fmt::format("the cause is settled for {} of {} lanes looked at", settled, of)));

@@ -187,8 +187,9 @@ int fuzz(const FuzzOptions& options, fuzz::Ranks* ranks) {
   if (options.discard_damaged) {
     if (!campaign.scratch.empty()) fuzz::fetch_from_directory(campaign);
     if (const auto kept = fuzz::discard_damaged(fuzz::store_spec(campaign)))
-      fmt::print(stderr, "graze: kept {} pairs in {} batches whose checksum is right; the damaged database is now {}\n",
-                 reports::grouped(kept->pairs), reports::grouped(kept->batches), kept->damaged.string());
+      fmt::print(stderr, "graze: kept {} in {} batch{} whose checksum is right; the damaged database is now {}\n",
+                 reports::counted(kept->pairs, "pair"), reports::grouped(kept->batches), kept->batches == 1 ? "" : "es",
+                 kept->damaged.string());
   }
   if (ranks) return on_ranks(options, campaign, left_out, *ranks);
   const reports::Screen errors = error_screen();
@@ -244,10 +245,11 @@ void print_shard(const std::string& out, const Json& summary, bool json) {
     return;
   }
   std::cout << fmt::format(
-      "Shard {}: {} pairs, {} disagreements, {} signatures\nWrote {}/campaign.sqlite\n"
+      "Shard {}: {}, {}, {}\nWrote {}/campaign.sqlite\n"
       "Next, when all shards are done: graze merge DIR… --out campaign\n",
-      summary["shard"].get<std::string>(), reports::grouped(summary["pairs"]),
-      reports::grouped(summary["disagreements"]), reports::grouped(summary["signatures"]), out);
+      summary["shard"].get<std::string>(), reports::counted(summary["pairs"], "pair"),
+      reports::counted(summary["disagreements"], "disagreement"), reports::counted(summary["signatures"], "signature"),
+      out);
 }
 
 void print_campaign(const std::string& out, const fuzz::Outcome& outcome, bool json,

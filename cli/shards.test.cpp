@@ -81,7 +81,7 @@ TEST_F(Shards, MergingGoesThroughLinksAndSaysFirstWhereItCannotGo) {
               "into/../c && cmp x/c/summary.json ../empty/summary.json");
   expect_error("cd a && " + merge + "loop", 2, {"loop", "Too many levels of symbolic links"});
   expect_error("mkdir here && cd here && " + merge + ".", 2, {".", "working directory"});
-  expect_done("test -z \"$(ls *.part a/*.part 2> /dev/null)\" && test -z \"$(ls -A here)\"");
+  expect_done("test -z \"$(ls -d *.part a/*.part 2> /dev/null)\" && test -z \"$(ls -A here)\"");
   const std::string mounted = "mkdir -p m && cd a && unshare -rm sh -c 'mount -t tmpfs none ../m && ";
   if (shell(mounted + "true'").status != 0) GTEST_SKIP() << "no mount namespaces here";
   expect_error(mounted + merge + "../m'", 2, {"../m", "mount point", "--out"});
@@ -119,9 +119,17 @@ TEST_F(Shards, WrongUseIsOneLine) {
 
 TEST_F(Shards, WhatCannotBeCopiedFromScratchIsSaidWithItsReason) {
   expect_error(
-      "mkdir -p out/campaign.sqlite.part/full; graze fuzz --pairs 900 --strata uniform "
+      "mkdir -p out/campaign.sqlite.graze.part; graze fuzz --pairs 900 --strata uniform "
       "--lanes 'moller*/f32/cpu' --shard 1/3 --scratch here --out out",
-      1, {"out/campaign.sqlite", "Directory not empty"});
+      1, {"out/campaign.sqlite", "out/campaign.sqlite.graze.part", "in the way"});
+  expect_done("test -d out/campaign.sqlite.graze.part");
+}
+
+TEST_F(Shards, AForeignFileBesideTheDatabaseStays) {
+  const std::string fuzz =
+      "graze fuzz --pairs 900 --strata uniform --lanes 'moller*/f32/cpu' --shard 1/3 --scratch here --out out";
+  expect_done("mkdir out && " + fuzz + " && echo precious > out/campaign.sqlite.part && " + fuzz +
+              " && cmp out/campaign.sqlite.part <(echo precious)");
 }
 
 TEST_F(Shards, TwoProcessesOfOneShardAreRefused) {

@@ -23,8 +23,6 @@ namespace fs = std::filesystem;
 
 constexpr int kLockAttempts = 10;  // a second
 
-constexpr const char* kPart = ".graze.part";  // suffix of a file that is being written
-
 [[noreturn]] void fail(const char* act, const fs::path& file, int error) {
   throw std::runtime_error(cannot(act, file, error));
 }
@@ -54,6 +52,19 @@ bool write_all(int handle, const std::string& text) {
     at += static_cast<std::size_t>(written);
   }
   return true;
+}
+
+// As write_all, for all that is left to read.
+bool copy_all(int from, int to) {
+  std::string bytes;
+  while (true) {
+    bytes.resize(std::size_t{1} << 20);
+    const ssize_t count = read(from, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return count == 0;
+    bytes.resize(static_cast<std::size_t>(count));
+    if (!write_all(to, bytes)) return false;
+  }
 }
 
 bool same_file(const struct stat& one, const struct stat& other) {
@@ -108,18 +119,20 @@ int made_alone(const std::string& file) {
   }
 }
 
-void replace(const fs::path& file, const fs::path& asked, const std::string& text, mode_t mode) {
+// Lets `fill` write the new file, and moves that to its place.   fill: int -> bool; if false, errno says why.
+template <class Fill>
+void replace(const fs::path& file, const fs::path& asked, const Fill& fill) {
   const std::string beside = file.string() + kPart;
   Handle part{made_alone(beside)};
+  int error = errno;
   struct stat state {};
-  if (part.number < 0) fail("write", asked, errno);
-  if (fstat(part.number, &state) != 0 || !S_ISREG(state.st_mode))
+  if (lstat(beside.c_str(), &state) == 0 && !S_ISREG(state.st_mode))
     throw std::runtime_error(cannot("write", asked, beside + " is in the way and is no file; remove it"));
-  bool done = write_all(part.number, text) && (mode == 0 || fchmod(part.number, mode) == 0);
+  if (part.number < 0) fail("write", asked, error);
   // A full disk may show only on close. The file itself stays open, and so locked, until it is in its place.
-  done = done && close(dup(part.number)) == 0;
+  const bool done = fill(part.number) && close(dup(part.number)) == 0;
   if (done && std::rename(beside.c_str(), file.c_str()) == 0) return;
-  const int error = errno;
+  error = errno;
   unlink(beside.c_str());
   fail("write", asked, error);
 }
@@ -176,7 +189,18 @@ void write_whole(const fs::path& file, const std::string& text, NamedBy named_by
   if (exists && (standard_output || !S_ISREG(there.st_mode)))
     return write_into(file, S_ISFIFO(there.st_mode), standard_output, text);
   expect_own(file, text);
-  replace(behind_links(file), file, text, exists ? there.st_mode & 07777 : 0);
+  replace(behind_links(file), file,
+          [&](int part) { return write_all(part, text) && (!exists || fchmod(part, there.st_mode & 07777) == 0); });
+}
+
+void copy_whole(const fs::path& from, const fs::path& to) {
+  expect_file(from);
+  const Handle source{open(from.c_str(), O_RDONLY | O_CLOEXEC)};
+  struct stat state {};
+  if (source.number < 0 || fstat(source.number, &state) != 0) fail("read", from, errno);
+  replace(to, to, [&](int part) {
+    return copy_all(source.number, part) && fchmod(part, state.st_mode & 07777) == 0 && fsync(part) == 0;
+  });
 }
 
 FolderLock::FolderLock(const fs::path& folder, WhenTaken when_taken)

@@ -11,6 +11,9 @@ namespace graze::fuzz {
 // Who chose a file's name. A user may name a pipe or a device; Graze's own names stand for files alone.
 enum class NamedBy { graze, user };
 
+// A file is prepared beside its place under its name with this suffix. So is the folder of a merge.
+inline constexpr const char* kPart = ".graze.part";
+
 // Throws: std::runtime_error for a pipe, a device or a folder of this name, seen through symbolic links.
 void expect_file(const std::filesystem::path& file);
 
@@ -21,6 +24,9 @@ std::string read_whole(const std::filesystem::path& file, NamedBy named_by = Nam
 // beside it when this fails. Two may write the same file at once: each writes a whole one, and the last one stays.
 // Throws: std::runtime_error for a folder, and when there is no room.
 void write_whole(const std::filesystem::path& file, const std::string& text, NamedBy named_by = NamedBy::graze);
+
+// Copies the file. Its copy is whole or missing, even after a crash of the machine.   Throws: as write_whole.
+void copy_whole(const std::filesystem::path& from, const std::filesystem::path& to);
 
 // Follows symbolic links to the file or folder that they name, even if it does not exist yet.
 std::filesystem::path behind_links(std::filesystem::path file);

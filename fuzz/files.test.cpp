@@ -115,6 +115,34 @@ TEST_F(Files, APartThatIsAHardLinkIsReplaced) {
   EXPECT_EQ(count(), 2u);
 }
 
+TEST_F(Files, ACopyIsWholeAndLeavesAForeignPart) {
+  const std::string text(3'000'000, 'x');
+  write_whole(folder_ / "from", text);
+  fs::permissions(folder_ / "from", fs::perms::owner_read);
+  const fs::path to = folder_ / "to", part = to.string() + kPart;
+  fs::create_hard_link(folder_ / "from", part);
+  copy_whole(folder_ / "from", to);
+  EXPECT_EQ(read_whole(to), text);
+  EXPECT_EQ(fs::status(to).permissions(), fs::perms::owner_read);
+  EXPECT_EQ(fs::hard_link_count(folder_ / "from"), 1u);
+  EXPECT_EQ(count(), 2u);
+  EXPECT_THROW(copy_whole(folder_ / "none", to), std::runtime_error);
+  write_whole(folder_ / "new", "new");
+  for (const auto& make : {+[](const fs::path& at) { ASSERT_EQ(mkfifo(at.c_str(), 0600), 0); },
+                           +[](const fs::path& at) { fs::create_directory(at); },
+                           +[](const fs::path& at) { fs::create_symlink("from", at); }}) {
+    make(part);
+    try {
+      copy_whole(folder_ / "new", to);
+      ADD_FAILURE() << "it was copied";
+    } catch (const std::runtime_error& error) {
+      EXPECT_TRUE(names(error.what(), {to.string(), part.string(), "in the way"})) << error.what();
+    }
+    EXPECT_TRUE(fs::remove(part));
+    EXPECT_EQ(read_whole(to), text);
+  }
+}
+
 TEST_F(Files, AChangeOfASealedFileIsNoticed) {
   const fs::path file = folder_ / "result.json";
   EXPECT_TRUE(read_sealed(file, "remove it").is_null());
@@ -297,6 +325,17 @@ TEST_F(Files, ResultsGoIntoFoldersThatAreTheirOwnOrEmpty) {
   write_whole(out / "tune.json.graze.part", "what a killed write left");
   EXPECT_TRUE(may_fill(out, {"tune.json"}));
   EXPECT_TRUE(may_hold_campaign(out));
+  for (const char* theirs : {"movie.mkv.part", "thesis.part/chapter", "thesis.graze.part/chapter"}) {
+    fs::create_directories((out / theirs).parent_path());
+    write_whole(out / theirs, "text");
+    EXPECT_FALSE(may_fill(out, {"tune.json"})) << theirs;
+    EXPECT_FALSE(may_hold_campaign(out)) << theirs;
+    fs::remove(out / theirs);
+  }
+  fs::create_symlink("cases", out / "link.graze.part");
+  EXPECT_FALSE(may_fill(out, {"tune.json"}));
+  fs::remove(out / "link.graze.part");
+  EXPECT_TRUE(may_fill(out, {"tune.json"}));
   write_whole(out / "cases/of/mine", "text");
   EXPECT_FALSE(may_fill(out, {"tune.json"}));
   EXPECT_FALSE(may_hold_campaign(out));

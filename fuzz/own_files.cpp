@@ -45,8 +45,9 @@ bool same_kind_of_object(const std::string& there, const std::string& text) {
   return theirs.is_object() && ours.is_object() && first_keys(theirs) == first_keys(ours);
 }
 
+// Whether it is left over, or a folder of nothing.
 bool is_nothing(const fs::path& entry) {
-  if (entry.string().ends_with(".part")) return true;
+  if (is_left_over(entry)) return true;
   return fs::is_directory(fs::symlink_status(entry)) &&
          std::all_of(fs::directory_iterator(entry), fs::directory_iterator(),
                      [](const auto& e) { return is_nothing(e.path()); });
@@ -75,6 +76,10 @@ void expect_own(const fs::path& file, const std::string& text) {
   if (may_replace_foreign || !in_question || !fs::is_regular_file(file, none) || fs::file_size(file, none) == 0) return;
   if (!read_whole(file).starts_with(mark_of(text)) && !may_replace(file, text))
     throw UsageError(cannot("replace", file, kForeign));
+}
+
+bool is_left_over(const fs::path& file) {
+  return file.string().ends_with(kPart) && fs::is_regular_file(fs::symlink_status(file));
 }
 
 bool may_fill(const fs::path& folder, std::initializer_list<const char*> own) {

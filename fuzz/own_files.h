@@ -26,6 +26,9 @@ inline bool may_replace_foreign = false;
 // link, and its beginning differs from this text's. A file that is damaged further on may be replaced.
 void expect_own(const std::filesystem::path& file, const std::string& text);
 
+// Whether a killed write left the file, under a name that is Graze's own.
+bool is_left_over(const std::filesystem::path& file);
+
 // Whether results may go into the folder: it is missing, holds nothing but empty folders and leftovers of a killed
 // write, or holds one of the files `own`.
 bool may_fill(const std::filesystem::path& folder, std::initializer_list<const char*> own);

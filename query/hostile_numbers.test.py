@@ -70,6 +70,7 @@ for layout, size in ((ROWS, 36), (COLUMNS, 4), (MESH, 12)):
     for count in (SIZE_MAX, (1 << 48) + 1):
         refuse({"layout": layout, "count": count})
     refuse({"layout": layout, "count": 1 << 48, "stride": 1 << 16})
+    refuse({"layout": layout, "count": 0, "stride": 37})
 for stride in (1, 11, SIZE_MAX, SIZE_MAX - 11, 1 << 62):
     refuse({"layout": MESH, "vertex_stride": stride})
 refuse({"layout": MESH, "vertex_count": SIZE_MAX})

@@ -253,6 +253,7 @@ TEST(Query, WrongArgumentsAreNamed) {
   graze_answer answer;
   EXPECT_EQ(graze_run(nullptr, &right, &answer), GRAZE_BAD_ARGUMENT);
   EXPECT_STREQ(answer.message, "context: expected a pointer, found NULL");
+  EXPECT_EQ(answer.first, UINT64_MAX);
   graze_context* context = graze_open();
   EXPECT_EQ(graze_run(context, nullptr, &answer), GRAZE_BAD_ARGUMENT);
   EXPECT_EQ(graze_run(context, &right, nullptr), GRAZE_BAD_ARGUMENT);
@@ -305,6 +306,8 @@ TEST(Query, StridesThatNoArrayHasAreRefusedInEveryLayout) {
       for (const std::size_t stride :
            {std::size_t{1} << 62, std::size_t{1} << 60, (SIZE_MAX / 9 + 1) / 4 * 4, SIZE_MAX / 2 / 9 / 4 * 4 + 4})
         EXPECT_EQ(status(10, stride), GRAZE_BAD_ARGUMENT) << stride;
+      // An empty array has no pointers, but a stride.
+      EXPECT_EQ(status(0, size + 1), GRAZE_BAD_ARGUMENT);
       EXPECT_EQ(status(GRAZE_MOST_TRIANGLES, std::size_t{1} << 16), GRAZE_BAD_ARGUMENT);
       EXPECT_EQ(status(GRAZE_MOST_TRIANGLES + 1, 0), GRAZE_BAD_ARGUMENT);
     }
@@ -331,6 +334,17 @@ TEST(Query, VerticesThatNoArrayHasAreRefused) {
     EXPECT_EQ(status(30, stride), GRAZE_BAD_ARGUMENT) << stride;
   EXPECT_EQ(status(UINT64_MAX, 12), GRAZE_BAD_ARGUMENT);
   EXPECT_EQ(status(UINT64_MAX / 12 + 2, 12), GRAZE_BAD_ARGUMENT);
+}
+
+TEST(Query, BitsOfPartsThatShareAWordAreRefused) {
+  const std::vector<Triangle> triangles = thesis_triangles(100);
+  const std::vector<graze_triangles> parts(2, part_of(triangles));
+  graze_query query = query_of(kThesisReference, parts[0]);
+  query.part_count = 2;
+  EXPECT_TRUE(Context().run(query));
+  std::uint8_t bits[25];
+  query.bits = bits;
+  expect_refused(query, "bits: expected parts of a multiple of 64 triangles, but for the last one");
 }
 
 TEST(Query, CountsWhoseProductsOverflowAreRefused) {

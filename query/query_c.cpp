@@ -31,6 +31,7 @@ int graze_run(graze_context* context, const graze_query* query, graze_answer* an
   }
   *answer = {};
   answer->status = GRAZE_BAD_ARGUMENT;
+  answer->first = UINT64_MAX;
   std::snprintf(answer->message, sizeof answer->message, "%s: expected a pointer, found NULL",
                 context ? "query" : "context");
   return answer->status;

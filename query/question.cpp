@@ -58,42 +58,38 @@ std::size_t stride_of(std::size_t stride, std::size_t least, const std::string& 
 }
 
 cuda::TriangleArray array_of(const graze_triangles& part, const std::string& name) {
-  cuda::TriangleArray array;
+  constexpr std::size_t kElement[] = {36, 4, 12};  // bytes, by layout
   expect(part.count <= kMostTriangles, name + ": expected at most 2^48 triangles, found " + std::to_string(part.count));
+  expect(part.layout >= GRAZE_ROWS && part.layout <= GRAZE_MESH,
+         name + ": expected a layout of 0 to 2, found " + std::to_string(part.layout));
+  cuda::TriangleArray array;
+  array.stride = stride_of(part.stride, kElement[part.layout], name);
+  if (part.layout == GRAZE_MESH) array.vertex_stride = stride_of(part.vertex_stride, 12, name + ".vertices");
+  if (part.count == 0) return {};
   array.count = part.count;
-  if (part.count == 0) return array;
-  switch (part.layout) {
-    case GRAZE_ROWS:
-      expect_aligned(part.rows, name + ".rows");
-      array.rows = reinterpret_cast<const char*>(part.rows);
-      array.stride = stride_of(part.stride, 36, name);
-      expect_fits(array.rows, part.count, array.stride, 36, name + ".rows");
-      return array;
-    case GRAZE_COLUMNS:
-      array.layout = cuda::Layout::columns;
-      array.stride = stride_of(part.stride, 4, name);
-      for (int k = 0; k < 9; ++k) {
-        const std::string column = name + ".columns[" + std::to_string(k) + "]";
-        expect_aligned(part.columns[k], column);
-        expect_fits(part.columns[k], part.count, array.stride, 4, column);
-        array.columns[k] = part.columns[k];
-      }
-      return array;
-    case GRAZE_MESH:
-      array.layout = cuda::Layout::mesh;
-      expect_aligned(part.faces, name + ".faces");
-      expect_aligned(part.vertices, name + ".vertices");
-      array.faces = reinterpret_cast<const char*>(part.faces);
-      array.vertices = reinterpret_cast<const char*>(part.vertices);
-      array.vertex_count = part.vertex_count;
-      array.stride = stride_of(part.stride, 12, name);
-      array.vertex_stride = stride_of(part.vertex_stride, 12, name + ".vertices");
-      expect_fits(array.faces, part.count, array.stride, 12, name + ".faces");
-      expect_fits(array.vertices, part.vertex_count, array.vertex_stride, 12, name + ".vertices");
-      return array;
-    default:
-      refuse(name + ": expected a layout of 0 to 2, found " + std::to_string(part.layout));
+  if (part.layout == GRAZE_ROWS) {
+    expect_aligned(part.rows, name + ".rows");
+    array.rows = reinterpret_cast<const char*>(part.rows);
+    expect_fits(array.rows, part.count, array.stride, 36, name + ".rows");
+  } else if (part.layout == GRAZE_COLUMNS) {
+    array.layout = cuda::Layout::columns;
+    for (int k = 0; k < 9; ++k) {
+      const std::string column = name + ".columns[" + std::to_string(k) + "]";
+      expect_aligned(part.columns[k], column);
+      expect_fits(part.columns[k], part.count, array.stride, 4, column);
+      array.columns[k] = part.columns[k];
+    }
+  } else {
+    array.layout = cuda::Layout::mesh;
+    expect_aligned(part.faces, name + ".faces");
+    expect_aligned(part.vertices, name + ".vertices");
+    array.faces = reinterpret_cast<const char*>(part.faces);
+    array.vertices = reinterpret_cast<const char*>(part.vertices);
+    array.vertex_count = part.vertex_count;
+    expect_fits(array.faces, part.count, array.stride, 12, name + ".faces");
+    expect_fits(array.vertices, part.vertex_count, array.vertex_stride, 12, name + ".vertices");
   }
+  return array;
 }
 
 // The exact host lane stands for the exact lane of both host and device.

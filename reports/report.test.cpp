@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <set>
@@ -356,6 +357,67 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
     EXPECT_NE(pareto_error(other), "") << part;
   }
   fs::remove_all(root_ / "forged");
+}
+
+// Counts again what docs/formats.md says of thresholds.csv.
+TEST_F(ReportTest, ThresholdsAreWhereTheSummarysErrorsEnd) {
+  const Json report = make_report(root_ / "one"), strata = summary("one")["strata"];
+  std::string csv;
+  for (const CsvTable& table : csv_tables(root_ / "one", report))
+    csv += table.name == "thresholds.csv" ? table.text : "";
+  int next_to_a_gap = 0, without_errors = 0, none = 0;
+  std::size_t rows = 0;
+  for (const Json& row : report["thresholds"]) {
+    std::vector<std::string> of;
+    const Json group = row["group"].is_null() ? Json() : report["groups"][row["group"].get<std::size_t>()];
+    for (std::size_t s = 0; s < report["strata"].size(); ++s) {
+      const Json& in_group = group.is_null() ? Json() : group["strata"];
+      if (row["stratum"].is_null() ? group.is_null() || std::find(in_group.begin(), in_group.end(), s) != in_group.end()
+                                   : row["stratum"] == s)
+        of.push_back(report["strata"][s]["id"]);
+    }
+    const std::string lane = report["lanes"][row["lane"].get<std::size_t>()]["id"];
+    for (const auto& [side, sign] : {std::pair("disjoint", "+2^"), {"intersects", "-2^"}}) {
+      std::map<int, std::pair<std::uint64_t, std::uint64_t>> seen;  // pairs and wrong verdicts by exponent
+      for (const std::string& stratum : of) {
+        for (const auto& [bucket, found] : strata[stratum]["margins"].items()) {
+          if (!bucket.starts_with(sign) || found["pairs"] == 0) continue;
+          auto& [pairs, wrong] = seen[std::stoi(bucket.substr(3))];
+          pairs += found["pairs"].get<std::uint64_t>();
+          wrong += found["wrong"].value(lane, std::uint64_t{0});
+        }
+      }
+      const auto from = [&](int e) {  // pairs and wrong verdicts at margins of at least 2^e
+        std::pair<std::uint64_t, std::uint64_t> sum{};
+        for (const auto& [exponent, counts] : seen) {
+          sum.first += exponent >= e ? counts.first : 0;
+          sum.second += exponent >= e ? counts.second : 0;
+        }
+        return sum;
+      };
+      std::string expected = ",0,1.0";  // errors up to the largest margin seen, or no pairs
+      for (int e = seen.empty() ? 1 : seen.begin()->first; !seen.empty() && e <= seen.rbegin()->first; ++e) {
+        if (from(e).second != 0) continue;
+        const double bound = 1 - std::pow(0.05, 1.0 / static_cast<double>(from(e).first));
+        EXPECT_GE(row[side]["bound"], bound);
+        EXPECT_LT(row[side]["bound"], bound * 1.0002);
+        expected = fmt::format("{},{},{}", e, from(e).first, row[side]["bound"].dump());
+        next_to_a_gap += !seen.contains(e);
+        without_errors += e == seen.begin()->first;
+        break;
+      }
+      none += expected == ",0,1.0";
+      const std::string line =
+          fmt::format("{},{},{},{},{}\n", lane, group.is_null() ? "" : group["id"].get<std::string>(),
+                      row["stratum"].is_null() ? "" : of.front(), side, expected);
+      EXPECT_TRUE(contains(csv, "\n" + line)) << line;
+      ++rows;
+    }
+  }
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), rows + 1);
+  EXPECT_GT(next_to_a_gap, 0);
+  EXPECT_GT(without_errors, 0);
+  EXPECT_GT(none, 0);
 }
 
 TEST_F(ReportTest, TablesHaveARowAHeaderAndTheSameCellsEach) {

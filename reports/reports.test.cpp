@@ -19,13 +19,19 @@ nlohmann::ordered_json example() {
     "disagreements": 1246, "signatures": [{"key": "k", "count": 1246, "case": "c"}]})");
 }
 
+TEST(Terminal, OneIsSingular) {
+  EXPECT_EQ(counted(0, "pair"), "0 pairs");
+  EXPECT_EQ(counted(1, "pair"), "1 pair");
+  EXPECT_EQ(counted(2000, "pair"), "2,000 pairs");
+}
+
 TEST(Terminal, SummaryShowsSharesAndCounts) {
   std::ostringstream out;
   print_summary(out, example(), {{"cgal", 1234567}, {"gmp", 2451}, {"exact", 0}, {"apart", 0}});
   EXPECT_NE(out.str().find("in % of its pairs"), std::string::npos);
   EXPECT_NE(out.str().find("uniform  1,234,567       50.0        0.101\n"), std::string::npos) << out.str();
   EXPECT_NE(out.str().find("moller_1997/f32/cpu            12     1,234"), std::string::npos) << out.str();
-  EXPECT_NE(out.str().find("some lane is wrong on 1,246, in 1 signatures"), std::string::npos);
+  EXPECT_NE(out.str().find("1,234,567 pairs: some lane is wrong on 1,246, in 1 signature."), std::string::npos);
 }
 
 // GMP checks every disagreement and a sample of the other pairs. If the exact lane judges, it checks a sample and the

@@ -120,7 +120,10 @@ Threshold threshold(const StratumCounts& counts, std::size_t lane, int side) {
     const auto found = counts.margins.find(static_cast<Bucket>(side * b));
     if (found == counts.margins.end() || found->second.pairs == 0) continue;
     if (!result.largest) result.largest = exponent_of(found->first);
-    if (found->second.wrong[lane] != 0) break;
+    if (found->second.wrong[lane] != 0) {
+      result.exponent = exponent_of(found->first) + 1;  // the buckets up to the next pairs may be empty
+      break;
+    }
     result = {true, exponent_of(found->first), result.above + found->second.pairs, result.largest};
   }
   return result;

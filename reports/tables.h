@@ -27,9 +27,9 @@ nlohmann::ordered_json margins(const CampaignCounts& counts);
 
 // The least power of two of ulps from which a lane was never wrong, on one side of zero.
 struct Threshold {
-  bool found = false;  // false: wrong at the largest margins seen, or no margins were seen
-  int exponent = 0;
-  std::uint64_t above = 0;     // pairs with at least this margin
+  bool found = false;       // false: wrong at the largest margins seen, or no margins were seen
+  int exponent = 0;         // one more than that of the last error; without errors, that of the smallest margins seen
+  std::uint64_t above = 0;  // pairs with at least this margin
   std::optional<int> largest;  // exponent of the largest margins seen; nothing if no pair is on that side
 };
 Threshold threshold(const StratumCounts& counts, std::size_t lane, int side);

@@ -112,9 +112,11 @@ TEST(Tables, ThresholdIsWhereErrorsEnd) {
   bucket("uniform", "-2^1", 10, 0);
   bucket("uniform", "-2^4", 10, 1);
   bucket("degenerate", "+2^9", 4, 1);
+  bucket("degenerate", "-2^-7", 3, 0);
+  bucket("degenerate", "-2^2", 3, 0);
   const CampaignCounts counts = counts_of(summary);
   for (const Json& row : {threshold_of(counts, "general"), threshold_of(counts, "", "uniform")}) {
-    EXPECT_EQ(row["disjoint"]["exponent"], 2);
+    EXPECT_EQ(row["disjoint"]["exponent"], 1);  // though the next pairs are at 2^2
     EXPECT_EQ(row["disjoint"]["above"], 50);
     EXPECT_NEAR(row["disjoint"]["bound"], 1 - std::pow(0.05, 1 / 50.0), 1e-6);
     EXPECT_TRUE(row["intersects"]["exponent"].is_null());
@@ -124,8 +126,9 @@ TEST(Tables, ThresholdIsWhereErrorsEnd) {
   const Json other = threshold_of(counts, "degenerate"), all = threshold_of(counts, "");
   EXPECT_TRUE(other["disjoint"]["exponent"].is_null());
   EXPECT_EQ(other["disjoint"]["largest"], 9);
-  EXPECT_TRUE(other["intersects"]["largest"].is_null());  // no such pairs
-  EXPECT_TRUE(all["disjoint"]["exponent"].is_null());     // the result of pooling
+  EXPECT_EQ(other["intersects"]["exponent"], -7);  // no error: the smallest margins seen
+  EXPECT_EQ(other["intersects"]["above"], 6);
+  EXPECT_TRUE(all["disjoint"]["exponent"].is_null());  // the result of pooling
 }
 
 TEST(Tables, GroupsHoldEveryStratumOnceAndAddUp) {

@@ -102,6 +102,10 @@ std::string grouped(std::uint64_t number) {
   return digits;
 }
 
+std::string counted(std::uint64_t number, const char* what) {
+  return fmt::format("{} {}{}", grouped(number), what, number == 1 ? "" : "s");
+}
+
 std::string bare_percent(std::uint64_t part, std::uint64_t whole) {
   if (whole == 0) return "-";
   if (part == 0) return "0";
@@ -118,8 +122,8 @@ void print_summary(std::ostream& out, const Json& summary, const Json& oracle, c
   std::uint64_t pairs = 0;
   for (const auto& [stratum, row] : summary["strata"].items()) pairs += row["pairs"].get<std::uint64_t>();
   const std::uint64_t disagreements = summary["disagreements"];
-  const std::string found = fmt::format("{} pairs: some lane is wrong on {}, in {} signatures.", grouped(pairs),
-                                        grouped(disagreements), grouped(summary["signatures"].size()));
+  const std::string found = fmt::format("{}: some lane is wrong on {}, in {}.", counted(pairs, "pair"),
+                                        grouped(disagreements), counted(summary["signatures"].size(), "signature"));
   out << '\n' << bold(screen, found) << '\n' << wrapped(decided_by(disagreements, oracle), screen.columns);
 }
 

@@ -30,4 +30,7 @@ std::string bare_percent(std::uint64_t part, std::uint64_t whole);
 // 1234567 as "1,234,567".
 std::string grouped(std::uint64_t number);
 
+// "1 pair", "2,000 pairs".   what: a singular whose plural ends in s.
+std::string counted(std::uint64_t number, const char* what);
+
 }  // namespace graze::reports

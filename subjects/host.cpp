@@ -21,6 +21,7 @@
 #include <sys/mman.h>
 #include <sys/personality.h>
 #include <sys/prctl.h>
+#include <sys/ptrace.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -380,8 +381,9 @@ int load_and_fork(char** argv, const std::string& kind, const std::string& what,
     }
     if (worker < 0) return 1;
     int status = 0;
-    while (waitpid(worker, &status, 0) < 0 && errno == EINTR) {
-    }
+    // A worker that made this process its tracer (PTRACE_TRACEME) stops at each signal, which it then gets untraced.
+    while (waitpid(worker, &status, 0) < 0 ? errno == EINTR : WIFSTOPPED(status))
+      ptrace(PTRACE_DETACH, worker, nullptr, WSTOPSIG(status));
     if (WIFEXITED(status) && WEXITSTATUS(status) == kNotReady) return 1;
   }
 }

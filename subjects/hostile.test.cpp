@@ -15,6 +15,7 @@
 #include <sstream>
 #include <thread>
 
+#include "core/programs/process_state.h"
 #include "core/programs/run_program.h"
 #include "core/stop.h"
 #include "strata/strata.h"
@@ -201,6 +202,7 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"stops_parent"},
                                {"kills_grandparent", false},
                                {"kills_group"},
+                               {"stops_group"},
                                {"stops_itself"},
                                {"ends_itself_quietly"},
                                {"pretends_not_ready"},
@@ -277,6 +279,9 @@ TEST_F(Hostile, ConstructorsThatAttackAreOneLine) {
       } catch (const std::runtime_error& error) {
         EXPECT_NE(std::string(error.what()).find(c.name), std::string::npos) << error.what();
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+        EXPECT_TRUE(c.name != std::string_view("stops") || namespaces ||
+                    std::string_view(error.what()).ends_with(": stopped its supervisor while it was loaded"))
+            << error.what();
       }
     }
     expect_nothing_left();
@@ -593,6 +598,7 @@ TEST_F(Hostile, ProgramsThatBuildLeaveNothing) {
     EXPECT_EQ(run("setsid sleep 1000 & echo one; echo two >&2; exit 3", 600), 3);
     EXPECT_EQ(said, "one\ntwo\n");
     EXPECT_EQ(run("kill -9 $$", 600), 128 + SIGKILL);
+    EXPECT_EQ(run("kill -9 0", 600), 128 + SIGKILL);  // its process group
     EXPECT_EQ(run("echo $TMPDIR", 600), 0);
     EXPECT_EQ(said, scratch.path().string() + '\n');
     EXPECT_EQ(run("echo 4000000000000 2>&1 > /proc/$PPID/timerslack_ns || echo refused", 600), 0);
@@ -630,6 +636,78 @@ TEST_F(Hostile, CodeThatForksAndReturnsTwiceAnswersOnce) {
     for (std::size_t i = 0; i < pairs.size(); ++i) EXPECT_EQ(found[i], left_of(pairs[i])) << i;
   }
   expect_nothing_left();
+}
+
+// The processes between it and graze are in other groups, also the guardian outside of its namespace.
+TEST_F(Hostile, CodeThatStopsItsProcessGroupStopsOnlyItself) {
+  const auto bad = std::find_if(pairs.begin(), pairs.end(), is_bad);
+  ASSERT_NE(bad, pairs.end());
+  for (const bool namespaces : {true, false}) {
+    Code code{"library", (folder / "libhostile.so").string(), "stops_group", "f32", 0.1, 256};
+    code.namespaces = namespaces;
+    // Would be crashed if its supervisor or guardian stopped.
+    EXPECT_EQ(ForeignProcesses(code, Scalar::f32).failure(*bad), Verdict::timed_out);
+    expect_nothing_left();
+
+    code.timeout = 3600;
+    const pid_t asking = fork();
+    if (asking == 0) {
+      ForeignProcesses(code, Scalar::f32).failure(*bad);
+      _exit(0);
+    }
+    const auto one_is_stopped = [] {
+      const std::set<pid_t> all = left_over();
+      return std::any_of(all.begin(), all.end(), is_stopped);
+    };
+    while (!one_is_stopped()) usleep(1000);
+    EXPECT_EQ(kill(asking, SIGKILL), 0);
+    EXPECT_EQ(waitpid(asking, nullptr, 0), asking);
+    expect_nothing_left();
+  }
+}
+
+// A tracee stops at each signal. Its tracer is the process that forks the workers, which must not take this for an end:
+// it would fork another worker too early, and the code would be loaded again.
+TEST_F(Hostile, AWorkerThatIsTracedByItsParentIsAVerdictAndTheCodeStaysLoaded) {
+  const fs::path loads = folder / "loads";
+  const struct {
+    const char *name, *does;
+    Verdict expected;
+  } kCases[] = {{"traced_stop", "raise(SIGSTOP)", Verdict::timed_out},
+                {"traced_signal", "raise(SIGUSR1)", Verdict::crashed},
+                {"traced_abort", "abort()", Verdict::crashed},
+                {"traced_exec", "execl(\"/bin/sleep\", \"sleep\", \"1000\", (char*)0)", Verdict::crashed},
+                {"traced_kill", "raise(SIGKILL)", Verdict::crashed},
+                {"traced_exit", "_exit(0)", Verdict::crashed},
+                {"traced_loop", "for (;;)", Verdict::timed_out},
+                {"traced_return", "", Verdict::disjoint}};
+  for (const auto& c : kCases) {
+    const fs::path file = built_from(c.name,
+                                     "#include <fcntl.h>\n#include <signal.h>\n#include <stdlib.h>\n"
+                                     "#include <sys/ptrace.h>\n#include <unistd.h>\n"
+                                     "__attribute__((constructor)) static void f(void) {\n  write(open(\"" +
+                                         loads.string() + "\", O_WRONLY | O_CREAT | O_APPEND, 0600), \"l\", 1); }\n" +
+                                         "int intersects(const float a[9], const float b[9]) {\n  if (a[0] > 0.9f) { "
+                                         "ptrace(PTRACE_TRACEME, 0, 0, 0); " +
+                                         c.does + "; return 0; }\n  return a[0] < b[0]; }");
+    for (const bool namespaces : {true, false}) {
+      SCOPED_TRACE(c.name);
+      fs::remove(loads);
+      Code code{"library", file.string(), "intersects", "f32", 0.1, 256};
+      code.namespaces = namespaces;
+      {
+        ForeignProcesses subject(code, Scalar::f32);
+        const std::vector<Verdict> found = verdicts(subject);
+        EXPECT_EQ(text_of(loads), "l");
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+          const bool fails = is_bad(pairs[i]) && c.expected != Verdict::disjoint;
+          EXPECT_EQ(found[i], fails ? Verdict::crashed : is_bad(pairs[i]) ? c.expected : left_of(pairs[i])) << i;
+          EXPECT_TRUE(!fails || subject.failure(pairs[i]) == c.expected) << i;
+        }
+      }
+      expect_nothing_left();
+    }
+  }
 }
 
 // An unexpected line shifts all later answers. Asking about single pairs shows which pair caused it.

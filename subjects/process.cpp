@@ -112,7 +112,8 @@ class HostProcess {
     char bytes[sizeof(Loaded)] = {};
     std::string why;
     if (supervisor_.receive(bytes, sizeof bytes) != sizeof bytes || !read_loaded(bytes, loaded_)) {
-      why = "ended its supervisor while it was loaded";
+      why = supervisor_.stopped() ? "stopped its supervisor while it was loaded"
+                                  : "ended its supervisor while it was loaded";
     } else if (loaded_.says == Says::refused) {
       why = loaded_.text;
     } else {

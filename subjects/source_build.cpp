@@ -169,7 +169,7 @@ void write_atomically(const fs::path& file, std::string_view text) {
   fs::create_directories(file.parent_path());
   const fs::path part = file.string() + fmt::format(".{}", getpid());
   write(part, text);
-  fs::rename(part, file);
+  move_over(part, file);
 }
 
 bool source_describes_itself(const fs::path& source) {

@@ -661,6 +661,15 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
     for (std::size_t i = 0; i < pairs.size(); ++i)
       ASSERT_EQ(yes[i / 64] >> i % 64 & 1, left_of(pairs[i]) == Verdict::intersects) << i;
   }
+  fs::remove(kept);
+  fs::create_directories(kept / "inner");
+  try {
+    build(source);
+    ADD_FAILURE() << "expected an error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), "cannot write " + kept.string() + ": a folder is in the way; remove it");
+  }
+  EXPECT_TRUE(fs::exists(kept / "inner"));
 }
 
 // Only of a program and the file that is its first argument is it known that they are what runs.

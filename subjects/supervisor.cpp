@@ -224,6 +224,8 @@ class Supervisor {
 
   [[noreturn]] void become_loader(int talk) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
+    setsid();  // kill(0, …) must reach neither this supervisor nor its guardian, which a namespace does not hide from
+               // it
     const int given[] = {kSupervisorPairsFd, words_fd_, talk, kSupervisorCodeFd};
     const int to[] = {kPairsFd, kWordsFd, kTalkFd, kCodeFd};
     const int count = limits_.program ? 3 : 4;
@@ -363,6 +365,7 @@ int supervise_program(double seconds, const std::string& scratch, char* const* w
   if (program == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != self) _exit(0);
+    setsid();  // as for code that is loaded
     drop_rights();
     execvp(words[0], words);
     fmt::print(stderr, "{}\n", std::strerror(errno));

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "core/error.h"
 #include "core/text.h"
@@ -83,6 +84,7 @@ Policy parse_policy(std::string_view text, const AlgorithmInfo& info) {
     set(text, text, std::nullopt, policy.epsilons);
     return policy;
   }
+  std::set<std::string_view> given;
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view part = rest.substr(0, rest.find(','));
     rest.remove_prefix(std::min(part.size() + 1, rest.size()));
@@ -90,6 +92,8 @@ Policy parse_policy(std::string_view text, const AlgorithmInfo& info) {
     if (equals == part.npos) refuse(text);
     const std::optional<Site> site = site_of(part.substr(0, equals));
     if (!site) refuse(text, ": the sites are " + site_names());
+    if (const std::string_view form = part.substr(0, part.find(':')); !given.insert(form).second)
+      refuse(text, ": it gives " + std::string(form) + " twice; leave one out");
     set(text, part.substr(equals + 1), site, policy.epsilons);
   }
   return policy;

@@ -113,6 +113,13 @@ TEST(Policies, AddLanesOnceForEachThatMatches) {
   EXPECT_EQ(find_lane("projected_sat/f64/cpu-fma/bound"), nullptr);
 }
 
+// The tolerance of a site is the sum of both, so each is kept.
+TEST(Policies, OfOneSiteMayBeAbsoluteAndRelative) {
+  const Epsilons& both = lane("moller_1997/f32/cpu/plane_distance=abs:3,plane_distance=rel:5").under->epsilons;
+  EXPECT_EQ(both.absolute[static_cast<int>(Site::plane_distance)], 3);
+  EXPECT_EQ(both.relative[static_cast<int>(Site::plane_distance)], 5);
+}
+
 TEST(Policies, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(refusal("moller_1997/f32/cpu"), "accepted");
   EXPECT_EQ(refusal("nothing/f32/cpu/rel:1"), "accepted");  // no such lane; the code that selects lanes reports it
@@ -122,6 +129,8 @@ TEST(Policies, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(refusal("moller_1997/f32/cpu/rel:nan"), forms + "\"rel:nan\": \"nan\" is no number of at least 0");
   EXPECT_EQ(refusal("moller_1997/f32/cpu/plane=abs:1"),
             forms + "\"plane=abs:1\": the sites are plane_distance, parallel, orientation, separation");
+  EXPECT_EQ(refusal("moller_1997/f32/cpu/parallel=abs:1,parallel=abs:2"),
+            forms + "\"parallel=abs:1,parallel=abs:2\": it gives parallel=abs twice; leave one out");
   EXPECT_EQ(refusal("separating_axes/f32/cpu/paper"),
             forms + "\"paper\": the paper of separating_axes compares with zero, as the lane without a policy");
   EXPECT_EQ(refusal("projected_sat/f32/cpu/bound"),

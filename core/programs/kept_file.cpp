@@ -29,10 +29,19 @@ std::string line_of(std::string_view bytes, const fs::path& kept) {
 
 }  // namespace
 
+void move_over(const fs::path& made, const fs::path& kept) {
+  std::error_code error, none;
+  fs::rename(made, kept, error);
+  if (!error) return;
+  const std::string why = fs::is_directory(kept, none) ? "a folder is in the way; remove it" : error.message();
+  fs::remove(made, none);
+  throw std::runtime_error(cannot("write", kept, why));
+}
+
 void keep_file(const fs::path& made, const fs::path& kept) {
   std::ofstream out(made, std::ios::binary | std::ios::app);
   if (!(out << line_of(content(made), kept)).flush()) throw std::runtime_error(cannot("write", made, errno));
-  fs::rename(made, kept);
+  move_over(made, kept);
 }
 
 std::optional<std::string> kept_content(const fs::path& kept) {

@@ -9,6 +9,9 @@
 
 namespace graze {
 
+// Renames `made` to `kept`, and replaces a file there.   Throws: std::runtime_error, after it has removed `made`.
+void move_over(const std::filesystem::path& made, const std::filesystem::path& kept);
+
 // Appends the checksum to `made` and renames it to `kept`: nobody sees a part of it.   Throws: std::runtime_error.
 void keep_file(const std::filesystem::path& made, const std::filesystem::path& kept);
 

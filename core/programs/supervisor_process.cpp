@@ -109,7 +109,8 @@ ssize_t SupervisorProcess::receive(void* to, std::size_t size) {
       ++looks;
     }
     if (stop_requested) throw Stopped();
-    if (is_stopped(process_)) return -1;  // a subject without a namespace of its own can stop it
+    stopped_ = is_stopped(process_);  // by a subject without a namespace of its own
+    if (stopped_) return -1;
   }
   silent_ = true;
   return -1;

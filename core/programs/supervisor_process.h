@@ -31,13 +31,16 @@ class SupervisorProcess {
   // Returns: the message's size; at most 0 if the supervisor ended, is stopped or is silent.   Throws: Stopped.
   ssize_t receive(void* to, std::size_t size);
 
+  // Whether `receive` failed because the supervisor was stopped or silent.
+  bool stopped() const { return stopped_ || silent_; }
+
   // Whether `receive` failed because the supervisor was silent for 10 s, as a frozen one is.
   bool silent() const { return silent_; }
 
  private:
   int socket_ = -1;
   pid_t process_ = -1;
-  bool silent_ = false;
+  bool stopped_ = false, silent_ = false;
 };
 
 }  // namespace graze

@@ -3,9 +3,12 @@
 #include "fuzz/campaign/store.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <functional>
+#include <map>
 
 #include "core/error.h"
 #include "core/message_testing.h"
@@ -171,6 +174,94 @@ TEST(FirstDifference, NamesThePlaceAndBothValues) {
   EXPECT_EQ(first_difference({{"scene", "B\u00e4r"}}, {{"scene", 7}}), "scene is 7, not \"B\u00e4r\"");
   EXPECT_EQ(first_difference({{"lanes", {"a", "b"}}}, {{"lanes", {"a"}}}), "lanes/1 is none, not \"b\"");
   EXPECT_EQ(first_difference({{"a", 1}}, {{"a", 1}, {"b", true}}), "b is true, not none");
+}
+
+// Somebody's file, link, pipe or folder may have the name under which a database is set aside or prepared.
+TEST_F(StoreTest, DiscardingDamageReplacesAndRemovesNothing) {
+  const std::string whole = run(campaign("whole"));
+  const Campaign c = in_seven_rows("taken");
+  const std::string bytes = read_whole(file(c)), damaged = bytes.substr(0, bytes.size() / 2);
+  const fs::path taken = file(c).string() + ".damaged", second = taken.string() + "-2", third = taken.string() + "-3";
+  write_whole(root_ / "theirs", "precious");
+  const std::map<std::string, std::function<void(const fs::path&)>> things = {
+      {"file", [](const fs::path& at) { write_whole(at, "precious"); }},
+      {"hard link", [&](const fs::path& at) { fs::create_hard_link(root_ / "theirs", at); }},
+      {"link", [&](const fs::path& at) { fs::create_symlink(root_ / "theirs", at); }},
+      {"dangling link", [&](const fs::path& at) { fs::create_symlink(root_ / "nothing", at); }},
+      {"pipe", [](const fs::path& at) { ASSERT_EQ(mkfifo(at.c_str(), 0600), 0); }},
+      {"folder", [](const fs::path& at) { fs::create_directory(at); }}};
+  for (const auto& [what, make] : things) {
+    std::vector<std::pair<fs::path, struct stat>> before;
+    for (const fs::path& at :
+         {taken, fs::path(file(c).string() + ".part"), fs::path(file(c).string() + "-wal.damaged")}) {
+      make(at);
+      ASSERT_EQ(lstat(at.c_str(), &before.emplace_back(at, (struct stat){}).second), 0);
+    }
+    for (const fs::path& place : {second, third}) {
+      write_whole(file(c), damaged);
+      write_whole(file(c).string() + "-wal", "no log");
+      const auto salvage = discard_damaged(store_spec(c));
+      ASSERT_TRUE(salvage) << what;
+      EXPECT_EQ(salvage->damaged, place) << what;
+      EXPECT_EQ(read_whole(place), damaged) << what;
+      EXPECT_EQ(read_whole(file(c).string() + "-wal" + place.string().substr(file(c).string().size())), "no log")
+          << what;
+      EXPECT_EQ(run(c), whole) << what;
+    }
+    for (const auto& [at, was] : before) {
+      struct stat is {};
+      ASSERT_EQ(lstat(at.c_str(), &is), 0) << what << ' ' << at;
+      EXPECT_EQ(std::pair(is.st_ino, is.st_size), std::pair(was.st_ino, was.st_size)) << what << ' ' << at;
+      fs::remove(at);
+    }
+    for (const fs::path& place : {second, third}) {
+      fs::remove(place);
+      fs::remove(file(c).string() + "-wal" + place.string().substr(file(c).string().size()));
+    }
+  }
+  EXPECT_EQ(read_whole(root_ / "theirs"), "precious");
+  EXPECT_FALSE(fs::exists(root_ / "nothing"));
+}
+
+// SQLite would read the log beside the file to which the link leads.
+TEST_F(StoreTest, ADamagedDatabaseBehindALinkIsMendedThere) {
+  const std::string whole = run(campaign("whole"));
+  const Campaign c = in_seven_rows("linked");
+  fs::create_directory(root_ / "disk");
+  fs::rename(file(c), root_ / "disk/store");
+  fs::create_symlink("../disk/store", file(c));
+  const std::string bytes = read_whole(file(c));
+  write_whole(root_ / "disk/store", bytes.substr(0, bytes.size() / 2));
+  const auto salvage = discard_damaged(store_spec(c));
+  ASSERT_TRUE(salvage);
+  EXPECT_EQ(salvage->damaged.filename(), "store.damaged");
+  EXPECT_EQ(run(c), whole);
+  EXPECT_TRUE(fs::is_symlink(file(c)));
+}
+
+// A reader that may not write leaves an index and an empty log.
+TEST_F(StoreTest, ReadingRemovesWhatOtherReadersOfTheDatabaseLeft) {
+  const Campaign c = campaign("read");
+  run(c);
+  SQLite::Database(file(c).string(), SQLite::OPEN_READONLY).execAndGet("SELECT count(*) FROM batch");
+  const std::string name = file(c).string();
+  ASSERT_TRUE(fs::exists(name + "-shm") && fs::exists(name + "-wal"));
+  EXPECT_EQ(recorded_store(c.directory).spec, c.spec);
+  EXPECT_FALSE(fs::exists(name + "-shm") || fs::exists(name + "-wal"));
+}
+
+TEST_F(StoreTest, RemovingAStoreLeavesWhatOthersPutBesideIt) {
+  const Campaign c = in_seven_rows("scratch");
+  const fs::path left = file(c).string() + kPart;
+  write_whole(left, "of a killed run");
+  write_whole(file(c).string() + ".part", "precious");
+  remove_store(c.directory);
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_FALSE(fs::exists(file(c)));
+  fs::create_directory(left);
+  remove_store(c.directory);
+  EXPECT_TRUE(fs::exists(left));
+  EXPECT_EQ(read_whole(file(c).string() + ".part"), "precious");
 }
 
 TEST_F(StoreTest, DamageOfAnotherCampaignIsNoReasonToDiscardIt) {

@@ -13,12 +13,14 @@
 #include <iterator>
 #include <limits>
 #include <memory>
+#include <new>
 #include <string_view>
 
 #include "core/cannot.h"
 #include "core/error.h"
 #include "core/fnv1a.h"
 #include "fuzz/files.h"
+#include "fuzz/own_files.h"
 
 namespace graze::fuzz {
 namespace {
@@ -268,7 +270,9 @@ struct OpenedToRead {
                  : nullptr),
         database(lock ? opened(directory / kDatabase, SQLite::OPEN_READWRITE)
                       : SQLite::Database(as_uri(directory / kDatabase), SQLite::OPEN_READONLY | SQLite::OPEN_URI)) {
-    if (lock) database.exec("PRAGMA locking_mode = EXCLUSIVE");
+    // An exclusive reader needs no index file, and would not remove one that another program's reader left.
+    if (lock && !fs::exists(directory / (std::string(kDatabase) + "-shm")))
+      database.exec("PRAGMA locking_mode = EXCLUSIVE");
   }
 
   static std::string as_uri(const fs::path& file) {
@@ -315,14 +319,35 @@ std::vector<KeptRow> rows_that_check(SQLite::Database& database, const StoreSpec
   return kept;
 }
 
+// The first of FILE.damaged, FILE.damaged-2, … that does not exist.
+fs::path place_of_damaged(const fs::path& file) {
+  fs::path place = file.string() + ".damaged";
+  for (int n = 2; fs::exists(fs::symlink_status(place)); ++n) place = fmt::format("{}.damaged-{}", file.string(), n);
+  return place;
+}
+
+// The bytes of a database file with these rows.
+std::string bytes_of_store(const std::string& text, const std::vector<KeptRow>& rows) {
+  SQLite::Database database(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  begin(database, text);
+  SQLite::Transaction transaction(database);
+  for (const KeptRow& row : rows) insert(database, fnv1a(text), row.range, row.bytes);
+  transaction.commit();
+  sqlite3_int64 size = 0;
+  const std::unique_ptr<unsigned char, void (*)(void*)> bytes(sqlite3_serialize(database.getHandle(), "main", &size, 0),
+                                                              sqlite3_free);
+  if (!bytes) throw std::bad_alloc();
+  return {bytes.get(), bytes.get() + size};
+}
+
 // A row's checksum starts from the campaign's. So a row with the right checksum belongs to this campaign, whatever else
 // is damaged.
 Salvage salvage(const StoreSpec& spec) {
-  const fs::path file = database_file(spec), fresh = file.string() + ".part";
+  const fs::path file = behind_links(database_file(spec));
   const std::string text = text_of(spec);
   std::vector<KeptRow> kept;
   std::size_t seen = 0;
-  for (const fs::path& left : unusable_files_of(file)) fs::rename(left, left.string() + ".damaged");
+  for (const fs::path& left : unusable_files_of(file)) fs::rename(left, place_of_damaged(left));
   try {
     SQLite::Database database = opened(file);
     bool known = false;
@@ -337,22 +362,12 @@ Salvage salvage(const StoreSpec& spec) {
       throw std::runtime_error(cannot("recover", file, "no batch of this campaign can be read; choose another --out"));
   } catch (const SQLite::Exception&) {  // nothing is readable
   }
-  Salvage result{kept.size(), 0, file.string() + ".damaged"};
-  for (const char* left : {"", "-journal"}) fs::remove(fresh.string() + left);  // left by a killed process
-  {
-    SQLite::Database database = opened(fresh);
-    begin(database, text);
-    SQLite::Transaction transaction(database);
-    for (const KeptRow& row : kept) {
-      insert(database, fnv1a(text), row.range, row.bytes);
-      result.pairs += row.range.pairs;
-    }
-    transaction.commit();
-  }
-  fs::remove(result.damaged);  // which might be a link to another file
-  fs::copy_file(file, result.damaged);
+  Salvage result{kept.size(), 0, place_of_damaged(file)};
+  for (const KeptRow& row : kept) result.pairs += row.range.pairs;
+  const std::string bytes = bytes_of_store(text, kept);
+  copy_whole(file, result.damaged);
   fs::remove(file.string() + "-wal");  // log of the old database, already read
-  fs::rename(fresh, file);
+  write_whole(file, bytes);
   return result;
 }
 
@@ -458,8 +473,9 @@ std::optional<Salvage> discard_damaged(const StoreSpec& spec) {
 }
 
 void remove_store(const fs::path& directory) {
-  for (const char* behind : {"", "-wal", "-shm", "-journal", ".part"})
-    fs::remove(directory / (std::string(kDatabase) + behind));
+  const std::string database = directory / kDatabase;
+  for (const char* behind : {"", "-wal", "-shm", "-journal"}) fs::remove(database + behind);
+  if (const std::string part = database + kPart; is_left_over(part)) fs::remove(part);
   for (const char* file : {"status.json", "timings.json"}) fs::remove(directory / file);
   std::error_code not_empty;
   fs::remove(directory / "cases", not_empty);

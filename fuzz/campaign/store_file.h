@@ -85,7 +85,7 @@ void for_each_row(const StoreSpec& spec, const std::function<void(const PairRang
 struct Salvage {
   std::size_t batches = 0;
   std::uint64_t pairs = 0;
-  std::filesystem::path damaged;  // where the old database is now
+  std::filesystem::path damaged;  // where the old database is now; nothing was there before
 };
 
 // Keeps only the rows of a damaged database whose checksums are right. The pairs of the other rows are judged again

@@ -56,12 +56,12 @@ class Processes {
 };
 
 // Whether a killed process left the file: a round's unread result or a partial file, such as "000012.result".
-bool is_left_over(const fs::directory_entry& file) {
+bool is_of_killed_round(const fs::directory_entry& file) {
   const std::string name = file.path().filename().string();
   const std::size_t digits = name.find_first_not_of("0123456789");
   const std::string rest = digits >= 6 && digits != name.npos ? name.substr(digits) : "";
   return file.symlink_status().type() == fs::file_type::regular &&
-         (rest == ".result" || rest == ".result.graze.part" || rest == ".round.graze.part");
+         (rest == ".result" || rest == std::string(".result") + kPart || rest == std::string(".round") + kPart);
 }
 
 class Hunter {
@@ -85,7 +85,7 @@ class Hunter {
     checksum_ = hunt_checksum(hunt.campaign.spec, hunt.campaign.build);
     fs::create_directories(folder());
     for (const auto& file : fs::directory_iterator(folder())) {
-      if (is_left_over(file)) fs::remove(file.path());
+      if (is_of_killed_round(file)) fs::remove(file.path());
     }
   }
 

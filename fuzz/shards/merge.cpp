@@ -113,18 +113,30 @@ void expect_sealed(const StoreSpec& store) {
                            printable(status["hash"].get<std::string>()))));
 }
 
-void expect_new(const fs::path& out) {
-  if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out)))
-    throw UsageError(cannot("use", out, "it holds other files; choose a new or an empty directory as --out"));
+// Whether the folder holds the whole campaign, for example because a merge into it has ended.
+bool holds_whole(const fs::path& out, const Json& spec) {
+  try {
+    const StoreSpec found = recorded_store(out);
+    const Json summary = Json::parse(read_whole(out / "summary.json"));
+    return found.shard.whole() && found.spec == spec && summary.at("complete") == true;
+  } catch (const std::exception&) {  // it holds something else
+    return false;
+  }
+}
+
+void expect_new(const fs::path& out, const Json& spec) {
+  if (!fs::exists(out) || (fs::is_directory(out) && fs::is_empty(out))) return;
+  const std::string why = holds_whole(out, spec) ? "it holds this campaign already, complete" : "it holds other files";
+  throw UsageError(cannot("use", out, why + "; choose a new or an empty directory as --out"));
 }
 
 // The folder that `out` names, without links; the finished campaign is renamed to it.
 // Throws: UsageError if that is impossible.
-fs::path place_of(const fs::path& out) {
+fs::path place_of(const fs::path& out, const Json& spec) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(behind_links(out), error);
   if (error) throw UsageError(cannot("use", out, error.message()));
-  expect_new(out);
+  expect_new(out, spec);
   if (!place.has_filename()) place = place.parent_path();
   if (place == fs::current_path(error))
     throw UsageError(cannot("replace", out, "it is the working directory; run the command elsewhere"));
@@ -136,14 +148,18 @@ fs::path place_of(const fs::path& out) {
   return place;
 }
 
-// The folder beside the target in which the campaign is built. A killed merge may have left it.
+constexpr std::string_view kCampaignPart = "campaign.graze.part";
+
+// The folder beside the target in which the campaign is built, as kCampaignPart. A killed merge may have left it.
 fs::path folder_beside(const fs::path& place) {
   std::error_code error;
   fs::path part = place;
-  part += ".part";
+  part += kPart;
   fs::create_directories(part, error);
   if (error) throw std::runtime_error(cannot("make the directory", part, error.message()));
-  if (!may_fill(part, {})) throw UsageError(cannot("use", part, "it holds files that no merge left; remove it"));
+  const auto is_ours = [](const fs::directory_entry& entry) { return entry.path().filename() == kCampaignPart; };
+  if (fs::is_symlink(part) || !std::all_of(fs::directory_iterator(part), fs::directory_iterator(), is_ours))
+    throw UsageError(cannot("use", part, "it is not what a killed merge leaves; remove it"));
   return part;
 }
 
@@ -273,16 +289,16 @@ Outcome merge(const MergeOptions& options) {
   const SelectedLanes under_test = recorded_lanes(campaign.spec);
   campaign.under_test = &under_test;
   const std::map<std::string, Json> timings = timings_of(stores);
-  const fs::path place = place_of(options.out), beside = folder_beside(place);
+  const fs::path place = place_of(options.out, campaign.spec), beside = folder_beside(place);
   const FolderLock alone(beside, FolderLock::WhenTaken::refuse);  // held to the end; other merges must not empty it
-  campaign.directory = beside / "campaign.part";
+  campaign.directory = beside / kCampaignPart;
 
   Sums sums(campaign.sources, static_cast<int>(under_test.lanes.size()));
   std::vector<std::uint64_t> held(stores.size());
   std::optional<Store> partial;
   std::error_code unimportant;
   try {
-    expect_new(options.out);  // again, because another merge may just have ended
+    expect_new(options.out, campaign.spec);  // again, because another merge may just have ended
     fs::remove_all(campaign.directory);
     fs::create_directory(campaign.directory);
     if (options.partial) partial.emplace(store_spec(campaign));

@@ -56,7 +56,7 @@ class MergeTest : public CampaignFiles {
       merge({parts, root_ / "refused", false});
     } catch (const std::runtime_error& error) {
       EXPECT_FALSE(fs::exists(root_ / "refused"));
-      EXPECT_FALSE(fs::exists(root_ / "refused.part"));
+      EXPECT_FALSE(fs::exists(root_ / "refused.graze.part"));
       return error.what();
     }
     return "";
@@ -118,6 +118,48 @@ TEST_F(MergeTest, APartialMergeIsACampaignToGoOnWith) {
   EXPECT_FALSE(partial.summary["complete"].get<bool>());
   EXPECT_TRUE(run(campaign("partial"))["complete"].get<bool>());
   expect_same_bytes("whole", "partial");
+}
+
+// The folder beside the target may have been left by a killed merge. Anything else of its name stays.
+TEST_F(MergeTest, OnlyWhatAKilledMergeLeftIsReplaced) {
+  const std::vector<fs::path> parts = run_shards(2);
+  const fs::path out = root_ / "all", beside = out.string() + kPart, other = root_ / "other";
+  fs::create_directories(beside / "campaign.graze.part/cases");
+  fs::create_directories(root_ / "all.part/campaign.part");
+  fs::create_directory(other);
+  for (const fs::path& theirs : {root_ / "all.part/campaign.part/mine", other / "mine"})
+    write_whole(theirs, "precious");
+  write_whole(beside / "mine", "precious");
+  EXPECT_THROW(merge({parts, out, false}), UsageError);
+  EXPECT_EQ(read_whole(beside / "mine"), "precious");
+  fs::rename(beside, root_ / "moved");
+  fs::create_directory_symlink(other, beside);
+  EXPECT_THROW(merge({parts, out, false}), UsageError);
+  fs::remove(beside);
+  fs::rename(root_ / "moved", beside);
+  fs::remove(beside / "mine");
+  EXPECT_TRUE(merge({parts, out, false}).complete);
+  EXPECT_FALSE(fs::exists(beside));
+  for (const fs::path& theirs : {root_ / "all.part/campaign.part/mine", other / "mine"})
+    EXPECT_EQ(read_whole(theirs), "precious");
+}
+
+TEST_F(MergeTest, AMergeThatIsDoneIsSaidToBe) {
+  const std::vector<fs::path> parts = run_shards(2);
+  const auto refused = [&](const fs::path& out) -> std::string {
+    try {
+      merge({parts, out, false});
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  merge({parts, root_ / "all", false});
+  EXPECT_TRUE(names(refused(root_ / "all"), {(root_ / "all").string(), "already"}));
+  merge({{parts[0]}, root_ / "half", true});
+  run(campaign("other", {1, 3}));
+  for (const char* name : {"half", "other"})
+    EXPECT_TRUE(names(refused(root_ / name), {(root_ / name).string(), "other files"})) << name;
 }
 
 TEST_F(MergeTest, WhatIsWrongGetsOneLineAndLeavesNothing) {

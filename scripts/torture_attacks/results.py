@@ -174,7 +174,7 @@ def must_end_alike(turn, verb, out, expected):
         raise Violation(
             f"expected the results of the undisturbed {verb}, found that {len(apart)} files differ, the first {apart[0]}"
         )
-    left = [file.name for file in [*out.rglob("*.part*"), *out.parent.glob(out.name + ".part*")]]
+    left = [file.name for file in [*out.rglob("*.part*"), *out.parent.glob(out.name + ".graze.part*")]]
     if left:
         raise Violation(f"expected nothing left behind, found {left}")
 

@@ -75,7 +75,8 @@ typedef struct graze_query {
   int executor;
   const char* lane; /* NULL: exact. Else a name from `graze lanes`: moller_1997/f32/cpu, or a CUDA lane for a GPU */
   /* For GRAZE_ALL; each may be NULL. They have a row for each reference. bytes: one byte for each triangle, 1 meets the
-     reference, 0 does not, 2 declined. bits: (triangles + 7) / 8 bytes; triangle i is bit i % 8 of byte i / 8. */
+     reference, 0 does not, 2 declined. bits: (triangles + 7) / 8 bytes; triangle i is bit i % 8 of byte i / 8. With
+     bits, each part but the last has a multiple of 64 triangles. */
   unsigned char* bytes;
   unsigned char* bits;
   /* For GRAZE_ALL, on the host: the hits in ascending order, as triangle * reference_count + reference; at most
@@ -100,7 +101,7 @@ typedef struct graze_answer {
   uint64_t first;           /* the first triangle that meets a reference; UINT64_MAX: none. With parts in the memory
                                of several devices, GRAZE_ANY may find a later one. */
   uint64_t first_reference; /* the first reference that it meets */
-  int executor;             /* the executor that was used, never GRAZE_AUTO */
+  int executor;             /* the executor that was used; GRAZE_AUTO: the query was refused, and none was */
   double seconds;
   double longest_launch; /* seconds of device time */
 } graze_answer;

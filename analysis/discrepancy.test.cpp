@@ -5,8 +5,10 @@
 
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <set>
 
+#include "analysis/discrepancy_origins.h"
 #include "analysis/lane_trace.h"
 #include "core/discrepancy/count.h"
 #include "core/error.h"
@@ -336,6 +338,57 @@ TEST(Discrepancy, FindsAPlantedUlp) {
   EXPECT_FALSE(places.has(pair_counts::verdict));
   ASSERT_EQ(places.largest.size(), 1u);
   EXPECT_LT(places.largest[0], 1e-30);
+}
+
+// A run with one fused line is a lane whose one operation rounds otherwise: its values are found at that line.
+TEST(Discrepancy, OriginsFindTheLineThatWasPlanted) {
+  const Lane& of = lane("moller_1997/f32/cuda-fma");
+  const auto simpler = [](const Pair&, const Pair&) { return false; };
+  const auto sources = strata::stratum_sources(2, 3000, {"thesis", "near_edge_edge", "near_vertex_face"});
+  const Origins found = origins(of, sources, 1000, 1, simpler);
+  EXPECT_EQ(found.pairs, 3000u);
+  EXPECT_GT(found.verdicts, 10u);
+  ASSERT_GT(found.lines.size(), 3u);
+  const std::vector<Question>& questions = questions_of(of.algorithm);
+  std::vector<std::uint64_t> values(found.lines.size());
+  std::uint64_t fixed = 0, starts = 0, grown = 0;
+  for (std::size_t l = 0; l < found.lines.size(); ++l) {
+    for (const strata::PairSource& source : sources) {
+      for (std::uint64_t i = 0; i < 1000; ++i) {
+        const Pair pair = source.pair(i);
+        const std::vector<std::uint64_t> none(found.lines[l].mask.size());
+        std::vector<float> rounded(2 * questions.size()), planted = rounded;
+        RecordedPath path, planted_path;
+        cuda::record_fusing(of, {&pair, 1}, {rounded.data(), 1, &path}, none);
+        cuda::record_fusing(of, {&pair, 1}, {planted.data(), 1, &planted_path}, found.lines[l].mask);
+        for (std::size_t q = 0; q < questions.size(); ++q) {
+          if (!have_both(path, planted_path, static_cast<int>(q), questions[q].site)) continue;
+          for (std::size_t v = 0; v < questions[q].of.size(); ++v)
+            values[l] += !same_bits(rounded[2 * q + v], planted[2 * q + v]);
+        }
+      }
+    }
+    EXPECT_EQ(found.lines[l].values, values[l]) << found.lines[l].at.file << ':' << found.lines[l].at.line;
+    fixed += found.lines[l].verdicts_fixed;
+    EXPECT_EQ(found.lines[l].simplest.has_value(), found.lines[l].verdicts_fixed + found.lines[l].verdicts_alone > 0);
+  }
+  for (const auto& [place, start] : found.starts) {
+    for (const std::uint64_t count : start.by_line) starts += count;
+    for (const std::uint64_t count : start.growth) grown += count;
+    starts -= start.by_line.back();
+  }
+  EXPECT_GT(fixed, 0u);
+  EXPECT_EQ(starts, grown);  // all are finite here
+  EXPECT_GT(starts, 1000u);
+  const Origins again = origins(of, sources, 1000, 3, simpler);
+  for (std::size_t l = 0; l < found.lines.size(); ++l) {
+    EXPECT_EQ(again.lines[l].values, found.lines[l].values);
+    EXPECT_EQ(again.lines[l].verdicts_fixed, found.lines[l].verdicts_fixed);
+    ASSERT_EQ(again.lines[l].simplest.has_value(), found.lines[l].simplest.has_value());
+    if (found.lines[l].simplest) {
+      EXPECT_EQ(std::memcmp(&*again.lines[l].simplest, &*found.lines[l].simplest, sizeof(Pair)), 0);
+    }
+  }
 }
 
 TEST(Discrepancy, RefusesLanesThatCannotBeCompared) {

@@ -5,23 +5,30 @@
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "cli/screen.h"
+#include "core/cannot.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "cuda/lanes/device.h"
+#include "fuzz/campaign/checked_summary.h"
+#include "fuzz/campaign/recorded.h"
 #include "fuzz/minimise/simplicity.h"
+#include "fuzz/sealed.h"
 #include "reports/discrepancy.h"
 #include "reports/discrepancy_page.h"
 
 namespace graze::cli {
 namespace {
 
-constexpr int kDevice = 1, kTwin = 2;  // of --executor
+constexpr int kDevice = 1, kTwin = 2;   // of --executor
+constexpr std::size_t kMostTables = 2;  // of more comparisons only the sentences are printed
 
 struct DiscrepancyOptions {
   std::vector<std::string> lanes;  // first and second in turn
+  std::vector<std::string> compare;
   std::vector<std::string> strata;
   std::uint64_t pairs = 20'000, seed = 1;
   int threads = 0, executor = 0;
-  std::string scene, out = "discrepancy";
+  std::string scene, campaign, out;
 };
 
 const Lane& lane_of(const std::string& id) {
@@ -45,6 +52,17 @@ std::vector<analysis::LanesCompared> lanes_of(const DiscrepancyOptions& options)
   return lanes;
 }
 
+// The first pairs of each source of a campaign, `most` in all.
+std::vector<strata::PairSource> sources_of(const std::string& campaign, std::uint64_t most) {
+  const fuzz::Json spec = fuzz::checked_summary(campaign).at("spec");
+  if (spec.contains("hunt"))
+    throw UsageError("the pairs of a hunt cannot be drawn again: " + campaign + " cannot be compared");
+  std::vector<strata::PairSource> sources = fuzz::recorded_sources(spec);
+  for (std::size_t s = 0; s < sources.size(); ++s)
+    sources[s].pairs = std::min(sources[s].pairs, most / sources.size() + (s < most % sources.size()));
+  return sources;
+}
+
 constexpr std::uint64_t kOriginPairs = 2000;  // of each source
 
 // Where the values start to differ, of each comparison of a contracted CUDA lane with one that rounds every operation.
@@ -61,33 +79,63 @@ std::vector<std::optional<analysis::Origins>> origins_of(const analysis::Discrep
   return origins;
 }
 
+// A file of this verb, or the folder that it is in.
+fuzz::Json results_of(const std::string& name) {
+  const std::filesystem::path file = std::filesystem::is_directory(name)
+                                         ? std::filesystem::path(name) / "discrepancy.json"
+                                         : std::filesystem::path(name);
+  const fuzz::Json found = fuzz::read_sealed(file, "make it again");
+  if (found.is_null()) throw std::runtime_error(cannot("read", file, "there is no such file"));
+  reports::expect_possible_discrepancy(found);
+  return found;
+}
+
+int compare(const std::vector<std::string>& names) {
+  const fuzz::Json before = results_of(names[0]), after = results_of(names[1]);
+  for (const char* spec : {"pairs", "seed"}) {
+    if (before.at(spec) != after.at(spec))
+      throw UsageError(fmt::format("{} and {} are of other pairs: their {} differ", names[0], names[1], spec));
+  }
+  fmt::print("{}", reports::discrepancy_changes(before, after, output_screen()));
+  return 0;
+}
+
 int discrepancy(const DiscrepancyOptions& options) {
+  if (!options.compare.empty()) return compare(options.compare);
   analysis::DiscrepancySpec spec;
   spec.lanes = lanes_of(options);
-  strata::SceneSources all = drawn(options.scene, options.seed, options.pairs, options.strata);
-  spec.sources = std::move(all.sources);
+  strata::SceneSources all;
+  if (options.campaign.empty()) all = drawn(options.scene, options.seed, options.pairs, options.strata);
+  spec.sources = options.campaign.empty() ? std::move(all.sources) : sources_of(options.campaign, options.pairs);
   spec.threads = options.threads;
   std::string why_not;
   spec.on_device = options.executor != kTwin && cuda::open_device(why_not);
   if (options.executor == kDevice && !spec.on_device)
     throw std::runtime_error("cannot compare on a device: " + why_not);
-  const ResultFolder folder(options.out, "discrepancy.json");
+  const std::string out = !options.out.empty()        ? options.out
+                          : !options.campaign.empty() ? options.campaign
+                                                      : "discrepancy";
+  const ResultFolder folder(out, "discrepancy.json");
   const reports::DiscrepancyResults found{spec, analysis::discrepancies(spec), origins_of(spec)};
 
   const reports::Screen screen = output_screen();
-  fmt::print("{}", reports::discrepancy_tables(found, screen));
+  if (spec.lanes.size() <= kMostTables) fmt::print("{}", reports::discrepancy_tables(found, screen));
   for (const std::string& sentence : reports::discrepancy_sentences(found))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", left_out_text(all.left_out));
-  nlohmann::ordered_json json = {{"pairs", options.pairs}, {"seed", options.seed}};
+  std::uint64_t pairs = 0;
+  for (const strata::PairSource& source : spec.sources) pairs += source.pairs;
+  nlohmann::ordered_json json = {{"pairs", pairs}, {"seed", options.seed}};
+  if (!options.campaign.empty()) json["seed"] = fuzz::checked_summary(options.campaign).at("spec").at("seed");
   if (!options.scene.empty()) json["scene"] = options.scene;
   json.update(reports::discrepancy_json(found));
   for (const std::string& sentence : reports::discrepancy_answer(json))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
-  write_results(folder.path, {{"discrepancy.json", json.dump(1) + "\n"},
+  write_results(folder.path, {{"discrepancy.json", fuzz::sealed(json).dump(1) + "\n"},
                               {"discrepancy.csv", reports::discrepancy_csv(found)},
                               {"discrepancy.html", reports::discrepancy_page(json)}});
   fmt::print("Wrote {0}/discrepancy.html, {0}/discrepancy.json, {0}/discrepancy.csv\n", folder.path.string());
+  if (!options.campaign.empty()) fmt::print("Next: graze report {}\n", path_word(options.campaign));
   return 0;
 }
 
@@ -103,8 +151,21 @@ void add_discrepancy(CLI::App& app, int& status) {
       ->add_option("lanes", options->lanes,
                    "Lanes to compare, two by two (default: cpu with cuda-fma and with cuda-nofma, of all algorithms)")
       ->option_text("LANE LANE");
+  command
+      ->add_option("--compare", options->compare,
+                   "Compare two results of this verb on the same pairs, such as those of two drivers or GPUs")
+      ->expected(2)
+      ->excludes("lanes")
+      ->option_text("DIR DIR");
   add_globs(*command, "--strata", options->strata, "Patterns of the strata to draw from");
   add_scene_option(*command, options->scene);
+  command
+      ->add_option("--campaign", options->campaign,
+                   "Compare on the first pairs of this campaign; its report shows the results then")
+      ->check(not_empty())
+      ->excludes("--strata")
+      ->excludes("--scene")
+      ->option_text("DIR");
   add_count(*command, "--pairs", options->pairs, 1, kMostWhole,
             "Number of pairs in total, shared evenly by the strata");
   add_count(*command, "--seed", options->seed, 0, kMostWhole, "Seed of the pairs");
@@ -116,9 +177,10 @@ void add_discrepancy(CLI::App& app, int& status) {
           "are the same")
       ->transform(one_of({"auto", "device", "twin"}, Chosen::place))
       ->option_text("auto|device|twin");
-  command->add_option("--out", options->out, "Folder for discrepancy.json and discrepancy.csv")
+  command
+      ->add_option("--out", options->out,
+                   "Folder for discrepancy.html, .json and .csv (default: the campaign's, else discrepancy)")
       ->check(not_empty())
-      ->capture_default_str()
       ->option_text("DIR");
   command->callback([options, &status] { status = discrepancy(*options); });
 }

@@ -50,11 +50,48 @@ TEST_F(DiscrepancyCommand, CountsAreThoseOfAProgramThatSharesNoCode) {
   }
 }
 
+// The verdicts that differ are those that a campaign counts on the same pairs, and its report shows the answer.
+TEST_F(DiscrepancyCommand, ACampaignsColumnIsTheSumOfItsVerdicts) {
+  const std::string first = "interval_overlap/f32/cpu", second = "interval_overlap/f32/cuda-fma";
+  expect_done("graze fuzz --lanes " + first + "," + second +
+              " --executor twin --strata 'thesis,near_edge_edge,coplanar_*' --pairs 5003 --out c");
+  expect_done("graze discrepancy " + first + " " + second + " --executor twin --campaign c --pairs 5003");
+  const auto summary = nlohmann::json::parse(contents(shell.folder / "c/summary.json")),
+             found = nlohmann::json::parse(contents(shell.folder / "c/discrepancy.json"));
+  EXPECT_EQ(found["pairs"], 5003);
+  std::uint64_t verdicts = 0;
+  for (const auto& [stratum, of] : found["lanes"][0]["strata"].items()) {
+    EXPECT_EQ(of["pairs"], summary["strata"][stratum]["pairs"]) << stratum;
+    EXPECT_EQ(of["verdict"], summary["strata"][stratum]["lanes"][second]["differs_from_cpu"]) << stratum;
+    verdicts += of["verdict"].get<std::uint64_t>();
+  }
+  EXPECT_GT(verdicts, 50u);
+  expect_done("graze report c");
+  EXPECT_NE(contents(shell.folder / "c/report.html").find("discrepancy.html"), std::string::npos);
+  // An edited count is refused.
+  auto forged = found;
+  forged["lanes"][0]["strata"]["thesis"]["verdict"] = 5004;
+  std::ofstream(shell.folder / "c/discrepancy.json") << forged.dump();
+  EXPECT_EQ(shell("graze report c").status, 1);
+}
+
 TEST_F(DiscrepancyCommand, ExplainShowsTwoLanesSideBySide) {
   const Ran ran = shell("graze explain thesis:2012:1 --lanes interval_overlap/f32/cpu,interval_overlap/f32/cuda-fma");
   ASSERT_EQ(ran.status, 0) << ran.err;
   EXPECT_NE(ran.out.find("ulps apart"), std::string::npos) << ran.out;
   EXPECT_NE(ran.out.find("plane_distance.b[0]"), std::string::npos) << ran.out;
+}
+
+TEST_F(DiscrepancyCommand, ComparesTwoResults) {
+  const std::string run = "graze discrepancy --executor twin --strata thesis --pairs 2000 moller_1997/f32/cpu ";
+  expect_done(run + "moller_1997/f32/cuda-fma --out a");
+  expect_done(run + "moller_1997/f32/cuda-fma --out b");
+  expect_done(run + "moller_1997/f32/cpu-fma --out c");
+  const Ran same = shell("graze discrepancy --compare a b"), other = shell("graze discrepancy --compare a c");
+  EXPECT_NE(same.out.find("0 counts differ, "), std::string::npos) << same.out << same.err;
+  EXPECT_NE(other.out.find("Only the first has moller_1997/f32/cpu against moller_1997/f32/cuda-fma."),
+            std::string::npos)
+      << other.out << other.err;
 }
 
 TEST_F(DiscrepancyCommand, RefusesWhatItCannotCompare) {

@@ -324,6 +324,49 @@ Json discrepancy_json(const DiscrepancyResults& results) {
   return {{"lanes", all}};
 }
 
+std::string discrepancy_changes(const Json& before, const Json& after, const Screen& screen) {
+  const auto lanes_of = [](const Json& of) {
+    return of.at("first").get<std::string>() + " against " + of.at("second").get<std::string>();
+  };
+  std::string text;
+  std::size_t same = 0;
+  TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
+  const auto missing = [&](const Json& from, const Json& in, const char* which) {
+    for (const Json& of : from.at("lanes")) {
+      const bool there = std::any_of(in.at("lanes").begin(), in.at("lanes").end(),
+                                     [&](const Json& other) { return lanes_of(other) == lanes_of(of); });
+      if (!there) text += wrapped(fmt::format("Only {} has {}.", which, lanes_of(of)), screen.columns);
+    }
+  };
+  missing(before, after, "the first");
+  missing(after, before, "the second");
+  for (const Json& of : before.at("lanes")) {
+    for (const Json& now : after.at("lanes")) {
+      if (lanes_of(now) != lanes_of(of)) continue;
+      const auto compare = [&](const std::string& question, const Json& old_counts, const Json& new_counts) {
+        for (const auto& [name, count] : old_counts.items()) {
+          if (!count.is_number_unsigned() || !new_counts.contains(name)) continue;
+          if (count == new_counts.at(name)) {
+            ++same;
+          } else {
+            table.add({lanes_of(of), question, name, grouped(count.get<std::uint64_t>()),
+                       grouped(new_counts.at(name).get<std::uint64_t>())});
+          }
+        }
+      };
+      compare("", of.at("total"), now.at("total"));
+      for (const Json& question : of.at("total").at("questions")) {
+        for (const Json& other : now.at("total").at("questions")) {
+          if (question.at("question") == other.at("question")) compare(question.at("question"), question, other);
+        }
+      }
+    }
+  }
+  if (table.rows() > 0) text += table.text(screen);
+  return text + wrapped(fmt::format("{} counts differ, {} are the same.", grouped(table.rows()), grouped(same)),
+                        screen.columns);
+}
+
 std::string discrepancy_csv(const DiscrepancyResults& results) {
   const auto& [spec, found, origins] = results;
   std::string text = "first,second,stratum,question,value,count,bucket,pairs\n";

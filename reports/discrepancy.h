@@ -28,6 +28,11 @@ std::vector<std::string> discrepancy_sentences(const DiscrepancyResults& results
 // {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md says what the counts are.
 nlohmann::ordered_json discrepancy_json(const DiscrepancyResults& results);
 
+// Which counts of two discrepancy.json on the same pairs differ, with both numbers: for another driver, toolkit or GPU.
+// Names lanes and strata that only one of them has.
+std::string discrepancy_changes(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after,
+                                const Screen& screen);
+
 // A row for each count that is not zero: first,second,stratum,question,value,count,bucket,pairs.
 std::string discrepancy_csv(const DiscrepancyResults& results);
 

@@ -13,6 +13,10 @@ namespace graze::reports {
 // and what mends it. What the results do not tell is named.   json: discrepancy.json.
 std::vector<std::string> discrepancy_answer(const nlohmann::ordered_json& json);
 
+// Throws: std::runtime_error for counts that cannot be: parts larger than the whole, histograms that do not add up, a
+// total that is not that of the strata.   json: discrepancy.json.
+void expect_possible_discrepancy(const nlohmann::ordered_json& json);
+
 // A self-contained HTML page.   json: discrepancy.json.
 std::string discrepancy_page(const nlohmann::ordered_json& json);
 

@@ -23,7 +23,7 @@ namespace {
 
 class PageTest : public CampaignTest {};
 
-const Json kNone = {{"tuned", nullptr}, {"pareto", nullptr}};
+const Json kNone = {{"tuned", nullptr}, {"pareto", nullptr}, {"discrepancy", nullptr}};
 
 TEST(Page, KnowsTheOutermostBuckets) {
   const std::string page = fuzz::read_whole(fs::path(GRAZE_SOURCE_DIR) / "reports/web/src/margins.ts");

@@ -212,6 +212,11 @@ std::string choices_section(const Json& choices) {
     text += fmt::format("<h2>{}</h2>\n", title);
     for (const Json& sentence : choices.at(name).at("sentences")) text += paragraph(sentence);
   }
+  if (const Json& values = choices.at("discrepancy"); !values.is_null()) {
+    text += "<h2>CPU against GPU</h2>\n";
+    for (const Json& sentence : values.at("sentences")) text += paragraph(sentence);
+    text += fmt::format("<p><a href=\"{}\">Every value, with pictures</a></p>\n", html(values.at("page")));
+  }
   return text;
 }
 

@@ -15,6 +15,7 @@
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/sealed.h"
 #include "reports/costs.h"
+#include "reports/discrepancy_page.h"
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/possible_counts.h"
@@ -173,7 +174,12 @@ Json make_choices(const std::filesystem::path& directory) {
     checked(file, "what graze writes into it", [&] { expect_possible(found); });
     return found;
   };
-  return {{"tuned", read("tune.json", expect_possible_tuned)}, {"pareto", read("pareto.json", expect_possible_pareto)}};
+  const Json values = read("discrepancy.json", expect_possible_discrepancy);
+  Json discrepancy;
+  if (!values.is_null()) discrepancy = {{"sentences", discrepancy_answer(values)}, {"page", "discrepancy.html"}};
+  return {{"tuned", read("tune.json", expect_possible_tuned)},
+          {"pareto", read("pareto.json", expect_possible_pareto)},
+          {"discrepancy", discrepancy}};
 }
 
 std::string report_text(const Json& report) {

@@ -2,9 +2,9 @@
 // The results of `graze pareto` and `graze tune`, if their files are in the campaign's folder.
 import * as Plot from '@observablehq/plot';
 import { kChartStyle, named } from './chart';
-import { breakable, choice, code_block, copy_button, h, on_width, section } from './dom';
+import { breakable, choice, code_block, copy_button, h, on_width, section, sentence } from './dom';
 import { count, figure, percent, percent_bound, power_of_two } from './format';
-import type { Errors, PolicyErrors, Report, Pareto, Tuned } from './report';
+import type { Discrepancy, Errors, PolicyErrors, Report, Pareto, Tuned } from './report';
 import { sortable_table } from './sortable_table';
 import { cell_text } from './pairs_of_cell';
 import { go_to } from './state';
@@ -367,5 +367,18 @@ export function tuned_section(tuned: Tuned) {
       h('span', { style: 'color:var(--series-0)' }, '──'),
       ' false positives, on the pairs that the tolerance was chosen on; dashed upright line: chosen.',
     ),
+  );
+}
+
+export function discrepancy_section(found: Discrepancy) {
+  return section(
+    'discrepancy',
+    'CPU against GPU',
+    h(
+      'ol',
+      {},
+      found.sentences.map((text) => h('li', {}, sentence(text))),
+    ),
+    h('p', {}, h('a', { href: found.page }, 'Every value, with pictures')),
   );
 }

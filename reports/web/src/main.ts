@@ -3,7 +3,7 @@
 import './style.css';
 import { kind_id } from './card';
 import { follow_viewer } from './card_viewer';
-import { pareto_section, tuned_section } from './choices';
+import { discrepancy_section, pareto_section, tuned_section } from './choices';
 import { compare_section } from './compare';
 import { h } from './dom';
 import { count } from './format';
@@ -18,7 +18,7 @@ import { answer_section, run_section } from './run';
 import { side_by_side_section } from './side_by_side';
 import { follow_fragment } from './state';
 
-function build(report: Report, costs: Costs | null, { tuned, pareto }: Choices) {
+function build(report: Report, costs: Costs | null, { tuned, pareto, discrepancy }: Choices) {
   document.head.append(heat_styles());
   const failures = failure_sections(report);
   const sections = [
@@ -30,6 +30,7 @@ function build(report: Report, costs: Costs | null, { tuned, pareto }: Choices) 
     ...failures.sections,
     margins_section(report),
     extremes_section(report),
+    discrepancy && discrepancy_section(discrepancy),
     side_by_side_section(report),
     method_section(),
     run_section(report, costs),

@@ -92,6 +92,12 @@ export interface Pareto {
 export interface Choices {
   tuned: Tuned | null;
   pareto: Pareto | null;
+  discrepancy: Discrepancy | null;
+}
+// How the values of the lanes differ: sentences, and the page with every value.
+export interface Discrepancy {
+  sentences: string[];
+  page: string;
 }
 
 export interface Report {

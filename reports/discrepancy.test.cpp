@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "reports/discrepancy.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "analysis/tuning.h"
+#include "reports/discrepancy_page.h"
+#include "strata/strata.h"
+
+namespace graze::reports {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class DiscrepancyResult : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    analysis::DiscrepancySpec spec;
+    const auto lane = [](const char* id) -> const Lane& { return *find_lane(id); };
+    spec.lanes.emplace_back(lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma"));
+    spec.lanes.emplace_back(lane("moller_1997/f64/cpu"), lane("moller_1997/f64/cuda-nofma"));
+    spec.sources = strata::stratum_sources(4, 3000, {"thesis", "near_edge_edge", "extreme_scale"});
+    const auto simpler = [](const Pair&, const Pair&) { return false; };
+    const DiscrepancyResults results{
+        spec,
+        analysis::discrepancies(spec),
+        {analysis::origins(*spec.lanes[0].second, spec.sources, 500, 0, simpler), std::nullopt}};
+    json_ = {{"pairs", 3000}, {"seed", 4}};
+    json_.update(discrepancy_json(results));
+    csv_ = discrepancy_csv(results);
+  }
+
+  static inline Json json_;
+  static inline std::string csv_;
+};
+
+TEST_F(DiscrepancyResult, EveryCountThatIsEditedIsRefused) {
+  EXPECT_NO_THROW(expect_possible_discrepancy(json_));
+  const Json flat = json_.flatten();
+  std::size_t edited = 0, passed = 0;
+  for (const auto& [place, value] : flat.items()) {
+    if (!value.is_number_unsigned() || place.find("/strata/") == std::string::npos) continue;
+    if (++edited % 7 != 0) continue;  // some of them
+    for (const std::uint64_t count : {value.get<std::uint64_t>() + 1, std::uint64_t{1} << 40}) {
+      Json other = json_;
+      other[Json::json_pointer(place)] = count;
+      EXPECT_THROW(expect_possible_discrepancy(other), std::exception) << place;
+      ++passed;
+    }
+  }
+  EXPECT_GT(passed, 200u);
+  for (const char* place : {"/lanes", "/lanes/0/first", "/lanes/0/total/questions", "/lanes/1/strata/thesis/sites"}) {
+    Json other = json_;
+    other[Json::json_pointer(place)] = Json::array();
+    EXPECT_THROW(expect_possible_discrepancy(other), std::exception) << place;
+  }
+}
+
+TEST_F(DiscrepancyResult, TheTableHasEveryCount) {
+  std::uint64_t in_table = 0, in_json = 0;
+  std::istringstream lines(csv_);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "first,second,stratum,question,value,count,bucket,pairs");
+  while (std::getline(lines, line)) in_table += std::stoull(line.substr(line.rfind(',') + 1));
+  for (const Json& lanes : json_["lanes"]) {
+    const Json flat = lanes["strata"].flatten();
+    for (const auto& [place, value] : flat.items()) {
+      if (value.is_number_unsigned() && place.find("/unlike/") == std::string::npos)
+        in_json += value.get<std::uint64_t>();
+    }
+  }
+  EXPECT_EQ(in_table, in_json);
+  EXPECT_GT(in_table, 100'000u);
+}
+
+// Bounds are rounded outward.
+TEST_F(DiscrepancyResult, TheAnswersBoundsHold) {
+  const std::vector<std::string> answer = discrepancy_answer(json_);
+  ASSERT_EQ(answer.size(), 5u);
+  std::smatch found;
+  ASSERT_TRUE(
+      std::regex_search(answer[3], found, std::regex("at most ([0-9.e+-]+) bounds.* is under ([0-9.e+-]+)\\.$")))
+      << answer[3];
+  double widest = 0;
+  std::uint64_t asked = 0;
+  for (const Json& question : json_["lanes"][0]["total"]["questions"]) {
+    widest = std::max(widest, question["largest_in_bounds"].get<double>());
+    asked += question["asked"].get<std::uint64_t>();
+  }
+  EXPECT_GE(std::stod(found[1]), widest);
+  EXPECT_LT(std::stod(found[1]), widest * 1.2);
+  EXPECT_GE(std::stod(found[2]), analysis::upper_bound(0, asked));
+  EXPECT_NE(answer[4].find("-fmad=false mends it"), std::string::npos) << answer[4];
+}
+
+TEST_F(DiscrepancyResult, ThePageNamesEveryQuestionThatDiffers) {
+  const std::string page = discrepancy_page(json_);
+  for (const Json& question : json_["lanes"][0]["total"]["questions"]) {
+    if (question["differs"] == 0) continue;
+    std::string name = question["question"];
+    name = std::regex_replace(name, std::regex("<"), "&lt;");
+    EXPECT_NE(page.find(name), std::string::npos) << name;
+  }
+  EXPECT_NE(page.find("return u.x * v.x + u.y * v.y + u.z * v.z;"), std::string::npos);  // the source of a fused line
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace graze::reports

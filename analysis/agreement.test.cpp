@@ -171,6 +171,36 @@ TEST(Agree, ABluntToleranceIsNotChosen) {
   EXPECT_FALSE(is_blunt(under, zero));
 }
 
+// Where only a blunt tolerance makes the lanes agree, it is named, and the best other one is chosen.
+TEST(Agree, NamesABluntToleranceThatAloneWouldDo) {
+  AgreeSpec spec;
+  spec.sources = drawn(5, 1000, {"uniform"});
+  spec.others = drawn(6, 1000, {"uniform"});
+  spec.sites = {"plane_distance"};
+  spec.max_rate = 1e-2;
+  spec.sweep = [](Policies policies, Sources) {
+    std::vector<Agreement> result;
+    for (const std::string& policy : policies) {
+      Agreement& of = result.emplace_back();
+      of.policy = policy;
+      of.pairs = 1000;
+      of.intersecting = 400;
+      const double tolerance = policy.empty() ? 0 : tolerance_of(policy);
+      const bool large = policy.starts_with("abs") && tolerance >= 8;
+      of.differing = large ? 0 : policy.starts_with("plane_distance=rel") && tolerance >= 2 ? 50 : 60;
+      of.of[0].false_positive = large ? 400 : 5;
+      of.of[1].false_positive = large ? 300 : 5;
+    }
+    return result;
+  };
+  const Agreed agreed = agree(spec);
+  EXPECT_EQ(agreed.result, TuneResult::not_satisfiable);
+  EXPECT_EQ(agreed.chosen, "plane_distance=rel:2");
+  ASSERT_TRUE(agreed.blunt);
+  EXPECT_EQ(agreed.blunt->policy, "abs:8");
+  EXPECT_EQ(agreed.blunt->of[0].false_positive, 400u);
+}
+
 TEST(Agree, TheResultNeedsPairsEnough) {
   const auto with = [](std::uint64_t differing, std::uint64_t pairs) {
     Agreement result;

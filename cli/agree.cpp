@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // `graze tune LANE LANE --agree`: finds the smallest tolerance under which two lanes give the same verdicts.
-#include "reports/agreement.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "core/error.h"
 #include "cuda/twin/twin.h"
 #include "fuzz/sealed.h"
+#include "reports/agreement.h"
 #include "reports/terminal.h"
 
 namespace graze::cli {
@@ -93,7 +92,7 @@ int agree(const TuneOptions& options) {
   if (const auto& place = agreed.confirmed.first; place && !policy.empty())
     results.push_back({"differ_under.pairs", smallest(under[0], under[1], pair_at(spec.others, *place))});
   const bool last_is_under = results.back().name == "differ_under.pairs";
-  write_and_forget(folder.path, results, {"differ.pairs", "differ_under.pairs"});
+  write_listed(folder.path, results, {"differ.pairs", "differ_under.pairs"});
   fmt::print("{}", next_command(folder.path, results.back(),
                                 last_is_under ? under[0].id + "," + under[1].id : first.id + "," + second.id));
   return 0;

@@ -23,6 +23,9 @@
 #include "reports/tuning.h"
 
 namespace graze::cli {
+
+namespace fs = std::filesystem;
+
 const Lane& published_lane(const std::string& id) {
   const Lane* lane = find_lane(id);
   if (lane && lane->algorithm >= 0) return *lane;
@@ -59,8 +62,7 @@ std::string smallest(const Lane& first, const Lane& second, const Pair& pair) {
   return text.str();
 }
 
-void write_and_forget(const fs::path& out, const std::vector<Result>& results,
-                      std::initializer_list<const char*> cases) {
+void write_listed(const fs::path& out, const std::vector<Result>& results, std::initializer_list<const char*> cases) {
   write_results(out, results);
   std::vector<std::string> written;
   for (const Result& result : results) written.push_back(result.name);
@@ -146,7 +148,7 @@ int tune(const TuneOptions& options) {
     if (!place) continue;
     results.push_back({name, smallest(*lane, chosen, pair_at(spec.others, *place))});
   }
-  write_and_forget(out, results, {"fixed.pairs", "broken.pairs"});
+  write_listed(out, results, {"fixed.pairs", "broken.pairs"});
   fmt::print("{}", next_command(out, results.back(), lane->id + "," + chosen.id));
   return 0;
 }

@@ -50,8 +50,8 @@ std::string smallest(const Lane& first, const Lane& second, const Pair& pair);
 
 // Writes the results and lists them. Removes those of these files of pairs that an earlier run wrote and this one did
 // not.
-void write_and_forget(const std::filesystem::path& out, const std::vector<Result>& results,
-                      std::initializer_list<const char*> cases);
+void write_listed(const std::filesystem::path& out, const std::vector<Result>& results,
+                  std::initializer_list<const char*> cases);
 
 // The line that names the next command: a check of the last result, if that is a file of pairs.
 std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);

@@ -20,17 +20,17 @@ namespace graze::analysis {
 namespace {
 
 constexpr std::size_t kBlock = 1024;  // pairs that are drawn and judged, then decided under all policies
-constexpr std::size_t kWords = kBlock / 64;
 
-struct Verdicts {
-  std::array<std::uint64_t, kWords> intersects{}, declined{};
+// Verdicts on a block of pairs: a row of words for each policy.
+struct Rows {
+  std::size_t words;
+  std::vector<std::uint64_t> intersects, declined;
+
+  Rows(std::size_t rows, std::size_t pairs)
+      : words((pairs + 63) / 64), intersects(rows * words), declined(rows * words) {}
+  std::uint64_t yes(std::size_t row, std::size_t word) const { return intersects[row * words + word]; }
+  std::uint64_t none(std::size_t row, std::size_t word) const { return declined[row * words + word]; }
 };
-
-Verdicts verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
-  Verdicts result;
-  decide(pairs.data(), pairs.size(), result.intersects.data(), result.declined.data());
-  return result;
-}
 
 void keep_first(std::optional<PairPlace>& kept, const std::optional<PairPlace>& found) {
   if (found && (!kept || *found < *kept)) kept = found;
@@ -43,15 +43,19 @@ void add(std::uint64_t bits, const PairPlace& word, std::uint64_t& count, std::o
   keep_first(first, PairPlace{word.source, word.index + static_cast<std::uint64_t>(std::countr_zero(bits))});
 }
 
-void add(const SourceBlock& block, const Verdicts& truth, const Verdicts& without, const std::uint64_t* intersects,
-         const std::uint64_t* declined, PolicyErrors& errors) {
-  for (std::size_t w = 0; w * 64 < block.count; ++w) {
-    const std::uint64_t judged = ~truth.declined[w];  // a pair that is not finite is not counted
-    const JudgedBits now = judge(intersects[w], declined[w], truth.intersects[w], judged);
-    const JudgedBits before = judge(without.intersects[w], without.declined[w], truth.intersects[w], judged);
-    errors.false_positive += static_cast<std::uint64_t>(std::popcount(now.false_positive));
-    errors.false_negative += static_cast<std::uint64_t>(std::popcount(now.false_negative));
-    errors.declined += static_cast<std::uint64_t>(std::popcount(now.declined));
+void add(const JudgedBits<std::uint64_t>& bits, Counts& counts) {
+  counts.false_positive += static_cast<std::uint64_t>(std::popcount(bits.false_positive));
+  counts.false_negative += static_cast<std::uint64_t>(std::popcount(bits.false_negative));
+  counts.declined += static_cast<std::uint64_t>(std::popcount(bits.declined));
+}
+
+// Adds the errors of row `p`; row 0 is that of no policy.
+void add(const SourceBlock& block, const Rows& truth, const Rows& lane, std::size_t p, PolicyErrors& errors) {
+  for (std::size_t w = 0; w < truth.words; ++w) {
+    const std::uint64_t judged = ~truth.none(0, w);  // a pair that is not finite is not counted
+    const JudgedBits now = judge(lane.yes(p, w), lane.none(p, w), truth.yes(0, w), judged);
+    const JudgedBits before = judge(lane.yes(0, w), lane.none(0, w), truth.yes(0, w), judged);
+    add(now, errors);
     const PairPlace word{block.source, block.first + w * 64};
     add(before.not_right() & ~now.not_right(), word, errors.fixed, errors.first_fixed);
     add(now.not_right() & ~before.not_right(), word, errors.broken, errors.first_broken);
@@ -59,48 +63,91 @@ void add(const SourceBlock& block, const Verdicts& truth, const Verdicts& withou
   errors.pairs += block.count;
 }
 
-// Policies that are decided together, by their places.
+void add(const SourceBlock& block, const Rows& truth, const Rows& first, const Rows& second, std::size_t p,
+         Agreement& agreement) {
+  const auto differing = [&](std::size_t row, std::size_t w) {
+    return (first.yes(row, w) ^ second.yes(row, w)) | (first.none(row, w) ^ second.none(row, w));
+  };
+  const auto count = [](std::uint64_t bits) { return static_cast<std::uint64_t>(std::popcount(bits)); };
+  for (std::size_t w = 0; w < truth.words; ++w) {
+    const std::uint64_t judged = ~truth.none(0, w), yes = truth.yes(0, w);
+    agreement.intersecting += count(yes);
+    add(judge(first.yes(p, w), first.none(p, w), yes, judged), agreement.of[0]);
+    add(judge(second.yes(p, w), second.none(p, w), yes, judged), agreement.of[1]);
+    const std::uint64_t now = differing(p, w), before = differing(0, w);
+    add(now, {block.source, block.first + w * 64}, agreement.differing, agreement.first);
+    agreement.mended += count(before & ~now);
+    agreement.added += count(now & ~before);
+  }
+  agreement.pairs += block.count;
+}
+
+// Policies that are decided together, one after the other in the list of policies.
 struct Together {
-  std::vector<std::size_t> places;
+  std::size_t first;
   DecideBlock one;                // of a single policy
   DecideLadder ladder = nullptr;  // of several
   std::vector<Epsilons> rungs;
 };
 
-std::vector<PolicyErrors> run(const DecideBlock& zero, const std::vector<Together>& parts, Policies policies,
-                              Sources sources, int threads) {
+// Draws the pairs in blocks, judges each once, and decides it by each of the lanes under each policy. Then calls
+// add(block, truth, rows, p, results[p]) with the rows of all lanes for each result.
+template <class Result, class Add>
+std::vector<Result> run(const std::vector<std::vector<Together>>& lanes, std::size_t policies,
+                        const std::vector<Result>& empty, Sources sources, int threads, const Add& add) {
   const DecideBlock exact = find_lane("exact/f32/cpu")->decide;
-  std::vector<PolicyErrors> errors;
-  for (const std::string& policy : policies) errors.emplace_back().policy = policy;
   const std::vector<SourceBlock> blocks = blocks_of(sources, kBlock);
   const auto count = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, count);
-  tbb::enumerable_thread_specific<std::vector<PolicyErrors>> results(errors);
+  tbb::enumerable_thread_specific<std::vector<Result>> results(empty);
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
     const SourceBlock& block = blocks[b];
     std::vector<Pair> pairs;
     for (std::uint64_t i = 0; i < block.count; ++i)
       pairs.push_back(sources[static_cast<std::size_t>(block.source)].pair(block.first + i));
-    const Verdicts truth = verdicts(exact, pairs), without = verdicts(zero, pairs);
-    std::vector<PolicyErrors>& result = results.local();
-    std::vector<std::uint64_t> intersects, declined;
-    for (const Together& part : parts) {
-      const std::size_t words = (pairs.size() + 63) / 64;
-      intersects.resize(words * part.places.size());
-      declined.resize(intersects.size());
-      if (part.ladder) {
-        part.ladder(part.rungs, pairs.data(), pairs.size(), intersects.data(), declined.data());
-      } else {
-        part.one(pairs.data(), pairs.size(), intersects.data(), declined.data());
+    Rows truth(1, pairs.size());
+    exact(pairs.data(), pairs.size(), truth.intersects.data(), truth.declined.data());
+    std::vector<Rows> rows(lanes.size(), Rows(policies, pairs.size()));
+    for (std::size_t l = 0; l < lanes.size(); ++l) {
+      for (const Together& part : lanes[l]) {
+        std::uint64_t* const intersects = &rows[l].intersects[part.first * rows[l].words];
+        std::uint64_t* const declined = &rows[l].declined[part.first * rows[l].words];
+        if (part.ladder) {
+          part.ladder(part.rungs, pairs.data(), pairs.size(), intersects, declined);
+        } else {
+          part.one(pairs.data(), pairs.size(), intersects, declined);
+        }
       }
-      for (std::size_t p = 0; p < part.places.size(); ++p)
-        add(block, truth, without, &intersects[p * words], &declined[p * words], result[part.places[p]]);
     }
+    std::vector<Result>& result = results.local();
+    for (std::size_t p = 0; p < result.size(); ++p) add(block, truth, rows, p, result[p]);
   });
-  for (const std::vector<PolicyErrors>& some : results) {
-    for (std::size_t p = 0; p < some.size(); ++p) errors[p] += some[p];
+  std::vector<Result> sums = empty;
+  for (const std::vector<Result>& some : results) {
+    for (std::size_t p = 0; p < some.size(); ++p) sums[p] += some[p];
   }
-  return errors;
+  return sums;
+}
+
+template <class Result>
+std::vector<Result> without_counts(Policies policies) {
+  std::vector<Result> results;
+  for (const std::string& policy : policies) results.emplace_back().policy = policy;
+  return results;
+}
+
+// No policy, then these.
+std::vector<std::string> with_zero(Policies policies) {
+  std::vector<std::string> all = {""};
+  all.insert(all.end(), policies.begin(), policies.end());
+  return all;
+}
+
+std::vector<PolicyErrors> errors_of(const std::vector<Together>& parts, Policies policies, Sources sources,
+                                    int threads) {
+  return run({parts}, policies.size() + 1, without_counts<PolicyErrors>(policies), sources, threads,
+             [](const SourceBlock& block, const Rows& truth, const std::vector<Rows>& rows, std::size_t p,
+                PolicyErrors& errors) { add(block, truth, rows[0], p + 1, errors); });
 }
 
 // Whether the second may follow the first on a ladder.
@@ -119,12 +166,11 @@ std::vector<Together> parts_of(const Lane& lane, Policies policies) {
     const bool tolerances = under.under && under.under->kind == Policy::Kind::tolerances;
     const DecideLadder ladder = tolerances ? ladder_of(lane, under.under->epsilons.any_relative()) : nullptr;
     if (!ladder) {
-      parts.push_back({{p}, cuda::block_on_host(under), nullptr, {}});
+      parts.push_back({p, cuda::block_on_host(under), nullptr, {}});
     } else if (!parts.empty() && parts.back().ladder && rises(parts.back().rungs.back(), under.under->epsilons)) {
-      parts.back().places.push_back(p);
       parts.back().rungs.push_back(under.under->epsilons);
     } else {
-      parts.push_back({{p}, {}, ladder, {under.under->epsilons}});
+      parts.push_back({p, {}, ladder, {under.under->epsilons}});
     }
   }
   return parts;
@@ -151,17 +197,38 @@ PolicyErrors& PolicyErrors::operator+=(const PolicyErrors& other) {
   return *this;
 }
 
+Agreement& Agreement::operator+=(const Agreement& other) {
+  pairs += other.pairs;
+  intersecting += other.intersecting;
+  differing += other.differing;
+  mended += other.mended;
+  added += other.added;
+  for (int l = 0; l < 2; ++l) of[l] += other.of[l];
+  keep_first(first, other.first);
+  return *this;
+}
+
 Sweep host_sweep(DecideUnder decide, int threads) {
   return [decide = std::move(decide), threads](Policies policies, Sources sources) {
     std::vector<Together> parts;
-    for (std::size_t p = 0; p < policies.size(); ++p) parts.push_back({{p}, decide(policies[p]), nullptr, {}});
-    return run(decide(""), parts, policies, sources, threads);
+    for (const std::string& policy : with_zero(policies)) parts.push_back({parts.size(), decide(policy), nullptr, {}});
+    return errors_of(parts, policies, sources, threads);
   };
 }
 
 Sweep host_sweep(const Lane& lane, int threads) {
   return [&lane, threads](Policies policies, Sources sources) {
-    return run(cuda::block_on_host(lane), parts_of(lane, policies), policies, sources, threads);
+    return errors_of(parts_of(lane, with_zero(policies)), policies, sources, threads);
+  };
+}
+
+AgreementSweep agreement_sweep(const Lane& first, const Lane& second, int threads) {
+  return [&first, &second, threads](Policies policies, Sources sources) {
+    const std::vector<std::string> all = with_zero(policies);
+    return run({parts_of(first, all), parts_of(second, all)}, all.size(), without_counts<Agreement>(policies), sources,
+               threads,
+               [](const SourceBlock& block, const Rows& truth, const std::vector<Rows>& rows, std::size_t p,
+                  Agreement& agreement) { add(block, truth, rows[0], rows[1], p + 1, agreement); });
   };
 }
 

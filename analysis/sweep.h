@@ -36,6 +36,19 @@ struct PolicyErrors : Counts {
   bool operator==(const PolicyErrors&) const = default;
 };
 
+// How two lanes compare under one policy, which both have, on the same pairs.
+struct Agreement {
+  std::string policy;                         // empty: zero
+  std::uint64_t pairs = 0, intersecting = 0;  // all pairs, and those that intersect
+  std::uint64_t differing = 0;                // pairs on which the two verdicts differ
+  std::uint64_t mended = 0, added = 0;        // pairs on which they differ under no policy only, or under this one only
+  Counts of[2];                               // each lane's errors
+  std::optional<PairPlace> first;             // the first pair on which they differ
+
+  Agreement& operator+=(const Agreement& other);
+  bool operator==(const Agreement&) const = default;
+};
+
 using Sources = std::span<const strata::PairSource>;
 using Policies = std::span<const std::string>;  // the empty one is zero
 
@@ -61,6 +74,13 @@ Sweep host_sweep(DecideUnder decide, int threads = 0);
 // That of a published lane, on the host, or by its twin: under many tolerances at once where core/lanes/ladder.h can.
 // Throws (the sweep): UsageError for a policy that the lane cannot have.
 Sweep host_sweep(const Lane& lane, int threads = 0);
+
+// How two published lanes compare under each policy, on all pairs of the sources.
+using AgreementSweep = std::function<std::vector<Agreement>(Policies policies, Sources sources)>;
+
+// On the host, CUDA lanes by their twins. The same for any number of threads.
+// Requires: lanes that outlive the sweep, with a host lane or a twin under each policy.
+AgreementSweep agreement_sweep(const Lane& first, const Lane& second, int threads = 0);
 
 // On the first CUDA device. lane_of: the lane under a policy, a CUDA lane.
 // Throws (the sweep): std::runtime_error without a device.

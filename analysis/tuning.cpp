@@ -17,53 +17,25 @@ namespace {
 constexpr double kOutward = 0x1p-40;  // more than the relative error of the library's quantiles
 constexpr std::uint64_t kPairsForScale = 100'000;
 
-std::string tolerance(const std::string& site, bool relative, double value) {
-  return fmt::format("{}{}{}:{:.3g}", site, site.empty() ? "" : "=", relative ? "rel" : "abs", value);
-}
-
-// log2 of the sources' typical size: the median of the largest differences of coordinates within a pair.
-int log2_size(Sources sources) {
-  std::vector<float> sizes;
-  for (const strata::PairSource& source : sources) {
-    for (std::uint64_t i = 0; i < std::min<std::uint64_t>(source.pairs, 200); ++i) {
-      const Pair pair = source.pair(i);
-      float size = 0;
-      for (int c = 0; c < 3; ++c) {
-        float low = coordinates(pair)[c], high = low;
-        for (int k = c; k < kCoordinates; k += 3) {
-          low = std::min(low, coordinates(pair)[k]);
-          high = std::max(high, coordinates(pair)[k]);
-        }
-        size = std::max(size, high - low);
-      }
-      sizes.push_back(size);
-    }
-  }
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-  const float median = sizes[sizes.size() / 2];
-  return median > 0 && std::isfinite(median) ? std::ilogb(median) : 0;
-}
-
 class Tuner {
  public:
-  explicit Tuner(const TuneSpec& spec) : spec_(spec), low_(-60), high_(20), cube_(3 * log2_size(spec.sources)) {}
+  explicit Tuner(const TuneSpec& spec) : spec_(spec) {}
 
   Tuned run() {
-    result_.zero = sweep_one("");
+    result_.zero = sweep_all(std::vector<std::string>{""}).front();
     std::vector<std::string> sites = {""};
     sites.insert(sites.end(), spec_.sites.begin(), spec_.sites.end());
     for (const std::string& site : sites) {
       for (const bool relative : {true, false}) result_.curves.push_back({site, relative, {}});
     }
-    add_points([&](const Curve&) { return steps(low_, high_, 1); });
-    // Adds points a quarter of an octave apart around the best one so far.
-    add_points([&](const Curve& curve) {
-      const auto best =
-          std::min_element(curve.points.begin(), curve.points.end(),
-                           [&](const PolicyErrors& l, const PolicyErrors& r) { return rank(l) < rank(r); });
-      const double at = low_ + static_cast<double>(best - curve.points.begin());
-      return steps(at - 1, at + 1, 0.25);
-    });
+    sweep_curves(
+        result_.curves, log2_cube(spec_.sources), [&](Policies policies) { return sweep_all(policies); },
+        [&](const Curve& curve) {
+          const auto best =
+              std::min_element(curve.points.begin(), curve.points.end(),
+                               [&](const PolicyErrors& l, const PolicyErrors& r) { return rank(l) < rank(r); });
+          return best - curve.points.begin();
+        });
     choose();
     find_dead();
     find_scale_break();
@@ -72,41 +44,7 @@ class Tuner {
   }
 
  private:
-  std::vector<PolicyErrors> sweep_all(const std::vector<std::string>& policies) const {
-    return spec_.sweep(policies, spec_.sources);
-  }
-  PolicyErrors sweep_one(const std::string& policy) const { return sweep_all({policy}).front(); }
-
-  static std::vector<double> steps(double low, double high, double step) {
-    std::vector<double> result;
-    for (double at = low; at <= high; at += step) result.push_back(at);
-    return result;
-  }
-
-  // Adds to each curve the points at these powers of two, all in one sweep.
-  template <class StepsOf>
-  void add_points(const StepsOf& steps_of) {
-    std::vector<std::string> policies;
-    std::vector<std::size_t> ends;
-    for (const Curve& curve : result_.curves) {
-      for (const double at : steps_of(curve))
-        policies.push_back(tolerance(curve.site, curve.relative, std::exp2(at + (curve.relative ? 0 : cube_))));
-      ends.push_back(policies.size());
-    }
-    const std::vector<PolicyErrors> errors = sweep_all(policies);
-    std::size_t begin = 0;
-    for (std::size_t c = 0; c < ends.size(); begin = ends[c++]) {
-      std::vector<PolicyErrors>& points = result_.curves[c].points;
-      for (std::size_t p = begin; p < ends[c]; ++p) {
-        const bool known = std::any_of(points.begin(), points.end(),
-                                       [&](const PolicyErrors& point) { return point.policy == errors[p].policy; });
-        if (!known) points.push_back(errors[p]);
-      }
-      std::stable_sort(points.begin(), points.end(), [](const PolicyErrors& l, const PolicyErrors& r) {
-        return tolerance_of(l.policy) < tolerance_of(r.policy);
-      });
-    }
-  }
+  std::vector<PolicyErrors> sweep_all(Policies policies) const { return spec_.sweep(policies, spec_.sources); }
 
   PolicyRank rank(const PolicyErrors& errors) const { return analysis::rank(errors, spec_.forbid, spec_.max_rate); }
 
@@ -167,21 +105,18 @@ class Tuner {
     for (std::size_t i = 0; i < live.size(); ++i) {
       for (std::size_t j = i + 1; j < live.size(); ++j) {
         const std::string first = live[i] + "=" + result_.chosen, second = live[j] + "=" + result_.chosen;
-        const std::vector<PolicyErrors> found = sweep_all({first, second, first + "," + second});
+        const std::vector<PolicyErrors> found =
+            sweep_all(std::vector<std::string>{first, second, first + "," + second});
         result_.interactions.push_back({live[i], live[j], found[0], found[1], found[2]});
       }
     }
   }
 
   const TuneSpec& spec_;
-  double low_, high_;  // range of tolerances, as powers of two
-  double cube_;        // log2 of a typical length cubed
   Tuned result_;
 };
 
 }  // namespace
-
-double tolerance_of(const std::string& policy) { return std::stod(policy.substr(policy.rfind(':') + 1)); }
 
 std::vector<strata::PairSource> scaled(Sources sources, int k) {
   std::vector<strata::PairSource> result(sources.begin(), sources.end());
@@ -200,6 +135,13 @@ double upper_bound(std::uint64_t count, std::uint64_t of) {
   const double nearest = boost::math::binomial_distribution<>::find_upper_bound_on_p(static_cast<double>(of),
                                                                                      static_cast<double>(count), 0.05);
   return std::min(1.0, nearest * (1 + kOutward));
+}
+
+double lower_bound(std::uint64_t count, std::uint64_t of) {
+  if (count == 0) return 0;
+  const double nearest = boost::math::binomial_distribution<>::find_lower_bound_on_p(static_cast<double>(of),
+                                                                                     static_cast<double>(count), 0.05);
+  return std::max(0.0, nearest * (1 - kOutward));
 }
 
 std::uint64_t forbidden(const PolicyErrors& errors, Forbid forbid) {

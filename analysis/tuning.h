@@ -8,12 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "analysis/curves.h"
 #include "analysis/sweep.h"
 
 namespace graze::analysis {
-
-// The number in the name of one tolerance, "rel:24" or "separation=abs:1e-6".
-double tolerance_of(const std::string& policy);
 
 // The pairs times 2^k; pairs that cannot be scaled exactly stay as they are.
 std::vector<strata::PairSource> scaled(Sources sources, int k);
@@ -21,6 +19,9 @@ std::vector<strata::PairSource> scaled(Sources sources, int k);
 // Upper 95 % confidence bound of the rate, given `count` of `of` cases: at this rate, so few cases have a 5 % chance.
 // Rounded outward. Reference: Clopper and Pearson 1934, one-sided.
 double upper_bound(std::uint64_t count, std::uint64_t of);
+
+// The lower bound likewise: at this rate, so many cases have a 5 % chance. Rounded outward.
+double lower_bound(std::uint64_t count, std::uint64_t of);
 
 // The kind of error whose rate is limited.
 enum class Forbid { false_negative, false_positive, any };
@@ -45,12 +46,7 @@ struct TuneSpec {
   double max_rate = 1e-6;
 };
 
-// A tolerance swept over its range, at all sites or at one.
-struct Curve {
-  std::string site;  // empty: all
-  bool relative = false;
-  std::vector<PolicyErrors> points;  // by tolerance
-};
+using Curve = CurveOf<PolicyErrors>;
 
 // How far pairs may grow or shrink before the errors under a policy double; 0: they do not double within kMostScale.
 struct ScaleBreak {

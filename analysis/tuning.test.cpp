@@ -44,6 +44,22 @@ TEST(UpperBound, IsRoundedOutward) {
   }
 }
 
+// At the lower bound, so many cases have a chance of 5 % or less; it mirrors the upper one.
+TEST(LowerBound, IsRoundedOutward) {
+  using Precise = boost::multiprecision::cpp_bin_float_50;
+  EXPECT_EQ(lower_bound(0, 100), 0);
+  EXPECT_NEAR(lower_bound(3, 100), 0.00823, 1e-5);  // R: binom.test(3, 100, alternative = "greater")
+  std::mt19937_64 random(12);
+  for (int i = 0; i < 2000; ++i) {
+    const std::uint64_t of = 40 + random() % (i % 2 ? 4000 : 1'000'000), count = 1 + random() % 40;
+    const Precise p = lower_bound(count, of), q = 1 - p;
+    Precise term = pow(q, Precise(of)), fewer = term;
+    for (std::uint64_t k = 1; k < count; ++k) fewer += term *= Precise(of - k + 1) / k * p / q;
+    EXPECT_LE(1 - fewer, Precise("0.05")) << count << " of " << of;
+    EXPECT_GE(1 - fewer, Precise("0.0499999")) << count << " of " << of;
+  }
+}
+
 TEST(Scaled, IsExactOrLeftAlone) {
   const auto sources = drawn(1, 200, {"extreme_scale"});
   const auto moved = scaled(sources, 3);

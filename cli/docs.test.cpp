@@ -116,7 +116,7 @@ TEST(Docs, ViewerPrintsWhatItSays) {
   expect_true_commands("docs/viewer.md", 4);
 }
 
-TEST(Docs, TuningPrintsWhatItSays) { expect_true_commands("docs/tuning.md", 8); }
+TEST(Docs, TuningPrintsWhatItSays) { expect_true_commands("docs/tuning.md", 10); }
 
 TEST(Docs, QueryPrintsWhatItSays) { expect_true_commands("docs/query.md", 7); }
 

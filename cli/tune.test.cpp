@@ -11,6 +11,7 @@ namespace {
 
 class Policies : public CommandTest {};
 class TuneCommand : public CommandTest {};
+class AgreeCommand : public CommandTest {};
 class ParetoCommand : public CommandTest {};
 
 nlohmann::json json_of(const std::filesystem::path& file) { return nlohmann::json::parse(contents(file)); }
@@ -143,11 +144,102 @@ TEST_F(TuneCommand, BadInputGetsOneLine) {
   expect_error("graze tune moller_1997/f32/cuda-fast", 2, {"twin"});
 }
 
-TEST_F(TuneCommand, HelpHasAnExampleThatRuns) {
+TEST_F(TuneCommand, HelpHasExamplesThatRun) {
   const Ran help = shell("graze tune --help");
-  const std::size_t at = help.out.find("Example: ");
-  ASSERT_NE(at, std::string::npos);
-  expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9));
+  int examples = 0;
+  for (std::size_t at = 0; (at = help.out.find("Example: ", at)) != std::string::npos; at += 9, ++examples)
+    expect_done(help.out.substr(at + 9, help.out.find('\n', at) - at - 9));
+  EXPECT_EQ(examples, 2);
+}
+
+// Verdicts that differ, recounted from `graze dump`, which knows nothing of agree.json. `policy`: "" or "/POLICY".
+std::size_t recounted(const Shell& shell, const std::string& strata, std::uint64_t seed, int pairs,
+                      const std::string& first, const std::string& second, const std::string& policy) {
+  const Ran ran = shell("graze dump " + strata + ":" + std::to_string(seed) + " --pairs " + std::to_string(pairs) +
+                        " --format csv --lanes '" + first + policy + "," + second + policy + "' | tail -n " +
+                        std::to_string(pairs) + " | awk -F, '$(NF-1) != $NF' | wc -l");
+  EXPECT_EQ(ran.status, 0) << ran.err;
+  return std::stoul(ran.out);
+}
+
+// The counts are those of a recount, a fresh seed confirms the bounds, and no number of threads changes a byte.
+TEST_F(AgreeCommand, FreshPairsConfirmItForTwoAlgorithms) {
+  for (const auto& [subject, stratum, result] : {std::tuple{"guigue_devillers_2003/f64", "shared_vertex", "satisfied"},
+                                                 {"interval_overlap/f32", "shared_vertex", "not satisfiable"}}) {
+    const std::string cpu = subject + std::string("/cpu"), cuda = subject + std::string("/cuda-fma");
+    const std::string tune =
+        "graze tune " + cpu + " " + cuda + " --agree --strata " + stratum + " --pairs 10k --max-rate 3e-3 ";
+    const Ran ran = shell(tune + "--out t");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const auto json = json_of(shell.folder / "t/agree.json");
+    ASSERT_EQ(json["result"], result) << ran.out;
+    const std::string policy = json["chosen"] == "zero" ? "" : "/" + json["chosen"].get<std::string>();
+    EXPECT_EQ(json["zero_confirmed"]["differing"], recounted(shell, stratum, 2, 10'000, cpu, cuda, "")) << ran.out;
+    EXPECT_EQ(json["confirmed"]["differing"], recounted(shell, stratum, 2, 10'000, cpu, cuda, policy)) << ran.out;
+    EXPECT_GT(json["zero_confirmed"]["differing"], 100) << ran.out;
+    EXPECT_EQ(json["rounded"]["agreement"]["differing"], 0) << ran.out;
+    // With twice the pairs and another seed, the rate keeps to the bound.
+    const double fresh = static_cast<double>(recounted(shell, stratum, 99, 20'000, cpu, cuda, policy)) / 20'000;
+    if (result == std::string("satisfied")) {
+      EXPECT_LE(fresh, json["high"].get<double>());
+    } else {
+      EXPECT_GE(fresh, json["low"].get<double>());
+      EXPECT_GT(json["low"].get<double>(), 3e-3);
+      EXPECT_EQ(ran.out.find("No tolerance keeps"), 0u) << ran.out;
+    }
+    expect_done(tune + "--threads 1 --out u > /dev/null && diff -r t u");
+    expect_done(
+        "xmllint --noout t/curves.svg 2> /dev/null || python3 -c 'import xml.dom.minidom as m; "
+        "m.parse(\"t/curves.svg\")'");
+    // On the smallest cases the lanes differ, without the policy and under it.
+    EXPECT_EQ(shell("graze check t/differ.pairs --lanes '" + cpu + "," + cuda + "' | grep -c ' !'").out, "1\n");
+    EXPECT_EQ(std::filesystem::exists(shell.folder / "t/differ_under.pairs"), json["confirmed"]["differing"] > 0);
+    if (json["confirmed"]["differing"] > 0) {
+      const std::string check = "graze check t/differ_under.pairs --lanes '" + cpu + policy + "," + cuda + policy + "'";
+      EXPECT_EQ(shell(check + " | grep -c ' !'").out, "1\n");
+    }
+    const std::size_t next = ran.out.find("\nNext: ");
+    ASSERT_NE(next, std::string::npos) << ran.out;
+    expect_done(ran.out.substr(next + 7));
+  }
+}
+
+TEST_F(AgreeCommand, SaysWhatNeedsNoPolicyAndWhatIsNotSettled) {
+  const std::string tune = "graze tune moller_1997/f32/cpu moller_1997/f32/cuda-nofma --agree --strata 'near_*' ";
+  const Ran settled = shell(tune + "--pairs 4k --max-rate 1e-3 --out t");
+  EXPECT_EQ(settled.out.find("No policy is needed: "), 0u) << settled.out << settled.err;
+  EXPECT_EQ(settled.out.find("Without a tolerance: "), std::string::npos) << settled.out;  // there is nothing to mend
+  EXPECT_EQ(json_of(shell.folder / "t/agree.json")["chosen"], "zero");
+  EXPECT_FALSE(std::filesystem::exists(shell.folder / "t/differ.pairs"));
+  const Ran open = shell(tune + "--pairs 4k --max-rate 1e-4 --out t");
+  EXPECT_EQ(open.out.find("Not settled: "), 0u) << open.out << open.err;
+  EXPECT_NE(open.out.find("29,956"), std::string::npos) << open.out;  // log(0.05) / log(1 - 1e-4)
+  EXPECT_EQ(json_of(shell.folder / "t/agree.json")["result"], "too few pairs");
+}
+
+TEST_F(AgreeCommand, LeavesOutWhatTheTwinCannotReplay) {
+  const Ran ran = shell(
+      "graze tune interval_overlap/f32/cuda-fma interval_overlap/f32/cpu --agree --strata shared_edge --pairs 2k "
+      "--out t");
+  ASSERT_EQ(ran.status, 0) << ran.err;
+  const auto json = json_of(shell.folder / "t/agree.json");
+  EXPECT_EQ(json["without_relative"], "interval_overlap/f32/cuda-fma");
+  EXPECT_EQ(json["curves"].size(), 4u);
+  for (const auto& curve : json["curves"]) EXPECT_EQ(curve["tolerance"], "abs");
+  EXPECT_NE(ran.out.find("Relative tolerances are left out: "), std::string::npos) << ran.out;
+}
+
+TEST_F(AgreeCommand, BadInputGetsOneLine) {
+  const std::string cpu = "moller_1997/f32/cpu", fma = "moller_1997/f32/cuda-fma";
+  expect_error("graze tune " + cpu + " --agree", 2, {"--agree", "two lanes"});
+  expect_error("graze tune " + cpu + " " + fma, 2, {"--agree", "two lanes"});
+  expect_error("graze tune " + cpu + " " + fma + " " + cpu + " --agree", 2, {"3 lanes"});
+  expect_error("graze tune " + cpu + " moller_1997/f64/cpu --agree", 2, {cpu, "moller_1997/f64/cpu", "scalar"});
+  expect_error("graze tune " + cpu + " interval_overlap/f32/cpu --agree", 2, {cpu, "interval_overlap/f32/cpu"});
+  expect_error("graze tune " + cpu + " moller_1997/f32/cuda-fast --agree", 2, {"moller_1997/f32/cuda-fast", "twins"});
+  expect_error("graze tune " + cpu + " " + fma + " --agree --forbid any", 2, {"--forbid", "--agree"});
+  expect_error("graze tune " + cpu + " moller_1997/f32/cud --agree", 2, {"moller_1997/f32/cud"});
+  expect_error("graze tune " + cpu + " " + fma + " --agree --max-rate 0", 2, {"--max-rate"});
 }
 
 TEST_F(ParetoCommand, SetsErrorsAgainstCosts) {

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "reports/agreement.h"
 #include "reports/findings.h"
 #include "reports/test_campaign.h"
 #include "reports/tuning.h"
@@ -52,6 +53,28 @@ TEST(Bounds, ATunedPolicysBoundIsNotRoundedToWhatWasAsked) {
   tuned.result = analysis::TuneResult::too_few_pairs;
   const std::string said = tuning_sentences(question, tuned)[0];
   EXPECT_NE(said.find("are under 0.021, and 0.02 was asked for"), said.npos) << said;
+}
+
+// The same for the rate at which two lanes differ, from both sides.
+TEST(Bounds, ThoseOfAnAgreementAreRoundedOutward) {
+  AgreeQuestion question{{"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"}, {}, "", "", 0.02};
+  analysis::Agreed agreed;
+  agreed.chosen = "rel:8";
+  agreed.confirmed.pairs = 1610;
+  agreed.confirmed.differing = 23;
+  agreed.high = analysis::upper_bound(23, 1610);  // about 0.0202
+  agreed.result = analysis::TuneResult::too_few_pairs;
+  std::string said = agreement_sentences(question, agreed)[0];
+  EXPECT_NE(said.find("Not settled: "), said.npos) << said;
+  EXPECT_NE(said.find("under 0.021, and 0.02 was asked for"), said.npos) << said;
+  question.max_rate = 0.009;
+  agreed.low = analysis::lower_bound(23, 1610);
+  ASSERT_GT(agreed.low, 0.00975);  // nearest: 0.0098
+  ASSERT_LT(agreed.low, 0.0098);
+  agreed.result = analysis::TuneResult::not_satisfiable;
+  said = agreement_sentences(question, agreed)[0];
+  EXPECT_NE(said.find("No tolerance keeps"), said.npos) << said;
+  EXPECT_NE(said.find("over 0.0097."), said.npos) << said;
 }
 
 TEST(Wilson, GivesKnownIntervals) {

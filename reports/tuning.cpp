@@ -9,8 +9,8 @@
 #include "core/text.h"
 #include "fuzz/counts_json.h"
 #include "reports/findings.h"
-#include "reports/svg.h"
 #include "reports/terminal.h"
+#include "reports/tolerance_figure.h"
 
 namespace graze::reports {
 namespace {
@@ -68,26 +68,6 @@ std::string answer(const TuneQuestion& q, const Tuned& t) {
 }
 
 std::string power(int k) { return k > 0 ? fmt::format("grow by 2^{}", k) : fmt::format("shrink by 2^{}", -k); }
-
-// Maps points to the picture: x by log2 of the tolerance between low and high, y by log10 of the rate.
-struct Frame {
-  double left, right, low, high;
-  static constexpr double kTop = 64, kBottom = 350, kLeast = -7;
-
-  double x(double tolerance) const { return left + (right - left) * (std::log2(tolerance) - low) / (high - low); }
-  static double y(double rate) {
-    return kBottom + (kTop - kBottom) * (std::log10(std::max(rate, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
-  }
-};
-
-std::string line(const Frame& frame, const analysis::Curve& curve, const char* colour, std::uint64_t Counts::*count) {
-  std::string points;
-  for (const PolicyErrors& e : curve.points)
-    points +=
-        fmt::format("{:.1f},{:.1f} ", frame.x(analysis::tolerance_of(e.policy)),
-                    Frame::y(static_cast<double>(e.*count) / static_cast<double>(std::max<std::uint64_t>(e.pairs, 1))));
-  return fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", colour, points);
-}
 
 Json errors_json(const PolicyErrors& e) {
   Json row = {{"policy", e.policy}, {"pairs", e.pairs}};
@@ -160,46 +140,12 @@ Json tuning_json(const TuneQuestion& question, const Tuned& tuned) {
 }
 
 std::string tuning_figure(const TuneQuestion& question, const Tuned& tuned) {
-  constexpr const char *kNegative = "#0072b2", *kPositive = "#d55e00";
-  std::string svg = svg_begin(fmt::format("Errors of {} against its tolerance", question.lane));
-  for (int power = -7; power <= 0; ++power) {
-    const double y = Frame::y(std::pow(10.0, power));
-    svg += svg_level(64, 880, y);
-    svg += svg_text(56, y + 4, "end", power == -7 ? "none" : power == 0 ? "all" : fmt::format("1e{}", power));
-  }
-  for (const analysis::Curve& curve : tuned.curves) {
-    if (!curve.site.empty() || curve.points.empty()) continue;
-    const double low = std::log2(analysis::tolerance_of(curve.points.front().policy)),
-                 high = std::log2(analysis::tolerance_of(curve.points.back().policy));
-    const Frame frame = curve.relative ? Frame{64, 460, low, high} : Frame{484, 880, low, high};
-    svg +=
-        line(frame, curve, kNegative, &Counts::false_negative) + line(frame, curve, kPositive, &Counts::false_positive);
-    for (const PolicyErrors& point : curve.points) {
-      if (point.policy == tuned.chosen)
-        svg += fmt::format(
-            "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"64\" y2=\"350\" stroke=\"#777\" stroke-dasharray=\"4 3\"/>\n",
-            frame.x(analysis::tolerance_of(point.policy)));
-    }
-    for (const double at : {low, (low + high) / 2, high})
-      svg += svg_text(frame.x(std::exp2(at)), 370,
-                      at == low    ? "start"
-                      : at == high ? "end"
-                                   : "middle",
-                      fmt::format("{}:{:.2g}", curve.relative ? "rel" : "abs", std::exp2(at)));
-  }
-  svg += svg_text(262, 396, "middle", "K, in machine epsilons times the quantity’s size");
-  svg += svg_text(682, 396, "middle", "E, in the quantity’s own unit");
-  svg += svg_text(
-      64, 18, "start",
-      fmt::format("Share of wrong verdicts of {} against its tolerance at all sites; dashed: chosen", question.lane));
-  const auto legend = [&](double x, const char* colour, const char* what) {
-    svg += fmt::format("<line x1=\"{0}\" x2=\"{1}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n", x,
-                       x + 16, colour);
-    svg += svg_text(x + 21, 40, "start", what);
-  };
-  legend(64, kNegative, "false negatives");
-  legend(232, kPositive, "false positives");
-  return svg + "</svg>\n";
+  return tolerance_figure(
+      fmt::format("Errors of {} against its tolerance", question.lane),
+      fmt::format("Share of wrong verdicts of {} against its tolerance at all sites; dashed: chosen", question.lane),
+      tuned.curves, tuned.chosen,
+      {{"#0072b2", "false negatives", [](const PolicyErrors& e) { return e.false_negative; }},
+       {"#d55e00", "false positives", [](const PolicyErrors& e) { return e.false_positive; }}});
 }
 
 }  // namespace graze::reports

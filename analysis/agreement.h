@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the smallest tolerance under which two lanes give the same verdicts, and what it costs in wrong ones.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/curves.h"
+#include "analysis/tuning.h"
+
+namespace graze::analysis {
+
+struct AgreeSpec {
+  AgreementSweep sweep;
+  AgreementSweep rounded;          // the lanes whose operations all round as written; null if the lanes are these
+  std::vector<std::string> sites;  // sites that the algorithm asks about
+  bool relative = true;            // whether both lanes run here under relative tolerances
+  std::vector<strata::PairSource> sources;  // pairs to choose on
+  std::vector<strata::PairSource> others;   // pairs to verify the choice on
+  double max_rate = 1e-6;                   // of differing verdicts
+};
+
+struct Agreed {
+  Agreement zero;  // on the pairs of the choice
+  std::vector<CurveOf<Agreement>> curves;
+  std::vector<Agreement> picks;  // the best of each curve, on the other pairs
+  // Where no other tolerance makes the lanes agree: the best of the blunt ones that do, on the pairs of the choice.
+  std::optional<Agreement> blunt;
+  std::string chosen;  // policy; empty: compare with zero exactly
+  TuneResult result = TuneResult::not_satisfiable;
+  Agreement confirmed, zero_confirmed;  // on the other pairs
+  double low = 0, high = 1;          // bounds of the rate of differing verdicts, one-sided, computed from `confirmed`
+  std::optional<Agreement> rounded;  // of the lanes whose operations all round as written, on the other pairs
+};
+
+// Whether a tolerance does not deserve its agreement: a lane has more wrong verdicts under it than without one, and at
+// least as many as one answer for all pairs would have.
+bool is_blunt(const Agreement& under, const Agreement& zero);
+
+// satisfied: differing verdicts are rarer than max_rate; not_confirmed or not_satisfiable: they are more frequent; each
+// at 95 % confidence. too_few_pairs: the pairs show neither.
+TuneResult agreement_result(const Agreement& chosen_on, const Agreement& confirmed, double max_rate);
+
+// Chooses a policy on some pairs and verifies it on others. No policy, if the lanes agree without one. Otherwise the
+// smallest tolerance of each curve under which they agree, and of these the one with the fewest wrong verdicts of both
+// lanes. A tolerance under which no verdict differs, or whose bound is at most half of max_rate, is
+// preferred to one whose rate is at most max_rate: fresh pairs would often not confirm that. If none makes them agree,
+// the policy with the fewest differing verdicts. Blunt tolerances are left out. Ties prefer no tolerance, then the
+// order of the curves as in tune(), then the smallest tolerance. Requires: pairs in both lists.
+Agreed agree(const AgreeSpec& spec);
+
+}  // namespace graze::analysis

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What both forms of `graze tune` share: one lane against the truth (tune.cpp), and two lanes against each other
+// (agree.cpp).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/sweep.h"
+#include "cli/commands.h"
+#include "cli/results.h"
+
+namespace graze::cli {
+
+struct TuneOptions {
+  std::vector<std::string> lanes;
+  std::string scene, out;
+  std::vector<std::string> strata;
+  std::uint64_t pairs = 1'000'000, seed = 1;
+  int threads = 0;
+  int forbid = 2;
+  double max_rate = 1e-6;
+  bool agree = false;
+};
+
+// `graze tune LANE LANE --agree`.   Requires: two lanes.
+int agree(const TuneOptions& options);
+
+// Throws: UsageError for a name that no published lane without a policy has.
+const Lane& published_lane(const std::string& id);
+
+// The pairs to choose on, a tenth, and those that verify the choice, of the next seed.
+struct TunePairs {
+  std::vector<strata::PairSource> sources, others;
+  std::string left_out;  // left_out_text of the scene
+};
+
+// Throws: as drawn; UsageError where no pairs are left to choose on.
+TunePairs tune_pairs(const TuneOptions& options);
+
+Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::PairPlace& place);
+
+// A file with the minimised pair; both lanes keep their verdicts. Without twins, the pair is not minimised.
+// Requires: a lane is wrong on the pair.
+std::string smallest(const Lane& first, const Lane& second, const Pair& pair);
+
+// Writes the results and lists them. Removes those of these files of pairs that an earlier run wrote and this one did
+// not.
+void write_listed(const std::filesystem::path& out, const std::vector<Result>& results,
+                  std::initializer_list<const char*> cases);
+
+// The line that names the next command: a check of the last result, if that is a file of pairs.
+std::string next_command(const std::filesystem::path& out, const Result& last, const std::string& lanes);
+
+// What a pair costs by each lane, host lanes on one core, CUDA lanes on the device. A twin's time is not the time of
+// the code, so without a device a sentence says that it was not measured.
+std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
+                                        const std::vector<strata::PairSource>& sources);
+
+}  // namespace graze::cli

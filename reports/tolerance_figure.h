@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rates against the tolerance at all sites, as a picture: relative tolerances on the left, absolute ones on the right.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/curves.h"
+#include "reports/svg.h"
+
+namespace graze::reports {
+
+// A line of the picture: what it counts.
+template <class Point>
+struct ToleranceLine {
+  std::string_view colour, label;
+  std::function<std::uint64_t(const Point&)> count;
+};
+
+// Maps points to the picture: x by log2 of the tolerance between low and high, y by log10 of the rate.
+struct ToleranceFrame {
+  double left, right, low, high;
+  static constexpr double kTop = 64, kBottom = 350, kLeast = -7;
+
+  double x(double tolerance) const { return left + (right - left) * (std::log2(tolerance) - low) / (high - low); }
+  static double y(double rate) {
+    return kBottom + (kTop - kBottom) * (std::log10(std::max(rate, std::pow(10.0, kLeast))) - kLeast) / -kLeast;
+  }
+};
+
+template <class Point>
+std::string tolerance_figure(std::string_view title, std::string_view heading,
+                             const std::vector<analysis::CurveOf<Point>>& curves, const std::string& chosen,
+                             const std::vector<ToleranceLine<Point>>& lines) {
+  using Frame = ToleranceFrame;
+  std::string svg = svg_begin(title);
+  for (int power = -7; power <= 0; ++power) {
+    const double y = Frame::y(std::pow(10.0, power));
+    svg += svg_level(64, 880, y);
+    svg += svg_text(56, y + 4, "end", power == -7 ? "none" : power == 0 ? "all" : fmt::format("1e{}", power));
+  }
+  for (const analysis::CurveOf<Point>& curve : curves) {
+    if (!curve.site.empty() || curve.points.empty()) continue;
+    const double low = std::log2(analysis::tolerance_of(curve.points.front().policy)),
+                 high = std::log2(analysis::tolerance_of(curve.points.back().policy));
+    const Frame frame = curve.relative ? Frame{64, 460, low, high} : Frame{484, 880, low, high};
+    for (const ToleranceLine<Point>& line : lines) {
+      std::string points;
+      for (const Point& point : curve.points)
+        points += fmt::format("{:.1f},{:.1f} ", frame.x(analysis::tolerance_of(point.policy)),
+                              Frame::y(static_cast<double>(line.count(point)) /
+                                       static_cast<double>(std::max<std::uint64_t>(point.pairs, 1))));
+      svg += fmt::format("<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"2\" points=\"{}\"/>\n", line.colour,
+                         points);
+    }
+    for (const Point& point : curve.points) {
+      if (point.policy == chosen)
+        svg += fmt::format(
+            "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"64\" y2=\"350\" stroke=\"#777\" stroke-dasharray=\"4 3\"/>\n",
+            frame.x(analysis::tolerance_of(point.policy)));
+    }
+    for (const double at : {low, (low + high) / 2, high})
+      svg += svg_text(frame.x(std::exp2(at)), 370,
+                      at == low    ? "start"
+                      : at == high ? "end"
+                                   : "middle",
+                      fmt::format("{}:{:.2g}", curve.relative ? "rel" : "abs", std::exp2(at)));
+  }
+  svg += svg_text(262, 396, "middle", "K, in machine epsilons times the quantity’s size");
+  svg += svg_text(682, 396, "middle", "E, in the quantity’s own unit");
+  svg += svg_text(64, 18, "start", heading);
+  double x = 64;
+  for (const ToleranceLine<Point>& line : lines) {
+    svg += fmt::format("<line x1=\"{0}\" x2=\"{1}\" y1=\"36\" y2=\"36\" stroke=\"{2}\" stroke-width=\"4\"/>\n", x,
+                       x + 16, line.colour);
+    svg += svg_text(x + 21, 40, "start", line.label);
+    x += std::max(168.0, 50 + 6.5 * static_cast<double>(line.label.size()));
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace graze::reports

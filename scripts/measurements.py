@@ -12,6 +12,7 @@ RECORDS, PAGE = DOCS / "measurements", DOCS / "measurements.md"
 # Each file is a section of the page, in this order.
 TOPICS = (
     "agreement",
+    "discrepancy",
     "exact",
     "gpu_engine",
     "cpu_engine",

@@ -55,7 +55,7 @@ TEST(Deciding, IsNotTheFirstWrongComparison) {
   EXPECT_EQ(found[0].cause, Cause::overflow);
   EXPECT_EQ(found[0].settled, Settled::yes);
   ASSERT_NE(found[0].told(), nullptr);
-  EXPECT_TRUE(found[0].told()->line.ends_with("interval_overlap.h:83")) << found[0].told()->line;
+  EXPECT_TRUE(found[0].told()->line.ends_with("interval_overlap.h:85")) << found[0].told()->line;
   EXPECT_TRUE(std::isnan(found[0].told()->difference.lane));
   const auto first_wrong =
       std::find_if(found[0].steps.begin(), found[0].steps.end(), [](const Step& step) { return step.wrong(); });

@@ -21,7 +21,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::uint64_t kBlock = 256;  // pairs
+constexpr std::uint64_t kPairsCompared = 256;  // pairs
 
 struct CountingSink {
   DiscrepancyCounts& to;
@@ -218,7 +218,7 @@ bool compare_on_device(const LanesCompared& lanes, const strata::PairSource& sou
 }  // namespace
 
 Discrepancies discrepancies(const DiscrepancySpec& spec) {
-  const std::vector<SourceBlock> blocks = blocks_of(spec.sources, kBlock);
+  const std::vector<SourceBlock> blocks = blocks_of(spec.sources, kPairsCompared);
   const auto threads = static_cast<std::size_t>(spec.threads > 0 ? spec.threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   const auto nothing_yet = [&] {

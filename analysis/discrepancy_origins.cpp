@@ -16,7 +16,7 @@
 namespace graze::analysis {
 namespace {
 
-constexpr std::uint64_t kBlock = 64;  // pairs
+constexpr std::uint64_t kPairsTraced = 64;  // pairs
 
 bool same_line(const cuda::SourceLine& l, const cuda::SourceLine& r) {
   return l.line == r.line && std::string_view(l.file) == r.file;
@@ -163,7 +163,7 @@ Origins origins(const Lane& lane, const std::vector<strata::PairSource>& sources
                 const std::function<bool(const Pair&, const Pair&)>& simpler) {
   std::vector<strata::PairSource> first = sources;
   for (strata::PairSource& source : first) source.pairs = std::min(source.pairs, pairs);
-  const std::vector<SourceBlock> blocks = blocks_of(first, kBlock);
+  const std::vector<SourceBlock> blocks = blocks_of(first, kPairsTraced);
   const auto most = static_cast<std::size_t>(threads > 0 ? threads : tbb::info::default_concurrency());
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, most);
   // Equally simple pairs are ordered by their bits, so that the simplest does not depend on the threads.

@@ -199,7 +199,7 @@ TEST(Explain, ASentenceTellsOfACoplanarFlip) {
        {"guigue_devillers_2003/f32 (cuda-fma) says disjoint, but the triangles meet in a segment, 1.23e-09 deep: "
         "nvcc fuses the product into the addition at core/vec3.h:",
         "which turns an orientation of exactly -4.64625e-18 into ",
-        "so that the comparison at core/algorithms/guigue_devillers_2003.h:132 goes the wrong way; "
+        "so that the comparison at core/algorithms/guigue_devillers_2003.h:140 goes the wrong way; "
         "without contraction it is right."})
     EXPECT_NE(text.find(part), std::string::npos) << text;
 }

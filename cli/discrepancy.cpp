@@ -63,7 +63,7 @@ std::vector<strata::PairSource> sources_of(const std::string& campaign, std::uin
   return sources;
 }
 
-constexpr std::uint64_t kOriginPairs = 2000;  // of each source
+constexpr std::uint64_t kOriginPairs = 40'000;  // shared by the sources
 
 // Where the values start to differ, of each comparison of a contracted CUDA lane with one that rounds every operation.
 std::vector<std::optional<analysis::Origins>> origins_of(const analysis::DiscrepancySpec& spec) {
@@ -74,7 +74,8 @@ std::vector<std::optional<analysis::Origins>> origins_of(const analysis::Discrep
     const Lane* fused = is_rounded(*first) ? second : is_rounded(*second) ? first : nullptr;
     origins.emplace_back();
     if (fused && analysis::has_origins(*fused))
-      origins.back() = analysis::origins(*fused, spec.sources, kOriginPairs, spec.threads, simpler);
+      origins.back() =
+          analysis::origins(*fused, spec.sources, kOriginPairs / spec.sources.size(), spec.threads, simpler);
   }
   return origins;
 }

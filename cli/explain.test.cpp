@@ -30,10 +30,10 @@ TEST_F(ExplainCommand, SaysItsSentenceFirstAndMarksWhatMatters) {
   ASSERT_TRUE(out.starts_with("p:1\n  guigue_devillers_2003/f32 (cpu) says disjoint, but the triangles meet in a"))
       << out;
   EXPECT_NE(out.find("\n    values:\n"
-                     "      guigue_devillers_2003.h:110  plane_distance: -1.490116e-08, exactly 0\n"
-                     "      guigue_devillers_2003.h:110  plane_distance: -0.331\n"
-                     "      guigue_devillers_2003.h:110  plane_distance: -0.06199999\n"
-                     "   => guigue_devillers_2003.h:111  4.932284e-09 > 0 is true;\n"
+                     "      guigue_devillers_2003.h:116  plane_distance: -1.490116e-08, exactly 0\n"
+                     "      guigue_devillers_2003.h:116  plane_distance: -0.331\n"
+                     "      guigue_devillers_2003.h:116  plane_distance: -0.06199999\n"
+                     "   => guigue_devillers_2003.h:117  4.932284e-09 > 0 is true;\n"
                      "                                   exactly 0 > 0 is false\n"
                      "    mantissa bits"),
             std::string::npos)

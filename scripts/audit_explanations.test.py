@@ -82,8 +82,8 @@ class Audit(unittest.TestCase):
         self.planted(change)
 
     def test_another_line_does_not_hold(self):
-        self.in_sentences("range.h:31", "range.h:23")
-        self.in_sentences("guigue_devillers_2003.h:111 goes", "guigue_devillers_2003.h:115 goes")
+        self.in_sentences("range.h:32", "range.h:23")
+        self.in_sentences("guigue_devillers_2003.h:117 goes", "guigue_devillers_2003.h:121 goes")
 
     def test_another_verdict_does_not_hold(self):
         self.in_sentences("says disjoint", "says intersects")
@@ -99,7 +99,7 @@ class Audit(unittest.TestCase):
     def test_a_comparison_too_many_does_not_hold(self):
         self.in_sentences(
             " goes the wrong way; ",
-            " goes the wrong way and, were it right, a later one at core/algorithms/range.h:31; ",
+            " goes the wrong way and, were it right, a later one at core/algorithms/range.h:32; ",
         )
 
     def test_a_comparison_too_few_does_not_hold(self):

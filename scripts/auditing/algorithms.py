@@ -2,20 +2,38 @@
 """The published algorithms, reimplemented from their headers in core/algorithms. Each comparison names its source
 line."""
 import pathlib
+import re
 
 from auditing.numbers import Fused, outcome, root_of
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 
 
-# The source line of a comparison: the only line of the header that contains this text.
+# The source line of a comparison: the only line of the header that contains this text, but for the numbers of questions
+# and choices.
 _sources = {}
+NUMBERS = (
+    (re.compile(r"At\((Site::\w+), [^)]*\)"), r"\1"),
+    (re.compile(r", policy, \d+\)"), ", policy)"),
+    (re.compile(r"chosen\(policy, [^,]*, (\w+ [!=]= Real\(0\))\)"), r"\1"),
+)
+
+
+def without_numbers(line):
+    for pattern, text in NUMBERS:
+        line = pattern.sub(text, line)
+    return line
+
+
+def lines_of(path):
+    if path not in _sources:
+        _sources[path] = [without_numbers(line) for line in (ROOT / path).read_text().splitlines()]
+    return _sources[path]
 
 
 def at(file, text):
     path = "core/vec3.h" if file == "vec3.h" else "core/algorithms/" + file
-    lines = _sources.setdefault(path, (ROOT / path).read_text().splitlines())
-    found = [i + 1 for i, line in enumerate(lines) if text in line]
+    found = [i + 1 for i, line in enumerate(lines_of(path)) if text in line]
     if len(found) != 1:
         raise SystemExit(f"audit_explanations: {path} has {len(found)} lines with '{text}', not one; adapt this script")
     return f"{path}:{found[0]}"
@@ -104,7 +122,7 @@ def drop(v, axis):
 
 RANGE_LO = at("range.h", "range.lo = t < range.lo")
 RANGE_HI = at("range.h", "range.hi = t > range.hi")
-OVERLAP = at("range.h", "return !policy.less(Site::separation, s.hi")
+OVERLAP = [at("range.h", f"!policy.less(Site::separation, {high}.hi") for high in "st"]
 
 
 def project(r, direction, v):
@@ -121,7 +139,7 @@ def project(r, direction, v):
 def overlap(r, axis, a, b):
     t = project(r, axis, b)  # g++ evaluates arguments from last to first
     s = project(r, axis, a)
-    return not r.compare(OVERLAP, s[1], "<", t[0], True) and not r.compare(OVERLAP, t[1], "<", s[0], True)
+    return not r.compare(OVERLAP[0], s[1], "<", t[0], True) and not r.compare(OVERLAP[1], t[1], "<", s[0], True)
 
 
 def normalised(v):
@@ -179,9 +197,11 @@ IO = {
         "negative": "} else if (distance[i] < zero)",
         "difference": "difference == Real(0) ? Real(0)",
         "order": "return t[0] < t[1] ? Range",
-        "contains": "policy.at_most(Site::separation, range.lo, t)",
-        "parallel": "if (policy.snap(Site::parallel, direction.x) == zero",
-        "parallel_z": "policy.snap(Site::parallel, direction.z) == zero",
+        "from": "policy.at_most(Site::separation, range.lo, t)",
+        "to": "policy.at_most(Site::separation, t, range.hi)",
+        "parallel_0": "policy.snap(Site::parallel, direction.x) == zero",
+        "parallel_1": "policy.snap(Site::parallel, direction.y) == zero",
+        "parallel_2": "policy.snap(Site::parallel, direction.z) == zero",
     }.items()
 }
 
@@ -220,9 +240,7 @@ def section(r, point, direction, v, distance):
 
 
 def contains(r, interval, t):
-    return r.compare(IO["contains"], interval[0], "<=", t, True) and r.compare(
-        IO["contains"], t, "<=", interval[1], True
-    )
+    return r.compare(IO["from"], interval[0], "<=", t, True) and r.compare(IO["to"], t, "<=", interval[1], True)
 
 
 def interval_overlap(r, a, b):
@@ -232,7 +250,7 @@ def interval_overlap(r, a, b):
         return False
     plane_b = Plane(r, b)
     direction = cross(plane_a.normal, plane_b.normal)
-    if all(r.compare(IO["parallel" if i < 2 else "parallel_z"], r.snap(direction[i]), "==", r.zero) for i in range(3)):
+    if all(r.compare(IO[f"parallel_{i}"], r.snap(direction[i]), "==", r.zero) for i in range(3)):
         return projections_intersect(r, a, b, plane_a)
     distance_a = plane_distances(r, plane_b, a)
     if strictly_one_side(r, distance_a):
@@ -384,7 +402,8 @@ G_TEXT = {
     "pq": "const bool left_of_pq",
     "qr": "const bool left_of_qr",
     "rp": "const bool left_of_rp",
-    "turn": "const bool turn1 =",
+    "turn1": "const bool turn1 =",
+    "turn2": "const bool turn2 =",
     "da": "if (da[0] * da[1] > zero",
     "db": "if (db[0] * db[1] > zero",
     "first": "dot(q2 - q1, cross(p2 - q1, p1 - q1))) > zero",
@@ -396,7 +415,7 @@ G = {key: at("guigue_devillers_2003.h", text) for key, text in G_TEXT.items()}
 def first_lines():
     """`if (orient2d(r2, p2, q1, policy) >= zero) {` is the first line of vertex_region and of edge_region, in this
     order."""
-    lines = (ROOT / "core/algorithms/guigue_devillers_2003.h").read_text().splitlines()
+    lines = lines_of("core/algorithms/guigue_devillers_2003.h")
     found = [i + 1 for i, line in enumerate(lines) if "if (orient2d(r2, p2, q1, policy) >= zero) {" in line]
     assert len(found) == 2, found
     return [f"core/algorithms/guigue_devillers_2003.h:{i}" for i in found]
@@ -484,7 +503,7 @@ def counterclockwise_intersect(r, p1, q1, r1, p2, q2, r2):
 def guigue_coplanar(r, normal, a, b):
     axis = dominant_axis(r, normal)
     (p1, q1, r1), (p2, q2, r2) = [drop(x, axis) for x in a], [drop(x, axis) for x in b]
-    turn1, turn2 = turn(r, "turn", p1, q1, r1, "<"), turn(r, "turn", p2, q2, r2, "<")
+    turn1, turn2 = turn(r, "turn1", p1, q1, r1, "<"), turn(r, "turn2", p2, q2, r2, "<")
     return counterclockwise_intersect(
         r, p1, r1 if turn1 else q1, q1 if turn1 else r1, p2, r2 if turn2 else q2, q2 if turn2 else r2
     )

@@ -79,8 +79,8 @@ test('real reports, costs and choices are what report.ts says', ({}, info) => {
       campaign: ['Report', campaign],
       ...(compared ? { compared: ['Report', compared] } : {}),
       costs: ['Costs', costs],
-      choices: ['Choices', { tuned, pareto }],
-      none: ['Choices', { tuned: null, pareto: null }],
+      choices: ['Choices', { tuned, pareto, discrepancy: { sentences: ['one'], page: 'discrepancy.html' } }],
+      none: ['Choices', { tuned: null, pareto: null, discrepancy: null }],
     },
     info,
   );
@@ -113,7 +113,7 @@ test('and others are told apart', ({}, info) => {
       other_type: ['Report', { ...right, run: { ...right.run, seed: '1' } }],
       other_word: ['Report', { ...right, lanes: [{ ...right.lanes[0], scalar: 'f16' }] }],
       costs: ['Costs', { ...costs, passes: '9' }],
-      choices: ['Choices', { tuned, pareto: { ...pareto, machine: 1 } }],
+      choices: ['Choices', { tuned, pareto: { ...pareto, machine: 1 }, discrepancy: null }],
     },
     info,
   );

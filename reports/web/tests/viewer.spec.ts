@@ -118,11 +118,11 @@ test('a pair on which CPU and GPU differ: which lane, and why', async ({ viewer 
     'guigue_devillers_2003 in float64 says intersects on the CPU (right) and disjoint on the GPU (wrong). The cause is contraction: for the GPU nvcc fuses',
     'into one operation that rounds once; the CPU rounds twice',
     'Built with -fmad=false, the GPU says intersects.',
-    'Both run the same source on the same numbers. The first comparison that goes otherwise is at core/algorithms/guigue_devillers_2003.h:115',
+    'Both run the same source on the same numbers. The first comparison that goes otherwise is at core/algorithms/guigue_devillers_2003.h:121',
     'if (db[0] * db[1] > zero && db[0] * db[2] > zero) return Verdict::disjoint;',
     'more than 0 where both lie on one side of it: on the CPU of 0 and -0.235, on the GPU of -1.11·10⁻¹⁸ and -0.235. With 113 bits the value is 0: anything else there is rounding, and its sign decides.',
     'Fused here alone, the verdict is already the GPU’s: core/vec3.h:48',
-    'called at core/algorithms/guigue_devillers_2003.h:114',
+    'called at core/algorithms/guigue_devillers_2003.h:120',
   ])
     await expect(why).toContainText(said);
   expect(await viewer.locator('.parting tr').allInnerTexts()).toEqual([

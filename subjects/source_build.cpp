@@ -225,22 +225,19 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   all_flags.insert(all_flags.end(), flags.begin(), flags.end());
   const CodeHash of_flags = hash_of_flags(all_flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
   const std::uint64_t hash = fnv1a(preprocessed, of_flags.hash);
-  // Which files its assembler code includes is known once it was built: their list is kept.
-  const fs::path kept_list = folder / fmt::format("{:016x}.files", hash);
   const auto named = [&](std::uint64_t of_all) { return folder / fmt::format("{:016x}.so", of_all); };
   Built built;
+  built.file = named(hash);
   if (!of_flags.not_covered.empty()) {
     built.not_covered = of_flags.not_covered;
   } else if (may_include_by_assembler(preprocessed) && !assembler_lists_files(compiler, flags, scratch)) {
     built.not_covered = "the files that its assembler code includes";
   } else if (status == 0) {
-    try {
-      built.file = named(hash_of_listed(kept_content(kept_list).value_or(""), hash));
-      if (const auto kept = kept_content(built.file)) {
-        built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);
-        return built;
-      }
-    } catch (const std::runtime_error&) {  // a file of the list is not there any more
+    // An object has this name only if the assembler read no files for it. Where the assembler would find such files now
+    // is not known before it runs.
+    if (const auto kept = kept_content(built.file)) {
+      built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);
+      return built;
     }
   }
   const bool lists = assembler_lists_files(compiler, flags, scratch);
@@ -256,13 +253,6 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   }
   const std::string files = lists && fs::exists(list) ? listed_files(list, scratch.path()) : "";
   built.file = named(hash_of_listed(files, hash));
-  if (files.empty()) {
-    std::error_code ignored;
-    fs::remove(kept_list, ignored);
-  } else {
-    write(list, files);
-    keep_file(list, kept_list);
-  }
   built.content = std::make_shared<SealedCopy>(built.file.filename().string(), code_in(object));
   keep_file(object, built.file);
   return built;

@@ -574,6 +574,36 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
   }
 }
 
+// The assembler searches folders in order, so a new file in an earlier folder is other code.
+TEST_F(Subjects, AFileThatTheAssemblerNowFindsEarlierIsBuiltIn) {
+  const fs::path source = write("searched.c", R"(
+__asm__(".section .rodata\n.global blob\nblob: .incbin \"searched.bin\"\n.previous");
+extern const char blob[];
+int intersects(const float a[9], const float b[9]) { return blob[0] == 'l' ? a[0] < b[0] : a[0] >= b[0]; }
+)");
+  const fs::path first = folder / "first", second = folder / "second";
+  for (const fs::path& searched : {first, second}) fs::create_directories(searched);
+  const auto build = [&] {
+    return build_source(source, "intersects", kVariants[0], {"-I" + first.string(), "-I" + second.string()});
+  };
+  const auto is_less = [&](const Built& built) {
+    Code code{"library", built.file.string(), ""};
+    code.content = built.content;
+    ForeignProcesses subject(code, Scalar::f32);
+    return verdicts(subject)[0] == left_of(pairs[0]);
+  };
+  std::ofstream(second / "searched.bin") << 'l';
+  const Built before = build();
+  EXPECT_TRUE(is_less(before));
+  EXPECT_EQ(build().file, before.file);
+  std::ofstream(first / "searched.bin") << 'g';
+  const Built after = build();
+  EXPECT_FALSE(is_less(after));
+  EXPECT_TRUE(!after.not_covered.empty() || after.file != before.file);
+  fs::remove(first / "searched.bin");
+  EXPECT_TRUE(is_less(build()));
+}
+
 // A compiler of one version may find another assembler or linker on the PATH, and may be a script.
 TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
   const fs::path source =

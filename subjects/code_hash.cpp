@@ -79,7 +79,13 @@ std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
   return parts;
 }
 
-std::array<std::int64_t, 7> state_of(const fs::path& file) {
+std::uint64_t add_number(std::uint64_t number, std::uint64_t hash) {
+  return fnv1a({reinterpret_cast<const char*>(&number), sizeof number}, hash);
+}
+
+}  // namespace
+
+FileState state_of(const fs::path& file) {
   struct stat now {};
   if (stat(file.c_str(), &now) != 0) return {};
   return {static_cast<std::int64_t>(now.st_dev),
@@ -90,12 +96,6 @@ std::array<std::int64_t, 7> state_of(const fs::path& file) {
           now.st_ctim.tv_sec,
           now.st_ctim.tv_nsec};
 }
-
-std::uint64_t add_number(std::uint64_t number, std::uint64_t hash) {
-  return fnv1a({reinterpret_cast<const char*>(&number), sizeof number}, hash);
-}
-
-}  // namespace
 
 std::string code_in(const fs::path& file) {
   std::error_code why;

@@ -14,11 +14,15 @@
 
 namespace graze::subjects {
 
+// Where and when a file was last written, as the system says; zeros where there is no file.
+using FileState = std::array<std::int64_t, 7>;
+FileState state_of(const std::filesystem::path& file);
+
 // A file that was read for a hash.
 struct HashedFile {
   std::filesystem::path file;
   std::uint64_t hash;
-  std::array<std::int64_t, 7> state;  // where and when it was last written, as the system says, before it was read
+  FileState state;  // before it was read
 };
 
 struct CodeHash {

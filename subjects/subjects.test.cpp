@@ -574,6 +574,51 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
   }
 }
 
+// The compiler stands for an editor as well: it runs the script `edits` when it compiles.
+TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
+  const fs::path source = write("edited.c",
+                                "#include \"edited.h\"\nint intersects(const float a[9], const float b[9]) "
+                                "{ return a[0] LESS b[0]; }"),
+                 header = write("edited.h", "#define LESS <\n"), edits = folder / "edits",
+                 compiler = write("editing_cc", "#!/bin/sh\ncd " + folder.string() +
+                                                    "\ncase \" $* \" in *' -E '*) ;; *whole.c*) [ ! -e edits ] || "
+                                                    ". ./edits ;; esac\nexec cc \"$@\"\n");
+  fs::permissions(compiler, fs::perms::owner_all);
+  setenv("CC", compiler.c_str(), 1);
+  const auto build = [&] { return build_source(source, "intersects", kVariants[0], {}); };
+  const auto is_less = [&](const Built& built) {
+    Code code{"library", built.file.string(), ""};
+    code.content = built.content;
+    ForeignProcesses subject(code, Scalar::f32);
+    return verdicts(subject)[0] == left_of(pairs[0]);
+  };
+  write("edits", "rm edits; echo '#define LESS >=' > edited.h");
+  const Built edited = build();
+  EXPECT_FALSE(is_less(edited));
+  EXPECT_EQ(build().file, edited.file);
+  EXPECT_FALSE(is_less(build()));
+  // The object of the new code was not kept as that of the old code.
+  write("edited.h", "#define LESS <\n");
+  write("edits",
+        "rm edits; mv edited.h old.h; echo '#define LESS >=' > edited.h; cc \"$@\"; status=$?; "
+        "cp old.h new.h; mv new.h edited.h; exit $status");  // undone before the next reading
+  const Built undone = build();
+  EXPECT_FALSE(fs::exists(edits));
+  EXPECT_NE(undone.file, edited.file);
+  EXPECT_TRUE(is_less(undone));
+  write("edited.h", "#define LESS <=\n");
+  write("edits", "echo >> edited.h");
+  const std::string error = error_of(build);
+  EXPECT_TRUE(names(error, {"cannot compile", "edited.c", "changed during each of 4 builds"})) << error;
+  fs::remove(edits);
+  // The time is no change.
+  write("edited.h", "#define LESS < 0 * sizeof __TIME__ __DATE__ +\n");
+  write("edits", "sleep 1.1");
+  EXPECT_TRUE(is_less(build()));
+  fs::remove(edits);
+  unsetenv("CC");
+}
+
 // The assembler searches folders in order, so a new file in an earlier folder is other code.
 TEST_F(Subjects, AFileThatTheAssemblerNowFindsEarlierIsBuiltIn) {
   const fs::path source = write("searched.c", R"(

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -58,12 +59,15 @@ bool is_file(const fs::path& file) {
   return fs::is_regular_file(file, none);
 }
 
-// The program's file on the PATH; empty when there is none.
+// The program's file on the PATH, as a shell finds it; empty when there is none. A folder without a name is the current
+// one.
 fs::path on_path(const std::string& program) {
   const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
+  if (!path) return {};
+  std::istringstream folders(std::string(path) + ':');
   for (std::string folder; std::getline(folders, folder, ':');) {
-    if (is_file(fs::path(folder) / program)) return fs::path(folder) / program;
+    const fs::path file = fs::path(folder) / program;
+    if (is_file(file) && access(file.c_str(), X_OK) == 0) return file;
   }
   return {};
 }

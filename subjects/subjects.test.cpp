@@ -810,12 +810,17 @@ TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
     EXPECT_NE(hash(reads), of_one) << reads;
     write("log.txt", "one");
   }
-  write("program", "one");
   const std::string path = std::getenv("PATH");
-  setenv("PATH", (folder.string() + ':' + path).c_str(), 1);
-  const std::uint64_t one = hash("X=1 program");
-  write("program", "two");
-  EXPECT_NE(hash("X=1 program"), one);
+  fs::create_directories(folder / "skipped");
+  write("skipped/program", "a shell skips a file that nobody may execute");
+  for (const std::string& searched :
+       {folder.string() + ':', (folder / "skipped").string() + ':' + folder.string() + ':'}) {
+    fs::permissions(write("program", "one"), fs::perms::owner_all);
+    setenv("PATH", (searched + path).c_str(), 1);
+    const std::uint64_t one = hash("X=1 program");
+    write("program", "two");
+    EXPECT_NE(hash("X=1 program"), one) << searched;
+  }
   setenv("PATH", path.c_str(), 1);
 }
 

@@ -120,6 +120,14 @@ std::uint64_t hash_of_file(const fs::path& file) { return fnv1a(code_in(file)); 
 
 void expect_unchanged(const std::vector<HashedFile>& files) {
   for (const HashedFile& file : files) {
+    if (const fs::path now = file.program.empty() ? fs::path() : on_path(file.program);
+        !now.empty() && fs::absolute(now) != file.file) {
+      throw std::runtime_error(fmt::format(
+          "--subject: the PATH now finds {} where it found {} when the command that names it started, so its verdicts "
+          "may be of either code and are not recorded; restore the PATH's folders to go on, or start anew with another "
+          "--out",
+          shown_path(now.string()), shown_path(file.file.string())));
+    }
     if (state_of(file.file) == file.state || (is_file(file.file) && hash_of_file(file.file) == file.hash)) continue;
     throw std::runtime_error(fmt::format(
         "--subject: {} changed while the command that names it ran, so its verdicts may be of either code and are not "
@@ -156,12 +164,12 @@ CodeHash hash_of_command(const std::string& command) {
                            : is_file(words[0])                   ? fs::path(words[0])
                                                                  : fs::path();
   CodeHash code{fnv1a(command), not_covered_of(command, words, program)};
-  const auto add = [&](const fs::path& file) {
+  const auto add = [&](const fs::path& file, const std::string& name = "") {
     const auto state = state_of(file);
-    code.files.push_back({fs::absolute(file), hash_of_file(file), state});
+    code.files.push_back({fs::absolute(file), hash_of_file(file), state, name});
     code.hash = add_number(code.files.back().hash, code.hash);
   };
-  if (!program.empty() && words[0].find('/') == words[0].npos) add(program);
+  if (!program.empty() && words[0].find('/') == words[0].npos) add(program, words[0]);
   // Also files named within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
   std::set<std::string> files = parts_of(command, " \t\n;|&<>()'\"`=:,{}[]$\\");
   for (const std::string& file : written) files.erase(file);

@@ -777,6 +777,36 @@ TEST_F(Subjects, ACommandWhoseCodeIsNotPlainIsNotCovered) {
   EXPECT_NE(hash_of_command(command).hash, one);
 }
 
+TEST_F(Subjects, AProgramThatThePathFindsEarlierMeanwhileIsRefused) {
+  const fs::path first = folder / "earlier", second = folder / "later";
+  const auto program = [](const fs::path& within, const char* answer) {
+    fs::create_directories(within);
+    std::ofstream(within / "found") << "#!/bin/sh\nwhile read line; do echo " << answer << "; done\n";
+    fs::permissions(within / "found", fs::perms::owner_all);
+  };
+  fs::create_directories(first);
+  program(second, "1");
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (first.string() + ':' + second.string() + ':' + path).c_str(), 1);
+  Wanted wanted = parse_subject("found=cmd:found");
+  wanted.timeout = 20;
+  open(wanted);
+  const DecideBlock& decide = find_lane("found/f32/cpu")->decide;
+  std::uint64_t yes = 0, none = 0;
+  const auto ask = [&] { decide(pairs.data(), 1, &yes, &none); };
+  ask();
+  EXPECT_EQ(yes, 1u);
+  program(first, "0");
+  const std::string error = error_of(ask);
+  EXPECT_TRUE(names(
+      error, {"PATH now finds", (first / "found").string(), (second / "found").string(), "not recorded", "--out"}))
+      << error;
+  fs::remove(first / "found");
+  ask();
+  EXPECT_EQ(yes, 1u);
+  setenv("PATH", path.c_str(), 1);
+}
+
 TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
   const fs::path file = write("with space.txt", "one");
   const auto hash = [&](const std::string& command) { return hash_of_command(command).hash; };

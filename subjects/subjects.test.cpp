@@ -253,6 +253,7 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
   for (const auto& [name, says] : {std::pair{"answers", "true"},
                                    {"silent", "exec cat > /dev/null"},
                                    {"ends", "exit 3"},
+                                   {"kills", "read line; case $line in describe) kill -9 $PPID;; esac; echo 1"},
                                    {"babbles", "read line; echo '{'"},
                                    {"other", "read line; echo '[1]'"}}) {
     lane = open_program(name, says);

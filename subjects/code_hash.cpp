@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -58,12 +59,15 @@ bool is_file(const fs::path& file) {
   return fs::is_regular_file(file, none);
 }
 
-// The program's file on the PATH; empty when there is none.
+// The program's file on the PATH, as a shell finds it; empty when there is none. A folder without a name is the current
+// one.
 fs::path on_path(const std::string& program) {
   const char* path = std::getenv("PATH");
-  std::istringstream folders(path ? path : "");
+  if (!path) return {};
+  std::istringstream folders(std::string(path) + ':');
   for (std::string folder; std::getline(folders, folder, ':');) {
-    if (is_file(fs::path(folder) / program)) return fs::path(folder) / program;
+    const fs::path file = fs::path(folder) / program;
+    if (is_file(file) && access(file.c_str(), X_OK) == 0) return file;
   }
   return {};
 }
@@ -79,7 +83,13 @@ std::set<std::string> parts_of(const std::string& text, std::string_view ends) {
   return parts;
 }
 
-std::array<std::int64_t, 7> state_of(const fs::path& file) {
+std::uint64_t add_number(std::uint64_t number, std::uint64_t hash) {
+  return fnv1a({reinterpret_cast<const char*>(&number), sizeof number}, hash);
+}
+
+}  // namespace
+
+FileState state_of(const fs::path& file) {
   struct stat now {};
   if (stat(file.c_str(), &now) != 0) return {};
   return {static_cast<std::int64_t>(now.st_dev),
@@ -90,12 +100,6 @@ std::array<std::int64_t, 7> state_of(const fs::path& file) {
           now.st_ctim.tv_sec,
           now.st_ctim.tv_nsec};
 }
-
-std::uint64_t add_number(std::uint64_t number, std::uint64_t hash) {
-  return fnv1a({reinterpret_cast<const char*>(&number), sizeof number}, hash);
-}
-
-}  // namespace
 
 std::string code_in(const fs::path& file) {
   std::error_code why;
@@ -116,6 +120,14 @@ std::uint64_t hash_of_file(const fs::path& file) { return fnv1a(code_in(file)); 
 
 void expect_unchanged(const std::vector<HashedFile>& files) {
   for (const HashedFile& file : files) {
+    if (const fs::path now = file.program.empty() ? fs::path() : on_path(file.program);
+        !now.empty() && fs::absolute(now) != file.file) {
+      throw std::runtime_error(fmt::format(
+          "--subject: the PATH now finds {} where it found {} when the command that names it started, so its verdicts "
+          "may be of either code and are not recorded; restore the PATH's folders to go on, or start anew with another "
+          "--out",
+          shown_path(now.string()), shown_path(file.file.string())));
+    }
     if (state_of(file.file) == file.state || (is_file(file.file) && hash_of_file(file.file) == file.hash)) continue;
     throw std::runtime_error(fmt::format(
         "--subject: {} changed while the command that names it ran, so its verdicts may be of either code and are not "
@@ -152,12 +164,12 @@ CodeHash hash_of_command(const std::string& command) {
                            : is_file(words[0])                   ? fs::path(words[0])
                                                                  : fs::path();
   CodeHash code{fnv1a(command), not_covered_of(command, words, program)};
-  const auto add = [&](const fs::path& file) {
+  const auto add = [&](const fs::path& file, const std::string& name = "") {
     const auto state = state_of(file);
-    code.files.push_back({fs::absolute(file), hash_of_file(file), state});
+    code.files.push_back({fs::absolute(file), hash_of_file(file), state, name});
     code.hash = add_number(code.files.back().hash, code.hash);
   };
-  if (!program.empty() && words[0].find('/') == words[0].npos) add(program);
+  if (!program.empty() && words[0].find('/') == words[0].npos) add(program, words[0]);
   // Also files named within words: sh -c "exec python3 s.py", SCRIPT=./s.py.
   std::set<std::string> files = parts_of(command, " \t\n;|&<>()'\"`=:,{}[]$\\");
   for (const std::string& file : written) files.erase(file);

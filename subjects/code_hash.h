@@ -14,11 +14,16 @@
 
 namespace graze::subjects {
 
+// Where and when a file was last written, as the system says; zeros where there is no file.
+using FileState = std::array<std::int64_t, 7>;
+FileState state_of(const std::filesystem::path& file);
+
 // A file that was read for a hash.
 struct HashedFile {
   std::filesystem::path file;
   std::uint64_t hash;
-  std::array<std::int64_t, 7> state;  // where and when it was last written, as the system says, before it was read
+  FileState state;           // before it was read
+  std::string program = {};  // the name by which the PATH finds it; empty where it is named by its path
 };
 
 struct CodeHash {
@@ -27,8 +32,8 @@ struct CodeHash {
   std::vector<HashedFile> files = {};  // of a command
 };
 
-// Throws: std::runtime_error, naming the file, where one has other content than when it was read. A file that was
-// changed and changed back meanwhile is as it was.
+// Throws: std::runtime_error, naming the file, where one has other content than when it was read, or the PATH finds
+// another. A file that was changed and changed back meanwhile is as it was.
 void expect_unchanged(const std::vector<HashedFile>& files);
 
 // Returns: the file's bytes.   Throws: std::runtime_error where there is no such file.

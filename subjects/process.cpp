@@ -16,6 +16,7 @@
 
 #include "core/programs/supervisor_process.h"
 #include "core/stop.h"
+#include "core/text.h"
 #include "subjects/questions.h"
 #include "subjects/source_build.h"
 
@@ -119,8 +120,10 @@ class HostProcess {
     } else {
       return;
     }
-    // For a library, the message must name the file.
-    throw CannotLoad(code.kind == "library" && why.find(code.what) == why.npos ? code.what + ": " + why : why);
+    // The message must name the file or the command.
+    if (code.kind != "device" && why.find(code.what) == why.npos)
+      why = (code.kind == "command" ? shown(code.what) : code.what) + ": " + why;
+    throw CannotLoad(why);
   }
 
   struct CannotLoad : std::runtime_error {
@@ -152,10 +155,25 @@ class HostProcess {
   Loaded loaded_{};
 };
 
+namespace {
+
+// Returns: what the code says of itself. A program that cannot be loaded with the question is loaded without it.
+Loaded loaded_of(const Code& code) {
+  if (code.kind == "command") {
+    try {
+      return HostProcess(code, true).loaded();
+    } catch (const HostProcess::CannotLoad&) {
+      return HostProcess(code, false).loaded();
+    }
+  }
+  return HostProcess(loadable(code), true).loaded();
+}
+
+}  // namespace
+
 Description describe(const Code& code) {
   const StopSignals stops;
-  const HostProcess process(loadable(code), true);
-  const Loaded& c = process.loaded();
+  const Loaded c = loaded_of(code);
   return {c.has_f32 != 0,    c.has_f64 != 0,          c.outside,     fit(c.version), fit(c.source),
           fit(c.convention), c.describes_itself != 0, fit(c.symbol), c.text};
 }

@@ -2,6 +2,7 @@
 #include "subjects/source_build.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -145,6 +146,15 @@ std::string listed_files(const fs::path& list, const fs::path& own) {
   return files;
 }
 
+// Where and when these files were last written, as the system says.
+std::string states_of_listed(const std::string& files) {
+  std::istringstream lines(files);
+  std::string states;
+  for (std::string file; std::getline(lines, file);)
+    states += fmt::format("{} {}\n", file, fmt::join(state_of(file), " "));
+  return states;
+}
+
 // Continues the hash with the names and contents of files that an assembler has read.   Throws: std::runtime_error.
 std::uint64_t hash_of_listed(const std::string& files, std::uint64_t hash) {
   std::istringstream lines(files);
@@ -152,6 +162,17 @@ std::uint64_t hash_of_listed(const std::string& files, std::uint64_t hash) {
     hash = fnv1a(fmt::format("{}\n{:016x}\n", file, hash_of_file(file)), hash);
   return hash;
 }
+
+constexpr int kMostBuilds = 4;  // of code that changes meanwhile
+
+// All that an object is made of, as it was at one time.
+struct Reading {
+  std::uint64_t hash = 0;
+  std::string states;       // of the files, taken after they were read: shows a change that was undone between readings
+  std::string not_covered;  // what the hash leaves out, in words
+  bool is_whole = false;    // whether the preprocessor found all
+  bool operator==(const Reading&) const = default;
+};
 
 }  // namespace
 
@@ -220,52 +241,60 @@ Built build_source(const fs::path& source, const std::string& function, const Va
                  list = scratch.path() / "assembled.d";
   write(whole, defines + wrapped);
   command += fmt::format(" -I{} {}", shell_word((folder / "include").string()), shell_word(whole.string()));
-  const std::string preprocessed = output_of(command + " -E -P 2>/dev/null", scratch, status);
+  // Without a date of its own, code with __TIME__ would be other code at each reading.
+  command = "SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-0} " + command;
   std::vector<std::string> all_flags = further_flags(compiler);
   all_flags.insert(all_flags.end(), flags.begin(), flags.end());
-  const CodeHash of_flags = hash_of_flags(all_flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
-  const std::uint64_t hash = fnv1a(preprocessed, of_flags.hash);
-  // Which files its assembler code includes is known once it was built: their list is kept.
-  const fs::path kept_list = folder / fmt::format("{:016x}.files", hash);
-  const auto named = [&](std::uint64_t of_all) { return folder / fmt::format("{:016x}.so", of_all); };
-  Built built;
-  if (!of_flags.not_covered.empty()) {
-    built.not_covered = of_flags.not_covered;
-  } else if (may_include_by_assembler(preprocessed) && !assembler_lists_files(compiler, flags, scratch)) {
-    built.not_covered = "the files that its assembler code includes";
-  } else if (status == 0) {
-    try {
-      built.file = named(hash_of_listed(kept_content(kept_list).value_or(""), hash));
+  const bool lists = assembler_lists_files(compiler, flags, scratch);
+  const fs::path included = scratch.path() / "included.d";
+  std::string assembled;  // the files that the assembler read when it ran last
+  const auto read = [&] {
+    Reading reading;
+    const std::string preprocessed = output_of(
+        fmt::format("{} -E -P -MD -MF {} 2>/dev/null", command, shell_word(included.string())), scratch, status);
+    reading.is_whole = status == 0;
+    const CodeHash of_flags = hash_of_flags(all_flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
+    reading.hash = hash_of_listed(assembled, fnv1a(preprocessed, of_flags.hash));
+    reading.not_covered = of_flags.not_covered;
+    if (reading.not_covered.empty() && may_include_by_assembler(preprocessed) && !lists)
+      reading.not_covered = "the files that its assembler code includes";
+    reading.states = states_of_listed((fs::exists(included) ? listed_files(included, folder) : "") + assembled);
+    return reading;
+  };
+  // The compiler reads the files once more. It has read what was hashed if a reading before and one after it agree.
+  for (int builds = 0; builds < kMostBuilds; ++builds) {
+    const Reading before = read();
+    Built built{folder / fmt::format("{:016x}.so", before.hash), before.not_covered, nullptr};
+    // An object has this name only if the assembler read no files for it. Where the assembler would find such files now
+    // is not known before it runs.
+    if (before.is_whole && before.not_covered.empty() && assembled.empty()) {
       if (const auto kept = kept_content(built.file)) {
         built.content = std::make_shared<SealedCopy>(built.file.filename().string(), *kept);
         return built;
       }
-    } catch (const std::runtime_error&) {  // a file of the list is not there any more
     }
+    const std::string said =
+        output_of(fmt::format("{} {} -o {} -Wl,-z,defs", command, lists ? "-Wa,--MD," + shell_word(list.string()) : "",
+                              shell_word(object.string())),
+                  scratch, status);
+    if (status != 0) {
+      std::string error = first_error(said);
+      if (error.find(expected) != error.npos) error = name + ": " + expected;
+      // Errors of the linker or of a full disk name no source.
+      if (error.find(source.filename().string()) == error.npos) error = cannot("compile", name, error);
+      throw std::runtime_error(error);
+    }
+    assembled = lists && fs::exists(list) ? listed_files(list, scratch.path()) : "";
+    if (read() != before) continue;
+    built.content = std::make_shared<SealedCopy>(built.file.filename().string(), code_in(object));
+    keep_file(object, built.file);
+    return built;
   }
-  const bool lists = assembler_lists_files(compiler, flags, scratch);
-  if (lists) command += " -Wa,--MD," + shell_word(list.string());
-  const std::string said =
-      output_of(fmt::format("{} -o {} -Wl,-z,defs", command, shell_word(object.string())), scratch, status);
-  if (status != 0) {
-    std::string error = first_error(said);
-    if (error.find(expected) != error.npos) error = name + ": " + expected;
-    // Errors of the linker or of a full disk name no source.
-    if (error.find(source.filename().string()) == error.npos) error = cannot("compile", name, error);
-    throw std::runtime_error(error);
-  }
-  const std::string files = lists && fs::exists(list) ? listed_files(list, scratch.path()) : "";
-  built.file = named(hash_of_listed(files, hash));
-  if (files.empty()) {
-    std::error_code ignored;
-    fs::remove(kept_list, ignored);
-  } else {
-    write(list, files);
-    keep_file(list, kept_list);
-  }
-  built.content = std::make_shared<SealedCopy>(built.file.filename().string(), code_in(object));
-  keep_file(object, built.file);
-  return built;
+  throw std::runtime_error(cannot(
+      "compile", name,
+      fmt::format("its code changed during each of {} builds; run the command again when nothing writes the files "
+                  "that it includes",
+                  kMostBuilds)));
 }
 
 }  // namespace graze::subjects

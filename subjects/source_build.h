@@ -25,9 +25,10 @@ bool source_describes_itself(const std::filesystem::path& source);
 // Builds a shared object with `function` of the source, or with the source's own descriptions (see graze/subject.h).
 // Compiles with the variant's flags, then `flags`. The file name is a hash of the preprocessed source, the flags, the
 // files that they name, the files that the assembler reports as read, and the first line of the compiler's --version. A
-// cached object is used if it is unchanged and the hash covers all its inputs.
+// cached object is used if it is unchanged, the hash covers all its inputs, and the assembler read no files for it.
+// Builds again if the files have changed since they were read for the hash.
 // Returns: the shared object.
-// Throws: std::runtime_error with the compiler's first error; Stopped.
+// Throws: std::runtime_error with the compiler's first error, or when the files keep changing; Stopped.
 Built build_source(const std::filesystem::path& source, const std::string& function, const VariantInfo& variant,
                    const std::vector<std::string>& flags);
 

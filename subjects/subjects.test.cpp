@@ -253,6 +253,7 @@ TEST_F(Subjects, AProgramMayDescribeItself) {
   for (const auto& [name, says] : {std::pair{"answers", "true"},
                                    {"silent", "exec cat > /dev/null"},
                                    {"ends", "exit 3"},
+                                   {"kills", "read line; case $line in describe) kill -9 $PPID;; esac; echo 1"},
                                    {"babbles", "read line; echo '{'"},
                                    {"other", "read line; echo '[1]'"}}) {
     lane = open_program(name, says);
@@ -574,6 +575,81 @@ int intersects(const float a[9], const float b[9]) { return data[0] == 'l' ? a[0
   }
 }
 
+// The compiler stands for an editor as well: it runs the script `edits` when it compiles.
+TEST_F(Subjects, CodeThatChangesWhileItIsBuiltIsBuiltAgain) {
+  const fs::path source = write("edited.c",
+                                "#include \"edited.h\"\nint intersects(const float a[9], const float b[9]) "
+                                "{ return a[0] LESS b[0]; }"),
+                 header = write("edited.h", "#define LESS <\n"), edits = folder / "edits",
+                 compiler = write("editing_cc", "#!/bin/sh\ncd " + folder.string() +
+                                                    "\ncase \" $* \" in *' -E '*) ;; *whole.c*) [ ! -e edits ] || "
+                                                    ". ./edits ;; esac\nexec cc \"$@\"\n");
+  fs::permissions(compiler, fs::perms::owner_all);
+  setenv("CC", compiler.c_str(), 1);
+  const auto build = [&] { return build_source(source, "intersects", kVariants[0], {}); };
+  const auto is_less = [&](const Built& built) {
+    Code code{"library", built.file.string(), ""};
+    code.content = built.content;
+    ForeignProcesses subject(code, Scalar::f32);
+    return verdicts(subject)[0] == left_of(pairs[0]);
+  };
+  write("edits", "rm edits; echo '#define LESS >=' > edited.h");
+  const Built edited = build();
+  EXPECT_FALSE(is_less(edited));
+  EXPECT_EQ(build().file, edited.file);
+  EXPECT_FALSE(is_less(build()));
+  // The object of the new code was not kept as that of the old code.
+  write("edited.h", "#define LESS <\n");
+  write("edits",
+        "rm edits; mv edited.h old.h; echo '#define LESS >=' > edited.h; cc \"$@\"; status=$?; "
+        "cp old.h new.h; mv new.h edited.h; exit $status");  // undone before the next reading
+  const Built undone = build();
+  EXPECT_FALSE(fs::exists(edits));
+  EXPECT_NE(undone.file, edited.file);
+  EXPECT_TRUE(is_less(undone));
+  write("edited.h", "#define LESS <=\n");
+  write("edits", "echo >> edited.h");
+  const std::string error = error_of(build);
+  EXPECT_TRUE(names(error, {"cannot compile", "edited.c", "changed during each of 4 builds"})) << error;
+  fs::remove(edits);
+  // The time is no change.
+  write("edited.h", "#define LESS < 0 * sizeof __TIME__ __DATE__ +\n");
+  write("edits", "sleep 1.1");
+  EXPECT_TRUE(is_less(build()));
+  fs::remove(edits);
+  unsetenv("CC");
+}
+
+// The assembler searches folders in order, so a new file in an earlier folder is other code.
+TEST_F(Subjects, AFileThatTheAssemblerNowFindsEarlierIsBuiltIn) {
+  const fs::path source = write("searched.c", R"(
+__asm__(".section .rodata\n.global blob\nblob: .incbin \"searched.bin\"\n.previous");
+extern const char blob[];
+int intersects(const float a[9], const float b[9]) { return blob[0] == 'l' ? a[0] < b[0] : a[0] >= b[0]; }
+)");
+  const fs::path first = folder / "first", second = folder / "second";
+  for (const fs::path& searched : {first, second}) fs::create_directories(searched);
+  const auto build = [&] {
+    return build_source(source, "intersects", kVariants[0], {"-I" + first.string(), "-I" + second.string()});
+  };
+  const auto is_less = [&](const Built& built) {
+    Code code{"library", built.file.string(), ""};
+    code.content = built.content;
+    ForeignProcesses subject(code, Scalar::f32);
+    return verdicts(subject)[0] == left_of(pairs[0]);
+  };
+  std::ofstream(second / "searched.bin") << 'l';
+  const Built before = build();
+  EXPECT_TRUE(is_less(before));
+  EXPECT_EQ(build().file, before.file);
+  std::ofstream(first / "searched.bin") << 'g';
+  const Built after = build();
+  EXPECT_FALSE(is_less(after));
+  EXPECT_TRUE(!after.not_covered.empty() || after.file != before.file);
+  fs::remove(first / "searched.bin");
+  EXPECT_TRUE(is_less(build()));
+}
+
 // A compiler of one version may find another assembler or linker on the PATH, and may be a script.
 TEST_F(Subjects, TheCompilersPartsAndScriptsAreInTheHash) {
   const fs::path source =
@@ -702,6 +778,36 @@ TEST_F(Subjects, ACommandWhoseCodeIsNotPlainIsNotCovered) {
   EXPECT_NE(hash_of_command(command).hash, one);
 }
 
+TEST_F(Subjects, AProgramThatThePathFindsEarlierMeanwhileIsRefused) {
+  const fs::path first = folder / "earlier", second = folder / "later";
+  const auto program = [](const fs::path& within, const char* answer) {
+    fs::create_directories(within);
+    std::ofstream(within / "found") << "#!/bin/sh\nwhile read line; do echo " << answer << "; done\n";
+    fs::permissions(within / "found", fs::perms::owner_all);
+  };
+  fs::create_directories(first);
+  program(second, "1");
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (first.string() + ':' + second.string() + ':' + path).c_str(), 1);
+  Wanted wanted = parse_subject("found=cmd:found");
+  wanted.timeout = 20;
+  open(wanted);
+  const DecideBlock& decide = find_lane("found/f32/cpu")->decide;
+  std::uint64_t yes = 0, none = 0;
+  const auto ask = [&] { decide(pairs.data(), 1, &yes, &none); };
+  ask();
+  EXPECT_EQ(yes, 1u);
+  program(first, "0");
+  const std::string error = error_of(ask);
+  EXPECT_TRUE(names(
+      error, {"PATH now finds", (first / "found").string(), (second / "found").string(), "not recorded", "--out"}))
+      << error;
+  fs::remove(first / "found");
+  ask();
+  EXPECT_EQ(yes, 1u);
+  setenv("PATH", path.c_str(), 1);
+}
+
 TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
   const fs::path file = write("with space.txt", "one");
   const auto hash = [&](const std::string& command) { return hash_of_command(command).hash; };
@@ -735,12 +841,17 @@ TEST_F(Subjects, TheHashOfACommandIsOfItsProgramAndFiles) {
     EXPECT_NE(hash(reads), of_one) << reads;
     write("log.txt", "one");
   }
-  write("program", "one");
   const std::string path = std::getenv("PATH");
-  setenv("PATH", (folder.string() + ':' + path).c_str(), 1);
-  const std::uint64_t one = hash("X=1 program");
-  write("program", "two");
-  EXPECT_NE(hash("X=1 program"), one);
+  fs::create_directories(folder / "skipped");
+  write("skipped/program", "a shell skips a file that nobody may execute");
+  for (const std::string& searched :
+       {folder.string() + ':', (folder / "skipped").string() + ':' + folder.string() + ':'}) {
+    fs::permissions(write("program", "one"), fs::perms::owner_all);
+    setenv("PATH", (searched + path).c_str(), 1);
+    const std::uint64_t one = hash("X=1 program");
+    write("program", "two");
+    EXPECT_NE(hash("X=1 program"), one) << searched;
+  }
   setenv("PATH", path.c_str(), 1);
 }
 

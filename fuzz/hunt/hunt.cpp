@@ -116,9 +116,8 @@ class Hunter {
   };
 
   fs::path folder() const { return rounds_folder(hunt_.campaign.directory); }
-  fs::path file_of(const PairRange& range, const char* kind) const {
-    return folder() / fmt::format("{:06}.{}", (range.first - share_.first) / per_round_, kind);
-  }
+  fs::path file_of(const PairRange& range) const { return round_file(hunt_.campaign.directory, share_, range.first); }
+  fs::path result_file_of(const PairRange& range) const { return file_of(range).replace_extension(".result"); }
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   bool over() const { return stop_ || (hunt_.seconds > 0 && seconds() >= hunt_.seconds); }
 
@@ -128,7 +127,9 @@ class Hunter {
     for (std::uint64_t r = first; r < last; ++r) {
       Wanted wanted;
       wanted.range = {0, share_.first + r * per_round_, std::min(per_round_, share_.pairs - r * per_round_)};
-      wanted.kept = parse_round(read_whole(file_of(wanted.range, "round")), checksum_);
+      wanted.kept = parse_round(read_whole(file_of(wanted.range)), checksum_);
+      if (wanted.kept && (wanted.kept->first != wanted.range.first || wanted.kept->pairs != wanted.range.pairs))
+        wanted.kept.reset();  // a file of another round was put in its place
       wanted.committed = store_->holds(wanted.range);
       rounds.push_back(std::move(wanted));
     }
@@ -149,7 +150,7 @@ class Hunter {
         if (over()) return false;
         processes.wait_for_one();
       }
-      const fs::path file = file_of(round.range, "result");
+      const fs::path file = result_file_of(round.range);
       fs::remove(file);
       processes.add(start_round(task_of(round), file));
     }
@@ -166,7 +167,7 @@ class Hunter {
 
   // Stores the round and its new findings.
   void finish(Wanted& round) {
-    const fs::path result_file = file_of(round.range, "result");
+    const fs::path result_file = result_file_of(round.range);
     RoundResult result = round_result(task_of(round), result_file);
     KeptRound kept{round.range.first, round.range.pairs, {}, {}, result.mutations, {}, {}};
     std::bitset<kFeatures> seen = seen_;
@@ -186,7 +187,7 @@ class Hunter {
       }
     }
     find_kinds_of(result, kept);
-    write_whole(file_of(round.range, "round"), round_bytes(kept, checksum_));
+    write_whole(file_of(round.range), round_bytes(kept, checksum_));
     if (!round.committed) {
       store_->commit(round.range, result.counts);
       done_here_ += round.range.pairs;

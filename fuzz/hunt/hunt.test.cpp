@@ -221,6 +221,23 @@ TEST_F(HuntFiles, GivesTheSameBytesOnAnyThreadsAfterInterruptionsAndDamage) {
   EXPECT_EQ(read_whole(root_ / "whole/hunt/000000.round"), read_whole(root_ / "one/hunt/000000.round"));
 }
 
+TEST_F(HuntFiles, RunsRoundsAgainWhoseFilesAreOfOtherRounds) {
+  run("whole", 2);
+  const auto file = [&](const char* round) { return root_ / "moved/hunt" / round; };
+  run("moved", 2, 2);
+  const std::string first = read_whole(file("000000.round")), second = read_whole(file("000001.round"));
+  ASSERT_FALSE(first.empty() || second.empty());
+  write_whole(file("000000.round"), second);
+  write_whole(file("000001.round"), first);
+  run("moved", 2);
+  expect_same_hunt("whole", "moved");
+  EXPECT_EQ(read_whole(file("000000.round")), first);
+  write_whole(file("000001.round"), first);
+  run("moved", 2);
+  expect_same_hunt("whole", "moved");
+  EXPECT_NE(read_whole(file("000001.round")), first);
+}
+
 TEST_F(HuntFiles, RemovesNothingThatItDidNotWrite) {
   run("tidy", 2, 1);
   const std::filesystem::path folder = root_ / "tidy/hunt", others = root_ / "others";
@@ -305,6 +322,10 @@ TEST_F(HuntFiles, ShardsMergeByKindInAnyOrder) {
   };
   EXPECT_TRUE(names(refusal({{parts[0], parts[2]}, root_ / "none", false}), {"2/3", "graze hunt --runs 5000"}));
   EXPECT_TRUE(names(refusal({parts, root_ / "none", true}), {"--partial", "hunt"}));
+  const std::string own = read_whole(parts[1] / "hunt/000001.round");
+  write_whole(parts[1] / "hunt/000001.round", read_whole(parts[1] / "hunt/000002.round"));
+  EXPECT_TRUE(names(refusal({parts, root_ / "none", false}), {"part-2/hunt", "1667", "1411", "--shard 2/3"}));
+  write_whole(parts[1] / "hunt/000001.round", own);
   std::ofstream(parts[1] / "hunt/000001.round", std::ios::app) << "x";
   EXPECT_TRUE(names(refusal({parts, root_ / "none", false}), {"part-2/hunt", "1667", "1411", "--shard 2/3"}));
   run_shard("part-2", {2, 3});  // the same round again

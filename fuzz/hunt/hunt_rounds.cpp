@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuzz/hunt/hunt_rounds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/fnv1a.h"
+#include "fuzz/campaign/shard.h"
 #include "fuzz/files.h"
+#include "fuzz/hunt/hunt.h"
 
 namespace graze::fuzz {
 
@@ -44,17 +48,24 @@ Json HuntRounds::told() const {
 }
 
 fs::path rounds_folder(const fs::path& hunt) { return hunt / "hunt"; }
+fs::path round_file(const fs::path& hunt, const PairRange& share, std::uint64_t first) {
+  return rounds_folder(hunt) / fmt::format("{:06}.round", (first - share.first) / round_pairs(share.pairs));
+}
 fs::path merged_rounds_file(const fs::path& hunt) { return rounds_folder(hunt) / "merged.round"; }
 
 std::uint64_t hunt_checksum(const Json& spec, const Json& build) { return fnv1a(spec.dump() + build.dump()); }
 
 std::vector<KeptRound> read_rounds(const StoreSpec& hunt) {
   std::vector<KeptRound> rounds;
+  const std::uint64_t pairs = hunt.spec.at("pairs");
+  const PairRange share = share_of(hunt.shard, 0, pairs);
   std::error_code none;
   for (const auto& file : fs::directory_iterator(rounds_folder(hunt.directory), none)) {
     if (file.path().extension() != ".round") continue;
-    if (auto round = parse_round(read_whole(file.path()), hunt_checksum(hunt.spec, hunt.build)))
-      rounds.push_back(std::move(*round));
+    auto round = parse_round(read_whole(file.path()), hunt_checksum(hunt.spec, hunt.build));
+    if (!round) continue;
+    const bool merged = file.path() == merged_rounds_file(hunt.directory) && round->pairs == pairs;
+    if (merged || file.path() == round_file(hunt.directory, share, round->first)) rounds.push_back(std::move(*round));
   }
   std::sort(rounds.begin(), rounds.end(), [](const KeptRound& l, const KeptRound& r) { return l.first < r.first; });
   return rounds;

@@ -26,13 +26,16 @@ struct HuntRounds {
 
 // The folder of a hunt's rounds.
 std::filesystem::path rounds_folder(const std::filesystem::path& hunt);
+// The file of the round that begins with this pair.   share: the pairs of the hunt or of its shard.
+std::filesystem::path round_file(const std::filesystem::path& hunt, const PairRange& share, std::uint64_t first);
 // The only file in that folder if the hunt was merged from shards.
 std::filesystem::path merged_rounds_file(const std::filesystem::path& hunt);
 
 // The checksum of the hunt's identity, which its round files carry.
 std::uint64_t hunt_checksum(const Json& spec, const Json& build);
 
-// Reads the rounds in the directory, sorted by first pair; skips files whose checksum is wrong.
+// Reads the rounds in the directory, sorted by first pair; skips files whose checksum is wrong or that are another
+// round's.
 std::vector<KeptRound> read_rounds(const StoreSpec& hunt);
 
 }  // namespace graze::fuzz

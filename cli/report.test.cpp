@@ -119,9 +119,21 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   write("r.json", report);
   expect_error("graze report --from r.json --out r.html", 1, {"r.json", "3000"});
 
+  // Deeply nested: no stack overflows, with the database or without it.
+  const std::string text = contents(shell.folder / "c/summary.json");
+  const auto expect_too_deep = [&] {
+    std::ofstream(shell.folder / "c/summary.json")
+        << text.substr(0, text.rfind('}')) << R"(,"x":)" << std::string(60'000, '[') << std::string(60'000, ']') << '}';
+    for (const std::string& reader : readers)
+      expect_error("graze " + reader, 1, {"c/summary.json", "not the summary of a campaign"});
+    std::ofstream(shell.folder / "c/summary.json") << text;
+  };
+  expect_too_deep();
+
   // Without its database, a summary is only checked against itself.
   std::filesystem::remove(shell.folder / "c/campaign.sqlite");
   expect_done("graze report c | grep 'checked only against each other'");
+  expect_too_deep();
   using Words = std::vector<std::string>;
   for (const auto& [place, value, words] :
        {std::tuple("/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", 1230, Words{"degenerate", "1230"}),

@@ -174,6 +174,9 @@ TEST_F(Files, AChangeOfASealedFileIsNoticed) {
   std::ofstream(file) << R"({"a":)" << std::string(1'000'000, '[') << std::string(1'000'000, ']')
                       << R"(,"checksum":""})";
   EXPECT_THROW(read_sealed(file, "remove it"), std::runtime_error);
+  EXPECT_TRUE(parse_shallow(read_whole(file)).is_discarded());
+  EXPECT_TRUE(parse_shallow("{").is_discarded());
+  EXPECT_EQ(parse_shallow(text)["checksum"], sealed(json)["checksum"]);
 }
 
 // The other end may never open: the request to stop ends the wait.

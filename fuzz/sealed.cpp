@@ -15,7 +15,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kChecksum = "checksum";
 constexpr int kDeepest = 64;  // levels; our files have ten at most
 
-// Whether values lie so deep in each other that to write the text again would need a deep stack.
 bool is_too_deep(const std::string& text) {
   int depth = 0;
   bool in_text = false;
@@ -36,6 +35,10 @@ std::string checksum_of(const Json& json) {
 
 }  // namespace
 
+Json parse_shallow(const std::string& text) {
+  return is_too_deep(text) ? Json(Json::value_t::discarded) : Json::parse(text, nullptr, false);
+}
+
 Json sealed(Json json) {
   json.erase(kChecksum);
   json[kChecksum] = checksum_of(json);
@@ -45,7 +48,7 @@ Json sealed(Json json) {
 Json read_sealed(const std::filesystem::path& file, const std::string& remedy, NamedBy named_by) {
   if (!std::filesystem::exists(file)) return nullptr;
   const std::string text = read_whole(file, named_by);
-  Json json = is_too_deep(text) ? Json() : Json::parse(text, nullptr, false);
+  Json json = parse_shallow(text);
   const auto refused = [&](const char* found) {
     return corpus::FormatError(
         cannot("use", file, fmt::format("it has been changed or damaged since graze wrote it: {}; {}", found, remedy)));

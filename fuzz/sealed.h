@@ -11,6 +11,10 @@
 
 namespace graze::fuzz {
 
+// The JSON of the text; discarded if it is none or more than 64 levels deep. Copying, comparing and writing deeper JSON
+// could exhaust the stack.
+nlohmann::ordered_json parse_shallow(const std::string& text);
+
 // The object with its "checksum" as the last key: FNV-1a of its text without spaces, 16 hex digits.
 nlohmann::ordered_json sealed(nlohmann::ordered_json json);
 

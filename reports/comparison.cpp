@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -19,6 +20,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 using Name = std::pair<std::string, std::string>;  // lane and stratum
+constexpr const char* kAllStrata = "all strata";
 
 // A report's shares of wrong verdicts by lane and stratum, in its order.
 std::vector<std::pair<Name, Json>> wrong_by_name(const Json& report) {
@@ -26,10 +28,49 @@ std::vector<std::pair<Name, Json>> wrong_by_name(const Json& report) {
   for (const Json& row : report.at("rates")) {
     const Json& stratum = row.at("stratum");
     const std::string name =
-        stratum.is_null() ? "all strata" : report.at("strata").at(stratum.get<std::size_t>()).at("id");
+        stratum.is_null() ? kAllStrata : report.at("strata").at(stratum.get<std::size_t>()).at("id");
     rates.push_back({{report.at("lanes").at(row.at("lane").get<std::size_t>()).at("id"), name}, row.at("wrong")});
   }
   return rates;
+}
+
+// The strata of a report by what they draw; a mesh or a hunt of the same name may draw other pairs.
+std::map<std::string, Json> strata_of(const Json& report) {
+  std::map<std::string, Json> rows;
+  for (const Json& row : report.at("strata")) rows[row.at("id")] = row;
+  return rows;
+}
+
+double pairs_of(const Json& report) {
+  double pairs = 0;
+  for (const Json& row : report.at("strata")) pairs += row.at("pairs").get<double>();
+  return pairs;
+}
+
+// Whether the stratum is in both reports, and draws the same there.
+bool is_common(const std::string& id, const std::map<std::string, Json>& l, const std::map<std::string, Json>& r) {
+  return l.contains(id) && r.contains(id) && l.at(id).at("describes") == r.at(id).at("describes");
+}
+
+// Whether both have the same strata in the same shares, so that rates over all strata and kinds can be compared.
+bool mixed_alike(const Json& l, const Json& r) {
+  const auto of_l = strata_of(l), of_r = strata_of(r);
+  const double all_l = pairs_of(l), all_r = pairs_of(r);
+  return all_l > 0 && all_r > 0 && of_l.size() == of_r.size() &&
+         std::all_of(of_l.begin(), of_l.end(), [&](const auto& stratum) {
+           if (!is_common(stratum.first, of_l, of_r)) return false;
+           const double in_l = stratum.second.at("pairs"), in_r = of_r.at(stratum.first).at("pairs");
+           return std::abs(in_l / all_l - in_r / all_r) <= 1 / all_l + 1 / all_r;
+         });
+}
+
+// The lanes of a subject.
+std::set<std::string> lanes_of(const Json& report, const Json& subject) {
+  std::set<std::string> lanes;
+  for (const Json& lane : report.at("lanes")) {
+    if (lane.at("algorithm") == subject) lanes.insert(lane.at("id"));
+  }
+  return lanes;
 }
 
 // Tests whether two rates differ. If they are equal, each error of either campaign belongs to the first one with a
@@ -52,14 +93,17 @@ bool apart(const Json& l, const Json& r) {
   return 2 * std::min(most, least) < kLeastChance;
 }
 
-// Kinds that are missing in `others` although enough of their signatures were to be expected there.
-Json only_in(const Json& kinds, const Json& others, double pairs, double pairs_of_others) {
+// Kinds that are missing in `others` although enough of their signatures were to be expected there. Signatures have all
+// wrong lanes of a subject, so only kinds of subjects with the same lanes in both reports count.
+Json only_in(const Json& kinds, const Json& others, const Json& report, const Json& other_report) {
+  const double pairs = pairs_of(report), pairs_of_others = pairs_of(other_report);
   std::set<std::string> known;
   for (const Json& kind : others) known.insert(kind.at("key"));
   Json rows = Json::array();
   for (const Json& kind : kinds) {
     const double expected = kind.at("signatures").get<double>() * std::min(1.0, pairs_of_others / pairs);
     if (known.contains(kind.at("key")) || expected < kLeastSignatures) continue;
+    if (lanes_of(report, kind.at("subject")) != lanes_of(other_report, kind["subject"])) continue;
     rows.push_back({{"key", kind.at("key")}, {"signatures", kind.at("signatures")}, {"count", kind.at("pairs")}});
   }
   return rows;
@@ -100,6 +144,13 @@ Json differences_of(const Json& after, const Json& before) {
           fmt::format("They differ in {}, and only what both have is compared. Only before: {}; only after: {}.", what,
                       list(l, r), list(r, l)));
   }
+  const auto now_drawn = strata_of(after), then_drawn = strata_of(before);
+  for (const auto& [id, row] : now_drawn) {
+    if (then_drawn.contains(id) && !is_common(id, now_drawn, then_drawn))
+      rows.push_back(fmt::format("They differ in the stratum {}, which is not compared: {} before, {} after.", id,
+                                 then_drawn.at(id).at("describes").get<std::string>(),
+                                 row.at("describes").get<std::string>()));
+  }
   const auto commit = [](const Json& run) { return run.at("build").at("commit").get<std::string>(); };
   if (commit(now) != commit(then))
     rows.push_back(fmt::format("They differ in build: {} before, {} after.", commit(then), commit(now)));
@@ -111,11 +162,14 @@ Json differences_of(const Json& after, const Json& before) {
 void add_comparison(Json& report, const Json& before, const Json& kinds, const Json& kinds_before) {
   const auto then = wrong_by_name(before);
   const std::map<Name, Json> by_name(then.begin(), then.end());
+  const auto now_drawn = strata_of(report), then_drawn = strata_of(before);
+  const bool alike = mixed_alike(report, before);
   Json rows = Json::array();
   std::size_t changed = 0;
   for (const auto& [name, now] : wrong_by_name(report)) {
     const auto old = by_name.find(name);
-    if (old == by_name.end()) continue;
+    const bool compared = name.second == kAllStrata ? alike : is_common(name.second, now_drawn, then_drawn);
+    if (old == by_name.end() || !compared) continue;
     const bool is_apart = apart(now, old->second);
     changed += is_apart;
     rows.push_back({{"lane", name.first},
@@ -124,10 +178,9 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
                     {"after", now},
                     {"changed", is_apart}});
   }
-  const bool kinds_compared = !kinds.is_null() && !kinds_before.is_null();
-  const double pairs = report.at("run").at("pairs"), pairs_before = before.at("run").at("pairs");
-  const Json gained = kinds_compared ? only_in(kinds, kinds_before, pairs, pairs_before) : Json::array();
-  const Json lost = kinds_compared ? only_in(kinds_before, kinds, pairs_before, pairs) : Json::array();
+  const bool kinds_known = !kinds.is_null() && !kinds_before.is_null(), kinds_compared = kinds_known && alike;
+  const Json gained = kinds_compared ? only_in(kinds, kinds_before, report, before) : Json::array();
+  const Json lost = kinds_compared ? only_in(kinds_before, kinds, before, report) : Json::array();
   std::string headline;
   if (rows.empty()) {
     headline = "Nothing to compare: no lane and stratum are in both.";
@@ -139,7 +192,11 @@ void add_comparison(Json& report, const Json& before, const Json& kinds, const J
                            grouped(rows.size()), gained.size(), lost.size(), kinds_compared ? "" : " (not compared)");
   }
   Json differences = differences_of(report, before);
-  if (!kinds_compared)
+  if (!alike)
+    differences.push_back(
+        "All strata together and kinds of failure are not compared: the campaigns have other strata, or in other "
+        "shares.");
+  if (!kinds_known)
     differences.push_back(
         "Kinds of failure are not compared: `graze minimize` has to go through both campaigns first.");
   report["compare"] = {

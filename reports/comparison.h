@@ -13,8 +13,9 @@ inline constexpr double kLeastChance = 1e-6;
 inline constexpr double kLeastSignatures = 14;
 
 // Adds `compare` to the second campaign's report: {"other": run, "headline", "differences": [sentence], "rates",
-// "gained", "lost": [{"key", "signatures", "count"}], "kinds_compared"}. Rates are matched by the names of lane and
-// stratum. Kinds are those of `graze failures`, or null if unknown.
+// "gained", "lost": [{"key", "signatures", "count"}], "kinds_compared"}. Rates are matched by lane and stratum. Rates
+// of all strata together, and kinds, are compared only if both campaigns have the same strata in the same shares, and
+// kinds only of subjects with the same lanes in both. Kinds are those of `graze failures`, or null if unknown.
 void add_comparison(nlohmann::ordered_json& report, const nlohmann::ordered_json& before,
                     const nlohmann::ordered_json& kinds, const nlohmann::ordered_json& kinds_before);
 

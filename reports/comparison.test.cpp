@@ -16,20 +16,20 @@ using Json = nlohmann::ordered_json;
 Json report_of(std::uint64_t seed, std::uint64_t n, int rates = 1000) {
   Json report{{"run", {{"seed", seed}, {"pairs", n * 19}, {"build", {{"commit", "c"}}}}},
               {"lanes", Json::array()},
-              {"strata", {{{"id", "uniform"}}}},
+              {"strata", {{{"id", "uniform"}, {"describes", "a cube"}, {"pairs", n}}}},
               {"rates", Json::array()}};
   std::mt19937_64 random(seed);
   for (int i = 0; i < rates; ++i) {
     const double chance = i % 7 == 0 ? 0 : i % 5 == 0 ? 1e-4 : 0.6 * i / rates;
     const std::uint64_t wrong = std::binomial_distribution<std::uint64_t>(n, chance)(random);
-    report["lanes"].push_back({{"id", "lane/" + std::to_string(i)}});
+    report["lanes"].push_back({{"id", "lane/" + std::to_string(i)}, {"algorithm", "lane"}});
     report["rates"].push_back({{"lane", i}, {"stratum", 0}, {"wrong", to_json(share_of(wrong, n))}});
   }
   return report;
 }
 
 Json kind(const std::string& key, int signatures) {
-  return {{"key", key}, {"signatures", signatures}, {"pairs", 10 * signatures}};
+  return {{"key", key}, {"subject", "lane"}, {"signatures", signatures}, {"pairs", 10 * signatures}};
 }
 
 std::string headline(Json after, const Json& before, const Json& kinds, const Json& kinds_before) {
@@ -68,6 +68,54 @@ TEST(Comparison, AKindThatWasToBeExpectedHasGone) {
   Json smaller = report_of(2, 5'000);
   add_comparison(smaller, before, some, many);
   EXPECT_TRUE(smaller["compare"]["lost"].empty());
+}
+
+// Adds a stratum on which every lane is wrong on half of the pairs, and the rates of all strata together.
+Json with_stratum(Json report, const std::string& id, const std::string& describes, std::uint64_t pairs) {
+  const std::size_t place = report["strata"].size();
+  const std::uint64_t n = report["strata"][0]["pairs"];
+  report["strata"].push_back({{"id", id}, {"describes", describes}, {"pairs", pairs}});
+  const Json rates = report["rates"];
+  for (const Json& row : rates) {
+    const std::uint64_t wrong = row["wrong"]["count"];
+    report["rates"].push_back(
+        {{"lane", row["lane"]}, {"stratum", place}, {"wrong", to_json(share_of(pairs / 2, pairs))}});
+    report["rates"].push_back(
+        {{"lane", row["lane"]}, {"stratum", nullptr}, {"wrong", to_json(share_of(wrong + pairs / 2, n + pairs))}});
+  }
+  return report;
+}
+
+TEST(Comparison, OnlyWhatBothHaveIsCompared) {
+  const Json one = report_of(1, 50'000, 10), kinds = {kind("a", 100)}, none = Json::array();
+  const auto compared = [&](Json after, const Json& before) {
+    add_comparison(after, before, kinds, none);
+    return after["compare"];
+  };
+  const Json hunt = with_stratum(one, "hunt", "made from near", 50'000);
+  Json same = compared(hunt, hunt);
+  EXPECT_EQ(same["rates"].size(), 30u);
+  EXPECT_EQ(same["gained"].size(), 1u);
+  EXPECT_TRUE(same["differences"].empty());
+  // Other strata, the same name with other pairs, and other shares: the totals would differ without any change.
+  const Json others[] = {with_stratum(one, "thesis", "random", 50'000),
+                         with_stratum(one, "hunt", "made from thesis", 50'000),
+                         with_stratum(one, "hunt", "made from near", 5'000)};
+  for (const Json& other : others) {
+    const Json said = compared(other, hunt);
+    EXPECT_EQ(said["rates"].size(), &other == &others[2] ? 20u : 10u);
+    for (const Json& row : said["rates"]) EXPECT_NE(row["stratum"], "all strata");
+    EXPECT_FALSE(said["kinds_compared"]);
+    EXPECT_TRUE(said["gained"].empty());
+    EXPECT_NE(said["differences"].back().get<std::string>().find("not compared"), std::string::npos);
+  }
+  EXPECT_EQ(compared(others[1], hunt)["differences"][0],
+            "They differ in the stratum hunt, which is not compared: made from near before, made from thesis after.");
+  // With other lanes of its subject, a kind may have fewer signatures.
+  const Json fewer = compared(report_of(1, 50'000, 8), one);
+  EXPECT_TRUE(fewer["kinds_compared"]);
+  EXPECT_TRUE(fewer["gained"].empty());
+  EXPECT_EQ(compared(one, one)["gained"].size(), 1u);
 }
 
 TEST(Comparison, HowTheyDifferIsSaid) {

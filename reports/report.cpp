@@ -52,17 +52,28 @@ Json run_of(const std::filesystem::path& directory, const Json& summary, const C
           {"machine", machines(directory)}};
 }
 
-Json strata_of(const CampaignCounts& counts) {
+// What a stratum draws. Two meshes, and two hunts from other strata, are told apart.
+std::string description_of(const std::string& stratum, const Json& spec) {
+  for (const strata::StratumInfo& row : strata::kStrata) {
+    if (row.id == stratum) return std::string(row.what);
+  }
+  if (stratum == "hunt" && spec.contains("hunt")) {
+    const std::vector<std::string> from = spec["hunt"].at("strata");
+    return "pairs that guided search made from " +
+           (from.size() == std::size(strata::kStrata) ? "all strata" : fmt::format("{}", fmt::join(from, ", ")));
+  }
+  const std::string mesh =
+      spec.contains("mesh") ? " (content " + spec["mesh"].at("content").get<std::string>() + ")" : "";
+  return "pairs of a mesh's triangles whose boxes overlap" + mesh;
+}
+
+Json strata_of(const CampaignCounts& counts, const Json& spec) {
   Json rows = Json::array();
   for (const StratumCounts& stratum : counts.strata) {
-    const auto info = std::find_if(std::begin(strata::kStrata), std::end(strata::kStrata),
-                                   [&](const strata::StratumInfo& s) { return s.id == stratum.id; });
-    rows.push_back(
-        {{"id", stratum.id},
-         {"describes",
-          info != std::end(strata::kStrata) ? info->what : "pairs of a mesh's triangles whose boxes overlap"},
-         {"pairs", stratum.pairs},
-         {"intersects", stratum.intersects}});
+    rows.push_back({{"id", stratum.id},
+                    {"describes", description_of(stratum.id, spec)},
+                    {"pairs", stratum.pairs},
+                    {"intersects", stratum.intersects}});
   }
   return rows;
 }
@@ -114,7 +125,7 @@ Json make_report(const std::filesystem::path& directory) {
     const CampaignCounts counts = counts_of(summary);
     Json report = {{"format", 2},
                    {"run", run_of(directory, summary, counts)},
-                   {"strata", strata_of(counts)},
+                   {"strata", strata_of(counts, summary.at("spec"))},
                    {"lanes", lanes_of(summary, counts)},
                    {"answer", answer(counts, nullptr)},
                    {"groups", groups(counts)},

@@ -10,6 +10,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/counts_json.h"
+#include "fuzz/sealed.h"
 #include "strata/strata.h"
 
 namespace graze::fuzz {
@@ -130,7 +131,7 @@ Json checked_summary(const fs::path& directory) {
   const std::string text = read_whole(file);
   if (text.empty())
     throw std::runtime_error(cannot("open", directory, "it is not a campaign directory: it has no summary.json"));
-  const Json summary = Json::parse(text, nullptr, false);
+  const Json summary = parse_shallow(text);
   try {
     if (!summary.is_object()) throw corpus::FormatError(cannot("use", file, "it is not the summary of a campaign"));
     if (has_database(directory)) {
@@ -151,7 +152,7 @@ Json checked_summary(const fs::path& directory) {
 
 Json recorded_spec(const fs::path& directory) {
   if (has_database(directory)) return recorded_store(directory).spec;
-  const Json summary = Json::parse(read_whole(directory / "summary.json"), nullptr, false);
+  const Json summary = parse_shallow(read_whole(directory / "summary.json"));
   const Json spec = summary.is_object() ? summary.value("spec", Json()) : Json();
   return spec.is_object() ? spec : Json();
 }

@@ -21,6 +21,7 @@
 #include "core/fnv1a.h"
 #include "fuzz/files.h"
 #include "fuzz/own_files.h"
+#include "fuzz/sealed.h"
 
 namespace graze::fuzz {
 namespace {
@@ -152,7 +153,8 @@ namespace {
 // Throws: UsageError if the text, whose checksum is right, belongs to another campaign.
 void compare(const StoreSpec& spec, const std::string& text) {
   if (text == text_of(spec)) return;
-  const Json found = Json::parse(text);
+  const Json found = parse_shallow(text);
+  if (!found.is_object()) throw Damaged("its campaign is no JSON object");
   if (const std::string shard = found.value("shard", "none"), own = spec.shard.whole() ? "none" : spec.shard.name();
       found["spec"] == spec.spec && shard != own)
     throw UsageError(cannot("use", spec.directory,
@@ -437,7 +439,8 @@ StoreSpec recorded_store(const fs::path& directory) {
   return in_one_line(file, [&] {
     OpenedToRead store(directory);
     if (is_fresh(store.database, file)) throw Damaged("it is empty");
-    const Json text = Json::parse(recorded_text(store.database));
+    const Json text = parse_shallow(recorded_text(store.database));
+    if (!text.is_object()) throw Damaged("its campaign is no JSON object");
     StoreSpec spec{directory, text.at("spec"), text.at("build"), {}, text["spec"].at("lanes"), {}};
     if (text.contains("shard")) spec.shard = parse_shard(text["shard"].get<std::string>()).value();
     return spec;

@@ -294,10 +294,6 @@ class Hunter {
 
 }  // namespace
 
-std::uint64_t round_pairs(std::uint64_t pairs) {
-  return std::clamp(pairs / 32, std::uint64_t{256}, std::uint64_t{32768});
-}
-
 Json hunt_spec(const Hunt& hunt) {
   Json spec = {{"seed", hunt.campaign.seed}, {"pairs", hunt.pairs}, {"strata", {"hunt"}}, {"lanes", Json::array()}};
   for (const Lane* lane : hunt.campaign.under_test->lanes) spec["lanes"].push_back(lane->id);

@@ -34,9 +34,6 @@ struct HuntProgress {
 // The store's record of a hunt: as campaign_spec, with the source `hunt`, and the strata it draws from under "hunt".
 Json hunt_spec(const Hunt& hunt);
 
-// The number of pairs in a round.
-std::uint64_t round_pairs(std::uint64_t pairs);
-
 // Runs or resumes the hunt, or a shard of it, until it is done, its time is over, or `stop` is set. Updates status.json
 // as it runs. At the end it writes hunt.json and timings.json and, for a whole hunt, summary.json and cases/. A shard
 // is an independent search, over its share of the pairs' numbers.

@@ -16,6 +16,7 @@
 #include "fuzz/campaign/campaign_testing.h"
 #include "fuzz/campaign/run_status.h"
 #include "fuzz/hunt/feedback.h"
+#include "fuzz/hunt/hunt_rounds.h"
 #include "fuzz/hunt/round.h"
 #include "fuzz/hunt/round_bytes.h"
 #include "fuzz/shards/merge.h"

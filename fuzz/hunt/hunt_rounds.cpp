@@ -8,7 +8,6 @@
 #include "core/fnv1a.h"
 #include "fuzz/campaign/shard.h"
 #include "fuzz/files.h"
-#include "fuzz/hunt/hunt.h"
 
 namespace graze::fuzz {
 
@@ -48,6 +47,10 @@ Json HuntRounds::told() const {
 }
 
 fs::path rounds_folder(const fs::path& hunt) { return hunt / "hunt"; }
+std::uint64_t round_pairs(std::uint64_t pairs) {
+  return std::clamp(pairs / 32, std::uint64_t{256}, std::uint64_t{32768});
+}
+
 fs::path round_file(const fs::path& hunt, const PairRange& share, std::uint64_t first) {
   return rounds_folder(hunt) / fmt::format("{:06}.round", (first - share.first) / round_pairs(share.pairs));
 }

@@ -236,8 +236,8 @@ std::string hash_of_summary(const fs::path& directory) {
   return fmt::format("{:016x}", fnv1a(read_whole(directory / "summary.json")));
 }
 
-// Throws: Json::exception.
-Json summary_in(const fs::path& directory) { return Json::parse(read_whole(directory / "summary.json")); }
+// Its parts throw Json::exception if it is no JSON.
+Json summary_in(const fs::path& directory) { return parse_shallow(read_whole(directory / "summary.json")); }
 
 // The hash of the present case files of all signatures.
 std::string hash_of_cases(const fs::path& directory, const Json& summary) {

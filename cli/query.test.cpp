@@ -113,7 +113,7 @@ TEST_F(QueryCommand, SeveralLanesAreComparedAndMismatchesAreCases) {
 
 TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
   EXPECT_EQ(out("graze query --self mesh.obj"),
-            "6 triangles: 1 pair pierces each other, 1 touches without a common vertex\n"
+            "6 triangles: 1 pair pierces each other, 1 touches otherwise\n"
             "neighbours that share nothing more: 1 an edge, 2 a vertex\n"
             "the first pair that pierces: triangles 0 and 2\n");
   const Json found = json("graze query --self mesh.obj --json --pairs p.pairs --obj p.obj");
@@ -127,6 +127,24 @@ TEST_F(QueryCommand, SelfTellsPiercingFromNeighbours) {
   EXPECT_EQ(json("printf 'v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nv .1 .2 0\\nf 1 2 3\\nf 1 2 4\\nf 2 3 1\\n' > f.obj; "
                  "graze query --self f.obj --json")["hits"],
             3);
+}
+
+// Neighbours whose contact is more than their common vertex, yet no tiny translation is needed to separate them: an
+// edge along an edge, in the same plane and out of it, and an edge that lies inside a triangle. Then a pair that
+// pierces.
+TEST_F(QueryCommand, NeighboursThatOnlyTouchDoNotPierce) {
+  const std::string corner = "printf 'v 0 0 0\nv 4 0 0\nv 0 4 0\n";
+  const auto self = [&](const std::string& others) {
+    const Json found = json(corner + others + "' > n.obj; graze query --self n.obj --json");
+    EXPECT_EQ(found["hits"].get<int>() + found["touching"].get<int>(), 1) << others;
+    EXPECT_EQ(found["common_edge"].get<int>() + found["common_vertex"].get<int>(), 0) << others;
+    return found["hits"] == 1;
+  };
+  EXPECT_FALSE(self("v 2 0 0\nv 1 -3 0\nf 1 2 3\nf 1 4 5\n"));
+  EXPECT_FALSE(self("v 2 0 0\nv 0 0 4\nf 1 2 3\nf 1 4 5\n"));
+  EXPECT_FALSE(self("v 1 1 0\nv 0 0 4\nf 1 2 3\nf 1 4 5\n"));
+  EXPECT_TRUE(self("v 1 1 -1\nv 1 1 1\nf 1 2 3\nf 1 4 5\n"));
+  EXPECT_TRUE(self("v 1 1 0\nv 1 3 0\nf 1 2 3\nf 1 4 5\n"));  // coplanar, with a common area
 }
 
 TEST_F(QueryCommand, ErrorsAreOneLine) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests a mesh against itself. CGAL finds the pairs whose boxes overlap. The exact relation of each pair tells whether
-// the triangles only touch as neighbours or pierce each other. Triangles with one common vertex pierce if they share
-// more than a point, and those with a common edge if they share more than a segment.
+// the triangles pierce each other, are neighbours that share only their common vertex or edge, or touch otherwise. Two
+// triangles pierce if no tiny translation separates them. Coplanar ones that share an area count as piercing too.
 #include "cli/query_self.h"
 
 #include <fmt/format.h>
@@ -43,9 +43,9 @@ Kind kind_of(const Pair& pair) {
   const Relation relation = relation_of(pair);
   if (!relation.intersects()) return kApart;
   const int common = common_vertices(pair);
-  if (common == 0) return relation.touches() && relation.contact != Contact::area ? kTouching : kPiercing;
   if (common == 1 && relation.contact == Contact::point) return kVertex;
-  return common == 2 && relation.contact == Contact::segment ? kEdge : kPiercing;
+  if (common == 2 && relation.contact == Contact::segment) return kEdge;
+  return relation.touches() && relation.contact != Contact::area ? kTouching : kPiercing;
 }
 
 }  // namespace
@@ -90,7 +90,7 @@ void query_self(const SelfOptions& options) {
   }
   using reports::grouped;
   const std::string one = count(kPiercing) == 1 ? " pierces" : "s pierce";
-  fmt::print("{} triangles: {} pair{} each other, {} touch{} without a common vertex\n", grouped(mesh.triangles.size()),
+  fmt::print("{} triangles: {} pair{} each other, {} touch{} otherwise\n", grouped(mesh.triangles.size()),
              grouped(count(kPiercing)), one, grouped(count(kTouching)), count(kTouching) == 1 ? "es" : "");
   fmt::print("neighbours that share nothing more: {} an edge, {} a vertex\n", grouped(count(kEdge)),
              grouped(count(kVertex)));

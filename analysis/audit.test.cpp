@@ -59,7 +59,7 @@ TEST(Deciding, IsNotTheFirstWrongComparison) {
   EXPECT_TRUE(std::isnan(found[0].told()->difference.lane));
   const auto first_wrong =
       std::find_if(found[0].steps.begin(), found[0].steps.end(), [](const Step& step) { return step.wrong(); });
-  EXPECT_TRUE(first_wrong->line.ends_with("interval_overlap.h:48")) << first_wrong->line;
+  EXPECT_TRUE(first_wrong->line.ends_with("interval_overlap.h:49")) << first_wrong->line;
 }
 
 // The lane is right if all deciding comparisons are corrected, and wrong if only the first ones are.

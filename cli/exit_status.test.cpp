@@ -37,6 +37,10 @@ const std::vector<Verb>& verbs() {
       {"strata", "", ""},
       {"invariants", "--pairs 40 --strata uniform --lanes moller_1997/f32/cpu --out invariants",
        "--scene none.toml --out x"},
+      {"discrepancy",
+       "guigue_devillers_2003/f32/cpu guigue_devillers_2003/f32/cuda-nofma --pairs 40 --strata uniform --out "
+       "discrepancy",
+       "--scene none.toml --out x"},
       {"pareto", "--pairs 1000 --strata uniform --lanes moller_1997/f32/cpu,exact/f32/cpu --out pareto",
        "--scene none.toml --out x"},
       {"tune", "moller_1997/f32/cpu --pairs 100 --strata uniform --out tuned",

@@ -67,6 +67,20 @@ void open_subjects_of(const std::filesystem::path& name);
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
                                    bool require_device = false);
 
+// Throws: UsageError for a name that no published lane without a policy has.
+const Lane& published_lane(const std::string& id);
+
+// The pairs of a campaign, drawn or read again.
+struct CampaignPairs {
+  std::uint64_t seed = 1;
+  std::vector<strata::PairSource> sources;
+  std::string scene;  // that they were drawn from; may be empty
+};
+
+// The first pairs of each source of the campaign, `most` in all; 0: all of them. For an unfinished campaign, includes
+// pairs that are not judged yet.   Throws: std::runtime_error for a hunt, naming the verb, and as checked_summary.
+CampaignPairs pairs_of_campaign(const std::string& directory, std::uint64_t most, const char* verb);
+
 // Lists these lanes on standard error, each with the reason.
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out);
 

@@ -9,8 +9,6 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "cuda/lanes/device.h"
-#include "fuzz/campaign/checked_summary.h"
-#include "fuzz/campaign/recorded.h"
 #include "fuzz/minimise/simplicity.h"
 #include "fuzz/sealed.h"
 #include "reports/discrepancy.h"
@@ -31,18 +29,12 @@ struct DiscrepancyOptions {
   std::string scene, campaign, out;
 };
 
-const Lane& lane_of(const std::string& id) {
-  const Lane* lane = find_lane(id);
-  if (!lane) throw UsageError("there is no lane " + id + "; `graze lanes` lists them");
-  return *lane;
-}
-
 // Those that the user named; without any, `cpu` against both CUDA builds of each algorithm and scalar.
 std::vector<analysis::LanesCompared> lanes_of(const DiscrepancyOptions& options) {
   std::vector<analysis::LanesCompared> lanes;
   if (options.lanes.size() % 2 != 0) throw UsageError("lanes are compared two by two: name an even number of them");
   for (std::size_t i = 0; i < options.lanes.size(); i += 2)
-    lanes.emplace_back(lane_of(options.lanes[i]), lane_of(options.lanes[i + 1]));
+    lanes.emplace_back(published_lane(options.lanes[i]), published_lane(options.lanes[i + 1]));
   if (!lanes.empty()) return lanes;
   for (const Variant second : {Variant::cuda_fma, Variant::cuda_nofma}) {
     for (const Lane& lane : published_lanes()) {
@@ -50,17 +42,6 @@ std::vector<analysis::LanesCompared> lanes_of(const DiscrepancyOptions& options)
     }
   }
   return lanes;
-}
-
-// The first pairs of each source of a campaign, `most` in all.
-std::vector<strata::PairSource> sources_of(const std::string& campaign, std::uint64_t most) {
-  const fuzz::Json spec = fuzz::checked_summary(campaign).at("spec");
-  if (spec.contains("hunt"))
-    throw UsageError("the pairs of a hunt cannot be drawn again: " + campaign + " cannot be compared");
-  std::vector<strata::PairSource> sources = fuzz::recorded_sources(spec);
-  for (std::size_t s = 0; s < sources.size(); ++s)
-    sources[s].pairs = std::min(sources[s].pairs, most / sources.size() + (s < most % sources.size()));
-  return sources;
 }
 
 constexpr std::uint64_t kOriginPairs = 40'000;  // shared by the sources
@@ -105,9 +86,17 @@ int discrepancy(const DiscrepancyOptions& options) {
   if (!options.compare.empty()) return compare(options.compare);
   analysis::DiscrepancySpec spec;
   spec.lanes = lanes_of(options);
-  strata::SceneSources all;
-  if (options.campaign.empty()) all = drawn(options.scene, options.seed, options.pairs, options.strata);
-  spec.sources = options.campaign.empty() ? std::move(all.sources) : sources_of(options.campaign, options.pairs);
+  std::uint64_t seed = options.seed;
+  std::string left_out;
+  if (options.campaign.empty()) {
+    strata::SceneSources all = drawn(options.scene, seed, options.pairs, options.strata);
+    spec.sources = std::move(all.sources);
+    left_out = left_out_text(all.left_out);
+  } else {
+    CampaignPairs of_campaign = pairs_of_campaign(options.campaign, options.pairs, "compare lanes on");
+    spec.sources = std::move(of_campaign.sources);
+    seed = of_campaign.seed;
+  }
   spec.threads = options.threads;
   std::string why_not;
   spec.on_device = options.executor != kTwin && cuda::open_device(why_not);
@@ -123,11 +112,10 @@ int discrepancy(const DiscrepancyOptions& options) {
   if (spec.lanes.size() <= kMostTables) fmt::print("{}", reports::discrepancy_tables(found, screen));
   for (const std::string& sentence : reports::discrepancy_sentences(found))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
-  fmt::print("{}", left_out_text(all.left_out));
+  fmt::print("{}", left_out);
   std::uint64_t pairs = 0;
   for (const strata::PairSource& source : spec.sources) pairs += source.pairs;
-  nlohmann::ordered_json json = {{"pairs", pairs}, {"seed", options.seed}};
-  if (!options.campaign.empty()) json["seed"] = fuzz::checked_summary(options.campaign).at("spec").at("seed");
+  nlohmann::ordered_json json = {{"pairs", pairs}, {"seed", seed}};
   if (!options.scene.empty()) json["scene"] = options.scene;
   json.update(reports::discrepancy_json(found));
   for (const std::string& sentence : reports::discrepancy_answer(json))
@@ -183,6 +171,10 @@ void add_discrepancy(CLI::App& app, int& status) {
                    "Folder for discrepancy.html, .json and .csv (default: the campaign's, else discrepancy)")
       ->check(not_empty())
       ->option_text("DIR");
+  for (const char* silenced :
+       {"--strata", "--scene", "--campaign", "--pairs", "--seed", "--threads", "--executor", "--out"})
+    command->get_option("--compare")->excludes(silenced);
+  command->get_option("--campaign")->excludes("--seed");
   command->callback([options, &status] { status = discrepancy(*options); });
 }
 

@@ -98,7 +98,8 @@ TEST_F(DiscrepancyCommand, RefusesWhatItCannotCompare) {
   for (const char* wrong :
        {"graze discrepancy moller_1997/f32/cpu", "graze discrepancy moller_1997/f32/cpu nosuch/f32/cpu",
         "graze discrepancy moller_1997/f32/cpu moller_1997/f64/cpu", "graze discrepancy exact/f32/cpu exact/f32/cuda",
-        "graze dump thesis --values moller_1997/f32/cpu", "graze dump thesis --values exact/f32/cpu,exact/f32/cuda"}) {
+        "graze dump thesis --values moller_1997/f32/cpu", "graze discrepancy --compare a b --pairs 5",
+        "graze discrepancy --campaign c --seed 3", "graze dump thesis --values exact/f32/cpu,exact/f32/cuda"}) {
     const Ran ran = shell(wrong);
     EXPECT_EQ(ran.status, 2) << wrong << ran.out;
     EXPECT_EQ(std::count(ran.err.begin(), ran.err.end(), '\n'), 1) << ran.err;

@@ -34,16 +34,10 @@ struct DumpOptions {
   std::vector<std::string> values;  // two lanes
 };
 
-struct Dumped {
-  std::uint64_t seed = 1;
-  std::vector<strata::PairSource> sources;
-  std::string scene;  // the scene that they were drawn from; may be empty
-};
-
 // STRATUM or STRATUM:SEED; the stratum may be a pattern.
-Dumped of_stratum(const DumpOptions& options) {
+CampaignPairs of_stratum(const DumpOptions& options) {
   const std::size_t colon = std::min(options.name.find(':'), options.name.size());
-  Dumped dumped;
+  CampaignPairs dumped;
   if (colon < options.name.size()) {
     const std::string seed = options.name.substr(colon + 1);
     const std::optional<std::uint64_t> value = parse_whole(seed);
@@ -56,28 +50,9 @@ Dumped of_stratum(const DumpOptions& options) {
   return dumped;
 }
 
-// The campaign's pairs, drawn or read again. For an unfinished campaign, includes pairs that are not judged yet.
-Dumped of_campaign(const DumpOptions& options) {
-  const Json summary = fuzz::checked_summary(options.name);
-  Dumped dumped;
-  try {
-    const Json& spec = summary.at("spec");
-    if (spec.contains("hunt"))
-      throw std::runtime_error(cannot(
-          "dump", options.name, "the pairs of a hunt cannot be drawn again; those that it kept are in its cases/"));
-    dumped.seed = spec.at("seed");
-    if (spec.contains("scene")) dumped.scene = spec["scene"].at("name");
-    dumped.sources = fuzz::recorded_sources(spec);
-  } catch (const Json::exception&) {
-    throw std::runtime_error(cannot("use", options.name + "/summary.json", "it is not the summary of a campaign"));
-  }
-  if (options.pairs > 0) {  // every source gets the same share; the first ones also get the remainder
-    for (std::size_t s = 0; s < dumped.sources.size(); ++s) {
-      const std::uint64_t share = options.pairs / dumped.sources.size() + (s < options.pairs % dumped.sources.size());
-      dumped.sources[s].pairs = std::min(dumped.sources[s].pairs, share);
-    }
-  }
-  return dumped;
+CampaignPairs drawn_for(const DumpOptions& options) {
+  const bool is_path = fs::is_directory(options.name) || options.name.find('/') != std::string::npos;
+  return is_path ? pairs_of_campaign(options.name, options.pairs, "dump") : of_stratum(options);
 }
 
 // The lane's name as a field key, such as moller_1997.f32.cpu.
@@ -108,8 +83,7 @@ void print_row(Format format, const corpus::Entry& entry) {
 void dump(const DumpOptions& options) {
   fuzz::SelectedLanes under_test;
   if (!options.lanes.globs.empty()) under_test = selected_lanes(options.lanes);
-  const bool is_path = fs::is_directory(options.name) || options.name.find('/') != std::string::npos;
-  const Dumped dumped = is_path ? of_campaign(options) : of_stratum(options);
+  const CampaignPairs dumped = drawn_for(options);
   print_header(options.format, under_test.lanes);
   for (const strata::PairSource& source : dumped.sources) {
     for (std::uint64_t index = 0; index < source.pairs && std::cout; ++index) {
@@ -130,13 +104,8 @@ void dump(const DumpOptions& options) {
 
 // The lanes of --values.
 analysis::LanesCompared compared_lanes(const std::vector<std::string>& ids) {
-  const auto lane = [](const std::string& id) -> const Lane& {
-    const Lane* found = find_lane(id);
-    if (!found) throw UsageError("there is no lane '" + printable(id) + "'; `graze lanes` lists them");
-    return *found;
-  };
   if (ids.size() != 2) throw UsageError("--values takes two lanes, separated by a comma");
-  return {lane(ids[0]), lane(ids[1])};
+  return {published_lane(ids[0]), published_lane(ids[1])};
 }
 
 // A row for each pair, with both verdicts and choices, and one for each value that a comparison of both lanes or of one
@@ -144,8 +113,7 @@ analysis::LanesCompared compared_lanes(const std::vector<std::string>& ids) {
 void dump_values(const DumpOptions& options) {
   const analysis::LanesCompared lanes = compared_lanes(options.values);
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);
-  const bool is_path = fs::is_directory(options.name) || options.name.find('/') != std::string::npos;
-  const Dumped dumped = is_path ? of_campaign(options) : of_stratum(options);
+  const CampaignPairs dumped = drawn_for(options);
   std::cout << "stratum,seed,index,question,value,first,second,compared,exact_high,exact_low,bound,size\n";
   const auto number = [](const std::optional<double>& x) { return x ? fmt::format("{:a}", *x) : ""; };
   for (const strata::PairSource& source : dumped.sources) {
@@ -174,6 +142,29 @@ void dump_values(const DumpOptions& options) {
 }
 
 }  // namespace
+
+CampaignPairs pairs_of_campaign(const std::string& directory, std::uint64_t most, const char* verb) {
+  const Json summary = fuzz::checked_summary(directory);
+  CampaignPairs pairs;
+  try {
+    const Json& spec = summary.at("spec");
+    if (spec.contains("hunt"))
+      throw std::runtime_error(
+          cannot(verb, directory, "the pairs of a hunt cannot be drawn again; those that it kept are in its cases/"));
+    pairs.seed = spec.at("seed");
+    if (spec.contains("scene")) pairs.scene = spec["scene"].at("name");
+    pairs.sources = fuzz::recorded_sources(spec);
+  } catch (const Json::exception&) {
+    throw std::runtime_error(cannot("use", directory + "/summary.json", "it is not the summary of a campaign"));
+  }
+  if (most > 0) {  // every source gets the same share; the first ones also get the remainder
+    for (std::size_t s = 0; s < pairs.sources.size(); ++s) {
+      const std::uint64_t share = most / pairs.sources.size() + (s < most % pairs.sources.size());
+      pairs.sources[s].pairs = std::min(pairs.sources[s].pairs, share);
+    }
+  }
+  return pairs;
+}
 
 void add_dump(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(

@@ -208,6 +208,15 @@ fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesy
   return under_test;
 }
 
+const Lane& published_lane(const std::string& id) {
+  const Lane* lane = find_lane(id);
+  if (lane && lane->algorithm >= 0) return *lane;
+  std::vector<std::string> ids;
+  for (const Lane& row : published_lanes()) ids.push_back(row.id);
+  throw UsageError("there is no published lane '" + printable(id) + "'; `graze lanes` lists them" +
+                   did_you_mean(id, ids));
+}
+
 void say_left_out(const std::vector<fuzz::LaneLeftOut>& left_out) {
   for (const std::string& line : fuzz::left_out_in_words(left_out)) fmt::print(stderr, "graze: {}\n", line);
 }

@@ -26,15 +26,6 @@ namespace graze::cli {
 
 namespace fs = std::filesystem;
 
-const Lane& published_lane(const std::string& id) {
-  const Lane* lane = find_lane(id);
-  if (lane && lane->algorithm >= 0) return *lane;
-  std::vector<std::string> ids;
-  for (const Lane& row : published_lanes()) ids.push_back(row.id);
-  throw UsageError("there is no published lane '" + printable(id) + "'; `graze lanes` lists them" +
-                   did_you_mean(id, ids));
-}
-
 TunePairs tune_pairs(const TuneOptions& options) {
   strata::SceneSources others = drawn(options.scene, options.seed + 1, options.pairs, options.strata);
   std::vector<strata::PairSource> sources =

@@ -30,9 +30,6 @@ struct TuneOptions {
 // `graze tune LANE LANE --agree`.   Requires: two lanes.
 int agree(const TuneOptions& options);
 
-// Throws: UsageError for a name that no published lane without a policy has.
-const Lane& published_lane(const std::string& id);
-
 // The pairs to choose on, a tenth, and those that verify the choice, of the next seed.
 struct TunePairs {
   std::vector<strata::PairSource> sources, others;

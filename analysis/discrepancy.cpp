@@ -174,18 +174,23 @@ RecordBlock record_on_host(const Lane& lane) {
   return own ? own : cuda::twin_record(lane);
 }
 
-LanesCompared::LanesCompared(const Lane& l, const Lane& r) : first(&l), second(&r) {
+std::string why_not_compared(const Lane& l, const Lane& r) {
   if (l.algorithm < 0 || l.algorithm != r.algorithm || l.scalar != r.scalar)
-    throw UsageError(
-        fmt::format("{} and {} cannot be compared value by value: they are not lanes of one published "
-                    "algorithm and scalar",
-                    l.id, r.id));
-  for (const Lane* lane : {first, second}) {
+    return fmt::format(
+        "{} and {} cannot be compared value by value: they are not lanes of one published algorithm and "
+        "scalar",
+        l.id, r.id);
+  for (const Lane* lane : {&l, &r}) {
     if (!record_on_host(*lane))
-      throw UsageError(lane->id + " does not record its values: " +
-                       (lane->under ? "it has a policy" : "it has neither a host lane nor a twin in this build"));
-    if (!lane->is_cuda() && !runs_on_this_cpu(*lane)) throw UsageError(lane->id + " does not run on this processor");
+      return lane->id + " does not record its values: " +
+             (lane->under ? "it has a policy" : "it has neither a host lane nor a twin in this build");
+    if (!lane->is_cuda() && !runs_on_this_cpu(*lane)) return lane->id + " does not run on this processor";
   }
+  return "";
+}
+
+LanesCompared::LanesCompared(const Lane& l, const Lane& r) : first(&l), second(&r) {
+  if (const std::string why = why_not_compared(l, r); !why.empty()) throw UsageError(why);
 }
 
 void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, DiscrepancyCounts& to) {

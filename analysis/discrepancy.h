@@ -31,11 +31,15 @@ struct DiscrepancyCounts {
 // Records of a lane on the host: its own, or those of its twin. Null if there is none.
 RecordBlock record_on_host(const Lane& lane);
 
+// Why the values of two lanes cannot be compared on the host; empty if they can: they are lanes of one algorithm and
+// scalar that record their values.
+std::string why_not_compared(const Lane& l, const Lane& r);
+
 // Two lanes to compare. Their values are recorded on the host.
 struct LanesCompared {
   const Lane *first, *second;
 
-  // Throws: UsageError unless both are lanes of one algorithm and scalar that can record their values.
+  // Throws: UsageError with why_not_compared.
   LanesCompared(const Lane& l, const Lane& r);
 };
 

@@ -142,10 +142,7 @@ void print_lane(const analysis::LaneExplanation& lane, const analysis::LaneExpla
 
 // The runs of two lanes beside each other, where the user asked for two that record their values.
 void print_side_by_side(const std::vector<const Lane*>& lanes, const Pair& pair, const reports::Screen& screen) {
-  if (lanes.size() != 2 || !is_finite(pair) || lanes[0]->algorithm < 0 || lanes[0]->algorithm != lanes[1]->algorithm ||
-      lanes[0]->scalar != lanes[1]->scalar || !analysis::record_on_host(*lanes[0]) ||
-      !analysis::record_on_host(*lanes[1]))
-    return;
+  if (lanes.size() != 2 || !is_finite(pair) || !analysis::why_not_compared(*lanes[0], *lanes[1]).empty()) return;
   fmt::print("\n{}", reports::side_by_side({*lanes[0], *lanes[1]}, pair, screen));
 }
 

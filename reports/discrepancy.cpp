@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 #include <span>
 
 #include "core/discrepancy/count.h"
+#include "reports/findings.h"
 #include "reports/plain_figures.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
@@ -115,11 +115,8 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
   return sum;
 }
 
-// "1 in 532" for rare events, else a percentage.
-std::string rare(std::uint64_t part, std::uint64_t whole) {
-  if (part == 0) return "0";
-  if (part * 20 >= whole) return bare_percent(part, whole) + " %";
-  return "1 in " + grouped((whole + part / 2) / part);
+std::string share_words(std::uint64_t part, std::uint64_t whole) {
+  return rate_words(whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole));
 }
 
 // The sum of both values' counts of different values in each octave.
@@ -250,10 +247,11 @@ std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& 
       const std::vector<std::uint64_t> octaves = octaves_of(sum, question, values);
       const std::uint64_t second = sum_of(sum, question, values, value_counts::nearer_second),
                           first = sum_of(sum, question, values, value_counts::nearer_first);
-      table.add({questions[q].name, grouped(of(asked)), rare(of(differs), of(asked)), quantile(octaves, 0.5),
+      table.add({questions[q].name, grouped(of(asked)), share_words(of(differs), of(asked)), quantile(octaves, 0.5),
                  quantile(octaves, 0.99), quantile(octaves, 1),
                  first + second == 0 ? "-" : bare_percent(second, first + second) + " %",
-                 Cell(rare(of(sign), of(asked)), of(sign) > 0), Cell(rare(of(outcome), of(asked)), of(outcome) > 0),
+                 Cell(share_words(of(sign), of(asked)), of(sign) > 0),
+                 Cell(share_words(of(outcome), of(asked)), of(outcome) > 0),
                  Cell(grouped(of(verdict)), of(verdict) > 0),
                  of(sign) == 0 ? "-" : fmt::format("{:.3g}", largest(sum, q, band_maxima::in_bounds))});
     }
@@ -282,12 +280,12 @@ std::vector<std::string> discrepancy_sentences(const DiscrepancyResults& results
     } else {
       text += fmt::format(
           "some value differs on {} of the pairs, some sign on {}, some comparison on {}, the verdict on {}.",
-          rare(of(pair_counts::differs), pairs), rare(of(pair_counts::sign), pairs),
-          rare(of(pair_counts::outcome), pairs), rare(of(pair_counts::verdict), pairs));
+          share_words(of(pair_counts::differs), pairs), share_words(of(pair_counts::sign), pairs),
+          share_words(of(pair_counts::outcome), pairs), share_words(of(pair_counts::verdict), pairs));
       if (of(distances + site_counts::differs))
         text += fmt::format(" A signed distance differs on {}, its sign on {}.",
-                            rare(of(distances + site_counts::differs), pairs),
-                            rare(of(distances + site_counts::sign), pairs));
+                            share_words(of(distances + site_counts::differs), pairs),
+                            share_words(of(distances + site_counts::sign), pairs));
     }
     for (int lane = 0; lane < 2; ++lane) {
       if (sum.unlike[lane])

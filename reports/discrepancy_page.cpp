@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "analysis/tuning.h"
 #include "core/discrepancy/questions.h"
@@ -26,26 +24,10 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostLinesShown = 10;
 constexpr std::size_t kFewBars = 6;  // which have room for their counts
 
-constexpr const char* kDiscrepancyHead = R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8"/>
-<meta name="viewport" content="width=device-width, initial-scale=1"/>
-<title>Graze: CPU against GPU, value by value</title>
-<style>
-:root { color-scheme: light dark; }
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 0 auto; padding: 1rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { padding: 0.2rem 0.5rem; border: 1px solid #8886; text-align: left; white-space: nowrap; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; }
-td.code { font-family: ui-monospace, monospace; white-space: pre; }
+constexpr const char* kDiscrepancyStyle = R"(td.code { font-family: ui-monospace, monospace; white-space: pre; }
 svg { width: 100%; height: auto; max-width: 56rem; }
 summary { font-weight: bold; cursor: pointer; }
 @media print { details { break-inside: avoid; } body { font-size: 11px; } }
-</style>
-</head>
-<body>
 )";
 
 std::uint64_t number(const Json& json, const char* key) { return json.at(key).get<std::uint64_t>(); }
@@ -538,7 +520,7 @@ void expect_possible_discrepancy(const Json& json) {
 }
 
 std::string discrepancy_page(const Json& json) {
-  std::string text = kDiscrepancyHead;
+  std::string text = page_head("Graze: CPU against GPU, value by value", kDiscrepancyStyle);
   text += "<h1>CPU against GPU, value by value</h1>\n<ol>\n";
   for (const std::string& sentence : discrepancy_answer(json)) text += "<li>" + html(sentence) + "</li>\n";
   text += fmt::format(

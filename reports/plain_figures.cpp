@@ -57,6 +57,26 @@ std::array<double, 3> point_of(const Json& values, std::size_t first) {
 
 }  // namespace
 
+std::string page_head(const std::string& title, const std::string& style) {
+  return R"(<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8"/>
+<meta name="viewport" content="width=device-width, initial-scale=1"/>
+<title>)" +
+         html(title) +
+         R"(</title>
+<style>
+:root { color-scheme: light dark; }
+body { font: 16px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 0 auto; padding: 1rem; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 0.85rem; }
+th, td { padding: 0.2rem 0.5rem; border: 1px solid #8886; text-align: left; white-space: nowrap; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; }
+)" + style +
+         "</style>\n</head>\n<body>\n";
+}
+
 std::string html(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

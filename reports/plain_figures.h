@@ -12,6 +12,10 @@ namespace graze::reports {
 // Escapes the characters that have a meaning in HTML.
 std::string html(const std::string& text);
 
+// The start of a page without scripts, with the style that such pages share; it ends with "</body>\n</html>\n".
+// title: plain text. style: further rules, each with its newline.
+std::string page_head(const std::string& title, const std::string& style);
+
 // A card's "pair" has its coordinates in decimals, hex floats and values. Its "drawing" has the contact and the line of
 // both planes.   Requires: finite coordinates.
 nlohmann::ordered_json coordinates_of(const Pair& pair);

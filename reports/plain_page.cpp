@@ -15,25 +15,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostRows = 500;  // of the signatures; signatures.csv has them all
 
-constexpr const char* kHead = R"(<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8"/>
-<meta name="viewport" content="width=device-width, initial-scale=1"/>
-<title>Graze: discrepancy report</title>
-<style>
-:root { color-scheme: light dark; }
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 70rem; margin: 0 auto; padding: 1rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.85rem; }
-th, td { padding: 0.2rem 0.5rem; border: 1px solid #8886; text-align: left; white-space: nowrap; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; }
-pre { overflow-x: auto; border: 1px solid #8886; padding: 0.5rem; }
+constexpr const char* kStyle = R"(pre { overflow-x: auto; border: 1px solid #8886; padding: 0.5rem; }
 svg { max-width: 100%; } svg text { font-size: 9px; fill: currentColor; }
 figure { display: inline-block; vertical-align: top; width: 20rem; margin: 0.5rem; }
-</style>
-</head>
-<body>
 )";
 
 std::string paragraph(const std::string& text) { return "<p>" + html(text) + "</p>\n"; }
@@ -232,9 +216,10 @@ coplanar, margin, algorithm, and a mark for each of its lanes: + false positive,
 }  // namespace
 
 std::string plain_page(const Json& report, const Json& costs, const Json& choices) {
-  return kHead + answer_section(report, costs) + compare_section(report.at("compare")) + choices_section(choices) +
-         league(report) + margin_section(report) + extremes_section(report) + signature_section(report) + kDefinitions +
-         run_section(report) + "</body>\n</html>\n";
+  return page_head("Graze: discrepancy report", kStyle) + answer_section(report, costs) +
+         compare_section(report.at("compare")) + choices_section(choices) + league(report) + margin_section(report) +
+         extremes_section(report) + signature_section(report) + kDefinitions + run_section(report) +
+         "</body>\n</html>\n";
 }
 
 }  // namespace graze::reports

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/discrepancy/count.h"
 #include "reports/terminal.h"
 #include "reports/text_table.h"
 
@@ -36,12 +37,10 @@ std::string error_text(const std::optional<double>& value, const ValueBeside& of
   return bucket == "0" || bucket == "unknown" || bucket == "not finite" ? bucket : "≤ " + bucket;
 }
 
-int sign_of(double x) { return std::isnan(x) ? 2 : (x > 0) - (x < 0); }
-
 // Whether the comparison that sees this value goes the other way. `left`: the value before, of a question about two.
 bool goes_otherwise(const Question& question, const ValueBeside* left, const ValueBeside& value) {
   if (!value.compared || !value.first || !value.second) return false;
-  if (question.of.size() == 1) return sign_of(*value.first) != sign_of(*value.second);
+  if (question.of.size() == 1) return sign_of_value(*value.first) != sign_of_value(*value.second);
   if (value.which == 0 || !left) return false;
   return question.at_most ? (*left->first <= *value.first) != (*left->second <= *value.second)
                           : (*left->first < *value.first) != (*left->second < *value.second);

@@ -17,7 +17,7 @@ struct DiscrepancySums {
 };
 
 // Whether the lane's values can be recorded on a device: a published CUDA lane that is built, or a host lane without
-// contraction. Its values have the bits of cuda-nofma, whose kernels run in its place; expect_same_values checks it.
+// contraction. Its values have the bits of cuda-nofma, whose kernels run in its place; count_different_runs checks it.
 bool records_on_device(const Lane& lane);
 
 // Compares both lanes on all pairs of the source.   Requires: records_on_device of both; the algorithm and the scalar

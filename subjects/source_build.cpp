@@ -245,7 +245,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
   command = "SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-0} " + command;
   std::vector<std::string> all_flags = further_flags(compiler);
   all_flags.insert(all_flags.end(), flags.begin(), flags.end());
-  const bool lists = assembler_lists_files(compiler, flags, scratch);
+  const auto lists = [&] { return assembler_lists_files(compiler, flags, scratch); };  // asked only where it matters
   const fs::path included = scratch.path() / "included.d";
   std::string assembled;  // the files that the assembler read when it ran last
   const auto read = [&] {
@@ -256,7 +256,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
     const CodeHash of_flags = hash_of_flags(all_flags, fnv1a(fmt::format("{}\n{}\n", identity, variant.flags)));
     reading.hash = hash_of_listed(assembled, fnv1a(preprocessed, of_flags.hash));
     reading.not_covered = of_flags.not_covered;
-    if (reading.not_covered.empty() && may_include_by_assembler(preprocessed) && !lists)
+    if (reading.not_covered.empty() && may_include_by_assembler(preprocessed) && !lists())
       reading.not_covered = "the files that its assembler code includes";
     reading.states = states_of_listed((fs::exists(included) ? listed_files(included, folder) : "") + assembled);
     return reading;
@@ -274,8 +274,8 @@ Built build_source(const fs::path& source, const std::string& function, const Va
       }
     }
     const std::string said =
-        output_of(fmt::format("{} {} -o {} -Wl,-z,defs", command, lists ? "-Wa,--MD," + shell_word(list.string()) : "",
-                              shell_word(object.string())),
+        output_of(fmt::format("{} {} -o {} -Wl,-z,defs", command,
+                              lists() ? "-Wa,--MD," + shell_word(list.string()) : "", shell_word(object.string())),
                   scratch, status);
     if (status != 0) {
       std::string error = first_error(said);
@@ -284,7 +284,7 @@ Built build_source(const fs::path& source, const std::string& function, const Va
       if (error.find(source.filename().string()) == error.npos) error = cannot("compile", name, error);
       throw std::runtime_error(error);
     }
-    assembled = lists && fs::exists(list) ? listed_files(list, scratch.path()) : "";
+    assembled = lists() && fs::exists(list) ? listed_files(list, scratch.path()) : "";
     if (read() != before) continue;
     built.content = std::make_shared<SealedCopy>(built.file.filename().string(), code_in(object));
     keep_file(object, built.file);

@@ -133,8 +133,7 @@ int discrepancy(const DiscrepancyOptions& options) {
 void add_discrepancy(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "discrepancy", "Count by how much the values of two lanes differ, and when that decides a comparison");
-  command->footer(
-      "Example: graze discrepancy interval_overlap/f32/cpu interval_overlap/f32/cuda-fma --strata thesis --pairs 1e5");
+  command->footer("Example: graze discrepancy moller_1997/f32/cpu moller_1997/f32/cuda-fma");
   const auto options = std::make_shared<DiscrepancyOptions>();
   command
       ->add_option("lanes", options->lanes,

@@ -151,7 +151,7 @@ void add_tune(CLI::App& app, int& status) {
       "tune", "Find the best tolerance for a lane: sweep tolerances on some pairs, and judge the best on others");
   command->footer(
       "Example: graze tune moller_1997/f32/cpu --forbid false-negative --pairs 20k\n"
-      "Example: graze tune moller_1997/f32/cpu moller_1997/f32/cuda-fma --agree --max-rate 1e-3 --pairs 20k");
+      "Example: graze tune moller_1997/f32/cpu moller_1997/f32/cuda-fma --agree");
   const auto options = std::make_shared<TuneOptions>();
   command->add_option("LANE", options->lanes, "Lane, without a policy; with --agree two of one algorithm and scalar")
       ->required()

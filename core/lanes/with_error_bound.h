@@ -168,7 +168,8 @@ GRAZE_HD Range<WithErrorBound<Real>> project(const Vec3<WithErrorBound<Real>>& d
 
 // False only if that is certain. If nothing is certain, it is true and raises a doubt.
 template <class Real>
-GRAZE_HD bool overlap(const Range<WithErrorBound<Real>>& s, const Range<WithErrorBound<Real>>& t, const ExactZero&) {
+GRAZE_HD bool overlap(const Range<WithErrorBound<Real>>& s, const Range<WithErrorBound<Real>>& t, const ExactZero&,
+                      int /*question*/) {
   if (s.hi.is_below(t.lo) || t.hi.is_below(s.lo)) return false;
   static_cast<void>(s.hi < t.lo || t.hi < s.lo);  // raises the doubt
   return true;

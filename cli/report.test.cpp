@@ -136,12 +136,19 @@ TEST_F(Report, CountsThatCannotBeAreRefused) {
   expect_too_deep();
   using Words = std::vector<std::string>;
   for (const auto& [place, value, words] :
-       {std::tuple("/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", 1230, Words{"degenerate", "1230"}),
+       {std::tuple("/strata/degenerate/lanes/moller_1997~1f32~1cpu/false_negative", nlohmann::ordered_json(1230),
+                   Words{"degenerate", "1230"}),
         {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/declined", 1001, {"moller_1997/f32/cpu", "declined", "1001"}},
         {"/strata/degenerate/intersects", 1001, {"degenerate", "intersect", "1000", "1001"}},
         {"/strata/degenerate/pairs", 1001, {"degenerate", "margin", "1001", "1000"}},
         {"/spec/pairs", 2999, {"pairs", "2999", "3000"}},
-        {"/disagreements", 3001, {"disagreements", "3000", "3001"}},
+        {"/strata/degenerate/intersects", 600, {"degenerate", "intersect", "by margin", "600"}},
+        {"/strata/degenerate/lanes/moller_1997~1f32~1cpu/differs_from_cpu", 1, {"degenerate", "differs_from_cpu"}},
+        {"/disagreements", 0, {"disagreements", "0"}},
+        {"/disagreements", 3001, {"disagreements", "3001"}},
+        {"/signatures", nlohmann::ordered_json::array(), {"moller_1997/f32/cpu", "by signature", "0"}},
+        {"/signatures/1", summary["signatures"][0], {"signature", "twice"}},
+        {"/signatures/0/count", 1, {"moller_1997/f32/cpu", "by signature"}},
         {"/signatures/0/count", 3001, {"signature", "3000", "3001"}}}) {
     nlohmann::ordered_json other = summary;
     other[nlohmann::ordered_json::json_pointer(place)] = value;

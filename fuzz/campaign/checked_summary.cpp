@@ -5,8 +5,13 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
+#include "analysis/signature.h"
 #include "core/cannot.h"
+#include "core/lanes/lanes.h"
+#include "core/margin/bucket.h"
+#include "core/text.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/counts_json.h"
@@ -56,6 +61,30 @@ void expect_split(const std::string& where, const Json& rows, const Json& stratu
            fmt::format("exactly {} wrong verdicts of {} by {}", counts_of(row).wrong(), lane, where), wrong[lane]);
 }
 
+// Checks that the margins of pairs that intersect are not positive, and that wrong verdicts are on the right side.
+void expect_sides(const Json& stratum) {
+  const Json& margins = stratum.at("margins");
+  std::size_t known = 0;
+  std::uint64_t pairs = 0;
+  std::map<std::string, std::uint64_t> wrong[2];  // of pairs that are disjoint, and of those that intersect
+  for (int b = -kBucketMost; b <= kBucketMost; ++b) {
+    const auto row = margins.find(name_of_bucket(static_cast<Bucket>(b)));
+    if (row == margins.end()) continue;
+    ++known;
+    if (b <= 0) pairs += count(*row, "pairs");
+    for (const auto& [lane, unused] : row->at("wrong").items())
+      wrong[b <= 0][lane] += count(row->at("wrong"), lane.c_str());
+  }
+  if (known != margins.size()) throw Impossible("its margins have names that are none");
+  const std::uint64_t intersects = count(stratum, "intersects");
+  expect(pairs == intersects, fmt::format("exactly {} pairs that intersect, by margin", intersects), pairs);
+  for (const auto& [lane, row] : stratum.at("lanes").items()) {
+    for (const auto& [field, side] : {std::pair("false_positive", 0), {"false_negative", 1}})
+      expect(count(row, field) <= wrong[side][lane],
+             fmt::format("at most {} {} of {} by margin", wrong[side][lane], field, lane), count(row, field));
+  }
+}
+
 void expect_possible(const Json& stratum) {
   const std::uint64_t pairs = count(stratum, "pairs"), intersects = count(stratum, "intersects");
   expect(intersects <= pairs, fmt::format("at most {} pairs that intersect", pairs), intersects);
@@ -74,29 +103,80 @@ void expect_possible(const Json& stratum) {
     expect(judged <= pairs, fmt::format("at most {} verdicts of {} that are not the truth's", pairs, lane), judged);
   }
   expect_split("margin", stratum.at("margins"), stratum);
+  expect_sides(stratum);
   const Json extremes = stratum.value("extremes", Json::object());
   for (const auto& [axis, rows] : extremes.items()) expect_split(axis, rows, stratum);
+}
+
+// Checks that the stratum has the campaign's lanes, and that only device lanes are compared with cpu lanes.
+void expect_lanes(const Json& stratum, const std::vector<std::string>& lanes) {
+  const Json& rows = stratum.at("lanes");
+  for (const std::string& lane : lanes) {
+    if (!rows.contains(lane) || rows.size() != lanes.size())
+      throw Impossible("its lanes are not those of the campaign");
+    if (rows[lane].at("differs_from_cpu").is_null() == is_compared_with_cpu(lane, lanes))
+      throw Impossible(fmt::format("differs_from_cpu of {} is {}", lane, rows[lane]["differs_from_cpu"].dump()));
+  }
+}
+
+// Checks that the signatures account for each wrong verdict: a pair has one signature of each subject that is wrong.
+void expect_possible_signatures(const Json& summary, std::uint64_t pairs) {
+  constexpr std::pair<char, std::uint64_t Counts::*> kMarks[] = {{'+', &Counts::false_positive},
+                                                                 {'-', &Counts::false_negative},
+                                                                 {'!', &Counts::crashed},
+                                                                 {'@', &Counts::timed_out},
+                                                                 {'%', &Counts::unstable}};
+  std::set<std::string> keys;
+  std::map<std::string, std::uint64_t> of_subjects;
+  std::map<std::pair<std::string, char>, std::uint64_t> of_lanes;
+  std::uint64_t all = 0, most = 0;
+  for (const Json& row : summary.at("signatures")) {
+    const std::string key = row.at("key");
+    const std::uint64_t found = count(row, "count");
+    const auto signature = analysis::parse_signature(key);
+    if (!signature || !signature->wrong()) throw Impossible("expected the key of a signature, found " + shown(key));
+    if (!keys.insert(key).second) throw Impossible("it has the signature " + shown(key) + " twice");
+    expect(0 < found && found <= pairs, fmt::format("1 to {} pairs of the signature {}", pairs, shown(key)), found);
+    all += found;
+    most = std::max(most, of_subjects[signature->subject] += found);
+    for (const analysis::WrongLane& wrong : signature->wrong_lanes)
+      of_lanes[{signature->subject + '/' + wrong.lane, wrong.mark}] += found;
+  }
+  for (const std::string lane : summary.at("spec").at("lanes")) {
+    Counts counts;
+    for (const Json& stratum : summary.at("strata")) counts += counts_of(stratum.at("lanes").at(lane));
+    for (const auto& [mark, field] : kMarks) {
+      const std::uint64_t found = of_lanes[{lane, mark}];
+      expect(found == counts.*field, fmt::format("exactly {} pairs '{}' of {} by signature", counts.*field, mark, lane),
+             found);
+    }
+  }
+  const std::uint64_t disagreements = count(summary, "disagreements");
+  expect(most <= disagreements && disagreements <= std::min(all, pairs),
+         fmt::format("{} to {} disagreements", most, std::min(all, pairs)), disagreements);
 }
 
 // Checks a summary that has no database: counts are within their limits, and sums agree.
 void expect_possible_summary(const Json& summary) {
   std::uint64_t pairs = 0;
+  const std::vector<std::string> lanes = summary.at("spec").at("lanes");
+  for (const std::string& lane : lanes) {
+    if (!parse_lane_name(lane)) throw Impossible(shown(lane) + " is not the name of a lane");
+  }
   for (const auto& [id, stratum] : summary.at("strata").items()) {
     try {
+      expect_lanes(stratum, lanes);
       expect_possible(stratum);
     } catch (const Impossible& error) {
       throw Impossible(id + ": " + error.what());
     }
     pairs += count(stratum, "pairs");
   }
-  const std::uint64_t all = count(summary.at("spec"), "pairs"), disagreements = count(summary, "disagreements");
+  const std::uint64_t all = count(summary.at("spec"), "pairs");
   const bool complete = summary.at("complete");
   expect(complete ? pairs == all : pairs <= all,
          fmt::format("{} {} pairs in all strata", complete ? "exactly" : "at most", all), pairs);
-  expect(disagreements <= pairs, fmt::format("at most {} disagreements", pairs), disagreements);
-  for (const Json& row : summary.at("signatures"))
-    expect(count(row, "count") <= pairs,
-           fmt::format("at most {} pairs of the signature {}", pairs, row.at("key").dump()), count(row, "count"));
+  expect_possible_signatures(summary, pairs);
 }
 
 // The summary that follows from the sums of the store's rows.

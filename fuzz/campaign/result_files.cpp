@@ -78,16 +78,20 @@ std::string cpu_lane_of(const std::string& id) {
   return id_of(name);
 }
 
-// differs_from_cpu becomes null for cpu lanes, and for lanes whose cpu lane did not run.
+// differs_from_cpu becomes null where nothing was compared.
 void leave_out_what_was_not_compared(Json& strata, const std::vector<std::string>& lanes) {
   for (const std::string& lane : lanes) {
-    const std::string cpu = cpu_lane_of(lane);
-    if (cpu != lane && std::find(lanes.begin(), lanes.end(), cpu) != lanes.end()) continue;
+    if (is_compared_with_cpu(lane, lanes)) continue;
     for (Json& row : strata) row["lanes"][lane]["differs_from_cpu"] = nullptr;
   }
 }
 
 }  // namespace
+
+bool is_compared_with_cpu(const std::string& lane, const std::vector<std::string>& lanes) {
+  const std::string cpu = cpu_lane_of(lane);
+  return cpu != lane && std::find(lanes.begin(), lanes.end(), cpu) != lanes.end();
+}
 
 std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& t) {
   return {{"truth", std::string(name(t.verdict))},

@@ -15,6 +15,9 @@ namespace graze::fuzz {
 // The truth as fields of a case: truth, contact, margin, margin_ulps.
 std::vector<std::pair<std::string, std::string>> truth_fields(const oracle::Truth& truth);
 
+// Whether the lane's differences from its cpu lane are counted: it is no cpu lane, and that one is among `lanes`.
+bool is_compared_with_cpu(const std::string& lane, const std::vector<std::string>& lanes);
+
 // Writes summary.json and cases/ from the store. A case file whose cases have not changed keeps the minimiser's
 // results.
 // Returns: the summary.

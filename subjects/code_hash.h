@@ -36,7 +36,8 @@ struct CodeHash {
 // another. A file that was changed and changed back meanwhile is as it was.
 void expect_unchanged(const std::vector<HashedFile>& files);
 
-// Returns: the file's bytes.   Throws: std::runtime_error where there is no such file.
+// Returns: the file's bytes.   Throws: std::runtime_error where there is no such file or it is larger than 1 GiB;
+// Stopped.
 std::string code_in(const std::filesystem::path& file);
 std::uint64_t hash_of_file(const std::filesystem::path& file);
 

@@ -17,6 +17,7 @@
 #include "core/lanes/lanes.h"
 #include "core/lanes/verdicts.h"
 #include "core/message_testing.h"
+#include "core/stop.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 #include "subjects/process.h"
@@ -447,6 +448,12 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
     ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
     expect_error("x=" + (folder / name).string() + ":f", "cannot read the code in .*: not a file");
   }
+  std::ofstream(folder / "large.so").close();
+  fs::resize_file(folder / "large.so", (std::uintmax_t{1} << 30) + 1);
+  expect_error("x=" + (folder / "large.so").string(), "cannot read the code in .*: it is larger than 1 GiB");
+  stop_requested = true;
+  EXPECT_THROW(open_one("x=" + so + ":good"), Stopped);
+  stop_requested = false;
   EXPECT_FALSE(opened("x"));
   for (const Lane& lane : lanes()) EXPECT_NE(lane.info->id, "x");
 }

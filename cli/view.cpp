@@ -14,7 +14,6 @@
 #include "cli/results.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "cuda/twin/twin.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/viewer.h"
 #include "strata/mesh.h"
@@ -62,26 +61,19 @@ bool is_mesh(const fs::path& file) {
   return extension == ".off" || extension == ".obj" || extension == ".stl" || extension == ".ply";
 }
 
-bool some_lane_is_wrong(const Pair& pair) {
-  const Lane* exact = find_lane("exact/f32/cpu");
-  const Verdict truth = decide_one(exact->decide, pair);
-  return std::any_of(lanes().begin(), lanes().end(), [&](const Lane& lane) {
-    const DecideBlock block = runs_on_this_cpu(lane) || lane.is_cuda() ? cuda::block_on_host(lane) : nullptr;
-    return block && is_wrong(decide_one(block, pair), truth);
-  });
-}
-
 // Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong.
 void add_mesh(const fs::path& file, Viewed& viewed) {
   const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
   const std::size_t shown = std::min(mesh.triangles.size(), reports::kMostViewedTriangles);
   viewed.triangles.assign(mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(shown));
+  const fuzz::SelectedLanes under_test = fuzz::select_lanes({}, fuzz::Executor::twin);
+  const DecideBlock exact = find_lane("exact/f32/cpu")->decide;
   std::vector<reports::ViewedPair> others;
   for (std::size_t i = 0; i < std::min(mesh.size(), kMostCandidates) && viewed.pairs.size() < kMostOfAMesh; ++i) {
     const auto [first, second] = mesh.candidates[i];
     reports::ViewedPair one{fmt::format("{}, triangles {} and {}", file.filename().string(), first, second),
                             mesh.pair(i)};
-    if (some_lane_is_wrong(one.pair)) {
+    if (some_is_wrong(decide(under_test, one.pair), decide_one(exact, one.pair))) {
       viewed.pairs.push_back(std::move(one));
     } else if (others.size() < kMostOfAMesh) {
       others.push_back(std::move(one));

@@ -173,23 +173,43 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   return under_test;
 }
 
+BlockVerdicts::BlockVerdicts(const SelectedLanes& under_test)
+    : under_test_(under_test), on_host_(under_test.lanes.size()), verdicts_(under_test.lanes.size()) {}
+
+std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs, std::span<const VerdictBits> on_device,
+                                                    std::size_t begin,
+                                                    const std::function<void(std::size_t l, std::size_t i)>& apart) {
+  const std::size_t words = (pairs.size() + 63) / 64;
+  auto next_device = on_device.begin();
+  for (std::size_t l = 0; l < verdicts_.size(); ++l) {
+    const DecideBlock& block = under_test_.on_host[l];
+    if (block) {
+      graze::decide(block, pairs, on_host_[l]);
+      verdicts_[l] = {on_host_[l].intersects, on_host_[l].declined, under_test_.lanes[l]->foreign ? &block : nullptr,
+                      pairs.data()};
+    }
+    if (!under_test_.on_device(l)) continue;
+    const LaneVerdicts twin = verdicts_[l];
+    const auto words_of = [&](std::span<const std::uint64_t> bits) { return bits.subspan(begin / 64, words); };
+    verdicts_[l] = {words_of(next_device->intersects), words_of(next_device->declined)};
+    ++next_device;
+    for (std::size_t i = 0; block && i < pairs.size(); ++i) {
+      if (verdicts_[l].at(i) != twin.at(i)) apart(l, i);
+    }
+  }
+  return verdicts_;
+}
+
 std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart) {
   apart.clear();
-  std::vector<Verdict> verdicts(under_test.lanes.size());
-  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    if (under_test.on_host[l]) verdicts[l] = decide_one(under_test.on_host[l], pair);
-  }
-  if (!under_test.device) return verdicts;
-  std::vector<cuda::LaneBits> bits;
-  under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), bits);
-  std::size_t next = 0;
-  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    if (!under_test.on_device(l)) continue;
-    const Verdict on_device = verdict_of_bits(bits[next].intersects[0] & 1, bits[next].declined[0] & 1);
-    if (under_test.on_both(l) && on_device != verdicts[l]) apart.push_back(under_test.lanes[l]);
-    verdicts[l] = on_device;
-    ++next;
-  }
+  std::vector<VerdictBits> on_device;
+  if (under_test.device) under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), on_device);
+  BlockVerdicts block(under_test);
+  std::vector<Verdict> verdicts;
+  for (const LaneVerdicts& lane : block.decide(std::span(&pair, 1), on_device, 0, [&](std::size_t l, std::size_t) {
+         apart.push_back(under_test.lanes[l]);
+       }))
+    verdicts.push_back(lane.at(0));
   return verdicts;
 }
 

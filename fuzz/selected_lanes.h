@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes/lanes.h"
+#include "core/lanes/verdicts.h"
 #include "cuda/lanes/device.h"
 
 namespace graze::fuzz {
@@ -63,6 +63,24 @@ std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded);
 
 // What runs the lane here, or why nothing does: "available (device)", "unavailable (no fma instructions)".
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device);
+
+// Decides blocks of pairs by all lanes: by host lanes and twins here; a device has decided its lanes before.
+class BlockVerdicts {
+ public:
+  explicit BlockVerdicts(const SelectedLanes& under_test);
+
+  // on_device: what the device says of each of its lanes; `begin`: the first pair's place there, a multiple of 64.
+  // apart(l, i): called for each pair i on which device and twin of lane l differ.
+  // Returns: the verdicts of each lane, valid until the next call.
+  std::span<const LaneVerdicts> decide(std::span<const Pair> pairs, std::span<const VerdictBits> on_device,
+                                       std::size_t begin,
+                                       const std::function<void(std::size_t l, std::size_t i)>& apart);
+
+ private:
+  const SelectedLanes& under_test_;
+  std::vector<VerdictBits> on_host_;
+  std::vector<LaneVerdicts> verdicts_;
+};
 
 // Each lane's verdict on one pair.
 // Returns in apart, for lanes on both: those whose device and twin differ.

@@ -8,6 +8,7 @@
 
 #include "analysis/blame.h"
 #include "analysis/lane_trace.h"
+#include "core/lanes/verdicts.h"
 #include "core/margin/margin.h"
 #include "core/relation_of.h"
 #include "cuda/twin/twin.h"
@@ -38,11 +39,8 @@ void print(const char* what, const char* of, std::uint64_t block, Hash hash) {
 }
 
 Hash verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
-  std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
-  decide(pairs.data(), pairs.size(), yes.data(), none.data());
   Hash hash;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    hash.add_value(static_cast<std::uint8_t>(verdict_of_bits(yes[i / 64] >> i % 64 & 1, none[i / 64] >> i % 64 & 1)));
+  for (const Verdict said : verdicts_of(decide, pairs)) hash.add_value(static_cast<std::uint8_t>(said));
   return hash;
 }
 

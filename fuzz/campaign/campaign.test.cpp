@@ -150,7 +150,7 @@ TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
 class WrongOnce final : public cuda::Device {
  public:
   void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
-              std::vector<cuda::LaneBits>& bits) override {
+              std::vector<VerdictBits>& bits) override {
     bits.assign(cuda_lanes.size(),
                 {analysis::Bits((pairs.size() + 63) / 64), analysis::Bits((pairs.size() + 63) / 64)});
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {

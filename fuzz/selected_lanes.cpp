@@ -7,25 +7,20 @@
 #include <map>
 #include <numeric>
 
+#include "backends/backends.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "cuda/twin/twin.h"
 
 namespace graze::fuzz {
 namespace {
 
+using backends::Backend, backends::backend_of;
+
 // Empty where something runs the lane.
 std::string why_unavailable(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
-  if (!lane.is_cuda())
-    return runs_on_this_cpu(lane) ? "" : fmt::format("no {} instructions", info_of(lane.variant).needs);
-  if (lane.foreign) return lane.decide ? "" : lane.evidence;
-  if (device || cuda::block_on_host(lane)) return "";
-  if (lane.under && !cuda::has_policy_twins()) return not_in_a_campaigns_build("twins of lanes under tolerances");
-  if (lane.exact) return why_no_device;
-  return why_no_device.empty() ? "no twin" : why_no_device + ", and no twin";
+  const Backend& backend = backend_of(lane);
+  return device && backend.has_device ? "" : backend.why_not_on_host(lane, why_no_device);
 }
-
-std::string twin_evidence_of(const Lane& lane) { return lane.exact ? "twin, exact" : cuda::twin_evidence(lane); }
 
 // Lanes under a policy stand at the table's end; here they stand beside the others of their subject.
 void sort_by_subject(SelectedLanes& under_test) {
@@ -56,17 +51,16 @@ std::vector<const Lane*> SelectedLanes::device_lanes() const {
 }
 
 std::string SelectedLanes::evidence(std::size_t l) const {
-  if (lanes[l]->foreign) return lanes[l]->evidence;
-  const std::string twin = on_host[l] ? twin_evidence_of(*lanes[l]) : "";
-  return !on_device(l) ? twin : twin.empty() ? "device" : "device and " + twin;
+  const std::string here = on_host[l] ? backend_of(*lanes[l]).evidence(*lanes[l]) : "";
+  return !on_device(l) ? here : here.empty() ? "device" : "device and " + here;
 }
 
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
   if (const std::string why = why_unavailable(lane, device, why_no_device); !why.empty())
     return "unavailable (" + why + ")";
-  if (!lane.is_cuda()) return "available";
-  if (lane.foreign) return "available (" + lane.evidence + ")";
-  return device ? "available (device)" : "available (" + twin_evidence_of(lane) + ")";
+  const Backend& backend = backend_of(lane);
+  const std::string by = device && backend.has_device ? "device" : backend.evidence(lane);
+  return by.empty() ? "available" : "available (" + by + ")";
 }
 
 void expect_each_runs(const SelectedLanes& under_test) {
@@ -155,8 +149,9 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   if (needs_device && !under_test.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
-    const bool only_device = lane.is_cuda() && !lane.foreign && under_test.device && executor != Executor::both;
-    const DecideBlock on_host = only_device ? nullptr : cuda::block_on_host(lane);
+    const Backend& backend = backend_of(lane);
+    const bool only_device = backend.has_device && under_test.device && executor != Executor::both;
+    const DecideBlock on_host = only_device ? nullptr : backend.on_host(lane);
     const std::string why = why_unavailable(lane, under_test.device.get(), why_not);
     if (why.empty()) {
       under_test.lanes.push_back(&lane);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "backends/backends.h"
 #include "core/lanes/verdicts.h"
 #include "cuda/lanes/device.h"
 
@@ -30,12 +31,13 @@ struct SelectedLanes {
   std::vector<LaneLeftOut> left_out;     // of those asked for
 
   // Foreign code does not count, even if it uses a device: it runs in a process of its own.
-  bool on_device(std::size_t l) const { return device && lanes[l]->is_cuda() && !lanes[l]->foreign; }
+  bool on_device(std::size_t l) const { return device && backends::backend_of(*lanes[l]).has_device; }
   // Those that the device runs, in order.
   std::vector<const Lane*> device_lanes() const;
   // Whether the lane runs on the device and by its twin, to be compared; the device's verdicts then count.
   bool on_both(std::size_t l) const { return on_device(l) && on_host[l]; }
-  // How a CUDA lane's verdicts come about: "device", "twin, verified on …", "twin", "device and twin, …".
+  // How the lane's verdicts come about: "device", "twin, verified on …", "twin", "device and twin, …". Empty for code
+  // that this processor runs itself.
   std::string evidence(std::size_t l) const;
 };
 

@@ -109,6 +109,7 @@ std::map<std::string, int> fused_and_products(const std::string& code) {
 class KernelsUnderTolerances : public testing::TestWithParam<const char*> {};
 
 // Where ptxas contracts a kernel otherwise than the rule, its twin would be wrong: the lane must have none.
+// scripts/update_generated reads the messages, and writes twin/contracted_otherwise.inc.
 TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions) {
   if (!has_nvcc()) GTEST_SKIP() << "built without nvcc";
   const std::string variant = GetParam();
@@ -129,7 +130,9 @@ TEST_P(KernelsUnderTolerances, HaveTwinsJustWhereMachineCodeHasTheirContractions
                                     [&](const auto& row) { return row.first.find(kernel) != std::string::npos; });
       ASSERT_NE(its, built.end()) << kernel;
       const bool as_the_rule = fused_and_products(its->second) == fused_and_products(closed.at(its->first));
-      EXPECT_EQ(bool(block_on_host(lane_under(lane, policy))), as_the_rule) << lane.id << "/" << policy;
+      EXPECT_EQ(bool(block_on_host(lane_under(lane, policy))), as_the_rule)
+          << "kernel " << lane.id << '/' << std::string(policy, 3) << (as_the_rule ? " follows" : " breaks")
+          << " the rule";
       ++kernels;
     }
   }

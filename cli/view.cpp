@@ -56,11 +56,6 @@ void add_folder(const fs::path& folder, Viewed& viewed) {
   for (const fs::path& file : files) add_cases(file.string(), viewed, campaign ? 1 : reports::kMostViewedPairs);
 }
 
-bool is_mesh(const fs::path& file) {
-  const std::string extension = file.extension().string();
-  return extension == ".off" || extension == ".obj" || extension == ".stl" || extension == ".ply";
-}
-
 // Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong.
 void add_mesh(const fs::path& file, Viewed& viewed) {
   const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
@@ -133,7 +128,7 @@ Viewed viewed_of(const std::string& what, const std::string& mesh) {
   } else if (fs::is_directory(what, ignored)) {
     viewed.title = printable(what);
     add_folder(what, viewed);
-  } else if (is_mesh(what)) {
+  } else if (strata::is_mesh(what)) {
     add_mesh(what, viewed);
   } else {
     add_cases(what, viewed);
@@ -179,10 +174,9 @@ void add_view(CLI::App& app, int&) {
   command->footer("Example: graze view thesis:1:0");
   auto what = std::make_shared<std::string>(), mesh = std::make_shared<std::string>(),
        out = std::make_shared<std::string>("view.html");
-  command->add_option(
-      "WHAT", *what,
-      "File of pairs, campaign directory or folder of such files, mesh (OFF, OBJ, STL or PLY), or STRATUM:SEED:INDEX "
-      "(default: the special cases of the thesis of 2012)");
+  command->add_option("WHAT", *what,
+                      "File of pairs, campaign directory or folder of such files, mesh (" + strata::mesh_formats() +
+                          "), or STRATUM:SEED:INDEX (default: the special cases of the thesis of 2012)");
   command
       ->add_option("MESH", *mesh,
                    "Mesh whose triangles are shown against WHAT, which is then a reference triangle as for `graze "

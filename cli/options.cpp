@@ -244,7 +244,7 @@ bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth) {
 std::string cuda_evidence(const fuzz::SelectedLanes& under_test) {
   std::set<std::string> kinds;
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    if (under_test.lanes[l]->is_cuda()) kinds.insert(under_test.evidence(l));
+    if (const std::string by = under_test.evidence(l); !by.empty()) kinds.insert(by);
   }
   return fmt::format("{}", fmt::join(kinds, "; "));
 }

@@ -18,6 +18,7 @@
 #include <sstream>
 #include <thread>
 
+#include "core/lanes/verdicts.h"
 #include "core/programs/process_state.h"
 #include "core/programs/run_program.h"
 #include "core/stop.h"
@@ -89,13 +90,8 @@ struct Hostile : testing::Test {
     return pair.a[0].x < pair.b[0].x ? Verdict::intersects : Verdict::disjoint;
   }
   static std::vector<Verdict> verdicts(ForeignProcesses& subject) {
-    std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
-    subject.decide(pairs.data(), pairs.size(), yes.data(), none.data());
-    std::vector<Verdict> result;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool y = yes[i / 64] >> i % 64 & 1, n = none[i / 64] >> i % 64 & 1;
-      result.push_back(y && n ? Verdict::crashed : n ? Verdict::declined : y ? Verdict::intersects : Verdict::disjoint);
-    }
+    std::vector<Verdict> result = verdicts_of(subject, pairs);
+    for (Verdict& verdict : result) verdict = is_failure(verdict) ? Verdict::crashed : verdict;
     return result;  // crashed stands for every failure
   }
 

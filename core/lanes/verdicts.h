@@ -11,7 +11,7 @@
 
 namespace graze {
 
-// The verdict on each pair. The block is not called if there are no pairs.
+// The verdict on each pair. Does not call the block function if there are no pairs.
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs);
 
 // The verdict of that name; nothing if there is none.

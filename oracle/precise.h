@@ -73,7 +73,7 @@ struct ExactStep {
 // Requires: run is of that algorithm in that scalar.
 std::vector<ExactStep> exact_steps(int algorithm, Scalar scalar, const Pair& pair, const Trace<double>& run);
 
-// Only the outcomes of the comparisons on the path.
+// Like exact_steps, but returns only the outcomes of the comparisons on the path.
 Path exact_outcomes(int algorithm, const Pair& pair, const Path& path);
 
 }  // namespace graze::oracle

@@ -14,7 +14,7 @@
 namespace graze::fuzz {
 namespace {
 
-// Empty where something runs the lane.
+// Why the lane does not run here; empty if it does.
 std::string why_unavailable(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
   if (!lane.is_cuda())
     return runs_on_this_cpu(lane) ? "" : fmt::format("no {} instructions", info_of(lane.variant).needs);
@@ -27,7 +27,7 @@ std::string why_unavailable(const Lane& lane, const cuda::Device* device, const 
 
 std::string twin_evidence_of(const Lane& lane) { return lane.exact ? "twin, exact" : cuda::twin_evidence(lane); }
 
-// Lanes under a policy stand at the table's end; here they stand beside the others of their subject.
+// The table has lanes under a policy at its end; this moves them to the other lanes of their subject.
 void sort_by_subject(SelectedLanes& under_test) {
   std::map<const AlgorithmInfo*, std::size_t> places;
   for (const Lane* lane : under_test.lanes) places.emplace(lane->info, places.size());

@@ -132,7 +132,7 @@ TEST(Policies, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(refusal("moller_1997/f32/cpu/parallel=abs:1,parallel=abs:2"),
             forms + "\"parallel=abs:1,parallel=abs:2\": it gives parallel=abs twice; leave one out");
   EXPECT_EQ(refusal("separating_axes/f32/cpu/paper"),
-            forms + "\"paper\": the paper of separating_axes compares with zero, as the lane without a policy");
+            forms + "\"paper\": the paper of separating_axes compares with zero, like the lane without a policy");
   EXPECT_EQ(refusal("projected_sat/f32/cpu/bound"),
             forms + "\"bound\": projected_sat is wrong on some pairs without any rounding, so no bound helps it");
   EXPECT_EQ(

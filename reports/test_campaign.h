@@ -72,7 +72,7 @@ class CampaignTest : public testing::Test {
 
   static Json summary(const std::string& name) { return Json::parse(fuzz::read_whole(root_ / name / "summary.json")); }
 
-  // Stores kinds like `graze minimize`, but for the pairs as they were found.
+  // Stores kinds like `graze minimize`, but for pairs that are not minimised.
   static void store_kinds(const std::string& name) {
     fuzz::write_kinds(root_ / name, lanes(), fuzz::find_kinds(lanes(), root_ / name, summary(name)));
   }

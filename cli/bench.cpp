@@ -82,7 +82,7 @@ std::string table_of(const Bench& bench, std::size_t group) {
   return table.text(output_screen());
 }
 
-// Describes the device's limits and what the exact lane achieved.
+// Describes the device's limits and the speed of the exact lane.
 std::string shares(const Bench& bench) {
   std::string text;
   for (const char* data : {"resident", "host"}) {

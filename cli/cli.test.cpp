@@ -165,7 +165,7 @@ TEST_F(Cli, OutGoesIntoWhatStandsThere) {
     expect_error("graze " + std::string(verb), 2, {"''"});
 }
 
-// The error is never a library's message.
+// The error must be a message of Graze, never one of a library.
 TEST_F(Cli, WhatIsNoSummaryAndNoReportIsNamed) {
   expect_error("mkdir a; echo '{\"signatures\":[{}],\"spec\":{\"lanes\":5}}' > a/summary.json; graze minimize a", 1,
                {"a/summary.json"});

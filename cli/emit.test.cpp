@@ -65,7 +65,7 @@ class Emit : public testing::TestWithParam<EmitCase> {
 #endif
   }
 
-  // Whether this build contracts: it takes an optimising compiler and a processor that can.
+  // Whether this build contracts, which needs optimisation and a processor with fused multiply-adds.
   bool contracts() const {
 #ifdef NDEBUG
     return shell("graze lanes | grep -q '/cpu-fma *available'").status == 0;

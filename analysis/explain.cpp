@@ -50,7 +50,7 @@ int bits_needed(int algorithm, const oracle::Exactly& exactly, const Pair& pair,
   return !exactly.certain && bits > oracle::kMostBits / 2 ? 0 : bits;
 }
 
-// The pair's neighbours. For nudged pairs, whether their truth is the pair's must be computed.
+// The pair's neighbours. Nudged pairs may have another truth than the pair, so it is computed for each.
 struct Neighbours {
   std::vector<Pair> orders, mirrored, scalings;
   std::array<std::vector<Pair>, kCoordinates> nudged;

@@ -61,7 +61,7 @@ class Whole {
     if (!files.log.empty()) write_whole(log(), files.log);
   }
 
-  // Checks a store that opened: its missing batches were committed, and with them it is whole.
+  // Checks a store that opened: once its missing batches are committed, it must equal the whole store.
   void check(Store& store) const {
     std::size_t rows = 0;
     for (std::size_t row = 0; row < std::size(kRows); ++row) {

@@ -15,7 +15,7 @@
 
 namespace graze::analysis {
 
-// A pair of a source, by its place.
+// A pair, given by its source and its index in the source.
 struct PairPlace {
   int source = -1;
   std::uint64_t index = 0;
@@ -72,7 +72,7 @@ using DecideUnder = std::function<DecideBlock(const std::string& policy)>;
 Sweep host_sweep(DecideUnder decide, int threads = 0);
 
 // A sweep of a published lane on the host; CUDA lanes run as twins. Uses core/lanes/ladder.h if it can.
-// Throws (the sweep): UsageError for a policy that the lane cannot have.
+// The returned sweep throws UsageError for a policy that the lane cannot have.
 Sweep host_sweep(const Lane& lane, int threads = 0);
 
 // How two published lanes compare under each policy, on all pairs of the sources.
@@ -82,8 +82,8 @@ using AgreementSweep = std::function<std::vector<Agreement>(Policies policies, S
 // Requires: lanes that outlive the sweep, with a host lane or a twin under each policy.
 AgreementSweep agreement_sweep(const Lane& first, const Lane& second, int threads = 0);
 
-// On the first CUDA device. lane_of: the lane under a policy, a CUDA lane.
-// Throws (the sweep): std::runtime_error without a device.
+// A sweep on the first CUDA device. lane_of: returns the CUDA lane under a policy.
+// The returned sweep throws std::runtime_error without a device.
 Sweep device_sweep(std::function<Lane(const std::string& policy)> lane_of);
 
 }  // namespace graze::analysis

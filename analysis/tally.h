@@ -48,7 +48,7 @@ struct LaneCounts : Counts {
   friend bool operator==(const LaneCounts&, const LaneCounts&) = default;
 };
 
-// Counts of pairs and of each lane's errors, by margin bucket. Tallies add; order never matters.
+// Counts of pairs and of each lane's errors, by margin bucket. Tallies can be added in any order.
 // Another small integer of a pair (core/margin/axis.h) can stand in the bucket's place.
 class Tally {
  public:

@@ -68,7 +68,7 @@ const std::vector<Field> kPairFields = {{"pairs", pair_counts::pairs, ""},   {"d
 const std::vector<Field> kSiteFields = {
     {"asked", site_counts::asked, ""}, {"differs", site_counts::differs, ""}, {"sign", site_counts::sign, ""}};
 
-// Counts as an object; histograms as objects of the buckets that are not zero.
+// Returns the counts as a JSON object, in which a histogram is an object with its nonzero buckets.
 Json object_of(const std::vector<Field>& fields, const DiscrepancyCounts& of, int at) {
   Json object = Json::object();
   for (const Field& field : fields) {

@@ -482,7 +482,7 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
   }
 }
 
-// Adds the numbers of `some` to those at the same places of `to`. Of "largest…" fields it keeps the larger one.
+// Adds the numbers of `some` to those at the same places of `to`. Fields named "largest…" keep the larger value.
 void add(Json& to, const Json& some, const std::string& key = "") {
   if (some.is_number_float() || key.starts_with("largest")) {
     to = std::max(to.is_null() ? 0.0 : to.get<double>(), some.get<double>());

@@ -178,7 +178,7 @@ graze_subject subject_of_library(const std::string& file, const std::string& nam
   return subject;
 }
 
-// Whether this process is a copy of the worker that foreign code forked, and in which the call returned too.
+// Whether foreign code forked this process from the worker, so that its call has returned here a second time.
 bool is_copy = false;
 
 signed char answer_of(int said) {

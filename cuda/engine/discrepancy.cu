@@ -98,7 +98,7 @@ __global__ void hash_runs(const Word* values, std::uint64_t stride, const Record
   if (i < count) hashes[i] = run_hash(values + i, stride, paths[i], two_values);
 }
 
-// The lane whose kernels give the lane's values.
+// The CUDA lane whose kernels compute this lane's values.
 const Lane& on_device(const Lane& lane) { return lane.is_cuda() ? lane : *counterpart(lane, Variant::cuda_nofma); }
 
 // The set of questions about two values, one bit for each question.

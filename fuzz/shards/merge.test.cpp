@@ -120,7 +120,7 @@ TEST_F(MergeTest, APartialMergeIsACampaignToGoOnWith) {
   expect_same_bytes("whole", "partial");
 }
 
-// The folder beside the target may have been left by a killed merge. Anything else of its name stays.
+// The folder beside the target may have been left by a killed merge. Other files and folders of that name stay.
 TEST_F(MergeTest, OnlyWhatAKilledMergeLeftIsReplaced) {
   const std::vector<fs::path> parts = run_shards(2);
   const fs::path out = root_ / "all", beside = out.string() + kPart, other = root_ / "other";

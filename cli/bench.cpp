@@ -177,7 +177,7 @@ void add_bench(CLI::App& app, int& status) {
       ->option_text("N,…");
   command
       ->add_option("--mesh", options->mesh,
-                   "Mesh whose triangles are tested too, against the one halfway through the file")
+                   "Mesh to test as well: all its triangles against the middle one of the file")
       ->check(not_empty())
       ->option_text("FILE");
   command

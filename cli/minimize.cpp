@@ -75,7 +75,7 @@ void print(const fuzz::MinimisedCase& found, const std::string& name) {
                         reports::grouped(found.result.single_moves))
       : fuzz::can_shrink(found.failure) ? fmt::format("perhaps not 1-minimal: stopped after {} moves",
                                                       reports::grouped(fuzz::most_moved(found.failure)))
-                                        : "not shrunk: a lane takes all of its time, or changes its verdict";
+                                        : "not shrunk: a lane times out, or its verdict changes";
   std::cout << fmt::format(
       "  signature: {}\n  magnitudes other than 0 and 1: {}, before {}\n"
       "  cause: {}, as before\n"

@@ -54,7 +54,7 @@ Exactly decide_exactly(int algorithm, const Pair& pair);
 // Requires: bits as found by decide_exactly.
 Verdict decide_exactly_but(int algorithm, Scalar scalar, const Pair& pair, int bits, Limits limits);
 
-// A number of a lane and the number that it should be.
+// A lane's number and its exact value.
 struct Beside {
   double lane;
   double exact;         // rounded; may be 0 or infinite even if `decimal` is neither

@@ -37,7 +37,7 @@ Pair apart(float scale) {
   return pair;
 }
 
-// A vertex of b at 2^-k of the size from the inside of a; b stands upright on it.
+// b stands upright above a; its lowest vertex is 2^-k of the size away from a's interior.
 Pair above(int k, float scale) {
   const float gap = std::ldexp(1.0f, -k);
   Pair pair{{{0, 0, 0}, {3, 0, 1}, {0, 3, 1}}, {{0.75f, 0.75f, 0.5f + gap}, {1, 2, 4}, {2, 1, 4}}};

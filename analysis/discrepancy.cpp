@@ -209,7 +209,7 @@ namespace {
 
 bool is_rounded(const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; }
 
-// Compares on a device.   Returns: false if it cannot, or if the host's values are others than the device's.
+// Compares on a device.   Returns: false if it cannot, or if the host's values differ from the device's.
 bool compare_on_device(const LanesCompared& lanes, const strata::PairSource& source, DiscrepancyCounts& to) {
   const Lane &first = *lanes.first, &second = *lanes.second;
   if (!cuda::records_on_device(first) || !cuda::records_on_device(second)) return false;

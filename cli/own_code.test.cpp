@@ -243,7 +243,7 @@ TEST_F(OwnCodeTest, FailAboveFailsWithTheSmallestCase) {
   EXPECT_NE(repro.out.find("own/f32"), std::string::npos) << repro.out << repro.err;
   EXPECT_NE(repro.out.find("!"), std::string::npos) << repro.out;
   expect_done(fuzz + "400");  // moller is wrong too, but was not requested
-  // The smallest case is the smallest of all minimised ones, not that of the smallest kept pair; it is in the file.
+  // The file has the smallest of all minimised cases, which need not come from the smallest kept pair.
   const auto pairs_of = [&](const std::string& command) {
     shell(command + " > some.pairs");
     std::vector<fuzz::Simplicity> found;

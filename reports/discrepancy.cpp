@@ -22,7 +22,7 @@ using analysis::DiscrepancySpec;
 using analysis::LanesCompared;
 using Json = nlohmann::ordered_json;
 
-// A count's name and place. `bucket`: of a histogram; empty for a single count.
+// A count's name and place. bucket: the bucket's name if the count belongs to a histogram, else empty.
 struct Field {
   std::string name;
   int at;
@@ -68,7 +68,7 @@ const std::vector<Field> kPairFields = {{"pairs", pair_counts::pairs, ""},   {"d
 const std::vector<Field> kSiteFields = {
     {"asked", site_counts::asked, ""}, {"differs", site_counts::differs, ""}, {"sign", site_counts::sign, ""}};
 
-// Counts as an object; histograms as objects of the buckets that are not zero.
+// Returns the counts as a JSON object, in which a histogram is an object with its nonzero buckets.
 Json object_of(const std::vector<Field>& fields, const DiscrepancyCounts& of, int at) {
   Json object = Json::object();
   for (const Field& field : fields) {
@@ -119,7 +119,7 @@ std::string share_words(std::uint64_t part, std::uint64_t whole) {
   return rate_words(whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole));
 }
 
-// The sum of both values' counts of different values in each octave.
+// The number of differing values in each octave of their distance, over both values of the question.
 std::vector<std::uint64_t> octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
   using namespace value_counts;
   std::vector<std::uint64_t> octaves(kOctaves);
@@ -133,7 +133,7 @@ std::vector<std::uint64_t> octaves_of(const DiscrepancyCounts& of, int question,
   return octaves;
 }
 
-// The most ulps of the smallest share of differing values, "1", "≤ 63"; "-" if none differs.
+// The quantile of the distances in ulps for this share of the differing values: "1", "≤ 63"; "-" if none differs.
 std::string quantile(std::span<const std::uint64_t> octaves, double share) {
   std::uint64_t all = 0, so_far = 0;
   for (const std::uint64_t count : octaves) all += count;
@@ -157,7 +157,7 @@ std::string line_of(const cuda::SourceLine& line) {
   return *line.file == '\0' ? "" : fmt::format("{}:{}", line.file, line.line);
 }
 
-// The lines in the order of what they decide: verdicts, then values.
+// The lines sorted by the number of verdicts that they change, then by that of values.
 std::vector<const analysis::FusedLine*> by_weight(const analysis::Origins& origins) {
   std::vector<const analysis::FusedLine*> lines;
   for (const analysis::FusedLine& line : origins.lines) lines.push_back(&line);
@@ -181,8 +181,8 @@ std::string origins_table(const analysis::Origins& origins, const Screen& screen
   }
   return wrapped(
              fmt::format("Contraction changes the verdict on {} of {} pairs that were examined. Source lines whose "
-                         "products are fused, by what each does (values, verdicts alone: that change if it alone is "
-                         "fused; verdicts fixed: changed ones that return if it alone is not fused):",
+                         "products are fused, by their effect (values, verdicts alone: those that change if only this "
+                         "line is fused; verdicts fixed: changed verdicts that return if only this line is not fused):",
                          grouped(origins.verdicts), grouped(origins.pairs)),
              screen.columns) +
          table.text(screen);

@@ -44,7 +44,7 @@ std::string cell(const std::string& text, const char* kind = "number") {
 // The exponent of a bucket's name, "2^-3".
 int exponent(const std::string& bucket) { return std::stoi(bucket.substr(2)); }
 
-// The sum of a histogram over all values of all questions.
+// Adds up a histogram over all values of all questions.
 std::map<std::string, std::uint64_t> summed(const Json& of, const char* histogram) {
   std::map<std::string, std::uint64_t> sums;
   for (const Json& question : of.at("questions")) {
@@ -84,7 +84,7 @@ std::string extreme(const std::vector<const Json*>& lanes, const char* count, bo
 }
 
 std::string shares_sentence(const std::vector<const Json*>& lanes, std::uint64_t same) {
-  if (lanes.empty()) return "No value that a comparison sees differs in any bit, in none of the pairs of lanes.";
+  if (lanes.empty()) return "In every pair of lanes, all values that a comparison sees have the same bits.";
   if (lanes.size() == 1 && same == 0) {
     const Json& total = lanes[0]->at("total");
     const std::uint64_t pairs = number(total, "pairs");
@@ -152,8 +152,7 @@ std::string nearer_sentence(const std::vector<const Json*>& lanes) {
   if (all == 0) return "No lane is nearer to the exact values: none differ.";
   return fmt::format(
       "Of {} values that differ, the second lane's is nearer to the exact one in {}, the first lane's in {}; {} are "
-      "equally "
-      "near, and of {} the certified bounds do not tell.",
+      "equally near, and for {} the certified bounds do not tell.",
       grouped(all), rate_words(share(second, all)), rate_words(share(first, all)), grouped(equal), grouped(unknown));
 }
 
@@ -183,11 +182,11 @@ std::string band_sentence(const std::vector<const Json*>& lanes) {
   return fmt::format(
       "A sign differs only where both sizes are at most {} bounds of the value's rounding error ({}). In {} "
       "comparisons "
-      "none was farther from zero{}; at 95 % confidence the rate of such is under {}.",
+      "none was farther from zero{}; at 95 % confidence such comparisons are rarer than {}.",
       up(widest), where, grouped(asked),
-      beyond_range == 0 ? ""
-                        : fmt::format(", but for {} beyond the range of the exponents, where there is no bound",
-                                      grouped(beyond_range)),
+      beyond_range == 0
+          ? ""
+          : fmt::format(", except for {} beyond the exponent range, which have no bound", grouped(beyond_range)),
       up(analysis::upper_bound(0, asked)));
 }
 
@@ -201,8 +200,7 @@ std::string mending_sentence(const Json& json) {
     others += number(of.at("total"), "differs");
   }
   if (lanes == 0)
-    return "What mends it was not measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
-           "--agree`.";
+    return "No remedy was measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune --agree`.";
   if (others > 0)
     return fmt::format("-fmad=false does not mend it: {} of {} pairs still differ.", grouped(others), grouped(pairs));
   return fmt::format(
@@ -369,8 +367,9 @@ std::string lines_table(const Json& origins) {
             cell(grouped(number(line, "verdicts_alone"))) + cell(grouped(number(line, "verdicts_fixed"))) + "</tr>\n";
   }
   text +=
-      "</table></div>\n<p>How much one rounding at the line where a value starts to differ moves it until it is "
-      "compared; it grows where terms cancel:</p>\n<div class=\"wide\"><table><tr><th>value</th><th>first line, "
+      "</table></div>\n<p>A value starts to differ by one rounding at some line. The table shows how far it has moved "
+      "when it is compared; it moves further where terms cancel:</p>\n<div "
+      "class=\"wide\"><table><tr><th>value</th><th>first line, "
       "most often</th><th>median</th><th>99 %</th><th>largest</th></tr>\n";
   for (const Json& start : origins.at("starts")) {
     std::map<int, std::uint64_t> growth;
@@ -430,7 +429,7 @@ void expect(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error("impossible counts: " + what);
 }
 
-// Each of these keys is at most the one before.
+// Checks that the count of each key is at most that of the key before it.
 void expect_falling(const Json& of, std::initializer_list<const char*> keys, const std::string& what) {
   const char* before = nullptr;
   for (const char* key : keys) {
@@ -450,14 +449,14 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
   expect_falling(of, {"pairs", "sign", "outcome", "verdict"}, what);
   expect_falling(of, {"outcome", "choice"}, what);
   expect(number(of, "sign") <= number(of, "differs") + number(of, "choice"),
-         what + ": more signs than values and choices");
+         what + ": more signs differ than values and choices");
   for (const Json& unlike : of.at("unlike"))
     expect(unlike.get<std::uint64_t>() <= number(of, "pairs"), what + ": unlike");
   for (const auto& [site, counts] : of.at("sites").items()) {
     expect_falling(counts, {"asked", "differs", "sign"}, what + ", " + site);
     expect(number(counts, "asked") <= number(of, "pairs"), what + ": more pairs at " + site);
   }
-  expect(of.at("questions").size() == questions.size(), what + ": other questions than the algorithm's");
+  expect(of.at("questions").size() == questions.size(), what + ": its questions are not those of the algorithm");
   for (std::size_t q = 0; q < questions.size(); ++q) {
     const Json& question = of.at("questions").at(q);
     const std::string place = what + ", " + questions[q].name;
@@ -465,7 +464,7 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
     expect(number(question, "asked") <= number(of, "pairs"), place + ": asked of more pairs");
     expect_falling(question, {"asked", "differs", "sign", "outcome", "verdict"}, place);
     expect_falling(question, {"sign", "zero_on_one_side"}, place);
-    expect(sum_of(question.at("band")) == number(question, "sign"), place + ": the band does not add up");
+    expect(sum_of(question.at("band")) == number(question, "sign"), place + ": the counts of the band do not add up");
     for (const char* largest : {"largest_in_bounds", "largest_length"})
       expect(question.at(largest).get<double>() >= 0, place + ": " + largest);
     expect(question.at("values").size() == questions[q].of.size(), place + ": other values");
@@ -475,15 +474,15 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
       expect(equal + number(value, "zero_sign") + number(value, "not_finite") + sum_of(value.at("below")) +
                      sum_of(value.at("above")) ==
                  compared,
-             place + ": the differences do not add up");
+             place + ": the counts of differences do not add up");
       for (const char* errors : {"first_error", "second_error"})
         expect(sum_of(value.at(errors)) == compared, place + ": " + errors + " does not add up");
-      expect(sum_of(value.at("nearer")) == compared - equal, place + ": nearer does not add up");
+      expect(sum_of(value.at("nearer")) == compared - equal, place + ": the counts of nearer values do not add up");
     }
   }
 }
 
-// The sum of numbers at the same places; largest ones stay the largest.
+// Adds the numbers of `some` to those at the same places of `to`. Fields named "largest…" keep the larger value.
 void add(Json& to, const Json& some, const std::string& key = "") {
   if (some.is_number_float() || key.starts_with("largest")) {
     to = std::max(to.is_null() ? 0.0 : to.get<double>(), some.get<double>());

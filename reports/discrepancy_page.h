@@ -9,12 +9,13 @@
 
 namespace graze::reports {
 
-// What share of values and of verdicts differs, where that starts, who is nearer to exact, how near to zero it matters,
-// and what mends it. What the results do not tell is named.   json: discrepancy.json.
+// Sentences about the discrepancies: how many values and verdicts differ, where that starts, which lane is nearer to
+// the exact values, how near to zero it matters, and the remedy. They also name open questions.   json:
+// discrepancy.json.
 std::vector<std::string> discrepancy_answer(const nlohmann::ordered_json& json);
 
-// Throws: std::runtime_error for counts that cannot be: parts larger than the whole, histograms that do not add up, a
-// total that is not that of the strata.   json: discrepancy.json.
+// Throws: std::runtime_error for impossible counts: parts larger than the whole, or sums that do not agree.   json:
+// discrepancy.json.
 void expect_possible_discrepancy(const nlohmann::ordered_json& json);
 
 // A self-contained HTML page.   json: discrepancy.json.

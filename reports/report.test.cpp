@@ -163,7 +163,7 @@ TEST_F(ReportTest, ComparesTwoCampaigns) {
   EXPECT_EQ(compare["headline"], fmt::format("Nothing changed: none of {} rates, and no kind of failure came or went.",
                                              report["rates"].size()));
   EXPECT_EQ(compare["differences"], Json::array({"They differ in seed: 3 before, 4 after."}));
-  // An algorithm that is wrong on everything, and one whose failures are gone.
+  // One algorithm is wrong on everything, and another has lost all its failures.
   Json worse = before, without = Json::array();
   for (Json& row : worse["rates"]) row["wrong"] = to_json(share_of(row["wrong"]["of"], row["wrong"]["of"]));
   for (const Json& kind : kinds_before) {
@@ -362,7 +362,7 @@ TEST_F(ReportTest, FilesOfOtherShapesAndImpossibleCountsAreRefused) {
   fs::remove_all(root_ / "forged");
 }
 
-// Counts again what docs/formats.md says of thresholds.csv.
+// Computes the thresholds again from the definition in docs/formats.md.
 TEST_F(ReportTest, ThresholdsAreWhereTheSummarysErrorsEnd) {
   const Json report = make_report(root_ / "one"), strata = summary("one")["strata"];
   std::string csv;

@@ -75,7 +75,7 @@ class CampaignTest : public testing::Test {
 
   static Json summary(const std::string& name) { return Json::parse(fuzz::read_whole(root_ / name / "summary.json")); }
 
-  // Stores kinds like `graze minimize`, but for the pairs as they were found.
+  // Stores kinds like `graze minimize`, but for pairs that are not minimised.
   static void store_kinds(const std::string& name, const std::vector<std::string>& patterns = kLanes) {
     const fuzz::SelectedLanes under_test = lanes(patterns);
     fuzz::write_kinds(root_ / name, under_test, fuzz::find_kinds(under_test, root_ / name, summary(name)));

@@ -125,7 +125,7 @@ bool hide_control_groups() {
   return true;
 }
 
-// In the new namespace, where that can be. In a chroot it cannot: what is mounted there would be seen outside.
+// In the new namespace: makes the folder read-only. Not in a chroot, where the mount would be visible outside.
 void make_read_only(const std::string& given) {
   std::error_code none;
   const std::string folder = fs::canonical(given, none), here = fs::current_path(none);
@@ -163,7 +163,7 @@ bool limit_shared_memory(std::uint64_t bytes) {
 constexpr int kMostTasks = 1024;
 
 // Since Linux 6.14 a process namespace has its own pid_max; before, it applied to the whole machine. Root has no other
-// limit. A user has a limit for all tasks in a user namespace.
+// limit of tasks. A user has a limit for all tasks in a user namespace.
 void limit_tasks() {
   utsname system{};
   int major = 0, minor = 0;
@@ -318,7 +318,8 @@ bool end_children(pid_t except) {
 
 namespace {
 
-// Of one table of system calls. A filter reads numbers and arguments, so calls that hide theirs in memory are missing.
+// The numbers of these calls in one table of system calls. A filter only sees numbers and arguments, so calls with
+// their arguments in memory are not listed.
 struct Calls {
   std::uint32_t prlimit, clone, clone3;
   // memfd_create, memfd_secret, io_uring_setup: memory that no limit counts. bpf, perf_event_open: these reach other

@@ -10,13 +10,13 @@
 
 namespace graze::subjects {
 
-// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. Where
-// the supervisor does not end within 6 s after graze closed its end of `control`, the guardian kills it. Returns
-// in the supervisor: process 1 of a namespace of its own, in which foreign code sees and signals only its own
-// processes, has only shared memory of its own and no control groups, and which the system ends with it. Where no
-// namespace can be had, returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of
-// memory that is shared by name. read_only: a folder that cannot be written to or moved in the namespace; empty for
-// none. Requires: one thread.
+// The calling process becomes the supervisor's guardian: it waits until the supervisor ends, and ends as well. If the
+// supervisor does not end within 6 s after graze closed its end of `control`, the guardian kills it. Returns in the
+// supervisor, which is process 1 of a new namespace. There, foreign code sees and signals only its own processes, and
+// has its own shared memory and no control groups. The system ends the namespace with the supervisor. If no namespace
+// is possible, returns in the calling process, as a subreaper. namespaces: whether to try. shared_bytes: of memory that
+// is shared by name. read_only: a folder that cannot be written to or moved in the namespace; empty for none. Requires:
+// one thread.
 void enter_containment(bool namespaces, std::uint64_t shared_bytes, int control, const std::string& read_only = "");
 
 // A descriptor that becomes readable when the process ends; -1 when there is no such process.

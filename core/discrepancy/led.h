@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs an algorithm on certified numbers down the path that a lane's recorded run took. So each of its values is what
-// the lane would have had without rounding, with every comparison and every choice as the lane made it.
+// Runs an algorithm on certified numbers down the path that a lane's recorded run took. Its values are those that the
+// lane would have without rounding, if all its comparisons and choices stayed the same.
 #pragma once
 
 #include "core/algorithms/recording.h"
@@ -9,8 +9,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// What a run shares: how far the least or greatest of several numbers may be from the true one, because their order is
-// in doubt. It adds to the bound of every later value.
+// Data of a whole run. If the order of some numbers is in doubt, `doubt` bounds the error of their least or greatest.
+// It adds to the bound of every later value.
 struct LedRun {
   double doubt = 0;
 };
@@ -65,7 +65,7 @@ struct Led {
 
  private:
   // Values that the lane did not record are compared exactly: the least of several distances, for example. If their
-  // order is in doubt, the wrong one is off by at most what separates them.
+  // order is in doubt, the wrong choice is off by at most their distance.
   template <class Comparison>
   GRAZE_HD static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);

@@ -12,6 +12,7 @@
 #include <bit>
 
 #include "analysis/sweep.h"
+#include "backends/backends.h"
 #include "core/discrepancy/count.h"
 #include "core/error.h"
 #include "core/lanes/verdicts.h"
@@ -71,7 +72,7 @@ struct Kept {
 
 // Pairs on which the lane's own verdict is not the recorded one.
 std::uint64_t unlike(const Lane& lane, std::span<const Pair> pairs, const Kept& kept) {
-  const std::vector<Verdict> verdicts = verdicts_of(cuda::block_on_host(lane), pairs);
+  const std::vector<Verdict> verdicts = verdicts_of(backends::on_host(lane), pairs);
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i)
     count += is_finite(pairs[i]) && verdicts[i] != recorded_verdict(kept.paths[i].path);
@@ -184,7 +185,7 @@ std::string why_not_compared(const Lane& l, const Lane& r) {
     if (!record_on_host(*lane))
       return lane->id + " does not record its values: " +
              (lane->under ? "it has a policy" : "it has neither a host lane nor a twin in this build");
-    if (!lane->is_cuda() && !runs_on_this_cpu(*lane)) return lane->id + " does not run on this processor";
+    if (!backends::why_not_on_host(*lane).empty()) return lane->id + " does not run on this processor";
   }
   return "";
 }
@@ -208,12 +209,13 @@ namespace {
 
 bool is_rounded(const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; }
 
-// Compares on a device.   Returns: false if it cannot, or if the host's values are others than the device's.
+// Compares on a device.   Returns: false if it cannot, or if the host's values differ from the device's.
 bool compare_on_device(const LanesCompared& lanes, const strata::PairSource& source, DiscrepancyCounts& to) {
   const Lane &first = *lanes.first, &second = *lanes.second;
   if (!cuda::records_on_device(first) || !cuda::records_on_device(second)) return false;
-  if (is_rounded(first) && is_rounded(second) && first.is_cuda() != second.is_cuda()) {
-    const Lane &host = first.is_cuda() ? second : first, &device = first.is_cuda() ? first : second;
+  const bool has_first = backends::backend_of(first).has_device, has_second = backends::backend_of(second).has_device;
+  if (is_rounded(first) && is_rounded(second) && has_first != has_second) {
+    const Lane &host = has_first ? second : first, &device = has_first ? first : second;
     if (cuda::count_different_runs(host, device, source) > 0) return false;
   }
   cuda::count_discrepancies(first, second, source, {to.counts, to.maxima, to.unlike});

@@ -106,8 +106,8 @@ TEST(Discrepancy, EveryQuestionIsListedWithItsSiteAndIsAsked) {
   }
 }
 
-// The published algorithms without contraction give the same bits on every processor: this is the claim that a device
-// run with the kernels of cuda-nofma stands for a host lane.
+// Without contraction, the published algorithms give the same bits on every processor. So the kernels of cuda-nofma may
+// run on a device in place of a host lane.
 TEST(Discrepancy, WithoutContractionNoBitDiffers) {
   const std::vector<LanesCompared> lanes = published(Variant::cpu, Variant::cuda_nofma);
   ASSERT_EQ(lanes.size(), 2u * kAlgorithmCount);
@@ -131,8 +131,8 @@ TEST(Discrepancy, WithoutContractionNoBitDiffers) {
 }
 
 // Measured by hand on 10^6 pairs of the thesis: some signed distance differs on 59.7 % of the pairs, its sign on 1 in
-// 532 and the verdict on 1 in 3,330. That was of all six distances, of which the algorithm computes the last three only
-// if the first three do not separate; here they are the first three of the pair with its triangles swapped.
+// 532 and the verdict on 1 in 3,330. Those figures cover all six distances, but the algorithm computes the last three
+// only if the first three do not separate. So this test takes the last three from the pair with its triangles swapped.
 TEST(Discrepancy, FindsTheSharesThatWereMeasuredByHand) {
   const LanesCompared lanes{lane("interval_overlap/f32/cpu"), lane("interval_overlap/f32/cuda-fma")};
   const strata::PairSource source = strata::stratum_sources(2012, 200'000, {"thesis"})[0];
@@ -238,7 +238,7 @@ TEST(Discrepancy, IsTheSameForAnyNumberOfThreadsAndInParts) {
   EXPECT_EQ(sum, one[2][0]);
 }
 
-// Keeps the places of what is counted.
+// A sink that keeps the indices of everything counted.
 struct Places {
   std::vector<int> added;
   std::vector<double> largest;
@@ -276,7 +276,8 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
               return value.question == question && value.which == which;
             });
             ASSERT_NE(certified, runs.values.end());
-            // Of several values MPFR follows the one that the lane took for the least; the counts want the least.
+            // If several values are compared for the least, MPFR follows the one that the lane chose; the counts take
+            // the true least.
             const bool other =
                 std::fabs(certified->unrounded->exact.hi - beside.exact) > 1e-12 * std::fabs(beside.exact);
             const bool subnormal = std::fabs(beside.exact) < (first->scalar == Scalar::f32 ? 0x1p-126 : 0x1p-1022);
@@ -453,7 +454,7 @@ TEST(Discrepancy, VerdictsAloneAreThoseOfTheLanes) {
   }
 }
 
-// A lane whose one value is off by an ulp is found at that value, with its side and its band.
+// If one value of a lane is off by an ulp, the counts show that value, the sign of the difference and its band.
 TEST(Discrepancy, FindsAPlantedUlp) {
   const Pair pair{{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}}, {{0.25f, 0.25f, 1}, {0.25f, 0.25f, 2}, {1, 1, 2}}};
   const Lane& of = lane("moller_1997/f32/cpu");
@@ -487,7 +488,7 @@ TEST(Discrepancy, FindsAPlantedUlp) {
   EXPECT_LT(places.largest[0], 1e-30);
 }
 
-// A run with one fused line is a lane whose one operation rounds otherwise: its values are found at that line.
+// In a run with one fused line, only that line rounds differently, so every difference must start there.
 TEST(Discrepancy, OriginsFindTheLineThatWasPlanted) {
   const Lane& of = lane("moller_1997/f32/cuda-fma");
   const auto simpler = [](const Pair&, const Pair&) { return false; };

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "backends/backends.h"
 #include "cuda/lanes/trace.h"
 #include "cuda/twin/twin.h"
 
@@ -29,7 +30,7 @@ Trace<double> run_in(int algorithm, const Pair& pair, Contraction rule, const Pa
   return run_traced<Real>(algorithm, pair, lead);
 }
 
-// How sure it is that the run of a contracting lane is the lane's own.
+// The evidence that this run of a contracted lane is the lane's own.
 Evidence evidence(const Lane& lane, const Pair& pair, const Trace<double>& run) {
   if (run.verdict != decide_lane(lane, pair)) return Evidence::none;
   const cuda::TraceBlock twin = cuda::twin_trace(lane);
@@ -71,7 +72,7 @@ Replay replay(const Lane& lane, const Pair& pair) {
 }
 
 DecideBlock block_of(const Lane& lane) {
-  const DecideBlock block = cuda::block_on_host(lane);
+  const DecideBlock block = backends::on_host(lane);
   if (!block) throw std::invalid_argument(lane.id + ": expected a host lane or a twin");
   return block;
 }

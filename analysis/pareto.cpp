@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/lanes/verdicts.h"
+
 namespace graze::analysis {
 namespace {
 
@@ -14,7 +16,7 @@ Pair moved(const Pair& pair, Extreme extreme, int k) {
   float size = 0;
   for (int c = 0; c < kCoordinates; ++c)
     size = std::max(size, std::fabs(coordinates(pair)[c] - coordinates(pair)[c % 3]));
-  // A multiple of the size's power of two, so that what is lost is lost by rounding the sum alone.
+  // A power of two, so only the addition below rounds.
   const float offset = size > 0 && std::isfinite(size) ? std::ldexp(1.0f, std::ilogb(size) + k) : 0;
   for (int c = 0; c < kCoordinates; ++c) {
     float& x = coordinates(result)[c];
@@ -44,9 +46,9 @@ std::string_view name(Extreme extreme) {
 }
 
 double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs) {
-  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
+  VerdictBits bits;
   const auto start = std::chrono::steady_clock::now();
-  lane(pairs.data(), pairs.size(), intersects.data(), declined.data());
+  decide(lane, pairs, bits);
   const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
   return taken.count() / static_cast<double>(pairs.size());
 }

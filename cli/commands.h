@@ -14,32 +14,11 @@
 
 namespace graze::cli {
 
-void add_fuzz(CLI::App& app, int& status);
-void add_merge(CLI::App& app, int& status);
-void add_status(CLI::App& app, int& status);
-void add_plan(CLI::App& app, int& status);
-void add_hunt(CLI::App& app, int& status);
-void add_check(CLI::App& app, int& status);
-void add_repro(CLI::App& app, int& status);
-void add_minimize(CLI::App& app, int& status);
-void add_corpus(CLI::App& app, int& status);
-void add_explain(CLI::App& app, int& status);
-void add_failures(CLI::App& app, int& status);
-void add_league(CLI::App& app, int& status);
-void add_map(CLI::App& app, int& status);
-void add_dump(CLI::App& app, int& status);
-void add_report(CLI::App& app, int& status);
-void add_scene(CLI::App& app, int& status);
-void add_lanes(CLI::App& app, int& status);
-void add_discrepancy(CLI::App& app, int& status);
-void add_invariants(CLI::App& app, int& status);
-void add_strata(CLI::App& app, int& status);
-void add_pareto(CLI::App& app, int& status);
-void add_tune(CLI::App& app, int& status);
-void add_prove_twin(CLI::App& app, int& status);
-void add_view(CLI::App& app, int& status);
-void add_query(CLI::App& app, int& status);
-void add_bench(CLI::App& app, int& status);
+#define GRAZE_TASK(name)
+#define GRAZE_VERB(name, build) void add_##name(CLI::App& app, int& status);
+#include "cli/verbs.inc"
+#undef GRAZE_VERB
+#undef GRAZE_TASK
 
 // --lanes, --subject and --executor of every verb that runs lanes. Verbs that replace devices by twins have no
 // --executor.
@@ -70,10 +49,10 @@ void open_subjects_of(const std::filesystem::path& name);
 fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesystem::path& about = {},
                                    bool require_device = false);
 
-// Throws: UsageError for a name that no published lane without a policy has.
+// Throws: UsageError unless the name is that of a published lane without a policy.
 const Lane& published_lane(const std::string& id);
 
-// The pairs of a campaign, drawn or read again.
+// The pairs of a campaign: strata are drawn again, meshes read again.
 struct CampaignPairs {
   std::uint64_t seed = 1;
   std::vector<strata::PairSource> sources;
@@ -128,7 +107,7 @@ CLI::Option* add_threads_option(CLI::App& command, int& threads);
 // Accepts a number within these bounds; rejects NaN.
 CLI::Validator number(double least, double most);
 
-// Throws: UsageError for a file name that is not UTF-8, because results, which are UTF-8, could not record it.
+// Throws: UsageError for a file name that is not UTF-8, because results are UTF-8 and could not record it.
 void expect_utf8(const std::string& what, const std::string& file);
 
 // Rejects empty text, which names no file.

@@ -47,7 +47,8 @@ DecideBlock on_host(const Lane& lane) {
   return selected.on_host.at(0);
 }
 
-// Those that the user named; without any, `cpu` against both CUDA builds of each algorithm and scalar.
+// The pairs of lanes that the user named. By default `cpu` is compared with both CUDA builds, for each algorithm and
+// scalar.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;
@@ -76,7 +77,8 @@ bool is_simpler(const Pair& l, const Pair& r) { return fuzz::simplicity(l) < fuz
 
 constexpr std::uint64_t kOriginPairs = 40'000;  // shared by the sources
 
-// Where the values start to differ, of each comparison of a contracted CUDA lane with one that rounds every operation.
+// Finds where the values start to differ, for each comparison of a contracted CUDA lane with a lane that rounds every
+// operation.
 std::vector<std::optional<analysis::Origins>> origins_of(const analysis::DiscrepancySpec& spec) {
   const auto is_rounded = [](const Lane& lane) { return info_of(lane.variant).arithmetic == Arithmetic::rounded; };
   std::vector<std::optional<analysis::Origins>> origins;
@@ -90,7 +92,7 @@ std::vector<std::optional<analysis::Origins>> origins_of(const analysis::Discrep
   return origins;
 }
 
-// A file of this verb, or the folder that it is in.
+// Reads a result of this verb. name: the file, or its folder.
 fuzz::Json results_of(const std::string& name) {
   const std::filesystem::path file = std::filesystem::is_directory(name)
                                          ? std::filesystem::path(name) / "discrepancy.json"
@@ -105,7 +107,7 @@ int compare(const std::vector<std::string>& names) {
   const fuzz::Json before = results_of(names[0]), after = results_of(names[1]);
   for (const char* spec : {"pairs", "seed", "scene"}) {
     if (before.value(spec, fuzz::Json()) != after.value(spec, fuzz::Json()))
-      throw UsageError(fmt::format("{} and {} are of other pairs: their {} differ", names[0], names[1], spec));
+      throw UsageError(fmt::format("{} and {} do not have the same pairs: their {} differ", names[0], names[1], spec));
   }
   fmt::print("{}", reports::discrepancy_changes(before, after, output_screen()));
   return 0;

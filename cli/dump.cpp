@@ -108,8 +108,8 @@ analysis::LanesCompared compared_lanes(const std::vector<std::string>& ids) {
   return {published_lane(ids[0]), published_lane(ids[1])};
 }
 
-// A row for each pair, with both verdicts and choices, and one for each value that a comparison of both lanes or of one
-// sees, as hexadecimal numbers. Rows of pairs have no question.
+// Writes a row for each pair, with both verdicts and choices and no question, and a row for each value that at least
+// one lane compares. Numbers are hexadecimal.
 void dump_values(const DumpOptions& options) {
   const analysis::LanesCompared lanes = compared_lanes(options.values);
   const std::vector<Question>& questions = questions_of(lanes.first->algorithm);

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze lanes` and `graze strata`: print the tables of lanes and strata from the code.
+// `graze lanes`: prints the table of lanes from the code.
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "cli/commands.h"
 #include "cli/screen.h"
-#include "strata/strata.h"
 
 namespace graze::cli {
 namespace {
@@ -58,10 +55,11 @@ void print_lanes(bool json, const std::vector<std::string>& globs) {
   }
   if (json) fmt::print("{}\n", rows.dump(1));
   if (!twins.empty()) {
-    fmt::print("\n{}", reports::wrapped(fmt::format("CUDA lanes run by their twins, on the CPU, for there is no device "
-                                                    "({}). Twins are: {}.",
-                                                    why_no_device, fmt::join(twins, "; or ")),
-                                        screen.columns));
+    fmt::print("\n{}",
+               reports::wrapped(fmt::format("CUDA lanes run by their twins, on the CPU, because there is no device "
+                                            "({}). Twins are: {}.",
+                                            why_no_device, fmt::join(twins, "; or ")),
+                                screen.columns));
   }
   if (!json) fmt::print("\nNext: graze fuzz --lanes '*/f32/cpu'\n");
 }
@@ -80,18 +78,6 @@ void add_lanes(CLI::App& app, int&) {
   command->callback([json, lanes] {
     open_subjects(*lanes);
     print_lanes(*json, lanes->globs);
-  });
-}
-
-void add_strata(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("strata", "List the strata: the named generators of pairs");
-  command->footer("Example: graze strata");
-  command->callback([] {
-    // One line each, for programs that read the list.
-    const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
-    for (const strata::StratumInfo& row : strata::kStrata)
-      fmt::print("{}", reports::wrapped(fmt::format("{:<20} {}", row.id, row.what), columns, 0, 21));
-    fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
   });
 }
 

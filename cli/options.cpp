@@ -208,6 +208,14 @@ fuzz::SelectedLanes selected_lanes(const LaneOptions& options, const std::filesy
   if (!about.empty()) open_subjects_of(about);
   fuzz::SelectedLanes under_test = fuzz::select_lanes(options.globs, options.executor, require_device);
   fuzz::expect_each_runs(under_test);
+  for (const std::string& text : options.subjects) {
+    const std::string subject = subjects::parse_subject(text).name + '/';
+    const auto is_of = [&](const std::string& lane) { return lane.starts_with(subject); };
+    if (std::none_of(under_test.lanes.begin(), under_test.lanes.end(), [&](auto* lane) { return is_of(lane->id); }) &&
+        std::none_of(under_test.left_out.begin(), under_test.left_out.end(), [&](auto& row) { return is_of(row.id); }))
+      throw UsageError(fmt::format("--subject {0}: --lanes has no lane of it; add '{0}/*' there",
+                                   subject.substr(0, subject.size() - 1)));
+  }
   say_left_out(under_test.left_out);
   return under_test;
 }
@@ -240,7 +248,7 @@ bool some_is_wrong(const std::vector<Verdict>& verdicts, Verdict truth) {
 std::string cuda_evidence(const fuzz::SelectedLanes& under_test) {
   std::set<std::string> kinds;
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    if (under_test.lanes[l]->is_cuda()) kinds.insert(under_test.evidence(l));
+    if (const std::string by = under_test.evidence(l); !by.empty()) kinds.insert(by);
   }
   return fmt::format("{}", fmt::join(kinds, "; "));
 }

@@ -22,7 +22,7 @@ using analysis::DiscrepancySpec;
 using analysis::LanesCompared;
 using Json = nlohmann::ordered_json;
 
-// A count's name and place. `bucket`: of a histogram; empty for a single count.
+// A count's name and place. bucket: the bucket's name if the count belongs to a histogram, else empty.
 struct Field {
   std::string name;
   int at;
@@ -68,7 +68,7 @@ const std::vector<Field> kPairFields = {{"pairs", pair_counts::pairs, ""},   {"d
 const std::vector<Field> kSiteFields = {
     {"asked", site_counts::asked, ""}, {"differs", site_counts::differs, ""}, {"sign", site_counts::sign, ""}};
 
-// Counts as an object; histograms as objects of the buckets that are not zero.
+// Returns the counts as a JSON object, in which a histogram is an object with its nonzero buckets.
 Json object_of(const std::vector<Field>& fields, const DiscrepancyCounts& of, int at) {
   Json object = Json::object();
   for (const Field& field : fields) {
@@ -132,7 +132,7 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
 
 std::string share_words(std::uint64_t part, std::uint64_t whole) { return rate_words(part_of(part, whole)); }
 
-// Both values' counts of different values by the octave of their difference in ulps.
+// The number of differing values in each octave of their distance, over both values of the question.
 Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
   using namespace value_counts;
   Octaves octaves;
@@ -145,7 +145,7 @@ Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values
   return octaves;
 }
 
-// The most ulps of the smallest share of differing values, "1", "≤ 63"; "-" if none differs.
+// The quantile of the distances in ulps for this share of the differing values: "1", "≤ 63"; "-" if none differs.
 std::string ulps_of(const Octaves& octaves, double share) {
   const std::optional<int> k = quantile(octaves, share);
   if (!k) return "-";
@@ -163,7 +163,7 @@ std::string line_of(const cuda::SourceLine& line) {
   return *line.file == '\0' ? "" : fmt::format("{}:{}", line.file, line.line);
 }
 
-// The lines in the order of what they decide: verdicts, then values.
+// The lines sorted by the number of verdicts that they change, then by that of values.
 std::vector<const analysis::FusedLine*> by_weight(const analysis::Origins& origins) {
   std::vector<const analysis::FusedLine*> lines;
   for (const analysis::FusedLine& line : origins.lines) lines.push_back(&line);
@@ -187,8 +187,8 @@ std::string origins_table(const analysis::Origins& origins, const Screen& screen
   }
   return wrapped(
              fmt::format("Contraction changes the verdict on {} of {} pairs that were examined. Source lines whose "
-                         "products are fused, by what each does (values, verdicts alone: that change if it alone is "
-                         "fused; verdicts fixed: changed ones that return if it alone is not fused):",
+                         "products are fused, by their effect (values, verdicts alone: those that change if only this "
+                         "line is fused; verdicts fixed: changed verdicts that return if only this line is not fused):",
                          grouped(origins.verdicts), grouped(origins.pairs)),
              screen.columns) +
          table.text(screen);

@@ -84,7 +84,7 @@ TEST_F(DiscrepancyResult, TheAnswersBoundsHold) {
   ASSERT_EQ(answer.size(), 5u);
   std::smatch found;
   ASSERT_TRUE(
-      std::regex_search(answer[3], found, std::regex("at most ([0-9.e+-]+) bounds.* is under ([0-9.e+-]+)\\.$")))
+      std::regex_search(answer[3], found, std::regex("at most ([0-9.e+-]+) bounds.* rarer than ([0-9.e+-]+)\\.$")))
       << answer[3];
   double widest = 0;
   std::uint64_t asked = 0;

@@ -118,8 +118,9 @@ std::string lines_table(const Json& origins) {
             "</tr>\n";
   }
   text +=
-      "</table></div>\n<p>How much one rounding at the line where a value starts to differ moves it until it is "
-      "compared; it grows where terms cancel:</p>\n<div class=\"wide\"><table><tr><th>value</th><th>first line, "
+      "</table></div>\n<p>A value starts to differ by one rounding at some line. The table shows how far it has moved "
+      "when it is compared; it moves further where terms cancel:</p>\n<div "
+      "class=\"wide\"><table><tr><th>value</th><th>first line, "
       "most often</th><th>median</th><th>99 %</th><th>largest</th></tr>\n";
   for (const Json& start : origins.at("starts")) {
     const Octaves growth = octaves_at(start.at("growth"));

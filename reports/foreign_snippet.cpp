@@ -8,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "backends/backends.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "subjects/source_build.h"
@@ -107,8 +108,8 @@ std::string by_graze(const Lane& lane, const Pair& pair, const subjects::Opened&
     command += " --flags=" + shell_word(fmt::format("{}", fmt::join(opened.wanted.flags, " ")));
   return fmt::format(R"(#include <string>
 
-// Graze builds the source as it is now, and runs it on a CUDA device, or where there is none in its replay on the CPU;
-// which of the two, and how far the replay is verified, stands in its answer as "cuda".
+// Graze builds the source as it is now, and runs it on a CUDA device, or replays it on the CPU if there is none. The
+// field "cuda" of its answer says which of the two, and how well the replay is verified.
 static int decide(const {0}*, const {0}*) {{
   FILE* graze = popen({1},
                       "r");
@@ -151,7 +152,7 @@ ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view co
   call.seconds = static_cast<int>(std::ceil(opened.wanted.timeout)) + 1;
   const std::string plain = fmt::format("{} -std=c++20 case.cpp", compiler),
                     end = fmt::format("{} -o case && ./case", libraries);
-  if (lane.is_cuda()) {
+  if (backends::language_of(lane) == backends::Language::cuda) {
     call.command = plain + end;
     call.seconds += 100;  // for building the source
     call.decide = by_graze(lane, pair, opened, real);

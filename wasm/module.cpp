@@ -5,6 +5,7 @@
 
 #include "analysis/blame.h"
 #include "analysis/lane_trace.h"
+#include "backends/backends.h"
 #include "core/exact/exact.h"
 #include "core/lanes/lanes.h"
 #include "core/margin/margin.h"
@@ -60,7 +61,7 @@ std::vector<Decider>& deciders() {
   static std::vector<Decider> all = [] {
     std::vector<Decider> found;
     for (const Lane& lane : lanes()) {
-      if (DecideBlock block = cuda::block_on_host(lane)) found.push_back({&lane, block});
+      if (DecideBlock block = backends::on_host(lane)) found.push_back({&lane, block});
     }
     return found;
   }();
@@ -69,10 +70,10 @@ std::vector<Decider>& deciders() {
 
 // Null if the lane cannot have the policy. Exact lanes have no policy and stay as they are.
 DecideBlock block_under(const Lane& lane, std::string_view policy) {
-  if (policy.empty() || lane.exact) return cuda::block_on_host(lane);
+  if (policy.empty() || lane.exact) return backends::on_host(lane);
   const bool by_bounds = policy == "bound" || policy == "filtered";
   if (by_bounds && !lane.info->right_without_rounding) return nullptr;
-  return cuda::block_on_host(lane_under(lane, policy));
+  return backends::on_host(lane_under(lane, policy));
 }
 
 Verdict truth_of(const Pair& pair) {
@@ -185,7 +186,7 @@ GRAZE_EXPORT(map_row) void map_row(int x, int y, int up, int columns, int step) 
 
 // Computes the lane's comparisons on the first pair and the values passed to its policy, and beside them the same path
 // with 113 bits.
-// Returns: the number of steps; -1 if they are not known to be the lane's own.
+// Returns: the number of steps; -1 if nothing shows that they are the lane's own.
 GRAZE_EXPORT(steps) int steps(int lane) {
   const Lane& of = *deciders()[lane].lane;
   steps_out.clear();
@@ -206,7 +207,7 @@ GRAZE_EXPORT(steps) int steps(int lane) {
   }
   return static_cast<int>(steps_out.size());
 }
-// How sure it is that the steps are the lane's own, as analysis::Evidence.
+// The evidence that the steps are the lane's own, as in analysis::Evidence.
 GRAZE_EXPORT(evidence) int evidence() { return steps_evidence; }
 // The algorithm's verdict with 113 bits throughout, on its own path.
 GRAZE_EXPORT(with_113_bits) int with_113_bits() { return static_cast<int>(verdict_of_quads); }

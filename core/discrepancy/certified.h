@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of twice a double's precision with a certified bound of their error, on host and device alike. What an
-// operation cannot keep is measured where it is a sum, so that the bound of an exact result is zero.
+// Numbers of twice a double's precision with a certified bound of their error, on host and device alike. The rounding
+// error of a sum is computed, not estimated, so that the bound of an exact result is zero.
 // References: T. J. Dekker, A floating-point technique for extending the available precision, Numerische Mathematik 18
 // (1971): errors of sums and products.
 // Requires: compiled without contraction, so that host and device give the same bits.
@@ -13,7 +13,7 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// The true value lies in [hi + lo - bound, hi + lo + bound]. An infinite or NaN bound says nothing.
+// The true value lies in [hi + lo - bound, hi + lo + bound]. If the bound is infinite or NaN, nothing is known.
 struct Certified {
   double hi = 0, lo = 0, bound = 0;
 
@@ -38,7 +38,7 @@ namespace certified {
 // Rounds a sum of a few nonnegative terms up.
 GRAZE_HD inline double up(double bound) { return bound * (1 + 0x1p-48); }
 
-// What a product of doubles loses when its error is subnormal. Nothing is lost where a factor is zero.
+// Bound of the part of a product's error that underflows. It is zero if a factor is zero.
 GRAZE_HD inline double lost_below(double product, double x, double y) {
   return x != 0 && y != 0 && !(fabs(product) >= 0x1p-900) ? 0x1p-1060 : 0;
 }
@@ -84,7 +84,7 @@ GRAZE_HD inline Certified operator*(const Certified& x, const Certified& y) {
   return {top, up(rest + lost + of_bounds)};
 }
 
-// The error is measured: what the quotient times the divisor lacks.
+// The error is computed from the remainder: the dividend minus the quotient times the divisor.
 GRAZE_HD inline Certified operator/(const Certified& x, const Certified& y) {
   using namespace certified;
   Certified quotient(x.hi / y.hi);

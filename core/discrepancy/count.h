@@ -55,7 +55,7 @@ enum : int {
 };
 }  // namespace question_counts
 
-// Counts of pairs by the site of a question; the last site is that of comparisons without an epsilon.
+// Counts of pairs by the site of a question. The last site stands for comparisons without an epsilon.
 namespace site_counts {
 enum : int { asked, differs, sign, kFields };
 }
@@ -86,8 +86,8 @@ GRAZE_HD constexpr int value_at(int question, int which) {
 }
 GRAZE_HD constexpr int counts_of(int questions) { return question_at(questions); }
 
-// Of each question the largest size at which a sign differs: in bounds of the error, and as a length in the unit of the
-// coordinates. Bits of nonnegative doubles, whose order is that of integers.
+// For each question, the largest size at which a sign differs: in bounds of the error, and as a length in the unit of
+// the coordinates. Stored as bits of nonnegative doubles, which are ordered like integers.
 namespace band_maxima {
 enum : int { in_bounds, length, kFields };
 }
@@ -131,7 +131,7 @@ GRAZE_HD inline bool answers_otherwise(int order, int other, bool at_most) {
   return yes != other_yes;
 }
 
-// floor(log2(x)) of a positive number; of zero, less than of any other.
+// floor(log2(x)) of a positive number. For zero, less than for any other number.
 GRAZE_HD inline int log2_of(const DoubleDouble& x) {
   const int k = floor_log2(x.hi);
   return x.lo < 0 && x.hi == scalbn(1.0, k) ? k - 1 : k;
@@ -146,12 +146,12 @@ GRAZE_HD int log2_ulp_of(const DoubleDouble& size) {
   return k < kLeast ? kLeast : k;
 }
 
-// The least and the greatest that a size may be.
+// Bounds of a size.
 struct SizeRange {
   DoubleDouble least, most;
 };
 
-// That of |x|. It rounds outward, and not at all where the bound is zero.
+// That of |x|. Rounds outward, but not if the bound is zero.
 GRAZE_HD inline SizeRange size_range(const Certified& x) {
   const double sign = x.hi < 0 ? -1 : 1;
   const DoubleDouble size(sign * x.hi, sign * x.lo);
@@ -174,7 +174,7 @@ GRAZE_HD inline int error_bucket(const DoubleDouble& size, int ulp) {
   return bucket < value_counts::kErrorNotFinite ? bucket : value_counts::kErrorNotFinite - 1;
 }
 
-// The bucket of the error, if its range lies within one bucket, whichever ulp the exact value has.
+// The bucket of the error, if its whole range lies within one bucket for every ulp that the exact value may have.
 template <class Real>
 GRAZE_HD int error_bucket(Real value, const Certified& exact) {
   using namespace value_counts;
@@ -186,7 +186,7 @@ GRAZE_HD int error_bucket(Real value, const Certified& exact) {
   return bucket == error_bucket(error.most, log2_ulp_of<Real>(size.least)) ? bucket : kErrorUnknown;
 }
 
-// How many ulps two finite numbers are apart.
+// The distance of two finite numbers in ulps.
 template <class Real>
 GRAZE_HD std::uint64_t apart(Real x, Real y) {
   const std::int64_t first = ordered_bits(x), second = ordered_bits(y);
@@ -194,7 +194,7 @@ GRAZE_HD std::uint64_t apart(Real x, Real y) {
                         : static_cast<std::uint64_t>(second) - static_cast<std::uint64_t>(first);
 }
 
-// Whether both runs made some choice, and made it otherwise. A run that ended earlier made fewer.
+// Whether the runs made some choice differently. A run that ended earlier made fewer choices.
 GRAZE_HD inline bool chose_otherwise(std::uint64_t first, std::uint64_t second) {
   for (int c = 0; c < kMostChoices; ++c) {
     const std::uint64_t x = first >> 4 * c & 15, y = second >> 4 * c & 15;
@@ -210,7 +210,7 @@ GRAZE_HD inline bool have_both(const RecordedPath& first, const RecordedPath& se
          !chose_otherwise(first.path, second.path);
 }
 
-// What the counting of one pair needs to know of a lane's run.
+// The data of a lane's run that counting one pair needs.
 template <class Real>
 struct Run {
   Recorded<const Real> values;
@@ -221,8 +221,8 @@ struct Run {
   }
 };
 
-// Sink: add(index) counts one more, most(question, which, size) keeps the largest. `degrees`: of each question, in
-// lengths.
+// Sink: add(index) adds one to a count, most(question, which, size) keeps the largest. degrees: for each question, the
+// power of a length that its values have.
 template <class Real, class Sink>
 class PairComparison {
  public:

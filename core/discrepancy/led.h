@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs an algorithm on certified numbers down the path that a lane's recorded run took. So each of its values is what
-// the lane would have had without rounding, with every comparison and every choice as the lane made it. Each also has a
-// bound of the error that rounding may cause in it.
+// Runs an algorithm on certified numbers down the path that a lane's recorded run took. Its values are those that the
+// lane would have without rounding, if all its comparisons and choices stayed the same. Each also has a
+// bound of its rounding error.
 // Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3: running
 // error analysis; here with the terms of second order, underflow and overflow.
 #pragma once
@@ -12,8 +12,8 @@
 namespace graze {
 inline namespace GRAZE_FP {
 
-// What a run shares: how far the least or greatest of several numbers may be from the true one, because their order is
-// in doubt. It adds to the bound of every later value.
+// Data of a whole run. If the order of some numbers is in doubt, `doubt` bounds the error of their least or greatest.
+// It adds to the bound of every later value.
 struct LedRun {
   double doubt = 0;
 };
@@ -107,8 +107,8 @@ struct Led {
   GRAZE_HD bool is_zero() const { return exact.is_exactly_zero() && rounding == 0; }
 
   // Values that the lane did not record are compared exactly: the least of several distances, for example. If their
-  // order is in doubt, the wrong one is off by at most what separates them. The lane may have taken the other one. So
-  // both get the larger rounding: that of a least or greatest value is at most the largest of all.
+  // order is in doubt, the wrong choice is off by at most their distance. The lane may have chosen the other one. So
+  // both get the larger rounding: a least or greatest value has at most the largest of all.
   template <class Comparison>
   GRAZE_HD static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);

@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint32_t kPairsAtOnce = 1u << 20;
 
-// Adds of a warp's threads to one place become one.
+// If several threads of a warp add to one counter, one atomic operation adds their sum.
 struct DeviceSink {
   std::uint64_t *counts, *maxima;
 
@@ -91,7 +91,7 @@ constexpr DeviceKernels<LaunchCompare> launchers(std::integer_sequence<int, algo
   return {std::array<LaunchCompare, 2>{launch_compare<algorithm, float>, launch_compare<algorithm, double>}...};
 }
 
-// A thread for each pair: the hash of its path and of the values of its questions.
+// Each thread hashes one pair: its path and the values of its questions.
 template <class Word>
 __global__ void hash_runs(const Word* values, std::uint64_t stride, const RecordedPath* paths, std::uint32_t count,
                           std::uint64_t two_values, std::uint64_t* hashes) {
@@ -99,10 +99,10 @@ __global__ void hash_runs(const Word* values, std::uint64_t stride, const Record
   if (i < count) hashes[i] = run_hash(values + i, stride, paths[i], two_values);
 }
 
-// The lane whose kernels give the lane's values.
+// The CUDA lane whose kernels compute this lane's values.
 const Lane& on_device(const Lane& lane) { return lane.is_cuda() ? lane : *counterpart(lane, Variant::cuda_nofma); }
 
-// Questions about two values, as bits.
+// The set of questions about two values, one bit for each question.
 std::uint64_t two_values_of(int algorithm) {
   std::uint64_t bits = 0;
   const std::vector<Question>& questions = questions_of(algorithm);

@@ -32,6 +32,9 @@ struct LaneOptions {
 enum class Executors { chosen, twins };
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors = Executors::chosen);
 
+// Those of them about subjects alone.
+void add_subject_options(CLI::App& command, LaneOptions& options);
+
 // Opens the subjects.   Throws: as subjects::open.
 void open_subjects(const LaneOptions& options);
 

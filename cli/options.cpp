@@ -137,8 +137,7 @@ CLI::Validator not_empty() {
                         "");
 }
 
-void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
-  add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run");
+void add_subject_options(CLI::App& command, LaneOptions& options) {
   CLI::Option* subject =
       command
           .add_option(
@@ -158,6 +157,11 @@ void add_lane_options(CLI::App& command, LaneOptions& options, Executors executo
       ->check(number(0.001, 86400.0))
       ->capture_default_str()
       ->option_text("SECONDS");
+}
+
+void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors) {
+  add_globs(command, "--lanes", options.globs, "Patterns of the lanes to run");
+  add_subject_options(command, options);
   if (executors == Executors::twins) {
     options.executor = fuzz::Executor::twin;
     return;

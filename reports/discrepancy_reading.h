@@ -11,9 +11,8 @@
 
 namespace graze::reports {
 
-inline std::uint64_t number_at(const nlohmann::ordered_json& json, const std::string& key) {
-  return json.at(key).get<std::uint64_t>();
-}
+// Throws: nlohmann::json::exception if there is no such key; std::runtime_error if it is no count.
+std::uint64_t number_at(const nlohmann::ordered_json& json, const std::string& key);
 inline std::string text_at(const nlohmann::ordered_json& json, const char* key) {
   return json.at(key).get<std::string>();
 }

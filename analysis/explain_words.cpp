@@ -128,7 +128,7 @@ std::string fused(const LaneExplanation& lane) {
 std::string doubt(const LaneExplanation& lane) {
   switch (lane.settled) {
     case Settled::not_without:
-      return "; not settled: without that something else makes it wrong as well";
+      return "; not settled: without that, something else still makes it wrong";
     case Settled::not_alone:
       return "; not settled: that alone, with all else exact, does not make it wrong";
     case Settled::not_by_few:

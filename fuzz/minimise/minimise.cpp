@@ -160,8 +160,8 @@ struct Walk {
            (cause == analysis::Cause::order_dependent && result.reason.cause == analysis::Cause::rounding);
   }
 
-  // Makes the candidate the current pair if it fails alike for the same reason. Requires: it gets the failure's
-  // verdicts.
+  // Makes the candidate the current pair if it fails in the same way for the same reason. Requires: its verdicts are
+  // the failure's.
   bool take(const Pair& candidate) {
     if (relation_of(candidate) != failure.truth || !counts(failure, candidate)) return false;
     if (!may_have_reason(failure, result.reason, candidate)) return false;
@@ -194,7 +194,7 @@ struct Walk {
     }
   }
 
-  // Moves to the simplest pair that this kind of move makes of the current one and that fails alike, if there is one.
+  // Tries all moves of this kind on the current pair; takes the simplest result that fails in the same way, if any.
   bool improve(int kind) {
     const std::vector<Pair> simpler = simpler_moves(way.back(), kind, result.moved);
     for (auto first = simpler.begin(); first != simpler.end();) {

@@ -205,7 +205,7 @@ std::string reason_by_experiment(const LaneExplanation& lane) {
       case Cause::crash:
         return "the code crashes";
       case Cause::no_answer:
-        return "the code does not come back";
+        return "the code does not return";
       case Cause::unstable:
         return "its verdict changes";
       case Cause::policy:

@@ -193,7 +193,7 @@ TEST_F(OwnCodeTest, ContractionsOfCudaSourcesAreNamed) {
   EXPECT_NE(named.out.find("own.cu:2, inlined at "), std::string::npos) << named.out;
   const Ran late = shell(explain + "--subject own=./own.cu:both | tr -s ' \\n' ' '");
   EXPECT_NE(late.out.find("the compiler fuses products into additions (built without contraction it is right; which "
-                          "products matter is not known, for with some of its products fused it does not come back)."),
+                          "products matter is not known, for with some of its products fused it does not return)."),
             std::string::npos)
       << late.out << late.err;
 }

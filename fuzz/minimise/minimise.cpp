@@ -96,8 +96,9 @@ std::vector<Pair> simpler_moves(const Pair& pair, int kind, std::size_t& made) {
 
 bool same_bits(const Pair& l, const Pair& r) { return !simpler_coordinates(l, r) && !simpler_coordinates(r, l); }
 
-// Applies the move from `before` to `after` `times` times. Coordinates that it scaled by a power of two are scaled by
-// that power to the `times`; other coordinates move `times` as far.   Returns: nothing if a coordinate is not finite.
+// Applies the move from `before` to `after` `times` times. Where it scaled a coordinate by a
+// power of two, scales by that power `times` times; moves other coordinates `times` as far.   Returns: nothing if a
+// coordinate is not finite.
 std::optional<Pair> repeated(const Pair& before, const Pair& after, std::int64_t times) {
   const float *from = coordinates(before), *to = coordinates(after);
   std::optional<int> exponent;  // of the power of two; 0 when it is none

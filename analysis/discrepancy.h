@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/discrepancy/certified.h"
+#include "core/discrepancy/led.h"
 #include "core/discrepancy/questions.h"
 #include "core/lanes/records.h"
 #include "strata/pair_source.h"
@@ -49,7 +49,7 @@ struct ValueBeside {
   int question, which;                  // which: of Question::of
   std::optional<double> first, second;  // nothing if the lane was not asked
   bool compared = false;                // both were asked about the same quantity
-  std::optional<Certified> exact;       // along the first lane's path; nothing for values of the second lane alone
+  std::optional<Unrounded> unrounded;   // along the first lane's path; nothing for values of the second lane alone
 };
 
 // The runs of two lanes on one pair. Their choices are in the layout of RecordedPath.
@@ -81,7 +81,7 @@ struct DiscrepancySpec {
 using Discrepancies = std::vector<std::vector<DiscrepancyCounts>>;
 Discrepancies discrepancies(const DiscrepancySpec& spec);
 
-// Counts one block of pairs, for tests and for engines.
-void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, DiscrepancyCounts& to);
+// Counts one block of pairs, for tests and for engines. axis: that of their stratum.
+void count_discrepancies(const LanesCompared& lanes, std::span<const Pair> pairs, Axis axis, DiscrepancyCounts& to);
 
 }  // namespace graze::analysis

@@ -8,9 +8,9 @@
 #include <cstdlib>
 
 #include "analysis/scales.h"
+#include "backends/backends.h"
 #include "core/lanes/verdicts.h"
 #include "core/relation_of.h"
-#include "cuda/twin/twin.h"
 
 namespace graze::analysis {
 namespace {
@@ -41,7 +41,7 @@ const Lane* in_float64(const Lane& lane) {
   LaneName other = lane.lane_name();
   other.scalar = name(Scalar::f64);
   const Lane* found = find_lane(id_of(other));
-  return found && cuda::block_on_host(*found) ? found : nullptr;
+  return found && backends::on_host(*found) ? found : nullptr;
 }
 
 // Two neighbouring scales: the lane is wrong at one and right at the other.
@@ -66,7 +66,7 @@ class Trial {
  private:
   Experiment cause() {
     if (const Lane* rounded = counterpart(lane_, rounded_variant(lane_.variant));
-        rounded && rounded != &lane_ && cuda::block_on_host(*rounded) && asked(*rounded, {pair_})[0]) {
+        rounded && rounded != &lane_ && backends::on_host(*rounded) && asked(*rounded, {pair_})[0]) {
       if (info_of(lane_.variant).arithmetic == Arithmetic::fast)
         return by_build(*rounded, Cause::fast_math, "built so that every operation rounds as written it is right");
       return by_build(*rounded, Cause::contraction, "built without contraction it is right");
@@ -249,7 +249,7 @@ class Trial {
     if (!f64 || !asked(*f64, {pair_})[0]) return std::nullopt;
     // If sums and products are exact here, it may be right by luck.
     const Lane* rounded = counterpart(*f64, rounded_variant(f64->variant));
-    const bool as_written = !rounded || !cuda::block_on_host(*rounded) || asked(*rounded, {pair_})[0];
+    const bool as_written = !rounded || !backends::on_host(*rounded) || asked(*rounded, {pair_})[0];
     if (!scale_is_no_matter_ || !has_usual_exponents() || has_few_bits() || !as_written ||
         !right_in_float64_at_every_scale())
       return Experiment{Cause::rounding, false, "in float64 it is right"};

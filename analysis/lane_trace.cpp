@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "backends/backends.h"
 #include "cuda/lanes/trace.h"
 #include "cuda/twin/twin.h"
 
@@ -71,7 +72,7 @@ Replay replay(const Lane& lane, const Pair& pair) {
 }
 
 DecideBlock block_of(const Lane& lane) {
-  const DecideBlock block = cuda::block_on_host(lane);
+  const DecideBlock block = backends::on_host(lane);
   if (!block) throw std::invalid_argument(lane.id + ": expected a host lane or a twin");
   return block;
 }

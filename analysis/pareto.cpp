@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/lanes/verdicts.h"
+
 namespace graze::analysis {
 namespace {
 
@@ -44,9 +46,9 @@ std::string_view name(Extreme extreme) {
 }
 
 double nanoseconds_a_pair(const DecideBlock& lane, const std::vector<Pair>& pairs) {
-  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
+  VerdictBits bits;
   const auto start = std::chrono::steady_clock::now();
-  lane(pairs.data(), pairs.size(), intersects.data(), declined.data());
+  decide(lane, pairs, bits);
   const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - start;
   return taken.count() / static_cast<double>(pairs.size());
 }

@@ -10,11 +10,11 @@
 #include <array>
 #include <bit>
 
+#include "backends/backends.h"
 #include "core/exact/exact.h"
 #include "core/judged_bits.h"
 #include "core/lanes/ladder.h"
 #include "cuda/engine/sweep.h"
-#include "cuda/twin/twin.h"
 
 namespace graze::analysis {
 namespace {
@@ -167,7 +167,7 @@ std::vector<Together> parts_of(const Lane& lane, Policies policies) {
     const bool tolerances = under.under && under.under->kind == Policy::Kind::tolerances;
     const DecideLadder ladder = tolerances ? ladder_of(lane, under.under->epsilons.any_relative()) : nullptr;
     if (!ladder) {
-      parts.push_back({p, cuda::block_on_host(under), nullptr, {}});
+      parts.push_back({p, backends::on_host(under), nullptr, {}});
     } else if (!parts.empty() && parts.back().ladder && rises(parts.back().rungs.back(), under.under->epsilons)) {
       parts.back().rungs.push_back(under.under->epsilons);
     } else {

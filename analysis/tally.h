@@ -7,27 +7,13 @@
 #include <vector>
 
 #include "core/counts.h"
-#include "core/lanes/lanes.h"
+#include "core/lanes/verdicts.h"
 #include "core/margin/bucket.h"
 
 namespace graze::analysis {
 
 // Bit i % 64 of word i / 64 belongs to pair i; unused bits are zero.
 using Bits = std::vector<std::uint64_t>;
-
-inline bool test_bit(std::span<const std::uint64_t> bits, std::size_t i) { return bits[i / 64] >> (i % 64) & 1; }
-
-struct LaneVerdicts {
-  std::span<const std::uint64_t> intersects;
-  std::span<const std::uint64_t> declined;
-  const DecideBlock* foreign = nullptr;  // of foreign code what decided, and the pairs: both bits say that it failed
-  const Pair* pairs = nullptr;
-
-  Verdict at(std::size_t i) const {
-    const bool yes = test_bit(intersects, i), none = test_bit(declined, i);
-    return foreign ? foreign->verdict_of(yes, none, pairs[i]) : verdict_of_bits(yes, none);
-  }
-};
 
 struct JudgedBlock {
   std::size_t count = 0;

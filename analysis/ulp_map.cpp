@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "analysis/lane_trace.h"
-#include "core/exact/exact.h"
 #include "core/lanes/verdicts.h"
 #include "oracle/truth.h"
 #include "strata/draws.h"
@@ -23,7 +22,7 @@ class Panels {
     for (const Lane* lane : lanes) {
       if (!lane->exact) lanes_.push_back(lane);
     }
-    for (const Lane* lane : lanes_) blocks_.push_back(lane ? block_of(*lane) : nullptr);
+    for (const Lane* lane : lanes_) blocks_.push_back(lane ? block_of(*lane) : find_lane("exact/f32/cpu")->decide);
     failed_.resize(blocks_.size());
   }
 
@@ -37,7 +36,11 @@ class Panels {
   void judge(std::span<const Pair> pairs, std::span<std::vector<Cell>> cells) {
     std::vector<Cell>& truth = cells.front();
     const std::size_t first = truth.size();
-    for (const Pair& pair : pairs) truth.push_back(truth_of(pair));
+    for (const Verdict said : verdicts_of(blocks_.front(), pairs)) {
+      truth.push_back(said == Verdict::declined     ? Cell::not_finite
+                      : said == Verdict::intersects ? Cell::intersects
+                                                    : Cell::disjoint);
+    }
     for (std::size_t p = 1; p < blocks_.size(); ++p) {
       if (!ask(p, pairs)) continue;
       for (std::size_t i = 0; i < pairs.size(); ++i) cells[p].push_back(cell_of(said_[i], truth[first + i]));
@@ -80,12 +83,6 @@ class Panels {
       }
     }
     return true;
-  }
-
-  static Cell truth_of(const Pair& pair) {
-    return !is_finite(pair)                                ? Cell::not_finite
-           : exact::intersects(&pair.a[0].x, &pair.b[0].x) ? Cell::intersects
-                                                           : Cell::disjoint;
   }
 
   std::vector<const Lane*> lanes_;

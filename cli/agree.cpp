@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "backends/backends.h"
 #include "cli/screen.h"
 #include "cli/tune.h"
 #include "core/error.h"
-#include "cuda/twin/twin.h"
 #include "fuzz/sealed.h"
 #include "reports/agreement.h"
 #include "reports/terminal.h"
@@ -17,11 +17,8 @@ namespace {
 
 // Throws: UsageError for a lane that does not run on this host.
 void expect_on_host(const Lane& lane) {
-  if (!lane.is_cuda() && !runs_on_this_cpu(lane))
-    throw UsageError("cannot run " + lane.id + " here: this processor lacks " +
-                     std::string(info_of(lane.variant).needs));
-  if (!cuda::block_on_host(lane))
-    throw UsageError("--agree runs CUDA lanes by their twins, and " + lane.id + " has none; choose another lane");
+  if (const std::string why = backends::why_not_on_host(lane); !why.empty())
+    throw UsageError("--agree cannot run " + lane.id + " on this host (" + why + "); choose another lane");
 }
 
 // The same lane with every operation rounded as written.
@@ -37,9 +34,9 @@ int agree(const TuneOptions& options) {
   reports::AgreeQuestion question{{first.id, second.id}, {}, "", "", options.max_rate};
   for (const Lane* lane : {&first, &second}) {
     expect_on_host(*lane);
-    if (!cuda::block_on_host(lane_under(*lane, "abs:1")))
+    if (!backends::on_host(lane_under(*lane, "abs:1")))
       throw UsageError("this build has no twin of " + lane->id + " under tolerances; scripts/setup builds them");
-    if (!cuda::block_on_host(lane_under(*lane, "rel:1"))) question.without_relative = lane->id;
+    if (!backends::on_host(lane_under(*lane, "rel:1"))) question.without_relative = lane->id;
   }
   analysis::AgreeSpec spec;
   spec.sweep = analysis::agreement_sweep(first, second, options.threads);
@@ -55,7 +52,8 @@ int agree(const TuneOptions& options) {
     for (const Lane* lane : {&first, &second}) {
       const Lane& mended = rounded(*lane);
       if (&mended == lane) continue;
-      question.flag = mended.is_cuda() ? "-fmad=false" : "-ffp-contract=off";
+      const std::string_view flags = info_of(mended.variant).flags;
+      question.flag = flags.substr(flags.rfind(' ') + 1);  // the last one turns contraction off
       add_cost_of(mended);
     }
   }
@@ -78,10 +76,8 @@ int agree(const TuneOptions& options) {
   for (const Lane& lane : under) {
     if (!policy.empty() && lane.id != costly.back()->id) add_cost_of(lane);
   }
-  for (const char* id : {"exact/f32/cpu", "exact/f32/cuda"}) {
-    const Lane* exact = find_lane(id);
-    if (exact->is_cuda() == first.is_cuda() || exact->is_cuda() == second.is_cuda()) add_cost_of(*exact);
-  }
+  add_cost_of(backends::exact_beside(first));
+  add_cost_of(backends::exact_beside(second));
   for (const std::string& sentence : cost_sentences(costly, spec.others))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
 

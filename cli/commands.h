@@ -14,32 +14,11 @@
 
 namespace graze::cli {
 
-void add_fuzz(CLI::App& app, int& status);
-void add_merge(CLI::App& app, int& status);
-void add_status(CLI::App& app, int& status);
-void add_plan(CLI::App& app, int& status);
-void add_hunt(CLI::App& app, int& status);
-void add_check(CLI::App& app, int& status);
-void add_repro(CLI::App& app, int& status);
-void add_minimize(CLI::App& app, int& status);
-void add_corpus(CLI::App& app, int& status);
-void add_explain(CLI::App& app, int& status);
-void add_failures(CLI::App& app, int& status);
-void add_league(CLI::App& app, int& status);
-void add_map(CLI::App& app, int& status);
-void add_dump(CLI::App& app, int& status);
-void add_report(CLI::App& app, int& status);
-void add_scene(CLI::App& app, int& status);
-void add_lanes(CLI::App& app, int& status);
-void add_discrepancy(CLI::App& app, int& status);
-void add_invariants(CLI::App& app, int& status);
-void add_strata(CLI::App& app, int& status);
-void add_pareto(CLI::App& app, int& status);
-void add_tune(CLI::App& app, int& status);
-void add_prove_twin(CLI::App& app, int& status);
-void add_view(CLI::App& app, int& status);
-void add_query(CLI::App& app, int& status);
-void add_bench(CLI::App& app, int& status);
+#define GRAZE_TASK(name)
+#define GRAZE_VERB(name, build) void add_##name(CLI::App& app, int& status);
+#include "cli/verbs.inc"
+#undef GRAZE_VERB
+#undef GRAZE_TASK
 
 // --lanes, --subject and --executor of every verb that runs lanes. Verbs that replace devices by twins have no
 // --executor.
@@ -52,6 +31,9 @@ struct LaneOptions {
 };
 enum class Executors { chosen, twins };
 void add_lane_options(CLI::App& command, LaneOptions& options, Executors executors = Executors::chosen);
+
+// Those of them about subjects alone.
+void add_subject_options(CLI::App& command, LaneOptions& options);
 
 // Opens the subjects.   Throws: as subjects::open.
 void open_subjects(const LaneOptions& options);

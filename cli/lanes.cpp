@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// `graze lanes` and `graze strata`: print the tables of lanes and strata from the code.
+// `graze lanes`: prints the table of lanes from the code.
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "cli/commands.h"
 #include "cli/screen.h"
-#include "strata/strata.h"
 
 namespace graze::cli {
 namespace {
@@ -81,18 +78,6 @@ void add_lanes(CLI::App& app, int&) {
   command->callback([json, lanes] {
     open_subjects(*lanes);
     print_lanes(*json, lanes->globs);
-  });
-}
-
-void add_strata(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("strata", "List the strata: the named generators of pairs");
-  command->footer("Example: graze strata");
-  command->callback([] {
-    // One line each, for programs that read the list.
-    const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
-    for (const strata::StratumInfo& row : strata::kStrata)
-      fmt::print("{}", reports::wrapped(fmt::format("{:<20} {}", row.id, row.what), columns, 0, 21));
-    fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
   });
 }
 

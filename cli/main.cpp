@@ -18,24 +18,19 @@
 
 namespace {
 
-// A group of verbs in `graze --help`.
-struct Task {
-  const char* name;
-  std::vector<void (*)(CLI::App& app, int& status)> verbs;
-};
-const Task kTasks[] = {
-    {"Find failures",
-     {graze::cli::add_fuzz, graze::cli::add_hunt, graze::cli::add_check, graze::cli::add_invariants,
-      graze::cli::add_strata, graze::cli::add_scene}},
-    {"Understand failures",
-     {graze::cli::add_repro, graze::cli::add_minimize, graze::cli::add_explain, graze::cli::add_failures,
-      graze::cli::add_map, graze::cli::add_discrepancy, graze::cli::add_view}},
-    {"Choose algorithms and tolerances",
-     {graze::cli::add_lanes, graze::cli::add_tune, graze::cli::add_pareto, graze::cli::add_league,
-      graze::cli::add_query, graze::cli::add_bench}},
-    {"Scale to many machines", {graze::cli::add_plan, graze::cli::add_status, graze::cli::add_merge}},
-    {"Keep and publish results",
-     {graze::cli::add_report, graze::cli::add_corpus, graze::cli::add_dump, graze::cli::add_prove_twin}}};
+// Adds all verbs, in groups for `graze --help`.
+void add_verbs(CLI::App& app, int& status) {
+  std::string task;
+  const auto add = [&](void (*verb)(CLI::App&, int&)) {
+    verb(app, status);
+    app.get_subcommands([](const CLI::App*) { return true; }).back()->group(task);
+  };
+#define GRAZE_TASK(name) task = name;
+#define GRAZE_VERB(name, build) add(graze::cli::add_##name);
+#include "cli/verbs.inc"
+#undef GRAZE_VERB
+#undef GRAZE_TASK
+}
 
 // Expects a verb as the first word, or one of the flags that stand without a verb.
 void expect_verb(const CLI::App& app, const std::string& word) {
@@ -69,12 +64,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   std::signal(SIGXFSZ, SIG_IGN);  // exceeding a file-size limit then fails a write, like a full disk
   int status = 0;
-  for (const Task& task : kTasks) {
-    for (const auto add : task.verbs) {
-      add(app, status);
-      app.get_subcommands([](const CLI::App*) { return true; }).back()->group(task.name);
-    }
-  }
+  add_verbs(app, status);
   app.footer("Run `graze VERB --help` for the options of a verb.");  // verbs that exist already keep their own footers
   graze::cli::add_force(app);
   try {

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "analysis/pareto.h"
+#include "backends/backends.h"
 #include "cli/commands.h"
 #include "cli/results.h"
 #include "cli/screen.h"
 #include "core/text.h"
 #include "cuda/lanes/device.h"
-#include "cuda/twin/twin.h"
 #include "fuzz/campaign/campaign.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimise.h"
@@ -41,7 +41,7 @@ struct Measured {
 // Why the lane's time cannot be measured: the time of a twin or a process is not the time of the code.
 std::string why_not_timed(const Lane& lane, bool device) {
   if (lane.foreign) return "pareto times no foreign code";
-  if (device) return lane.is_cuda() ? "" : "--device times only CUDA lanes";
+  if (device) return backends::backend_of(lane).has_device ? "" : "--device times only CUDA lanes";
   return lane.decide ? "" : "only --device times CUDA lanes";
 }
 
@@ -66,7 +66,7 @@ std::optional<Pair> smallest_failure(const Lane& lane, const analysis::PolicyErr
                                      const std::vector<strata::PairSource>& sources) {
   if (!errors.first_broken) return std::nullopt;
   const Pair pair = sources[static_cast<std::size_t>(errors.first_broken->source)].pair(errors.first_broken->index);
-  if (!cuda::block_on_host(lane)) return pair;
+  if (!backends::on_host(lane)) return pair;
   const auto failures = fuzz::failures_of(fuzz::select_lanes({lane.id}, fuzz::Executor::twin), pair);
   return failures.empty() ? std::nullopt : std::optional(fuzz::minimise(failures[0], pair).pair);
 }

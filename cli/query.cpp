@@ -24,6 +24,7 @@
 #include "corpus/pair_format.h"
 #include "fuzz/files.h"
 #include "reports/terminal.h"
+#include "strata/mesh.h"
 
 namespace graze::cli {
 namespace {
@@ -241,8 +242,9 @@ void add_query(CLI::App& app, int& status) {
   command->footer("Example: graze query arm.off#0 arm.off --json");
   auto options = std::make_shared<QueryOptions>();
   command
-      ->add_option("files", options->files,
-                   "Reference triangle (a text file of nine numbers, or MESH#FACE) and mesh (OFF, OBJ, STL or PLY)")
+      ->add_option(
+          "files", options->files,
+          "Reference triangle (a text file of nine numbers, or MESH#FACE) and mesh (" + strata::mesh_formats() + ")")
       ->option_text("REF MESH");
   command
       ->add_option("--self", options->self,

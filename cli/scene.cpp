@@ -96,8 +96,8 @@ void add_scene(CLI::App& app, int&) {
   command
       ->add_option(
           "FILE", options->files,
-          "Meshes (OFF, OBJ, STL or PLY) or one file of pairs (.pairs). One mesh is measured against itself, several "
-          "against each other")
+          "Meshes (" + strata::mesh_formats() +
+              ") or one file of pairs (.pairs). One mesh is measured against itself, several against each other")
       ->required();
   command
       ->add_option("--poses", options->poses,

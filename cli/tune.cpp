@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "analysis/pareto.h"
+#include "backends/backends.h"
 #include "cli/screen.h"
 #include "cli/tune.h"
 #include "core/error.h"
@@ -14,7 +15,6 @@
 #include "corpus/pair_format.h"
 #include "cuda/lanes/device.h"
 #include "cuda/lanes/device_costs.h"
-#include "cuda/twin/twin.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/minimise.h"
 #include "fuzz/sealed.h"
@@ -44,7 +44,7 @@ Pair pair_at(const std::vector<strata::PairSource>& sources, const analysis::Pai
 std::string smallest(const Lane& first, const Lane& second, const Pair& pair) {
   fuzz::SelectedLanes both;
   both.lanes = {&first, &second};
-  both.on_host = {cuda::block_on_host(first), cuda::block_on_host(second)};
+  both.on_host = {backends::on_host(first), backends::on_host(second)};
   Pair small = pair;
   if (both.on_host[0] && both.on_host[1]) small = fuzz::minimise(fuzz::failures_of(both, pair).at(0), pair).pair;
   std::ostringstream text;
@@ -71,7 +71,7 @@ std::string next_command(const fs::path& out, const Result& last, const std::str
 std::vector<std::string> cost_sentences(std::span<const Lane* const> lanes,
                                         const std::vector<strata::PairSource>& sources) {
   std::vector<const Lane*> on_host, on_device;
-  for (const Lane* lane : lanes) (lane->is_cuda() ? on_device : on_host).push_back(lane);
+  for (const Lane* lane : lanes) (backends::backend_of(*lane).has_device ? on_device : on_host).push_back(lane);
   const auto sentence = [](const std::string& where, const std::vector<const Lane*>& of, const auto& nanoseconds) {
     std::vector<std::string> parts;
     for (std::size_t l = 0; l < of.size(); ++l)
@@ -104,8 +104,8 @@ namespace {
 int tune(const TuneOptions& options) {
   const Lane* const lane = &published_lane(options.lanes.front());
   std::string why_not;
-  const bool on_device = lane->is_cuda() && cuda::open_device(why_not);
-  if (!on_device && (!cuda::block_on_host(*lane) || (!lane->is_cuda() && !runs_on_this_cpu(*lane))))
+  const bool on_device = backends::backend_of(*lane).has_device && cuda::open_device(why_not);
+  if (!on_device && !backends::why_not_on_host(*lane).empty())
     throw UsageError("cannot run " + lane->id + " here: there is no such processor or device, and it has no twin");
   analysis::TuneSpec spec;
   spec.sweep = on_device ? analysis::device_sweep([lane](const std::string& policy) {
@@ -128,7 +128,7 @@ int tune(const TuneOptions& options) {
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   fmt::print("{}", pairs.left_out);
   const Lane chosen = tuned.chosen.empty() ? *lane : lane_under(*lane, tuned.chosen);
-  const Lane* const costly[] = {&chosen, find_lane(lane->is_cuda() ? "exact/f32/cuda" : "exact/f32/cpu")};
+  const Lane* const costly[] = {&chosen, &backends::exact_beside(*lane)};
   for (const std::string& sentence : cost_sentences(costly, spec.others))
     fmt::print("{}", reports::wrapped(sentence, screen.columns));
   std::vector<Result> results = {{"tune.json", fuzz::sealed(reports::tuning_json(question, tuned)).dump(1) + "\n"},

@@ -14,7 +14,6 @@
 #include "cli/results.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "cuda/twin/twin.h"
 #include "fuzz/campaign/result_files.h"
 #include "reports/viewer.h"
 #include "strata/mesh.h"
@@ -57,31 +56,19 @@ void add_folder(const fs::path& folder, Viewed& viewed) {
   for (const fs::path& file : files) add_cases(file.string(), viewed, campaign ? 1 : reports::kMostViewedPairs);
 }
 
-bool is_mesh(const fs::path& file) {
-  const std::string extension = file.extension().string();
-  return extension == ".off" || extension == ".obj" || extension == ".stl" || extension == ".ply";
-}
-
-bool some_lane_is_wrong(const Pair& pair) {
-  const Lane* exact = find_lane("exact/f32/cpu");
-  const Verdict truth = decide_one(exact->decide, pair);
-  return std::any_of(lanes().begin(), lanes().end(), [&](const Lane& lane) {
-    const DecideBlock block = runs_on_this_cpu(lane) || lane.is_cuda() ? cuda::block_on_host(lane) : nullptr;
-    return block && is_wrong(decide_one(block, pair), truth);
-  });
-}
-
 // Adds the triangles, and the pairs whose boxes overlap, starting with those on which some lane is wrong.
 void add_mesh(const fs::path& file, Viewed& viewed) {
   const strata::MeshPairs mesh = strata::read_mesh_pairs(file);
   const std::size_t shown = std::min(mesh.triangles.size(), reports::kMostViewedTriangles);
   viewed.triangles.assign(mesh.triangles.begin(), mesh.triangles.begin() + static_cast<std::ptrdiff_t>(shown));
+  const fuzz::SelectedLanes under_test = fuzz::select_lanes({}, fuzz::Executor::twin);
+  const DecideBlock exact = find_lane("exact/f32/cpu")->decide;
   std::vector<reports::ViewedPair> others;
   for (std::size_t i = 0; i < std::min(mesh.size(), kMostCandidates) && viewed.pairs.size() < kMostOfAMesh; ++i) {
     const auto [first, second] = mesh.candidates[i];
     reports::ViewedPair one{fmt::format("{}, triangles {} and {}", file.filename().string(), first, second),
                             mesh.pair(i)};
-    if (some_lane_is_wrong(one.pair)) {
+    if (some_is_wrong(decide(under_test, one.pair), decide_one(exact, one.pair))) {
       viewed.pairs.push_back(std::move(one));
     } else if (others.size() < kMostOfAMesh) {
       others.push_back(std::move(one));
@@ -141,7 +128,7 @@ Viewed viewed_of(const std::string& what, const std::string& mesh) {
   } else if (fs::is_directory(what, ignored)) {
     viewed.title = printable(what);
     add_folder(what, viewed);
-  } else if (is_mesh(what)) {
+  } else if (strata::is_mesh(what)) {
     add_mesh(what, viewed);
   } else {
     add_cases(what, viewed);
@@ -187,10 +174,9 @@ void add_view(CLI::App& app, int&) {
   command->footer("Example: graze view thesis:1:0");
   auto what = std::make_shared<std::string>(), mesh = std::make_shared<std::string>(),
        out = std::make_shared<std::string>("view.html");
-  command->add_option(
-      "WHAT", *what,
-      "File of pairs, campaign directory or folder of such files, mesh (OFF, OBJ, STL or PLY), or STRATUM:SEED:INDEX "
-      "(default: the special cases of the thesis of 2012)");
+  command->add_option("WHAT", *what,
+                      "File of pairs, campaign directory or folder of such files, mesh (" + strata::mesh_formats() +
+                          "), or STRATUM:SEED:INDEX (default: the special cases of the thesis of 2012)");
   command
       ->add_option("MESH", *mesh,
                    "Mesh whose triangles are shown against WHAT, which is then a reference triangle as for `graze "

@@ -7,25 +7,20 @@
 #include <map>
 #include <numeric>
 
+#include "backends/backends.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "cuda/twin/twin.h"
 
 namespace graze::fuzz {
 namespace {
 
+using backends::Backend, backends::backend_of;
+
 // Why the lane does not run here; empty if it does.
 std::string why_unavailable(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
-  if (!lane.is_cuda())
-    return runs_on_this_cpu(lane) ? "" : fmt::format("no {} instructions", info_of(lane.variant).needs);
-  if (lane.foreign) return lane.decide ? "" : lane.evidence;
-  if (device || cuda::block_on_host(lane)) return "";
-  if (lane.under && !cuda::has_policy_twins()) return not_in_a_campaigns_build("twins of lanes under tolerances");
-  if (lane.exact) return why_no_device;
-  return why_no_device.empty() ? "no twin" : why_no_device + ", and no twin";
+  const Backend& backend = backend_of(lane);
+  return device && backend.has_device ? "" : backend.why_not_on_host(lane, why_no_device);
 }
-
-std::string twin_evidence_of(const Lane& lane) { return lane.exact ? "twin, exact" : cuda::twin_evidence(lane); }
 
 // The table has lanes under a policy at its end; this moves them to the other lanes of their subject.
 void sort_by_subject(SelectedLanes& under_test) {
@@ -56,17 +51,16 @@ std::vector<const Lane*> SelectedLanes::device_lanes() const {
 }
 
 std::string SelectedLanes::evidence(std::size_t l) const {
-  if (lanes[l]->foreign) return lanes[l]->evidence;
-  const std::string twin = on_host[l] ? twin_evidence_of(*lanes[l]) : "";
-  return !on_device(l) ? twin : twin.empty() ? "device" : "device and " + twin;
+  const std::string here = on_host[l] ? backend_of(*lanes[l]).evidence(*lanes[l]) : "";
+  return !on_device(l) ? here : here.empty() ? "device" : "device and " + here;
 }
 
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device) {
   if (const std::string why = why_unavailable(lane, device, why_no_device); !why.empty())
     return "unavailable (" + why + ")";
-  if (!lane.is_cuda()) return "available";
-  if (lane.foreign) return "available (" + lane.evidence + ")";
-  return device ? "available (device)" : "available (" + twin_evidence_of(lane) + ")";
+  const Backend& backend = backend_of(lane);
+  const std::string by = device && backend.has_device ? "device" : backend.evidence(lane);
+  return by.empty() ? "available" : "available (" + by + ")";
 }
 
 void expect_each_runs(const SelectedLanes& under_test) {
@@ -155,8 +149,9 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   if (needs_device && !under_test.device) throw std::runtime_error("expected a CUDA device, found: " + why_not);
   for (const Lane& lane : lanes()) {
     if (!matches_any(globs, lane.id)) continue;
-    const bool only_device = lane.is_cuda() && !lane.foreign && under_test.device && executor != Executor::both;
-    const DecideBlock on_host = only_device ? nullptr : cuda::block_on_host(lane);
+    const Backend& backend = backend_of(lane);
+    const bool only_device = backend.has_device && under_test.device && executor != Executor::both;
+    const DecideBlock on_host = only_device ? nullptr : backend.on_host(lane);
     const std::string why = why_unavailable(lane, under_test.device.get(), why_not);
     if (why.empty()) {
       under_test.lanes.push_back(&lane);
@@ -173,23 +168,43 @@ SelectedLanes select_lanes(const std::vector<std::string>& globs, Executor execu
   return under_test;
 }
 
+BlockVerdicts::BlockVerdicts(const SelectedLanes& under_test)
+    : under_test_(under_test), on_host_(under_test.lanes.size()), verdicts_(under_test.lanes.size()) {}
+
+std::span<const LaneVerdicts> BlockVerdicts::decide(std::span<const Pair> pairs, std::span<const VerdictBits> on_device,
+                                                    std::size_t begin,
+                                                    const std::function<void(std::size_t l, std::size_t i)>& apart) {
+  const std::size_t words = (pairs.size() + 63) / 64;
+  auto next_device = on_device.begin();
+  for (std::size_t l = 0; l < verdicts_.size(); ++l) {
+    const DecideBlock& block = under_test_.on_host[l];
+    if (block) {
+      graze::decide(block, pairs, on_host_[l]);
+      verdicts_[l] = {on_host_[l].intersects, on_host_[l].declined, under_test_.lanes[l]->foreign ? &block : nullptr,
+                      pairs.data()};
+    }
+    if (!under_test_.on_device(l)) continue;
+    const LaneVerdicts twin = verdicts_[l];
+    const auto words_of = [&](std::span<const std::uint64_t> bits) { return bits.subspan(begin / 64, words); };
+    verdicts_[l] = {words_of(next_device->intersects), words_of(next_device->declined)};
+    ++next_device;
+    for (std::size_t i = 0; block && i < pairs.size(); ++i) {
+      if (verdicts_[l].at(i) != twin.at(i)) apart(l, i);
+    }
+  }
+  return verdicts_;
+}
+
 std::vector<Verdict> decide(const SelectedLanes& under_test, const Pair& pair, std::vector<const Lane*>& apart) {
   apart.clear();
-  std::vector<Verdict> verdicts(under_test.lanes.size());
-  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    if (under_test.on_host[l]) verdicts[l] = decide_one(under_test.on_host[l], pair);
-  }
-  if (!under_test.device) return verdicts;
-  std::vector<cuda::LaneBits> bits;
-  under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), bits);
-  std::size_t next = 0;
-  for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    if (!under_test.on_device(l)) continue;
-    const Verdict on_device = verdict_of_bits(bits[next].intersects[0] & 1, bits[next].declined[0] & 1);
-    if (under_test.on_both(l) && on_device != verdicts[l]) apart.push_back(under_test.lanes[l]);
-    verdicts[l] = on_device;
-    ++next;
-  }
+  std::vector<VerdictBits> on_device;
+  if (under_test.device) under_test.device->decide(std::span(&pair, 1), under_test.device_lanes(), on_device);
+  BlockVerdicts block(under_test);
+  std::vector<Verdict> verdicts;
+  for (const LaneVerdicts& lane : block.decide(std::span(&pair, 1), on_device, 0, [&](std::size_t l, std::size_t) {
+         apart.push_back(under_test.lanes[l]);
+       }))
+    verdicts.push_back(lane.at(0));
   return verdicts;
 }
 

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes/lanes.h"
+#include "backends/backends.h"
+#include "core/lanes/verdicts.h"
 #include "cuda/lanes/device.h"
 
 namespace graze::fuzz {
@@ -30,12 +31,13 @@ struct SelectedLanes {
   std::vector<LaneLeftOut> left_out;     // of those asked for
 
   // False for foreign code, even if it uses a device, because it runs in a process of its own.
-  bool on_device(std::size_t l) const { return device && lanes[l]->is_cuda() && !lanes[l]->foreign; }
+  bool on_device(std::size_t l) const { return device && backends::backend_of(*lanes[l]).has_device; }
   // The lanes that run on the device, in order.
   std::vector<const Lane*> device_lanes() const;
   // Whether the lane runs on the device and as its twin, for comparison. The device's verdicts count.
   bool on_both(std::size_t l) const { return on_device(l) && on_host[l]; }
-  // Where a CUDA lane's verdicts come from: "device", "twin, verified on …", "twin", "device and twin, …".
+  // Where the lane's verdicts come from: "device", "twin, verified on …", "twin", "device and twin, …". Empty for
+  // code that this processor runs itself.
   std::string evidence(std::size_t l) const;
 };
 
@@ -63,6 +65,24 @@ std::vector<LaneLeftOut> left_out_of(const nlohmann::ordered_json& recorded);
 
 // Whether and how the lane runs here: "available (device)", "unavailable (no fma instructions)".
 std::string status(const Lane& lane, const cuda::Device* device, const std::string& why_no_device);
+
+// Decides blocks of pairs by all lanes: by host lanes and twins here; a device has decided its lanes before.
+class BlockVerdicts {
+ public:
+  explicit BlockVerdicts(const SelectedLanes& under_test);
+
+  // on_device: what the device says of each of its lanes; `begin`: the first pair's place there, a multiple of 64.
+  // apart(l, i): called for each pair i on which device and twin of lane l differ.
+  // Returns: the verdicts of each lane, valid until the next call.
+  std::span<const LaneVerdicts> decide(std::span<const Pair> pairs, std::span<const VerdictBits> on_device,
+                                       std::size_t begin,
+                                       const std::function<void(std::size_t l, std::size_t i)>& apart);
+
+ private:
+  const SelectedLanes& under_test_;
+  std::vector<VerdictBits> on_host_;
+  std::vector<LaneVerdicts> verdicts_;
+};
 
 // Each lane's verdict on one pair.
 // apart: receives the lanes that run on both and whose device and twin differ.

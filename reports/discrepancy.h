@@ -21,9 +21,8 @@ struct DiscrepancyResults {
 // For each comparison, a table of its questions over all sources, and one of the source lines that differ most.
 std::string discrepancy_tables(const DiscrepancyResults& results, const Screen& screen);
 
-// For each comparison: which share of values, signs and verdicts differs, which lane is nearer to the exact values, and
-// how near to zero a sign differs.
-std::vector<std::string> discrepancy_sentences(const DiscrepancyResults& results);
+// A row for each comparison: on which share of the pairs a value, a sign, a comparison and the verdict differ.
+std::string comparisons_table(const DiscrepancyResults& results, const Screen& screen);
 
 // {"lanes": [{"first", "second", "strata": {stratum: counts}}]}; docs/formats.md describes the counts.
 nlohmann::ordered_json discrepancy_json(const DiscrepancyResults& results);

@@ -8,6 +8,7 @@
 #include <regex>
 #include <sstream>
 
+#include "backends/backends.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
 #include "subjects/source_build.h"
@@ -151,7 +152,7 @@ ForeignCall foreign_call(const Lane& lane, const Pair& pair, std::string_view co
   call.seconds = static_cast<int>(std::ceil(opened.wanted.timeout)) + 1;
   const std::string plain = fmt::format("{} -std=c++20 case.cpp", compiler),
                     end = fmt::format("{} -o case && ./case", libraries);
-  if (lane.is_cuda()) {
+  if (backends::language_of(lane) == backends::Language::cuda) {
     call.command = plain + end;
     call.seconds += 100;  // for building the source
     call.decide = by_graze(lane, pair, opened, real);

@@ -13,5 +13,6 @@ void expect_possible_costs(const nlohmann::ordered_json& costs,
                            const nlohmann::ordered_json& report);  // costs of that report
 void expect_possible_tuned(const nlohmann::ordered_json& tuned);
 void expect_possible_pareto(const nlohmann::ordered_json& pareto);
+void expect_possible_discrepancy(const nlohmann::ordered_json& discrepancy);
 
 }  // namespace graze::reports

@@ -15,7 +15,7 @@
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/sealed.h"
 #include "reports/costs.h"
-#include "reports/discrepancy_page.h"
+#include "reports/discrepancy_answer.h"
 #include "reports/failure_cards.h"
 #include "reports/findings.h"
 #include "reports/possible_counts.h"

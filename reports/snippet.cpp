@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "backends/backends.h"
 #include "corpus/pair_format.h"
 #include "reports/foreign_snippet.h"
 
@@ -179,12 +180,13 @@ bool shows_lanes(SnippetKind kind) {
 }
 
 bool shows(SnippetKind kind, const Lane& lane) {
+  const bool is_cuda = backends::language_of(lane) == backends::Language::cuda;
   if (lane.foreign) {
     return shows_foreign(lane) &&
-           (kind == SnippetKind::gtest || (lane.is_cuda() ? kind == SnippetKind::cuda : kind == SnippetKind::cpp));
+           (kind == SnippetKind::gtest || kind == (is_cuda ? SnippetKind::cuda : SnippetKind::cpp));
   }
   if (lane.under && lane.under->kind != Policy::Kind::tolerances) return false;  // such a lane is never wrong
-  return shows_lanes(kind) && lane.is_cuda() == (kind == SnippetKind::cuda);
+  return shows_lanes(kind) && is_cuda == (kind == SnippetKind::cuda);
 }
 
 std::string source_line(const std::string& place) {
@@ -229,17 +231,19 @@ std::string snippet(SnippetKind kind, const SnippetCase& found) {
       if (std::isalnum(static_cast<unsigned char>(c))) name_of_test += c;
     }
     values[0].second = std::move(call.command);
-    values.insert(values.end(),
-                  {{"lane", found.lane->id},
-                   {"verdict", std::string(name(found.verdict))},
-                   {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
-                   {"decide", std::move(call.decide)},
-                   {"function", std::move(call.function)},
-                   {"seconds", std::to_string(call.seconds)},
-                   {"code", found.truth == Verdict::intersects ? "1" : "0"},
-                   // An unstable verdict may need many calls to show, as in Graze itself.
-                   {"rounds", found.verdict == Verdict::unstable && !found.lane->is_cuda() ? "1000" : "1"},
-                   {"test", "Subject" + name_of_test}});
+    values.insert(values.end(), {{"lane", found.lane->id},
+                                 {"verdict", std::string(name(found.verdict))},
+                                 {"real", found.lane->scalar == Scalar::f32 ? "float" : "double"},
+                                 {"decide", std::move(call.decide)},
+                                 {"function", std::move(call.function)},
+                                 {"seconds", std::to_string(call.seconds)},
+                                 {"code", found.truth == Verdict::intersects ? "1" : "0"},
+                                 // An unstable verdict may need many calls to show, as in Graze itself.
+                                 {"rounds", found.verdict == Verdict::unstable &&
+                                                    backends::language_of(*found.lane) == backends::Language::cpp
+                                                ? "1000"
+                                                : "1"},
+                                 {"test", "Subject" + name_of_test}});
   } else if (shows_lanes(kind)) {
     const std::string_view id = found.lane->info->id;
     values.insert(

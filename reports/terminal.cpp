@@ -136,7 +136,8 @@ void print_verdicts(std::ostream& out, const Pair& pair, const oracle::Truth& tr
                     std::span<const Lane* const> lanes, std::span<const Verdict> verdicts, const Screen& screen) {
   const Verdict truth = true_of_pair.verdict;
   const auto belongs = [](const Lane& lane, const VariantInfo& column) {
-    return lane.exact && lane.is_cuda() ? column.runs_on == RunsOn::device : lane.variant == column.variant;
+    const VariantInfo& its = info_of(lane.variant);
+    return its.arithmetic == Arithmetic::exact ? column.runs_on == its.runs_on : lane.variant == column.variant;
   };
   std::vector<const VariantInfo*> variants;
   for (const VariantInfo& row : kVariants) {

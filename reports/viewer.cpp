@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "backends/backends.h"
 #include "core/lanes/lanes.h"
 #include "corpus/pair_format.h"
 #include "cuda/twin/twin.h"
@@ -40,8 +41,9 @@ std::string bits_of(const float* numbers, std::size_t count) {
 std::vector<const Lane*> replayed_lanes() {
   std::vector<const Lane*> result;
   for (const Lane& lane : lanes()) {
-    const bool rebuilt = lane.exact || lane.is_cuda() || info_of(lane.variant).arithmetic == Arithmetic::rounded;
-    if (rebuilt && !lane.foreign && !lane.under && cuda::block_on_host(lane)) result.push_back(&lane);
+    const bool rebuilt =
+        lane.exact || backends::backend_of(lane).is_replayed || info_of(lane.variant).arithmetic == Arithmetic::rounded;
+    if (rebuilt && !lane.foreign && !lane.under && backends::on_host(lane)) result.push_back(&lane);
   }
   return result;
 }
@@ -66,7 +68,7 @@ Json replay() {
     const oracle::Truth truth = oracle::truth(pair);
     std::string verdicts;
     for (const Lane* lane : of)
-      verdicts += static_cast<char>('0' + static_cast<int>(decide_one(cuda::block_on_host(*lane), pair)));
+      verdicts += static_cast<char>('0' + static_cast<int>(decide_one(backends::on_host(*lane), pair)));
     pairs.push_back({{"bits", bits_of(coordinates(pair), kCoordinates)},
                      {"truth", name(truth.verdict)},
                      {"contact", name(truth.contact)},
@@ -79,7 +81,8 @@ Json replay() {
 std::string evidence() {
   std::set<std::string> kinds;
   for (const Lane* lane : replayed_lanes()) {
-    if (lane->is_cuda() && !lane->exact) kinds.insert(cuda::twin_evidence(*lane));
+    if (const std::string by = backends::backend_of(*lane).evidence(*lane); !by.empty() && !lane->exact)
+      kinds.insert(by);
   }
   return fmt::format("{}", fmt::join(kinds, "; "));
 }

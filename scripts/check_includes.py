@@ -4,7 +4,7 @@
 from folders before it in the order of add_subdirectory in the root CMakeLists.txt. The same rule holds for the files
 that a folder's CMakeLists.txt lists. The folders inside these folders must have no cycle, apart from tests, benchmarks
 and fuzz targets. Some libraries may be included by one folder only. No algorithm's header may include another
-algorithm's header.
+algorithm's header. Only backends may ask what kind of machine runs a lane.
   check_includes.py ROOT
 """
 import fnmatch
@@ -38,6 +38,16 @@ EXCEPTIONS = {  # files, the library that they include, and the reason
     "fuzz/ranks/mpi.cpp": ("MPI", "the one file that does"),
     "fuzz/lanes.bench.cpp": ("CGAL, GMP and MPFR", "times CGAL's own predicates beside the lanes"),
 }
+
+# Which backend a lane has. Other code asks backends/backends.h what the lane can do.
+ASKS_THE_KIND = re.compile(r"\bis_cuda\(\)|\bblock_on_host\(")
+MAY_ASK = [
+    ("core/lanes/", "makes the lanes"),
+    ("cuda/", "a backend"),
+    ("subjects/", "a backend"),
+    ("backends/", "the registry of backends"),
+    ("query/", "chooses cores or GPUs itself; backends would bring all twins into its library"),
+]
 
 
 def includes(file):
@@ -88,6 +98,10 @@ def check(root, exceptions):
         for file in sorted(path for path in (root / folder).rglob("*") if path.suffix in SOURCES):
             count += 1
             name = file.relative_to(root).as_posix()
+            if not LEAF.search(name) and not name.startswith(tuple(row[0] for row in MAY_ASK)):
+                for line, text in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+                    if found := ASKS_THE_KIND.search(text):
+                        said.append(f"{name}:{line}: expected a question to backends/backends.h, found {found.group()}")
             for line, quoted, included in includes(file):
                 if quoted or (root / included).exists():  # a file of the project
                     right = included in GENERATED or ("/" in included and included.split("/")[0] in allowed)

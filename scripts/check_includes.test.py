@@ -57,6 +57,20 @@ class IncludeDirection(unittest.TestCase):
                 self.assertTrue(said[0].endswith(f"found {found}"), said)
                 (self.root / file).unlink()
 
+    def test_only_backends_ask_what_runs_a_lane(self):
+        for text, found in [
+            ("if (lane.is_cuda()) return;\n", "is_cuda()"),
+            ("f(cuda::block_on_host(lane));\n", "block_on_host("),
+        ]:
+            for file in ["cuda/lanes/asks.cpp", "core/asks.test.cpp"]:
+                self.write(file, text)
+                self.assertEqual(self.said(), [])
+            self.write("oracle/asks.cpp", text)
+            said = self.said()
+            self.assertEqual(len(said), 1, said)
+            self.assertTrue(said[0].startswith("oracle/asks.cpp:1: ") and said[0].endswith(f"found {found}"), said)
+            (self.root / "oracle/asks.cpp").unlink()
+
     def test_a_list_of_files_names_no_later_folder(self):
         self.write("oracle/CMakeLists.txt", "add_library(oracle truth.cpp ../core/pair.cpp)\n")
         self.assertEqual(self.said(), [])

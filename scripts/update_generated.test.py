@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/update_generated puts the hashes that the test of strata says into strata/golden.h, and nothing else."""
+"""scripts/update_generated puts what tests say into strata/golden.h and cuda/twin/contracted_otherwise.inc, and nothing
+else."""
 import importlib.machinery
 import importlib.util
 import pathlib
@@ -30,6 +31,19 @@ class Goldens(unittest.TestCase):
     def test_a_new_stratum_gets_a_row_at_the_end(self):
         renewed = update.with_goldens(self.header, "brand_new is now 0x1\n")
         self.assertIn("    0x0000000000000001u,  // brand_new\n};\n\n}", renewed)
+
+
+class Kernels(unittest.TestCase):
+    rows = (ROOT / "cuda/twin/contracted_otherwise.inc").read_text()
+
+    def test_without_changes_nothing_is_written(self):
+        self.assertIn('    "interval_overlap/f32/cuda-fma/rel",\n', self.rows)
+        self.assertEqual(update.with_kernels(self.rows, "[  SKIPPED ] 2 tests"), self.rows)
+
+    def test_kernels_come_and_go(self):
+        more = update.with_kernels(self.rows, "kernel moller_1997/f32/cuda-fma/abs breaks the rule\n")
+        self.assertEqual(more, self.rows + '    "moller_1997/f32/cuda-fma/abs",\n')
+        self.assertEqual(update.with_kernels(more, "kernel moller_1997/f32/cuda-fma/abs follows the rule\n"), self.rows)
 
 
 if __name__ == "__main__":

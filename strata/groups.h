@@ -32,29 +32,11 @@ inline constexpr GroupInfo kGroups[] = {
 // The stratum's group.
 constexpr Group group_of(Stratum stratum) {
   switch (stratum) {
-    case Stratum::uniform:
-    case Stratum::thesis:
-    case Stratum::near_vertex_face:
-    case Stratum::near_edge_edge:
-    case Stratum::near_vertex_edge:
-    case Stratum::near_vertex_vertex:
-    case Stratum::exact_contact:
-    case Stratum::shared_vertex:
-    case Stratum::shared_edge:
-      return Group::general;
-    case Stratum::coplanar_lattice:
-    case Stratum::coplanar_wide:
-    case Stratum::coplanar_rounded:
-    case Stratum::parallel:
-      return Group::coplanar;
-    case Stratum::degenerate:
-    case Stratum::lattice:
-      return Group::degenerate;
-    case Stratum::sliver:
-    case Stratum::far_from_origin:
-    case Stratum::extreme_scale:
-    case Stratum::mixed_scale:
-      return Group::extreme;
+#define GRAZE_STRATUM(name, group, ...) \
+  case Stratum::name:                   \
+    return Group::group;
+#include "strata/strata.inc"
+#undef GRAZE_STRATUM
   }
   return Group::general;
 }

@@ -40,15 +40,42 @@ std::string read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
-Soup read_soup(const std::filesystem::path& file, std::string_view bytes) {
+struct MeshFormat {
+  std::string_view extension, name;
+  Soup (*read)(const MeshBytes& file);
+};
+constexpr MeshFormat kFormats[] = {
+#define GRAZE_MESH_FORMAT(extension, name) {"." #extension, name, read_##extension},
+#include "strata/mesh_readers/formats.inc"
+#undef GRAZE_MESH_FORMAT
+};
+
+// Null if the extension is none of a mesh.
+const MeshFormat* format_of(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  for (const MeshFormat& format : kFormats) {
+    if (extension == format.extension) return &format;
+  }
+  return nullptr;
+}
+
+// ".off, .obj, .stl or .ply"
+std::string listed(std::string_view MeshFormat::*column) {
+  std::string list;
+  for (const MeshFormat& format : kFormats) {
+    const bool last = &format + 1 == std::end(kFormats);
+    list += (list.empty() ? "" : last ? " or " : ", ") + std::string(format.*column);
+  }
+  return list;
+}
+
+Soup read_soup(const std::filesystem::path& file, std::string_view bytes) {
   const MeshBytes mesh{file.string(), bytes};
-  if (extension == ".off") return read_off(mesh);
-  if (extension == ".obj") return read_obj(mesh);
-  if (extension == ".stl") return read_stl(mesh);
-  if (extension == ".ply") return read_ply(mesh);
-  fail(mesh.name, "a file of extension .off, .obj, .stl or .ply", extension.empty() ? "no extension" : extension);
+  if (const MeshFormat* format = format_of(file)) return format->read(mesh);
+  const std::string extension = file.extension().string();
+  fail(mesh.name, "a file of extension " + listed(&MeshFormat::extension),
+       extension.empty() ? "no extension" : extension);
 }
 
 // Adds the file's triangles, and its bytes to the hash.
@@ -200,6 +227,10 @@ MeshPairs read_self_pairs(const std::filesystem::path& file) {
   pair_up(result, {result.triangles.size()}, file);
   return result;
 }
+
+bool is_mesh(const std::filesystem::path& file) { return format_of(file) != nullptr; }
+
+std::string mesh_formats() { return listed(&MeshFormat::name); }
 
 MeshPairs read_mesh_pairs(const std::filesystem::path& file, const std::optional<std::filesystem::path>& other) {
   return other ? read_bodies({file, *other}) : read_bodies({file});

@@ -28,10 +28,15 @@ struct MeshPairs {
   Pair pair(std::size_t index) const;
 };
 
+// Whether the file's extension is that of a mesh.
+bool is_mesh(const std::filesystem::path& file);
+
+// "OFF, OBJ, STL or PLY"
+std::string mesh_formats();
+
 // The candidate pairs of a mesh against itself, or against the other mesh. A face of more than three vertices is cut
 // into a fan from its first vertex. Coordinates are rounded once to float32; triangles that become degenerate stay in.
-// The boxes are those of the rounded triangles, so no touching pair is missed. The extension tells the format: OFF,
-// OBJ, STL or PLY.
+// The boxes are those of the rounded triangles, so no touching pair is missed. The extension tells the format.
 // Throws: std::runtime_error of one line that names the file, the line or byte, and what was expected and found.
 MeshPairs read_mesh_pairs(const std::filesystem::path& file,
                           const std::optional<std::filesystem::path>& other = std::nullopt);

@@ -220,5 +220,11 @@ TEST_F(MeshFile, SaysWhatItDoesNotUse) {
             (std::vector<std::string>{file.string() + ": 2 triangles; not used: 2 lines, 1 normals"}));
 }
 
+TEST(MeshFormats, AreThoseOfTheTable) {
+  EXPECT_EQ(mesh_formats(), "OFF, OBJ, STL or PLY");
+  for (const char* file : {"a.off", "b/A.PLY", "a.b.stl"}) EXPECT_TRUE(is_mesh(file)) << file;
+  for (const char* file : {"off", "a.pairs", "a.off.gz", ""}) EXPECT_FALSE(is_mesh(file)) << file;
+}
+
 }  // namespace
 }  // namespace graze::strata

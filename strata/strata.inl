@@ -43,44 +43,11 @@ GRAZE_HD inline Pair generate(std::uint64_t seed, Stratum stratum, std::uint64_t
   using strata::Touch;
   strata::Draws draws(seed, static_cast<std::uint32_t>(stratum), index);
   switch (stratum) {
-    case Stratum::uniform:
-      return strata::uniform(draws);
-    case Stratum::thesis:
-      return strata::thesis(draws);
-    case Stratum::near_vertex_face:
-      return strata::near_contact(draws, Touch::vertex_face);
-    case Stratum::near_edge_edge:
-      return strata::near_contact(draws, Touch::edge_edge);
-    case Stratum::near_vertex_edge:
-      return strata::near_contact(draws, Touch::vertex_edge);
-    case Stratum::near_vertex_vertex:
-      return strata::near_contact(draws, Touch::vertex_vertex);
-    case Stratum::coplanar_lattice:
-      return strata::coplanar_lattice(draws);
-    case Stratum::coplanar_wide:
-      return strata::coplanar_wide(draws);
-    case Stratum::exact_contact:
-      return strata::exact_contact(draws);
-    case Stratum::coplanar_rounded:
-      return strata::coplanar_rounded(draws);
-    case Stratum::parallel:
-      return strata::parallel(draws);
-    case Stratum::sliver:
-      return strata::sliver(draws);
-    case Stratum::degenerate:
-      return strata::degenerate(draws);
-    case Stratum::shared_vertex:
-      return strata::shared_vertex(draws);
-    case Stratum::shared_edge:
-      return strata::shared_edge(draws);
-    case Stratum::far_from_origin:
-      return strata::far_from_origin(draws);
-    case Stratum::extreme_scale:
-      return strata::extreme_scale(draws);
-    case Stratum::mixed_scale:
-      return strata::mixed_scale(draws);
-    case Stratum::lattice:
-      return strata::lattice(draws);
+#define GRAZE_STRATUM(name, group, kind, axis, draw, what) \
+  case Stratum::name:                                      \
+    return strata::draw;
+#include "strata/strata.inc"
+#undef GRAZE_STRATUM
   }
   return {};
 }

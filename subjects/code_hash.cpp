@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "core/fnv1a.h"
+#include "core/stop.h"
 #include "core/text.h"
 
 namespace graze::subjects {
@@ -102,18 +103,24 @@ FileState state_of(const fs::path& file) {
 }
 
 std::string code_in(const fs::path& file) {
+  constexpr std::size_t kMost = std::size_t{1} << 30, kPart = std::size_t{1} << 20;
+  const StopSignals stops;
   std::error_code why;
-  const bool regular = fs::is_regular_file(file, why);
-  std::ifstream in;
-  if (regular) in.open(file, std::ios::binary);  // opening a pipe without a writer would block
-  std::ostringstream text;
-  if (!regular || !(text << in.rdbuf())) {
-    throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
-                                         why       ? why.message()
-                                         : regular ? std::strerror(errno)
-                                                   : "not a file"));
+  std::string text, reason = "not a file";
+  if (fs::is_regular_file(file, why)) {  // opening a pipe without a writer would block
+    std::ifstream in(file, std::ios::binary);
+    const bool fits = fs::file_size(file, why) <= kMost;
+    while (fits && in && text.size() <= kMost) {
+      if (stop_requested) throw Stopped();
+      const std::size_t before = text.size();
+      text.resize(before + kPart);
+      text.resize(before + static_cast<std::size_t>(in.read(text.data() + before, kPart).gcount()));
+    }
+    if (in.eof() && text.size() <= kMost) return text;
+    reason = in ? "it is larger than 1 GiB" : std::strerror(errno);
   }
-  return text.str();
+  throw std::runtime_error(fmt::format("--subject: cannot read the code in {}: {}", shown_path(file.string()),
+                                       why ? why.message() : reason));
 }
 
 std::uint64_t hash_of_file(const fs::path& file) { return fnv1a(code_in(file)); }

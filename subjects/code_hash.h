@@ -36,7 +36,7 @@ struct CodeHash {
 // another file. A file that was changed and changed back counts as unchanged.
 void expect_unchanged(const std::vector<HashedFile>& files);
 
-// Returns: the file's bytes.   Throws: std::runtime_error if there is no such file.
+// Returns: the file's bytes.   Throws: std::runtime_error if there is no such file or it is larger than 1 GiB; Stopped.
 std::string code_in(const std::filesystem::path& file);
 std::uint64_t hash_of_file(const std::filesystem::path& file);
 

@@ -26,7 +26,8 @@ int open_process(pid_t process);
 bool is_descendant(pid_t process);
 
 struct Usage {
-  std::uint64_t processes, bytes;  // bytes of memory; each process counts its share of shared pages
+  std::uint64_t processes,
+      bytes;  // bytes of memory; each process counts its page tables, and its share of shared pages
 };
 // Current usage of all descendants. Stops counting a little beyond `most_bytes` or `most_processes`.
 Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processes);
@@ -35,11 +36,12 @@ Usage usage_of_descendants(std::uint64_t most_bytes, std::uint64_t most_processe
 bool end_children(pid_t except);
 
 // From now on this process and its descendants cannot change the limits of other processes. (The supervisor runs as
-// the same user.) They also cannot allocate memory that no limit counts (memfd_create).
+// the same user.) They also cannot allocate memory that no limit counts (memfd_create and the like), make namespaces,
+// or run programs in the kernel.
 void forbid_calls();
 
-// Gives up the rights of root that would reach beyond the limits: tracing, mounting, lifting limits, rebooting,
-// delaying the supervisor, and reaching files by handles and disks.
+// Gives up all rights of root but those about files, users and low ports. The others reach beyond the limits: tracing,
+// mounting, lifting limits, rebooting, setting the clock, delaying the supervisor, reaching files by handles and disks.
 void drop_rights();
 
 }  // namespace graze::subjects

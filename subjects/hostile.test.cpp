@@ -2,10 +2,13 @@
 // Foreign code that attacks the processes around it. Each attack is a verdict on its own pair only.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -15,6 +18,7 @@
 #include <sstream>
 #include <thread>
 
+#include "core/lanes/verdicts.h"
 #include "core/programs/process_state.h"
 #include "core/programs/run_program.h"
 #include "core/stop.h"
@@ -86,13 +90,8 @@ struct Hostile : testing::Test {
     return pair.a[0].x < pair.b[0].x ? Verdict::intersects : Verdict::disjoint;
   }
   static std::vector<Verdict> verdicts(ForeignProcesses& subject) {
-    std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
-    subject.decide(pairs.data(), pairs.size(), yes.data(), none.data());
-    std::vector<Verdict> result;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool y = yes[i / 64] >> i % 64 & 1, n = none[i / 64] >> i % 64 & 1;
-      result.push_back(y && n ? Verdict::crashed : n ? Verdict::declined : y ? Verdict::intersects : Verdict::disjoint);
-    }
+    std::vector<Verdict> result = verdicts_of(subject, pairs);
+    for (Verdict& verdict : result) verdict = is_failure(verdict) ? Verdict::crashed : verdict;
     return result;  // crashed stands for every failure
   }
 
@@ -226,12 +225,39 @@ constexpr Attack kAttacks[] = {{"writes_zeros"},
                                {"stretches_waits"},
                                {"makes_namespaces"},
                                {"raises_task_limit", false},
+                               {"calls_the_kernel"},
+                               {"keeps_mapping"},
+                               {"eats_page_tables"},
                                {"kills_all", false}};
 INSTANTIATE_TEST_SUITE_P(Subjects, EveryAttack, testing::Combine(testing::ValuesIn(kAttacks), testing::Bool()),
                          [](const auto& of) {
                            return std::string(std::get<0>(of.param).name) +
                                   (std::get<1>(of.param) ? "" : "_without_namespaces");
                          });
+
+TEST_F(Hostile, PageTablesAreMemory) {
+  constexpr std::size_t kPages = 10'000, kStep = 2 << 20;
+  int ready[2];
+  ASSERT_EQ(pipe2(ready, O_CLOEXEC), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    void* at = mmap(nullptr, kPages * kStep, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (at == MAP_FAILED) _exit(1);
+    madvise(at, kPages * kStep, MADV_NOHUGEPAGE);
+    for (std::size_t i = 0; i < kPages; ++i) (void)static_cast<volatile char*>(at)[i * kStep];
+    if (write(ready[1], "y", 1) == 1) pause();
+    _exit(1);
+  }
+  close(ready[1]);
+  char said = 0;
+  EXPECT_EQ(read(ready[0], &said, 1), 1);
+  close(ready[0]);
+  for (const std::uint64_t most : {std::uint64_t{1} << 40, std::uint64_t{1} << 20})  // both ways to count
+    EXPECT_GE(usage_of_descendants(most, 64).bytes, std::min<std::uint64_t>(kPages * 4096, most));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
 
 TEST_F(Hostile, ChildrenThatAreLeftInSilenceEndWithTheSubject) {
   for (const bool namespaces : {true, false}) {

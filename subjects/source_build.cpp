@@ -61,12 +61,9 @@ GRAZE_SUBJECT(graze_subject) = {.abi = GRAZE_SUBJECT_ABI, .f32 = graze_f32 ? gra
 )";
 
 std::string text_of(const fs::path& file) {
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || (!(text << in.rdbuf()) && errno != 0)) throw std::runtime_error(cannot("read", file, errno));
-  if (!text) throw std::runtime_error("there is no code in " + file.string());
-  return text.str();
+  std::string text = code_in(file);
+  if (text.empty()) throw std::runtime_error("there is no code in " + file.string());
+  return text;
 }
 
 void write(const fs::path& file, std::string_view text) {

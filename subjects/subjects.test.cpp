@@ -17,6 +17,7 @@
 #include "core/lanes/lanes.h"
 #include "core/lanes/verdicts.h"
 #include "core/message_testing.h"
+#include "core/stop.h"
 #include "cuda/twin/twin.h"
 #include "strata/strata.h"
 #include "subjects/process.h"
@@ -447,6 +448,12 @@ TEST_F(Subjects, WhatCannotBeHadGetsOneLine) {
     ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
     expect_error("x=" + (folder / name).string() + ":f", "cannot read the code in .*: not a file");
   }
+  std::ofstream(folder / "large.so").close();
+  fs::resize_file(folder / "large.so", (std::uintmax_t{1} << 30) + 1);
+  expect_error("x=" + (folder / "large.so").string(), "cannot read the code in .*: it is larger than 1 GiB");
+  stop_requested = true;
+  EXPECT_THROW(open_one("x=" + so + ":good"), Stopped);
+  stop_requested = false;
   EXPECT_FALSE(opened("x"));
   for (const Lane& lane : lanes()) EXPECT_NE(lane.info->id, "x");
 }
@@ -732,10 +739,8 @@ TEST_F(Subjects, AKeptObjectThatIsNotAsItWasBuiltIsBuiltAgain) {
     ASSERT_EQ(build(source), kept);
     EXPECT_EQ(fs::file_size(kept), size);
     ForeignProcesses subject({"library", kept.string(), ""}, Scalar::f32);
-    std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
-    subject.decide(pairs.data(), pairs.size(), yes.data(), none.data());
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      ASSERT_EQ(yes[i / 64] >> i % 64 & 1, left_of(pairs[i]) == Verdict::intersects) << i;
+    const std::vector<Verdict> said = verdicts_of(subject, pairs);
+    for (std::size_t i = 0; i < pairs.size(); ++i) ASSERT_EQ(said[i], left_of(pairs[i])) << i;
   }
   fs::remove(kept);
   fs::create_directories(kept / "inner");

@@ -5,6 +5,7 @@
 
 #include "analysis/blame.h"
 #include "analysis/lane_trace.h"
+#include "backends/backends.h"
 #include "core/exact/exact.h"
 #include "core/lanes/lanes.h"
 #include "core/margin/margin.h"
@@ -60,7 +61,7 @@ std::vector<Decider>& deciders() {
   static std::vector<Decider> all = [] {
     std::vector<Decider> found;
     for (const Lane& lane : lanes()) {
-      if (DecideBlock block = cuda::block_on_host(lane)) found.push_back({&lane, block});
+      if (DecideBlock block = backends::on_host(lane)) found.push_back({&lane, block});
     }
     return found;
   }();
@@ -69,10 +70,10 @@ std::vector<Decider>& deciders() {
 
 // Null if the lane cannot have the policy. Exact lanes have no policy and stay as they are.
 DecideBlock block_under(const Lane& lane, std::string_view policy) {
-  if (policy.empty() || lane.exact) return cuda::block_on_host(lane);
+  if (policy.empty() || lane.exact) return backends::on_host(lane);
   const bool by_bounds = policy == "bound" || policy == "filtered";
   if (by_bounds && !lane.info->right_without_rounding) return nullptr;
-  return cuda::block_on_host(lane_under(lane, policy));
+  return backends::on_host(lane_under(lane, policy));
 }
 
 Verdict truth_of(const Pair& pair) {

@@ -8,6 +8,8 @@
 
 #include "analysis/blame.h"
 #include "analysis/lane_trace.h"
+#include "backends/backends.h"
+#include "core/lanes/verdicts.h"
 #include "core/margin/margin.h"
 #include "core/relation_of.h"
 #include "cuda/twin/twin.h"
@@ -38,11 +40,8 @@ void print(const char* what, const char* of, std::uint64_t block, Hash hash) {
 }
 
 Hash verdicts(const DecideBlock& decide, const std::vector<Pair>& pairs) {
-  std::vector<std::uint64_t> yes((pairs.size() + 63) / 64), none(yes.size());
-  decide(pairs.data(), pairs.size(), yes.data(), none.data());
   Hash hash;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    hash.add_value(static_cast<std::uint8_t>(verdict_of_bits(yes[i / 64] >> i % 64 & 1, none[i / 64] >> i % 64 & 1)));
+  for (const Verdict said : verdicts_of(decide, pairs)) hash.add_value(static_cast<std::uint8_t>(said));
   return hash;
 }
 
@@ -93,7 +92,7 @@ void print_block(const std::string& of, std::uint64_t block, const std::vector<P
   const std::vector<Pair> few(pairs.begin(),
                               pairs.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(5, pairs.size())));
   for (const Lane& lane : lanes()) {
-    const DecideBlock decide = cuda::block_on_host(lane);
+    const DecideBlock decide = backends::on_host(lane);
     if (!decide || lane.variant == Variant::cpu_fma || lane.variant == Variant::cpu_fast) continue;
     print(lane.id.c_str(), of.c_str(), block, verdicts(decide, pairs));
     if (const cuda::TraceBlock trace = cuda::twin_trace(lane)) {
@@ -108,7 +107,7 @@ void print_block(const std::string& of, std::uint64_t block, const std::vector<P
     for (const char* policy : kPolicies) {
       const bool by_bounds = policy[0] == 'b' || policy[0] == 'f';
       if (lane.exact || (by_bounds && !lane.info->right_without_rounding)) continue;
-      if (const DecideBlock under = cuda::block_on_host(lane_under(lane, policy)))
+      if (const DecideBlock under = backends::on_host(lane_under(lane, policy)))
         print((lane.id + '/' + policy).c_str(), of.c_str(), block, verdicts(under, pairs));
     }
   }

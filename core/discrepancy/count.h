@@ -8,7 +8,7 @@
 
 #include "core/algorithms/algorithms.h"
 #include "core/discrepancy/led.h"
-#include "core/margin/bucket.h"
+#include "core/margin/axis.h"
 
 namespace graze {
 
@@ -39,7 +39,7 @@ inline constexpr int kErrorNotFinite = kErrors - 2, kErrorUnknown = kErrors - 1;
 
 // A question's counts. Its sign is that of its value, or of the left value minus the right one.
 namespace question_counts {
-inline constexpr int kBands = 64, kLowestBand = -16;
+inline constexpr int kBands = 34, kLowestBand = -32;
 enum : int {
   asked,    // of both lanes, and compared
   differs,  // some value's bits differ
@@ -48,8 +48,9 @@ enum : int {
   outcome,  // the comparison goes the other way; of a question about one value: the sign differs
   verdict,  // of pairs with different verdicts: this is the first question with another outcome
   band,     // kBands: where the sign differs, the larger size of the two values, in bounds of the error, is
-            // 2^(k + kLowestBand) to the next power; the first and the last without end
-  band_unknown = band + kBands,  // the size has no finite bound
+            // 2^(k + kLowestBand) to the next power; the first without end. It is at most 2: each value is within a
+            // bound of the exact one, and they lie on both sides of zero
+  band_unknown = band + kBands,  // Unrounded has no bound
   kFields
 };
 }  // namespace question_counts
@@ -71,9 +72,12 @@ enum : int {
 };
 }
 
-// The layout of an algorithm's counts.
-inline constexpr int kValuesAt = pair_counts::kFields + (kSiteCount + 1) * site_counts::kFields;
+// The layout of an algorithm's counts: those of pairs, by site, of pairs by their place on the stratum's axis, and by
+// question.
+inline constexpr int kPlacesAt = pair_counts::kFields + (kSiteCount + 1) * site_counts::kFields;
+inline constexpr int kValuesAt = kPlacesAt + kBucketCount * pair_counts::kFields;
 GRAZE_HD constexpr int site_at(int site) { return pair_counts::kFields + site * site_counts::kFields; }
+GRAZE_HD constexpr int place_at(int place) { return kPlacesAt + (place + kBucketMost) * pair_counts::kFields; }
 GRAZE_HD constexpr int question_at(int question) {
   return kValuesAt + question * (2 * value_counts::kFields + question_counts::kFields);
 }
@@ -121,7 +125,13 @@ GRAZE_HD int order_of(Real x, Real y) {
   return x < y ? -1 : x > y ? 1 : x == y ? 0 : 2;
 }
 
-// floor(log2(x)) of a positive number. For zero, less than for any other number.
+// Whether `left < right`, or `left <= right`, is answered otherwise by values in the other order.
+GRAZE_HD inline bool answers_otherwise(int order, int other, bool at_most) {
+  const bool yes = order == -1 || (at_most && order == 0), other_yes = other == -1 || (at_most && other == 0);
+  return yes != other_yes;
+}
+
+// floor(log2(x)) of a positive number; of zero, less than of any other.
 GRAZE_HD inline int log2_of(const DoubleDouble& x) {
   const int k = floor_log2(x.hi);
   return x.lo < 0 && x.hi == scalbn(1.0, k) ? k - 1 : k;
@@ -224,35 +234,36 @@ class PairComparison {
   }
 
   // The policy's `found`.
-  GRAZE_HD void one(int question, int site, const Certified& exact) {
+  GRAZE_HD void one(int question, int site, const Unrounded& value) {
     if (!compared(question, site)) return;
     const Real x = lane_[0].value(question, 0), y = lane_[1].value(question, 0);
-    const bool differs = compare(question, 0, exact);
+    const bool differs = compare(question, 0, value.exact);
     const int sign = sign_of_value(x), other = sign_of_value(y);
-    conclude(question, site, differs, sign, other, sign != other, larger(fabs(x), fabs(y)), exact.size);
+    conclude(question, site, differs, sign, other, sign != other, larger(fabs(x), fabs(y)), value.rounding);
   }
-  GRAZE_HD void two(int question, int site, const Certified& left, const Certified& right, bool at_most) {
+  GRAZE_HD void two(int question, int site, const Unrounded& left, const Unrounded& right, bool at_most) {
     if (!compared(question, site)) return;
-    const bool left_differs = compare(question, 0, left), right_differs = compare(question, 1, right);
+    const bool left_differs = compare(question, 0, left.exact), right_differs = compare(question, 1, right.exact);
     const Real x[2] = {lane_[0].value(question, 0), lane_[0].value(question, 1)};
     const Real y[2] = {lane_[1].value(question, 0), lane_[1].value(question, 1)};
     const int order = order_of(x[0], x[1]), other = order_of(y[0], y[1]);
-    const bool outcome =
-        at_most ? (order == -1 || order == 0) != (other == -1 || other == 0) : (order == -1) != (other == -1);
     const double size = larger(fabs(static_cast<double>(x[0]) - static_cast<double>(x[1])),
                                fabs(static_cast<double>(y[0]) - static_cast<double>(y[1])));
-    conclude(question, site, left_differs || right_differs, order, other, outcome, size, left.size + right.size);
+    conclude(question, site, left_differs || right_differs, order, other, answers_otherwise(order, other, at_most),
+             size, left.rounding + right.rounding);
   }
 
-  // Counts the pair. Call it once, after all questions.
-  GRAZE_HD void finish() {
+  // Counts the pair among all (`at` is 0), or among those of its place. Call it after all questions.
+  GRAZE_HD void count_pair(int at) {
     using namespace pair_counts;
-    sink_.add(pairs);
-    if (some_differs_) sink_.add(pair_counts::differs);
-    if (some_sign_ || choice_differs_) sink_.add(pair_counts::sign);
-    if (some_outcome_ || choice_differs_) sink_.add(pair_counts::outcome);
-    if (choice_differs_) sink_.add(pair_counts::choice);
-    if (verdict_differs_) sink_.add(pair_counts::verdict);
+    sink_.add(at + pairs);
+    if (some_differs_) sink_.add(at + pair_counts::differs);
+    if (some_sign_ || choice_differs_) sink_.add(at + pair_counts::sign);
+    if (some_outcome_ || choice_differs_) sink_.add(at + pair_counts::outcome);
+    if (choice_differs_) sink_.add(at + pair_counts::choice);
+    if (verdict_differs_) sink_.add(at + pair_counts::verdict);
+  }
+  GRAZE_HD void count_sites() {
     for (int s = 0; s <= kSiteCount; ++s) {
       for (int f = 0; f < site_counts::kFields; ++f) {
         if (sites_ >> (s * site_counts::kFields + f) & 1) sink_.add(site_at(s) + f);
@@ -314,7 +325,7 @@ class PairComparison {
   }
 
   GRAZE_HD void conclude(int question, int site, bool differs, int sign, int other, bool outcome, double size,
-                         double of_operands) {
+                         double rounding) {
     using namespace question_counts;
     const int at = question_at(question);
     sink_.add(at + asked);
@@ -329,19 +340,18 @@ class PairComparison {
     mark(site, site_counts::sign);
     some_sign_ = true;
     if (sign == 0 || other == 0) sink_.add(at + zero_on_one_side);
-    count_band(question, size, of_operands);
+    count_band(question, size, rounding);
     if (!outcome) return;
     sink_.add(at + question_counts::outcome);
     if (verdict_differs_ && !some_outcome_) sink_.add(at + question_counts::verdict);
     some_outcome_ = true;
   }
 
-  GRAZE_HD void count_band(int question, double size, double of_operands) {
+  GRAZE_HD void count_band(int question, double size, double rounding) {
     using namespace question_counts;
-    constexpr double kUnit = sizeof(Real) == sizeof(float) ? 0x1p-24 : 0x1p-53;
     const int at = question_at(question);
-    const double in_bounds = size / (of_operands * kUnit);
-    if (!(in_bounds < HUGE_VAL) || !(size < HUGE_VAL)) return sink_.add(at + band_unknown);
+    const double in_bounds = size / rounding;
+    if (!(rounding < HUGE_VAL) || !(in_bounds < HUGE_VAL)) return sink_.add(at + band_unknown);
     int k = in_bounds > 0 ? floor_log2(in_bounds) - kLowestBand : 0;
     k = k < 0 ? 0 : k >= kBands ? kBands - 1 : k;
     sink_.add(at + band + k);
@@ -397,13 +407,26 @@ GRAZE_HD double extent_of(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
   return largest;
 }
 
-// Compares the runs of two lanes on one pair.
+// A pair from its coordinates in the lane's scalar.
+template <class Real>
+GRAZE_HD Pair narrowed(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3]) {
+  Pair pair;
+  for (int v = 0; v < 3; ++v) {
+    pair.a[v] = {static_cast<float>(a[v].x), static_cast<float>(a[v].y), static_cast<float>(a[v].z)};
+    pair.b[v] = {static_cast<float>(b[v].x), static_cast<float>(b[v].y), static_cast<float>(b[v].z)};
+  }
+  return pair;
+}
+
+// Compares the runs of two lanes on one pair. axis: that of the pair's stratum.
 template <class Algorithm, class Real, class Sink>
 GRAZE_HD void compare_runs(const Vec3<Real> (&a)[3], const Vec3<Real> (&b)[3], const Run<Real>& first,
-                           const Run<Real>& second, const std::uint8_t* degrees, Sink& sink) {
+                           const Run<Real>& second, const std::uint8_t* degrees, Axis axis, Sink& sink) {
   PairComparison<Real, Sink> comparison(first, second, degrees, extent_of(a, b), sink);
   run_led<Algorithm>(a, b, first.values, first.path, comparison);
-  comparison.finish();
+  comparison.count_pair(0);
+  comparison.count_sites();
+  if (axis != Axis::none) comparison.count_pair(place_at(place_on_axis(narrowed(a, b), axis)));
 }
 
 }  // namespace GRAZE_FP

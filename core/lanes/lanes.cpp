@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/exact_blocks/decide.h"
 #include "core/lanes/host_blocks.h"
+#include "core/lanes/named_policies.h"
 
 namespace graze {
 namespace {
@@ -184,8 +185,7 @@ std::optional<PolicyPattern> split(std::string_view pattern) {
   const std::size_t slash = pattern.rfind('/');
   if (slash == pattern.npos) return std::nullopt;
   const std::string_view last = pattern.substr(slash + 1);
-  const bool is_policy = last.find(':') != last.npos || last == "paper" || last == "bound" || last == "filtered";
-  if (!is_policy) return std::nullopt;
+  if (last.find(':') == last.npos && !is_named_policy(last)) return std::nullopt;
   return PolicyPattern{std::string(pattern.substr(0, slash)), std::string(last)};
 }
 

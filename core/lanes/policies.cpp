@@ -8,15 +8,17 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/lanes/named_policies.h"
 #include "core/text.h"
 
 namespace graze {
 namespace {
 
-constexpr std::string_view kForms = "zero, abs:E, rel:K, SITE=abs:E,…, paper, bound or filtered";
-
 [[noreturn]] void refuse(std::string_view text, const std::string& why = "") {
-  throw UsageError("expected a policy (" + std::string(kForms) + "), found " + shown(text) + why);
+  std::string forms = "zero, abs:E, rel:K, SITE=abs:E,…";
+  for (const std::string_view named : kNamedPolicies)
+    forms += (named == *std::rbegin(kNamedPolicies) ? " or " : ", ") + std::string(named);
+  throw UsageError("expected a policy (" + forms + "), found " + shown(text) + why);
 }
 
 // Epsilons of published codes.

@@ -9,6 +9,7 @@
 #include "core/algorithms/algorithms.h"
 #include "core/error.h"
 #include "core/lanes/lanes.h"
+#include "core/lanes/named_policies.h"
 #include "core/lanes/with_error_bound.h"
 
 namespace graze {
@@ -111,6 +112,13 @@ TEST(Policies, AddLanesOnceForEachThatMatches) {
   add_policy_lanes("*/f64/cpu-fma/bound");
   EXPECT_NE(find_lane("moller_1997/f64/cpu-fma/bound"), nullptr);
   EXPECT_EQ(find_lane("projected_sat/f64/cpu-fma/bound"), nullptr);
+}
+
+TEST(Policies, OfOneWordMayFollowAStarForSeveralParts) {
+  for (const std::string_view policy : kNamedPolicies) {
+    add_policy_lanes("moller*/cpu/" + std::string(policy));
+    EXPECT_NE(find_lane("moller_1997/f64/cpu/" + std::string(policy)), nullptr) << policy;
+  }
 }
 
 // The tolerance of a site is the sum of both, so each is kept.

@@ -3,13 +3,19 @@
 
 namespace graze {
 
+void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to) {
+  to.intersects.resize((pairs.size() + 63) / 64);
+  to.declined.resize(to.intersects.size());
+  if (!pairs.empty()) block(pairs.data(), pairs.size(), to.intersects.data(), to.declined.data());
+}
+
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs) {
-  std::vector<std::uint64_t> intersects((pairs.size() + 63) / 64), declined(intersects.size());
-  if (!pairs.empty()) block(pairs.data(), pairs.size(), intersects.data(), declined.data());
+  VerdictBits bits;
+  decide(block, pairs, bits);
+  const LaneVerdicts said{bits.intersects, bits.declined, &block, pairs.data()};
   std::vector<Verdict> verdicts;
   verdicts.reserve(pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    verdicts.push_back(block.verdict_of(intersects[i / 64] >> i % 64 & 1, declined[i / 64] >> i % 64 & 1, pairs[i]));
+  for (std::size_t i = 0; i < pairs.size(); ++i) verdicts.push_back(said.at(i));
   return verdicts;
 }
 

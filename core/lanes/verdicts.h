@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lane's verdicts on pairs as a list, for code that reads single verdicts instead of counting bits.
+// A lane's verdicts on a block of pairs: as bits, which count many at once, or as a list.
 #pragma once
 
 #include <optional>
@@ -10,6 +10,28 @@
 #include "core/lanes/lanes.h"
 
 namespace graze {
+
+// Bit i % 64 of word i / 64 belongs to pair i; unused bits are zero.
+inline bool test_bit(std::span<const std::uint64_t> bits, std::size_t i) { return bits[i / 64] >> (i % 64) & 1; }
+
+struct VerdictBits {
+  std::vector<std::uint64_t> intersects, declined;
+};
+
+// Decides the pairs. Does not call the block function if there are none.
+void decide(const DecideBlock& block, std::span<const Pair> pairs, VerdictBits& to);
+
+// What a lane's bits say.
+struct LaneVerdicts {
+  std::span<const std::uint64_t> intersects, declined;
+  const DecideBlock* foreign = nullptr;  // of foreign code what decided, and the pairs: both bits say that it failed
+  const Pair* pairs = nullptr;
+
+  Verdict at(std::size_t i) const {
+    const bool yes = test_bit(intersects, i), none = test_bit(declined, i);
+    return foreign ? foreign->verdict_of(yes, none, pairs[i]) : verdict_of_bits(yes, none);
+  }
+};
 
 // The verdict on each pair. Does not call the block function if there are no pairs.
 std::vector<Verdict> verdicts_of(const DecideBlock& block, std::span<const Pair> pairs);

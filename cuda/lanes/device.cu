@@ -115,7 +115,7 @@ class CudaDevice final : public Device {
   }
 
   void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
-              std::vector<LaneBits>& bits) override {
+              std::vector<VerdictBits>& bits) override {
     bits.resize(cuda_lanes.size());
     if (pairs.empty()) return;
     check(cudaSetDevice(0));  // an engine of another device may have left that one current

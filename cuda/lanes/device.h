@@ -9,15 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "core/lanes/lanes.h"
+#include "core/lanes/verdicts.h"
 
 namespace graze::cuda {
-
-// One lane's verdicts on a block of pairs; bit i % 64 of word i / 64 belongs to pair i.
-struct LaneBits {
-  std::vector<std::uint64_t> intersects;
-  std::vector<std::uint64_t> declined;
-};
 
 // A CUDA device with memory for blocks of pairs. Not thread-safe.
 class Device {
@@ -27,7 +21,7 @@ class Device {
   // Decides the pairs by each lane; bits[k] has the verdicts of cuda_lanes[k].   Requires: CUDA lanes.
   // Throws: std::runtime_error on any CUDA error.
   virtual void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
-                      std::vector<LaneBits>& bits) = 0;
+                      std::vector<VerdictBits>& bits) = 0;
 
   std::string name;     // "NVIDIA H100 80GB HBM3"
   std::string driver;   // CUDA version of the driver, "13.0"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuda/twin/twin.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 
 #include "cuda/twin/twin_table.h"
 
@@ -77,18 +79,21 @@ const TwinRow& row_of(const TwinTable& table, const Lane& lane) {
   return table.rows.at(static_cast<std::size_t>(lane.algorithm)).at(static_cast<std::size_t>(lane.scalar));
 }
 
-// Whether ptxas contracts the lane's kernel otherwise than the twin does. For this one kernel of forty it fuses 411
-// products where the rule fuses 414, and an H200 gave other verdicts on some hundreds of 60,007 pairs. Why it does so
-// is not known; KernelsUnderTolerances compares the machine code of all forty.
-bool contracts_otherwise(const Lane& lane) {
-  return lane.info->id == "interval_overlap" && lane.scalar == Scalar::f32 && lane.under->epsilons.any_relative() &&
-         info_of(lane.variant).arithmetic == Arithmetic::contracted;
+constexpr std::string_view kContractedOtherwise[] = {
+#include "cuda/twin/contracted_otherwise.inc"
+    ""};
+
+bool is_contracted_otherwise(const Lane& lane) {
+  LaneName kernel = lane.lane_name();
+  kernel.policy = lane.under->epsilons.any_relative() ? "rel" : "abs";
+  return std::find(std::begin(kContractedOtherwise), std::end(kContractedOtherwise), id_of(kernel)) !=
+         std::end(kContractedOtherwise);
 }
 
 // The twin of a lane with tolerances. Null for other policies, and without a correct twin.
 DecideBlock policy_twin(const Lane& lane) {
   const TwinTable* table = kTables[static_cast<int>(lane.variant)].policies;
-  if (!table || lane.under->kind != Policy::Kind::tolerances || contracts_otherwise(lane)) return nullptr;
+  if (!table || lane.under->kind != Policy::Kind::tolerances || is_contracted_otherwise(lane)) return nullptr;
   const TwinRow& row = row_of(*table, lane);
   return {lane.under->epsilons.any_relative() ? row.relative : row.absolute, lane.under->epsilons};
 }

@@ -90,7 +90,7 @@ Json build_info(const SelectedLanes& under_test) {
   if (under_test.device) info["device"] = under_test.device->name + ", driver " + under_test.device->driver;
   info["executors"] = Json::object();
   for (std::size_t l = 0; l < under_test.lanes.size(); ++l) {
-    if (under_test.lanes[l]->is_cuda()) info["executors"][under_test.lanes[l]->id] = under_test.evidence(l);
+    if (const std::string by = under_test.evidence(l); !by.empty()) info["executors"][under_test.lanes[l]->id] = by;
   }
   return info;
 }

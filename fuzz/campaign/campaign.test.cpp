@@ -150,7 +150,7 @@ TEST_F(CampaignTest, RefusesForeignAndDamagedDatabases) {
 class WrongOnce final : public cuda::Device {
  public:
   void decide(std::span<const Pair> pairs, std::span<const Lane* const> cuda_lanes,
-              std::vector<cuda::LaneBits>& bits) override {
+              std::vector<VerdictBits>& bits) override {
     bits.assign(cuda_lanes.size(),
                 {analysis::Bits((pairs.size() + 63) / 64), analysis::Bits((pairs.size() + 63) / 64)});
     for (std::size_t l = 0; l < cuda_lanes.size(); ++l) {
@@ -163,6 +163,32 @@ class WrongOnce final : public cuda::Device {
 
   std::vector<Pair> flipped;
 };
+
+TEST(BlockVerdicts, AreTheDevicesWhereItDecidesAndNameWhereTheTwinDiffers) {
+  SelectedLanes under_test = select_lanes({"moller_1997/f32/cpu", "moller_1997/f32/cuda-fma"}, Executor::twin);
+  ASSERT_EQ(under_test.lanes.size(), 2u);
+  under_test.device = std::make_unique<WrongOnce>();
+  std::vector<Pair> pairs;
+  for (std::uint64_t i = 0; i < 200; ++i) pairs.push_back(strata::generate(1, strata::Stratum::near_edge_edge, i));
+  std::vector<VerdictBits> on_device;
+  under_test.device->decide(pairs, under_test.device_lanes(), on_device);
+  on_device[0].intersects[1] ^= 1u << 3;  // pair 67
+  BlockVerdicts block(under_test);
+  for (const std::size_t begin : {std::size_t{0}, std::size_t{64}}) {
+    const std::span<const Pair> some = std::span(pairs).subspan(begin, 100);
+    std::vector<std::size_t> apart;
+    const std::span<const LaneVerdicts> found = block.decide(some, on_device, begin, [&](std::size_t l, std::size_t i) {
+      EXPECT_EQ(l, 1u);
+      apart.push_back(begin + i);
+    });
+    EXPECT_EQ(apart, begin == 0 ? (std::vector<std::size_t>{7, 67}) : (std::vector<std::size_t>{67}));
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      EXPECT_EQ(found[0].at(i), decide_one(under_test.lanes[0]->decide, some[i])) << i;
+      const bool differs = std::find(apart.begin(), apart.end(), begin + i) != apart.end();
+      EXPECT_EQ(found[1].at(i) != decide_one(under_test.on_host[1], some[i]), differs) << i;
+    }
+  }
+}
 
 TEST_F(CampaignTest, ReportsEachDifferenceOfDeviceAndTwin) {
   under_test_ = select_lanes({"moller_1997/f32/cuda-fma"}, Executor::twin);

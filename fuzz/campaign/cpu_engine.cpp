@@ -60,44 +60,23 @@ class BlockJudge {
  public:
   // exact: decides in CGAL's and GMP's place, unless null.
   BlockJudge(const Campaign& campaign, int source, const DecideBlock& exact,
-             const std::vector<cuda::LaneBits>& device_bits)
+             const std::vector<VerdictBits>& device_bits)
       : campaign_(campaign),
         under_test_(*campaign.under_test),
         source_(source),
         exact_(exact),
         device_bits_(device_bits),
-        signatures_(campaign.under_test->lanes) {
-    host_bits_.resize(under_test_.lanes.size());
-    views_.resize(under_test_.lanes.size());
-    verdicts_.resize(under_test_.lanes.size());
-  }
+        decider_(under_test_),
+        verdicts_(under_test_.lanes.size()),
+        signatures_(under_test_.lanes) {}
 
   // `begin` is the first pair's place among the device lanes' bits.
   void judge(std::span<const Pair> pairs, std::span<const std::uint64_t> indices, std::size_t begin,
              BatchResult& result, PairJudge::Found* found = nullptr) {
     find_truth(pairs, result);
-    const std::size_t words = truth_.size();
-    std::size_t next_device = 0;
-    for (std::size_t l = 0; l < under_test_.lanes.size(); ++l) {
-      if (under_test_.on_host[l]) {
-        cuda::LaneBits& bits = host_bits_[l];
-        bits.intersects.resize(words);
-        bits.declined.resize(words);
-        under_test_.on_host[l](pairs.data(), pairs.size(), bits.intersects.data(), bits.declined.data());
-        views_[l] = {bits.intersects, bits.declined, nullptr, pairs.data()};
-        if (under_test_.lanes[l]->foreign) views_[l].foreign = &under_test_.on_host[l];
-      }
-      if (!under_test_.on_device(l)) continue;
-      const cuda::LaneBits& bits = device_bits_[next_device++];
-      const analysis::LaneVerdicts twin = views_[l];
-      views_[l] = {std::span(bits.intersects).subspan(begin / 64, words),
-                   std::span(bits.declined).subspan(begin / 64, words)};
-      for (std::size_t i = 0; under_test_.on_both(l) && i < pairs.size(); ++i) {
-        if (views_[l].at(i) == twin.at(i)) continue;
-        result.executor_mismatches[under_test_.lanes[l]->id].add(CaseKey{indices[i], source_});
-      }
-    }
-
+    views_ = decider_.decide(pairs, device_bits_, begin, [&](std::size_t l, std::size_t i) {
+      result.executor_mismatches[under_test_.lanes[l]->id].add(CaseKey{indices[i], source_});
+    });
     const analysis::JudgedBlock block{pairs.size(), truth_, buckets_, views_};
     result.tally.add(block);
     if (const Axis axis = campaign_.sources[static_cast<std::size_t>(source_)].axis; axis != Axis::none) {
@@ -108,7 +87,7 @@ class BlockJudge {
     const analysis::Bits not_right = analysis::not_right(block);
     const std::uint64_t sample = exact_ ? kSample : kGmpSample;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool some_not_right = analysis::test_bit(not_right, i), sampled = indices[i] % sample == 0;
+      const bool some_not_right = test_bit(not_right, i), sampled = indices[i] % sample == 0;
       if (!some_not_right && !sampled) continue;
       const Relation relation = exact_ ? relation_by_exact_lane(pairs[i], indices[i], i, sampled, result)
                                        : relation_by_oracle(pairs[i], indices[i], i, result);
@@ -117,7 +96,7 @@ class BlockJudge {
     if (!found) return;
     found->truth = truth(0);
     found->bucket = buckets_[0];
-    if (!analysis::test_bit(not_right, 0)) verdicts_.assign(views_.size(), found->truth);
+    if (!test_bit(not_right, 0)) verdicts_.assign(views_.size(), found->truth);
     found->verdicts = verdicts_;
   }
 
@@ -127,7 +106,7 @@ class BlockJudge {
  private:
   const std::string& source_id() const { return campaign_.sources[static_cast<std::size_t>(source_)].id; }
 
-  Verdict truth(std::size_t i) const { return analysis::test_bit(truth_, i) ? Verdict::intersects : Verdict::disjoint; }
+  Verdict truth(std::size_t i) const { return test_bit(truth_, i) ? Verdict::intersects : Verdict::disjoint; }
 
   [[noreturn]] void apart(std::uint64_t index, const std::string& what) const {
     throw oracle::OracleMismatch(fmt::format("{} differ on {}:{}:{}", what, source_id(), campaign_.seed, index));
@@ -208,12 +187,12 @@ class BlockJudge {
   const SelectedLanes& under_test_;
   int source_;
   const DecideBlock& exact_;
-  const std::vector<cuda::LaneBits>& device_bits_;
+  const std::vector<VerdictBits>& device_bits_;
   analysis::Bits truth_, none_;
   std::vector<Bucket> buckets_;
   std::vector<std::int8_t> extremes_;
-  std::vector<cuda::LaneBits> host_bits_;
-  std::vector<analysis::LaneVerdicts> views_;
+  BlockVerdicts decider_;
+  std::span<const LaneVerdicts> views_;  // of each lane on the present block
   std::vector<Verdict> verdicts_;
   SignatureCounts signatures_;
 };
@@ -224,7 +203,7 @@ struct PairJudge::Parts {
   explicit Parts(const Campaign& campaign) : judge(campaign, 0, exact, device_bits) {}
 
   DecideBlock exact;
-  std::vector<cuda::LaneBits> device_bits;
+  std::vector<VerdictBits> device_bits;
   BlockJudge judge;
   Found found{};
 };
@@ -260,7 +239,7 @@ BatchResult judge(const Campaign& campaign, int source_number, std::size_t count
   });
 
   const std::vector<const Lane*> device_lanes = campaign.under_test->device_lanes();
-  std::vector<cuda::LaneBits> device_bits;
+  std::vector<VerdictBits> device_bits;
   if (!device_lanes.empty()) campaign.under_test->device->decide(pairs, device_lanes, device_bits);
 
   const BatchResult empty = no_counts(campaign);

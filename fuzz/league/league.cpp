@@ -59,10 +59,9 @@ struct Counting {
     const std::vector<Verdict> said = verdicts_of(*decide, pairs);
     std::vector<std::size_t> not_right;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const bool outside = analysis::is_outside(*row.lane, pairs[i], truths[i]);
-      ++(outside ? counts.outside : counts.pairs);
+      ++(analysis::is_outside(*row.lane, pairs[i], truths[i]) ? counts.outside : counts.pairs);
       if (said[i] == truths[i].verdict) continue;
-      if (outside && !is_failure(said[i])) {
+      if (analysis::by_convention(*row.lane, said[i], pairs[i], truths[i])) {
         ++counts.by_convention;
       } else {
         not_right.push_back(i);

@@ -14,6 +14,7 @@
 
 #include "analysis/explain.h"
 #include "analysis/signature.h"
+#include "backends/backends.h"
 #include "corpus/pair_format.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/minimise/minimised_cases.h"
@@ -202,7 +203,7 @@ std::vector<LaneReason> reasons_of(const SelectedLanes& under_test, std::string_
                                    Verdict truth) {
   std::vector<const Lane*> lanes;
   std::copy_if(under_test.lanes.begin(), under_test.lanes.end(), std::back_inserter(lanes),
-               [&](const Lane* lane) { return lane->info->id == subject && cuda::block_on_host(*lane); });
+               [&](const Lane* lane) { return lane->info->id == subject && backends::on_host(*lane); });
   const std::vector<analysis::LaneExplanation> accounts = analysis::accounts(pair, truth, lanes);
   std::vector<LaneReason> result;
   for (const analysis::LaneExplanation& account : accounts) {

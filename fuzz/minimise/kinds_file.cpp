@@ -10,12 +10,12 @@
 #include <set>
 
 #include "analysis/signature.h"
+#include "backends/backends.h"
 #include "core/cannot.h"
 #include "core/fnv1a.h"
 #include "core/lanes/verdicts.h"
 #include "core/text.h"
 #include "corpus/pair_format.h"
-#include "cuda/twin/twin.h"
 #include "fuzz/campaign/result_files.h"
 #include "fuzz/files.h"
 #include "fuzz/minimise/kinds.h"
@@ -70,7 +70,7 @@ Known known_of(const fs::path& directory, const Json& summary, const Json& lanes
     expect(std::find(ran.begin(), ran.end(), id) != ran.end(), "the lane " + shown(id) + ", which the campaign lacks");
     expect(known.lanes.insert(id).second, "the lane " + id + " twice");
     const Lane* lane = find_lane(id);
-    if (lane && !lane->foreign && !lane->exact && cuda::block_on_host(*lane)) known.own[id] = lane->explainable;
+    if (lane && !lane->foreign && !lane->exact && backends::on_host(*lane)) known.own[id] = lane->explainable;
   }
   known.cases.resize(rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(),

@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "analysis/convention.h"
+#include "backends/backends.h"
 #include "core/lanes/verdicts.h"
 #include "core/margin/margin.h"
 #include "core/relation_of.h"
-#include "cuda/twin/twin.h"
 #include "fuzz/minimise/moves.h"
 #include "oracle/truth.h"
 
@@ -274,7 +274,7 @@ std::vector<Failure> failures_of(const SelectedLanes& under_test, const Pair& pa
     Failure failure{truth, {}, {}, {}};
     for (std::size_t l = first; l < first + count; ++l) {
       const Lane& lane = *under_test.lanes[l];
-      const DecideBlock on_host = cuda::block_on_host(lane);
+      const DecideBlock on_host = backends::on_host(lane);
       if (!on_host)
         throw std::runtime_error("cannot minimise with " + lane.id + ": it has no twin; choose other --lanes");
       failure.lanes.push_back(&lane);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -51,11 +52,11 @@ struct Case {
 // The first failures of a stratum, at most `most` for each algorithm.
 std::vector<Case> cases_of(strata::Stratum stratum, std::size_t most) {
   std::vector<Case> found;
-  std::vector<std::size_t> of_algorithm(lanes().size());
+  std::map<std::string_view, std::size_t> of_algorithm;
   for (std::uint64_t index = 0; index < 3000; ++index) {
     const Pair pair = strata::generate(kSeed, stratum, index);
     for (Failure& failure : failures_of(under_test(), pair)) {
-      if (++of_algorithm[static_cast<std::size_t>(failure.lanes.front()->algorithm)] > most) continue;
+      if (++of_algorithm[failure.lanes.front()->info->id] > most) continue;
       const std::string name = std::to_string(index) + " " + std::string(failure.lanes.front()->info->id);
       found.push_back({pair, std::move(failure), name});
     }

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "backends/backends.h"
 #include "core/relation_of.h"
-#include "cuda/twin/twin.h"
 #include "fuzz/campaign/result_files.h"
 #include "oracle/truth.h"
 
@@ -62,7 +62,7 @@ std::vector<corpus::Entry> checked_cases(const SelectedLanes& under_test, const 
     for (const Lane* lane : under_test.lanes) {
       if (lane->info->id != signature.subject || lane->foreign) continue;
       if (std::find(ran.begin(), ran.end(), lane->id) == ran.end()) continue;
-      const DecideBlock on_host = cuda::block_on_host(*lane);
+      const DecideBlock on_host = backends::on_host(*lane);
       if (!on_host) continue;
       const char recorded = signature.mark_of(lane->lane_name().within_subject());
       // A result may cover only some lanes.

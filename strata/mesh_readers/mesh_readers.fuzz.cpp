@@ -23,8 +23,11 @@ void read_any(std::string_view bytes) {
   }
 }
 
-const RegisterFuzzTarget kOff("mesh_off", read_any<read_off>), kObj("mesh_obj", read_any<read_obj>),
-    kStl("mesh_stl", read_any<read_stl>), kPly("mesh_ply", read_any<read_ply>);
+const RegisterFuzzTarget kTargets[] = {
+#define GRAZE_MESH_FORMAT(extension, name) {"mesh_" #extension, read_any<read_##extension>},
+#include "strata/mesh_readers/formats.inc"
+#undef GRAZE_MESH_FORMAT
+};
 
 }  // namespace
 }  // namespace graze::strata

@@ -30,10 +30,9 @@ struct MeshBytes {
 
 // Parses the bytes of a mesh file. Decimals become the nearest float32, rounded once.
 // Throws: std::runtime_error of one line that names the file, the line or byte, and what was expected and found.
-Soup read_off(const MeshBytes& file);
-Soup read_obj(const MeshBytes& file);
-Soup read_stl(const MeshBytes& file);
-Soup read_ply(const MeshBytes& file);
+#define GRAZE_MESH_FORMAT(extension, name) Soup read_##extension(const MeshBytes& file);
+#include "strata/mesh_readers/formats.inc"
+#undef GRAZE_MESH_FORMAT
 
 // Cuts a face into a fan from its first vertex. A face of fewer than three vertices is counted as skipped.
 void add_face(Soup& soup, std::span<const std::uint32_t> face);

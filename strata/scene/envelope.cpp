@@ -94,21 +94,13 @@ Scene resolved(const SceneFile& file) {
 
 Kind kind_of(Stratum stratum) {
   switch (stratum) {
-    case Stratum::shared_vertex:
-      return Kind::shared_vertex;
-    case Stratum::shared_edge:
-      return Kind::shared_edge;
-    case Stratum::coplanar_lattice:
-    case Stratum::coplanar_wide:
-    case Stratum::coplanar_rounded:
-    case Stratum::parallel:
-      return Kind::coplanar;
-    case Stratum::degenerate:
-    case Stratum::lattice:
-      return Kind::degenerate;
-    default:
-      return Kind::general;
+#define GRAZE_STRATUM(name, group, kind, ...) \
+  case Stratum::name:                         \
+    return Kind::kind;
+#include "strata/strata.inc"
+#undef GRAZE_STRATUM
   }
+  return Kind::general;
 }
 
 std::optional<std::string> left_out(const SceneFile& scene, Stratum stratum) {

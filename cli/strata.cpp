@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// `graze strata`: prints the table of strata from the code.
+#include "strata/strata.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <limits>
+
+#include "cli/commands.h"
+#include "cli/screen.h"
+
+namespace graze::cli {
+
+void add_strata(CLI::App& app, int&) {
+  CLI::App* command = app.add_subcommand("strata", "List the strata: the named generators of pairs");
+  command->footer("Example: graze strata");
+  command->callback([] {
+    // One line each, for programs that read the list.
+    const int columns = isatty(STDOUT_FILENO) ? output_screen().columns : std::numeric_limits<int>::max();
+    for (const strata::StratumInfo& row : strata::kStrata)
+      fmt::print("{}", reports::wrapped(fmt::format("{:<20} {}", row.id, row.what), columns, 0, 21));
+    fmt::print("\nNext: graze fuzz --strata 'near_*'\n");
+  });
+}
+
+}  // namespace graze::cli

@@ -28,13 +28,13 @@ std::string extreme(const std::vector<const Json*>& lanes, const char* count, bo
   return fmt::format("{} ({})", rate_words(rate(of)), text_at(*of, "second"));
 }
 
-// Where a lane is not what its recorded run stands for.
+// On how many pairs a lane's verdict differs from that of its recorded run; empty if on none.
 std::string unlike_words(const Json& json) {
   std::string text;
   for (const Json& of : json.at("lanes")) {
     for (int lane = 0; lane < 2; ++lane) {
       if (const std::uint64_t unlike = of.at("total").at("unlike").at(lane); unlike > 0)
-        text += fmt::format(" On {} pairs {} decides otherwise than its recorded run.", grouped(unlike),
+        text += fmt::format(" On {} pairs the verdict of {} differs from that of its recorded run.", grouped(unlike),
                             text_at(of, lane == 0 ? "first" : "second"));
     }
   }

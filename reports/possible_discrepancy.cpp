@@ -19,7 +19,7 @@ void expect(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error("impossible counts: " + what);
 }
 
-// Each of these keys is at most the one before.
+// Checks that the count of each key is at most that of the key before it.
 void expect_falling(const Json& of, std::initializer_list<const char*> keys, const std::string& what) {
   const char* before = nullptr;
   for (const char* key : keys) {
@@ -34,7 +34,7 @@ std::uint64_t sum_of(const Json& histogram) {
   return sum;
 }
 
-// The pairs by their place on the stratum's axis are all pairs.
+// Checks that the pairs by place on the stratum's axis add up to all pairs.
 void expect_extremes(const Json& of, const std::string& what) {
   for (const auto& [axis, places] : of.at("extremes").items()) {
     expect(axis == "scale" || axis == "offset", what + ": extremes of " + axis);
@@ -86,7 +86,7 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
   }
 }
 
-// The sum of numbers at the same places; largest ones stay the largest.
+// Adds the numbers of `some` to those at the same places of `to`. Fields named "largest…" keep the larger value.
 void add(Json& to, const Json& some, const std::string& key = "") {
   if (some.is_number_float() || key.starts_with("largest")) {
     to = std::max(to.is_null() ? 0.0 : to.get<double>(), some.get<double>());

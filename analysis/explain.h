@@ -26,8 +26,8 @@ namespace graze::analysis {
 //   fast math    the same, for a lane whose operations the compiler may rewrite or approximate
 //   overflow, underflow   without contraction, the scalar's mantissa with unlimited exponents is right. Overflow if the
 //                upper limit alone makes it wrong, underflow if the lower limit alone does. If both or neither do, the
-//                limit that is exceeded first. This also covers pairs that need a longer mantissa as well, if the limit
-//                made the comparison go wrong.
+//                cause is the limit that is exceeded first. This also covers pairs that need a longer mantissa as well,
+//                if the limit made the comparison go wrong.
 //   rounding     otherwise
 // Experiments find the cause for foreign code (experiments.h). The causes from absolute_epsilon on apply only to
 // foreign code, except policy:

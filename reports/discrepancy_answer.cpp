@@ -113,7 +113,7 @@ std::string nearer_sentence(const std::vector<const Json*>& lanes) {
   if (all == 0) return "No lane is nearer to the exact values: none differ.";
   return fmt::format(
       "Of {} values that differ, the second lane's is nearer to the exact one in {}, the first lane's in {}; {} are "
-      "equally near, and of {} the certified bounds do not tell.",
+      "equally near, and for {} the certified bounds do not tell.",
       grouped(all), rate_words(part_of(second, all)), rate_words(part_of(first, all)), grouped(equal),
       grouped(unknown));
 }
@@ -136,7 +136,7 @@ std::string band_sentence(const std::vector<const Json*>& lanes) {
   if (widest == 0) return "No sign differs.";
   return fmt::format(
       "A sign differs only where both sizes are at most {} bounds of the value's rounding error ({}). In {} "
-      "comparisons none was farther from zero{}; at 95 % confidence the rate of such is under {}.",
+      "comparisons none was farther from zero{}; at 95 % confidence such comparisons are rarer than {}.",
       rounded_up(widest, 2), where, grouped(asked),
       beyond_range == 0 ? "" : fmt::format(", but for {} where the error has no bound", grouped(beyond_range)),
       rounded_up(analysis::upper_bound(0, asked), 2));
@@ -152,7 +152,7 @@ std::string mending_sentence(const Json& json) {
     others += number_at(of.at("total"), "differs");
   }
   if (lanes == 0)
-    return "What mends it was not measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
+    return "No remedy was measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
            "--agree`.";
   if (others > 0)
     return fmt::format("-fmad=false does not mend it: {} of {} pairs still differ.", grouped(others), grouped(pairs));

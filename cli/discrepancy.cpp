@@ -42,14 +42,14 @@ struct Comparisons {
   std::vector<analysis::TwoDeciders> verdicts;
 };
 
-// A lane of a user's code with what runs it.   Throws: UsageError if nothing does here.
+// The function that runs a lane of a user's code here.   Throws: UsageError if there is none.
 DecideBlock on_host(const Lane& lane) {
   const fuzz::SelectedLanes selected = fuzz::select_lanes({lane.id});
   fuzz::expect_each_runs(selected);
   return selected.on_host.at(0);
 }
 
-// Those that the user named; without any, `cpu` against both CUDA builds of each algorithm and scalar.
+// The pairs of lanes that the user named; by default `cpu` with both CUDA builds, for each algorithm and scalar.
 Comparisons comparisons_of(const DiscrepancyOptions& options) {
   Comparisons comparisons;
   std::vector<analysis::LanesCompared>& lanes = comparisons.values;
@@ -112,7 +112,7 @@ int compare(const std::vector<std::string>& names) {
   const fuzz::Json before = results_of(names[0]), after = results_of(names[1]);
   for (const char* spec : {"pairs", "seed", "scene"}) {
     if (before.value(spec, fuzz::Json()) != after.value(spec, fuzz::Json()))
-      throw UsageError(fmt::format("{} and {} are of other pairs: their {} differ", names[0], names[1], spec));
+      throw UsageError(fmt::format("{} and {} do not have the same pairs: their {} differ", names[0], names[1], spec));
   }
   fmt::print("{}", reports::discrepancy_changes(before, after, output_screen()));
   return 0;

@@ -28,13 +28,13 @@ std::string extreme(const std::vector<const Json*>& lanes, const char* count, bo
   return fmt::format("{} ({})", rate_words(rate(of)), text_at(*of, "second"));
 }
 
-// Where a lane is not what its recorded run stands for.
+// On how many pairs a lane's verdict differs from that of its recorded run; empty if on none.
 std::string unlike_words(const Json& json) {
   std::string text;
   for (const Json& of : json.at("lanes")) {
     for (int lane = 0; lane < 2; ++lane) {
       if (const std::uint64_t unlike = of.at("total").at("unlike").at(lane); unlike > 0)
-        text += fmt::format(" On {} pairs {} decides otherwise than its recorded run.", grouped(unlike),
+        text += fmt::format(" On {} pairs the verdict of {} differs from that of its recorded run.", grouped(unlike),
                             text_at(of, lane == 0 ? "first" : "second"));
     }
   }
@@ -116,7 +116,7 @@ std::string nearer_sentence(const std::vector<const Json*>& lanes) {
   if (all == 0) return "No lane is nearer to the exact values: none differ.";
   return fmt::format(
       "Of {} values that differ, the second lane's is nearer to the exact one in {}, the first lane's in {}; {} are "
-      "equally near, and of {} the certified bounds do not tell.",
+      "equally near, and for {} the certified bounds do not tell.",
       grouped(all), rate_words(part_of(second, all)), rate_words(part_of(first, all)), grouped(equal),
       grouped(unknown));
 }
@@ -162,7 +162,7 @@ std::string mending_sentence(const Json& json) {
     most = std::max(most, number_at(of.at("total"), "differs"));
   }
   if (lanes == 0)
-    return "What mends it was not measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
+    return "No remedy was measured here: compare cpu with cuda-nofma (-fmad=false), and see `graze tune "
            "--agree`.";
   if (others > 0)
     return fmt::format("-fmad=false does not mend it: in {} of {} values still differ, on up to {} of {}.", others,

@@ -19,7 +19,7 @@ std::string discrepancy_changes(const Json& before, const Json& after, const Scr
   std::string text;
   std::size_t same = 0;
   TextTable table({{"lanes", Align::left}, {"question", Align::left}, {"count", Align::left}, {"before"}, {"after"}});
-  // Calls with_both(old, now) for the comparisons that both have.
+  // Calls with_both(old, now) for each comparison that is in both results.
   const auto match = [&](const char* kind, const auto& with_both) {
     const Json old_ones = before.value(kind, Json::array()), new_ones = after.value(kind, Json::array());
     const auto in = [&](const Json& list, const Json& wanted) {

@@ -22,7 +22,7 @@ void expect(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error("impossible counts: " + what);
 }
 
-// Each of these keys is at most the one before.
+// Checks that the count of each key is at most that of the key before it.
 void expect_falling(const Json& of, std::initializer_list<const char*> keys, const std::string& what) {
   const char* before = nullptr;
   for (const char* key : keys) {
@@ -37,7 +37,7 @@ std::uint64_t sum_of(const Json& histogram) {
   return sum;
 }
 
-// The pairs by their place on the stratum's axis are all pairs.
+// Checks that the pairs by place on the stratum's axis add up to all pairs.
 void expect_extremes(const Json& of, const std::string& what) {
   for (const auto& [axis, places] : of.at("extremes").items()) {
     expect(axis == "scale" || axis == "offset", what + ": extremes of " + axis);
@@ -55,14 +55,14 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
   expect_falling(of, {"outcome", "choice"}, what);
   if (of.contains("extremes")) expect_extremes(of, what);
   expect(number_at(of, "sign") <= number_at(of, "differs") + number_at(of, "choice"),
-         what + ": more signs than values and choices");
+         what + ": more signs differ than values and choices");
   for (const Json& unlike : of.at("unlike"))
     expect(unlike.get<std::uint64_t>() <= number_at(of, "pairs"), what + ": unlike");
   for (const auto& [site, counts] : of.at("sites").items()) {
     expect_falling(counts, {"asked", "differs", "sign"}, what + ", " + site);
     expect(number_at(counts, "asked") <= number_at(of, "pairs"), what + ": more pairs at " + site);
   }
-  expect(of.at("questions").size() == questions.size(), what + ": other questions than the algorithm's");
+  expect(of.at("questions").size() == questions.size(), what + ": its questions are not those of the algorithm");
   for (std::size_t q = 0; q < questions.size(); ++q) {
     const Json& question = of.at("questions").at(q);
     const std::string place = what + ", " + questions[q].name;
@@ -70,7 +70,8 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
     expect(number_at(question, "asked") <= number_at(of, "pairs"), place + ": asked of more pairs");
     expect_falling(question, {"asked", "differs", "sign", "outcome", "verdict"}, place);
     expect_falling(question, {"sign", "zero_on_one_side"}, place);
-    expect(sum_of(question.at("band")) == number_at(question, "sign"), place + ": the band does not add up");
+    expect(sum_of(question.at("band")) == number_at(question, "sign"),
+           place + ": the counts of the band do not add up");
     for (const char* largest : {"largest_in_bounds", "largest_length"})
       expect(question.at(largest).get<double>() >= 0, place + ": " + largest);
     expect(question.at("largest_in_bounds") <= kWidestBand, place + ": a band of more than two bounds");
@@ -81,15 +82,15 @@ void expect_possible_counts(const Json& of, const std::vector<Question>& questio
       expect(equal + number_at(value, "zero_sign") + number_at(value, "not_finite") + sum_of(value.at("below")) +
                      sum_of(value.at("above")) ==
                  compared,
-             place + ": the differences do not add up");
+             place + ": the counts of differences do not add up");
       for (const char* errors : {"first_error", "second_error"})
         expect(sum_of(value.at(errors)) == compared, place + ": " + errors + " does not add up");
-      expect(sum_of(value.at("nearer")) == compared - equal, place + ": nearer does not add up");
+      expect(sum_of(value.at("nearer")) == compared - equal, place + ": the counts of nearer values do not add up");
     }
   }
 }
 
-// The sum of numbers at the same places; largest ones stay the largest.
+// Adds the numbers of `some` to those at the same places of `to`. Fields named "largest…" keep the larger value.
 void add(Json& to, const Json& some, const std::string& key = "") {
   if (some.is_number_float() || key.starts_with("largest")) {
     to = std::max(to.is_null() ? 0.0 : to.get<double>(), some.get<double>());

@@ -276,8 +276,7 @@ TEST(Discrepancy, ErrorsAreThoseOfMpfr) {
               return value.question == question && value.which == which;
             });
             ASSERT_NE(certified, runs.values.end());
-            // If several values are compared for the least, MPFR follows the one that the lane chose; the counts take
-            // the true least.
+            // Of several values MPFR follows the one that the lane chose as the least; the counts take the true least.
             const bool other =
                 std::fabs(certified->unrounded->exact.hi - beside.exact) > 1e-12 * std::fabs(beside.exact);
             const bool subnormal = std::fabs(beside.exact) < (first->scalar == Scalar::f32 ? 0x1p-126 : 0x1p-1022);
@@ -388,7 +387,7 @@ TEST(Discrepancy, TheBandIsUnknownWhereNothingIsSettled) {
     first[12] = 1, first[13] = 2;
     second[12] = 2, second[13] = 1;
   };
-  // Sections have 13 lengths as factors.
+  // The ends of these sections are products of 13 lengths.
   for (const Places& places : {planted<Moller1997, double>(twice, scaled(crossing, 0x1p+100f), swap_order),
                                planted<Moller1997, float>(single, scaled(crossing, 0x1p+20f), swap_order)}) {
     EXPECT_TRUE(places.has(question_at(6) + question_counts::sign));

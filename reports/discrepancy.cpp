@@ -132,7 +132,7 @@ DiscrepancyCounts total(const LanesCompared& lanes, const std::vector<Discrepanc
 
 std::string share_words(std::uint64_t part, std::uint64_t whole) { return rate_words(part_of(part, whole)); }
 
-// The number of differing values in each octave of their distance, over both values of the question.
+// The number of differing values in each octave of their distance in ulps, over both values of the question.
 Octaves octaves_of(const DiscrepancyCounts& of, int question, std::size_t values) {
   using namespace value_counts;
   Octaves octaves;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
+#include <set>
 #include <stdexcept>
 
+#include "analysis/discrepancy.h"
 #include "core/discrepancy/questions.h"
 #include "core/lanes/lanes.h"
 #include "reports/discrepancy_reading.h"
@@ -30,11 +33,11 @@ void expect_falling(const Json& of, std::initializer_list<const char*> keys, con
 
 std::uint64_t sum_of(const Json& histogram) {
   std::uint64_t sum = 0;
-  for (const auto& [bucket, count] : histogram.items()) sum += count.get<std::uint64_t>();
+  for (const auto& [bucket, unused] : histogram.items()) sum += number_at(histogram, bucket);
   return sum;
 }
 
-// The pairs by their place on the stratum's axis are all pairs.
+// Checks that the pairs by place on the stratum's axis add up to all pairs.
 void expect_extremes(const Json& of, const std::string& what) {
   for (const auto& [axis, places] : of.at("extremes").items()) {
     expect(axis == "scale" || axis == "offset", what + ": extremes of " + axis);
@@ -103,12 +106,51 @@ void add(Json& to, const Json& some, const std::string& key = "") {
   }
 }
 
+// The traced pairs are some of the compared ones, so no count is larger than that of the comparison.
+void expect_possible_origins(const Json& of, const std::vector<Question>& questions, const std::string& what) {
+  const Json &origins = of.at("origins"), &total = of.at("total"), &lines = origins.at("lines");
+  expect(number_at(origins, "pairs") <= number_at(total, "pairs"), what + ": more pairs are traced than compared");
+  expect_falling(origins, {"pairs", "verdicts"}, what);
+  std::size_t values = 0;
+  for (const Question& question : questions) values += question.of.size();
+  for (const Json& line : lines) {
+    expect(!text_at(line, "line").empty() && line.at("within").is_string(), what + ": a line without a place");
+    expect(number_at(line, "verdicts_fixed") <= number_at(origins, "verdicts"),
+           what + ": more verdicts are given back");
+    expect(number_at(line, "verdicts_alone") <= number_at(origins, "pairs"), what + ": more verdicts than pairs");
+    expect(number_at(line, "values") <= values * number_at(origins, "pairs"), what + ": more values than are compared");
+  }
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const Json& start : origins.at("starts")) {
+    const std::string name = text_at(start, "question"), value = text_at(start, "value");
+    const auto question =
+        std::find_if(questions.begin(), questions.end(), [&](const Question& q) { return q.name == name; });
+    expect(question != questions.end() && std::count(question->of.begin(), question->of.end(), value) == 1 &&
+               seen.emplace(name, value).second,
+           what + ": no value " + name + ", " + value + ", or it is there twice");
+    std::uint64_t sum = number_at(start, "by_several_lines");
+    for (const auto& [line, unused] : start.at("by_line").items()) {
+      std::size_t place = lines.size();
+      const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), place);
+      expect(error == std::errc() && end == line.data() + line.size() && place < lines.size(),
+             what + ": a line " + line);
+      sum += number_at(start.at("by_line"), line);
+    }
+    expect(sum <= number_at(origins, "pairs"), what + ", " + name + ": more traced values than pairs");
+    expect(sum_of(start.at("growth")) <= sum, what + ", " + name + ": more growths than traced values");
+  }
+}
+
 }  // namespace
+
 void expect_possible_discrepancy(const Json& json) {
   const Json verdicts = json.value("verdicts", Json::array());
   expect(!json.at("lanes").empty() || !verdicts.empty(), "no lanes");
   for (const Json& of : verdicts) expect_possible_verdicts(of);
+  std::set<std::set<std::string>> compared;
   for (const Json& of : json.at("lanes")) {
+    const std::set<std::string> both{text_at(of, "first"), text_at(of, "second")};
+    expect(both.size() == 2 && compared.insert(both).second, "two lanes are one, or are compared twice");
     const Lane* lanes[2] = {find_lane(text_at(of, "first")), find_lane(text_at(of, "second"))};
     expect(lanes[0] && lanes[1] && lanes[0]->algorithm >= 0 && lanes[0]->algorithm == lanes[1]->algorithm &&
                lanes[0]->scalar == lanes[1]->scalar,
@@ -123,6 +165,10 @@ void expect_possible_discrepancy(const Json& json) {
     }
     expect(nlohmann::json(sum) == nlohmann::json(of.at("total")),
            text_at(of, "second") + ": the total is not that of the strata");
+    expect(number_at(of.at("total"), "pairs") == number_at(json, "pairs"), "not all pairs are compared");
+    const Lane* fused = analysis::fused_of({lanes[0], lanes[1]});
+    expect(of.at("origins").is_null() || fused, text_at(of, "second") + ": origins of no contraction");
+    if (!of["origins"].is_null()) expect_possible_origins(of, questions, text_at(of, "second"));
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs an algorithm on certified numbers down the path that a lane's recorded run took. Its values are those that the
-// lane would have without rounding, if all its comparisons and choices stayed the same. Each also has a
-// bound of its rounding error.
+// Runs an algorithm on certified numbers down the path that a lane's recorded run took. So each of its values is what
+// the lane would have had without rounding, with every comparison and every choice as the lane made it. Each also has a
+// bound of the error that rounding may cause in it.
 // Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms, second edition (2002), section 3.3: running
 // error analysis; here with the terms of second order, underflow and overflow.
 #pragma once
@@ -39,7 +39,7 @@ struct Led {
   GRAZE_HD explicit Led(int constant)
       : exact(static_cast<double>(constant)), lane(static_cast<Real>(constant)), was_seen(true) {}
   GRAZE_HD Led(Real coordinate, LedRun* r) : exact(static_cast<double>(coordinate)), run(r) {}
-  // `of_operands`: how far the operation moves the error of its operands. `lost`: at most by underflow.
+  // `of_operands`: how far the operation moves the error of its operands. `lost`: bound of the loss by underflow.
   GRAZE_HD Led(const Certified& computed, const Led& l, const Led& r, double of_operands, double lost)
       : exact(computed), run(l.run ? l.run : r.run) {
     const double size = size_of(exact), error = certified::up(of_operands * (1 + kUnit) + kUnit * size + lost);
@@ -99,16 +99,16 @@ struct Led {
   static constexpr bool kIsFloat = sizeof(Real) == sizeof(float);
   static constexpr double kUnit = kIsFloat ? 0x1p-24 : 0x1p-53,
                           kLargest = kIsFloat ? 0x1.fffffep+127 : 0x1.fffffffffffffp+1023;
-  // More than a product or quotient loses by underflow, and than the products of its bound do.
+  // More than the loss by underflow of a product or quotient and of the products in its bound.
   static constexpr double kLost = kIsFloat ? 0x1p-147 : 0x1p-1071;
 
-  // At least the number's size.
+  // An upper bound of the number's size.
   GRAZE_HD static double size_of(const Certified& x) { return certified::above(x) + x.bound; }
   GRAZE_HD bool is_zero() const { return exact.is_exactly_zero() && rounding == 0; }
 
   // Values that the lane did not record are compared exactly: the least of several distances, for example. If their
-  // order is in doubt, the wrong choice is off by at most their distance. The lane may have chosen the other one. So
-  // both get the larger rounding: a least or greatest value has at most the largest of all.
+  // order is in doubt, the wrong choice is off by at most their distance. The lane may have taken the other one. So
+  // both get the larger rounding: that of a least or greatest value is at most the largest of all.
   template <class Comparison>
   GRAZE_HD static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);

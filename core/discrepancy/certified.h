@@ -58,7 +58,7 @@ GRAZE_HD inline Certified operator-(const Certified& x) {
   return result;
 }
 
-GRAZE_HD inline Certified operator+(const Certified& x, const Certified& y) {
+GRAZE_HD GRAZE_CALLED inline Certified operator+(const Certified& x, const Certified& y) {
   using namespace double_double;
   const DoubleDouble high = exact_sum(x.hi, y.hi), low = exact_sum(x.lo, y.lo);
   const DoubleDouble middle = exact_sum(high.lo, low.hi), top = exact_sum(high.hi, middle.hi);
@@ -68,7 +68,7 @@ GRAZE_HD inline Certified operator+(const Certified& x, const Certified& y) {
 }
 GRAZE_HD inline Certified operator-(const Certified& x, const Certified& y) { return x + -y; }
 
-GRAZE_HD inline Certified operator*(const Certified& x, const Certified& y) {
+GRAZE_HD GRAZE_CALLED inline Certified operator*(const Certified& x, const Certified& y) {
   using namespace double_double;
   using namespace certified;
   const double high = x.hi * y.hi, error = fma(x.hi, y.hi, -high);
@@ -85,7 +85,7 @@ GRAZE_HD inline Certified operator*(const Certified& x, const Certified& y) {
 }
 
 // The error is computed from the remainder: the dividend minus the quotient times the divisor.
-GRAZE_HD inline Certified operator/(const Certified& x, const Certified& y) {
+GRAZE_HD GRAZE_CALLED inline Certified operator/(const Certified& x, const Certified& y) {
   using namespace certified;
   Certified quotient(x.hi / y.hi);
   const Certified first = x - quotient * y;
@@ -99,7 +99,7 @@ GRAZE_HD inline Certified operator/(const Certified& x, const Certified& y) {
   return {better, bound};
 }
 
-GRAZE_HD inline Certified Certified::root() const {
+GRAZE_HD GRAZE_CALLED inline Certified Certified::root() const {
   using namespace certified;
   if (is_exactly_zero()) return *this;
   Certified result(std::sqrt(hi));

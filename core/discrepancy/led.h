@@ -46,19 +46,19 @@ struct Led {
     rounding = size + error <= kLargest ? error : HUGE_VAL;
   }
 
-  GRAZE_HD friend Led operator+(const Led& l, const Led& r) {
+  GRAZE_HD GRAZE_CALLED friend Led operator+(const Led& l, const Led& r) {
     return {l.exact + r.exact, l, r, l.rounding + r.rounding, 0};
   }
-  GRAZE_HD friend Led operator-(const Led& l, const Led& r) {
+  GRAZE_HD GRAZE_CALLED friend Led operator-(const Led& l, const Led& r) {
     return {l.exact - r.exact, l, r, l.rounding + r.rounding, 0};
   }
-  GRAZE_HD friend Led operator/(const Led& l, const Led& r) {
+  GRAZE_HD GRAZE_CALLED friend Led operator/(const Led& l, const Led& r) {
     const Certified quotient = l.exact / r.exact;
     const double least = certified::least_size(r.exact) - r.rounding;
     const double moved = least > 0 ? (l.rounding + size_of(quotient) * r.rounding) / least : HUGE_VAL;
     return {quotient, l, r, moved, l.is_zero() ? 0 : kLost};
   }
-  GRAZE_HD friend Led sqrt(const Led& x) {
+  GRAZE_HD GRAZE_CALLED friend Led sqrt(const Led& x) {
     const Certified root = sqrt(x.exact);
     const bool positive = x.exact.hi > 0 && certified::least_size(x.exact) > x.rounding;
     const double moved = x.is_zero() ? 0 : positive ? x.rounding / certified::least_size(root) : HUGE_VAL;
@@ -71,7 +71,7 @@ struct Led {
     return result;
   }
   // A product of values that the lane compares, like d0 * d1 > 0, is the lane's product: no contraction reaches it.
-  GRAZE_HD friend Led operator*(const Led& l, const Led& r) {
+  GRAZE_HD GRAZE_CALLED friend Led operator*(const Led& l, const Led& r) {
     const double moved = size_of(l.exact) * r.rounding + size_of(r.exact) * l.rounding + l.rounding * r.rounding;
     Led result(l.exact * r.exact, l, r, moved, l.is_zero() || r.is_zero() ? 0 : kLost);
     result.was_seen = l.was_seen && r.was_seen;
@@ -110,7 +110,7 @@ struct Led {
   // order is in doubt, the wrong choice is off by at most their distance. The lane may have taken the other one. So
   // both get the larger rounding: that of a least or greatest value is at most the largest of all.
   template <class Comparison>
-  GRAZE_HD static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
+  GRAZE_HD GRAZE_CALLED static bool compare(const Led& l, const Led& r, const Comparison& comparison) {
     if (l.was_seen && r.was_seen) return comparison(l.lane, r.lane);
     const Certified difference = l.exact - r.exact;
     const double apart = certified::above(difference);
